@@ -1,0 +1,182 @@
+//! Exits of modes, `when` clauses and asserts become reactions: a condition over truths, and what is set when it fires.
+
+use crate::system::System;
+use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
+use hyde_ir::dae::{Alias, Assignment, Dae, Reaction, ReactionKind, Space, Target};
+use hyde_ir::flat::Action;
+use hyde_ir::print::Names;
+use hyde_ir::{AutomatonId, Expr, ExprId, Index, UnaryOp, VarId, VariableKind};
+use std::collections::HashMap;
+
+/// Fills in the reactions of the DAE.
+pub(crate) fn react(dae: &mut Dae, system: &mut System, diagnostics: &mut Diagnostics) {
+    for (automaton, block) in system.flat.automata.enumerate() {
+        for (from, mode) in block.modes.iter().enumerate() {
+            for exit in &mode.exits {
+                let kind = ReactionKind::Transition {
+                    automaton,
+                    from,
+                    to: exit.target,
+                    impact: exit.impact,
+                };
+                add(
+                    dae,
+                    system,
+                    exit.guard,
+                    kind,
+                    &exit.actions,
+                    &exit.origin,
+                    diagnostics,
+                );
+            }
+        }
+    }
+    for (clause, when) in system.flat.whens.iter().enumerate() {
+        for (condition, actions) in &when.branches {
+            add(
+                dae,
+                system,
+                *condition,
+                ReactionKind::When { clause },
+                actions,
+                &when.origin,
+                diagnostics,
+            );
+        }
+    }
+    for assert in &system.flat.asserts {
+        let failed = dae.exprs.unary(UnaryOp::Not, assert.condition);
+        let kind = ReactionKind::Assert(assert.message.clone());
+        add(dae, system, failed, kind, &[], &assert.origin, diagnostics);
+    }
+}
+
+fn add(
+    dae: &mut Dae,
+    system: &System,
+    condition: ExprId,
+    kind: ReactionKind,
+    actions: &[Action],
+    origin: &Origin,
+    diagnostics: &mut Diagnostics,
+) {
+    let first = dae.assignments.len();
+    let mut set: Vec<(VarId, Index, ExprId)> = Vec::new();
+    for action in actions {
+        let (var, index, value) = match action {
+            Action::Reinit(var, index, value) | Action::Assign(var, index, value) => {
+                (*var, *index, *value)
+            }
+        };
+        let value = before_the_event(dae, value, &set);
+        if let Action::Assign(..) = action {
+            set.push((var, index, value));
+        }
+        let target = match action {
+            Action::Reinit(..) => state_target(dae, var, index, value),
+            Action::Assign(..) => dae.places[var].map(|place| {
+                let element = usize::try_from(index.offset).unwrap_or(0);
+                (Target::Memory(place.base + element), value)
+            }),
+        };
+        match target {
+            Some((target, value)) => dae.assignments.push(Assignment {
+                target,
+                value,
+                origin: origin.clone(),
+            }),
+            None => diagnostics.push(
+                Diagnostic::error(
+                    Code::WrongType,
+                    format!("`{}` is no state", system.flat.variables[var].name),
+                )
+                .label(origin.span, "reinitialised here")
+                .note("it is computed from other variables")
+                .help("reinitialise the state it is computed from"),
+            ),
+        }
+    }
+    let text = text(dae, condition);
+    dae.reactions.push(Reaction {
+        condition,
+        kind,
+        assignments: first..dae.assignments.len(),
+        text,
+        origin: origin.clone(),
+    });
+}
+
+/// In an event `pre(x)` is what every variable still has; a discrete variable set before in the same clause has its new
+/// value.
+fn before_the_event(dae: &mut Dae, value: ExprId, set: &[(VarId, Index, ExprId)]) -> ExprId {
+    dae.exprs
+        .rewrite(value, &mut HashMap::new(), |arena, _, expr| match expr {
+            Expr::Pre(var, index) => Some(arena.add(Expr::Var(var, index))),
+            Expr::Var(var, index) => set
+                .iter()
+                .rev()
+                .find(|(v, i, _)| *v == var && *i == index)
+                .map(|(_, _, new)| *new),
+            _ => None,
+        })
+}
+
+/// The place of a state that is reinitialised, through its aliases.
+fn state_target(
+    dae: &mut Dae,
+    var: VarId,
+    index: Index,
+    value: ExprId,
+) -> Option<(Target, ExprId)> {
+    let element = usize::try_from(index.offset).unwrap_or(0);
+    let alias = dae
+        .aliases
+        .iter()
+        .find(|(known, _)| *known == var)
+        .map(|(_, alias)| *alias);
+    let (var, element, value) = match alias {
+        Some(Alias::Of {
+            var,
+            element,
+            negated,
+        }) => {
+            let value = if negated {
+                dae.exprs.negative(value)
+            } else {
+                value
+            };
+            (var, element, value)
+        }
+        Some(Alias::Value(_)) => return None,
+        None => (var, element, value),
+    };
+    let place = dae.places[var].filter(|place| place.space == Space::Unknown)?;
+    let position = place.base + element;
+    let differential = dae.unknowns.iter().any(|block| {
+        block.differential && (block.offset..block.offset + block.len).contains(&position)
+    });
+    let continuous = dae.variables[var].kind == VariableKind::Continuous;
+    (differential && continuous).then_some((Target::State(position), value))
+}
+
+fn text(dae: &Dae, id: ExprId) -> String {
+    let mode = |automaton: AutomatonId, mode: u32| {
+        let automaton = &dae.automata[automaton];
+        format!(
+            "{}.{}",
+            automaton.name,
+            automaton
+                .modes
+                .get(mode as usize)
+                .map_or("?", String::as_str)
+        )
+    };
+    let names = Names {
+        exprs: &dae.exprs,
+        variables: &dae.variables,
+        parameters: &dae.parameters,
+        mode: &mode,
+        relation: &|relation| dae.relations[relation].text.clone(),
+    };
+    names.expr(id).replace(['«', '»'], "")
+}

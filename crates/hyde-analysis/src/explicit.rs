@@ -1,0 +1,222 @@
+//! Takes algebraic variables out of the solver's vector: each that its equation gives explicitly becomes a definition.
+//!
+//! States and their derivatives count as known, so `a.tau = J*der(w)` is explicit too. The definitions are ordered by
+//! Tarjan's algorithm; of a loop one variable after the other is torn (kept in the vector with its equation as the
+//! residual) until the rest is explicit. Array variables are kept or taken whole. The unknown of a `modes` block stays in
+//! the vector where a mode fixes a state (its row changes place then) or does not give it explicitly.
+
+use crate::graph::strongly_connected_components;
+use crate::matching::{Matched, Node, sides};
+use crate::segments::Segment;
+use crate::solve::solve_for;
+use crate::system::System;
+use hyde_ir::{Expr, ExprId, Index, Range};
+
+/// What becomes of the unknowns.
+pub(crate) struct Order {
+    /// Explicit ones in the order of computation: number of the unknown, range, element, value.
+    pub(crate) definitions: Vec<Explicit>,
+    /// Whether each unknown stays in the vector.
+    pub(crate) in_vector: Vec<bool>,
+}
+
+/// An explicit unknown.
+pub(crate) struct Explicit {
+    pub(crate) unknown: usize,
+    pub(crate) range: Range,
+    pub(crate) index: Index,
+    pub(crate) value: ExprId,
+}
+
+/// Chooses what becomes explicit.
+pub(crate) fn choose(system: &mut System, matched: &Matched) -> Order {
+    let count = matched.unknowns.len();
+    let mut in_vector: Vec<bool> = matched
+        .unknowns
+        .iter()
+        .map(|unknown| unknown.state)
+        .collect();
+    let mut explicit: Vec<Option<Explicit>> = (0..count).map(|_| None).collect();
+    for number in 0..count {
+        if in_vector[number] {
+            continue;
+        }
+        explicit[number] = solve(system, matched, number);
+        in_vector[number] = explicit[number].is_none();
+    }
+    keep_arrays_together(matched, &mut in_vector);
+    loop {
+        let edges: Vec<Vec<usize>> = (0..count)
+            .map(|number| match &explicit[number] {
+                Some(solution) if !in_vector[number] => {
+                    depends_on(system, matched, solution, &in_vector)
+                }
+                _ => Vec::new(),
+            })
+            .collect();
+        let components = strongly_connected_components(&edges);
+        let loops: Vec<&Vec<usize>> = components
+            .iter()
+            .filter(|component| {
+                component.len() > 1 || component.iter().any(|&n| edges[n].contains(&n))
+            })
+            .collect();
+        if loops.is_empty() {
+            let order = components
+                .into_iter()
+                .flatten()
+                .filter(|&number| !in_vector[number]);
+            let definitions = order.filter_map(|number| explicit[number].take()).collect();
+            return Order {
+                definitions,
+                in_vector,
+            };
+        }
+        for component in loops {
+            let readers = |node: usize| {
+                component
+                    .iter()
+                    .filter(|&&other| edges[other].contains(&node))
+                    .count()
+            };
+            let torn = component.iter().copied().max_by_key(|&node| {
+                (
+                    matched.unknowns[node].len() == 1,
+                    readers(node),
+                    usize::MAX - node,
+                )
+            });
+            if let Some(torn) = torn {
+                in_vector[torn] = true;
+                system.notes.push(format!(
+                    "`{}` is torn from a loop of {} equations",
+                    crate::matching::name(system, matched.unknowns[torn]),
+                    component.len()
+                ));
+            }
+        }
+        keep_arrays_together(matched, &mut in_vector);
+    }
+}
+
+/// The access through which an equation determines its unknown.
+pub(crate) fn access(system: &System, matched: &Matched, number: usize) -> Option<(Range, Index)> {
+    let unknown = matched.unknowns[number];
+    for (range, lhs, rhs) in sides(system, matched.equation_of[number]) {
+        for id in system.flat.exprs.below(&[lhs, rhs]) {
+            let (var, index, derivative) = match system.flat.exprs[id] {
+                Expr::Var(var, index) => (var, index, false),
+                Expr::Der(var, index) => (var, index, true),
+                _ => continue,
+            };
+            let fits = var == unknown.var
+                && derivative == unknown.state
+                && System::interval(index, range) == (unknown.first, unknown.last)
+                && unknown.len() == range.len();
+            if fits {
+                return Some((range, index));
+            }
+        }
+    }
+    None
+}
+
+fn solve(system: &mut System, matched: &Matched, number: usize) -> Option<Explicit> {
+    let unknown = matched.unknowns[number];
+    let (range, index) = access(system, matched, number)?;
+    let leaf = Expr::Var(unknown.var, index);
+    match matched.equation_of[number] {
+        Node::Equation(equation) => {
+            let (lhs, rhs) = (
+                system.equations[equation].lhs,
+                system.equations[equation].rhs,
+            );
+            let value = solve_for(&mut system.flat.exprs, lhs, rhs, leaf)?;
+            let itself = system.flat.exprs.any(
+                value,
+                |expr| matches!(expr, Expr::Var(var, _) if var == unknown.var),
+            );
+            (!itself || unknown.len() == 1).then_some(Explicit {
+                unknown: number,
+                range,
+                index,
+                value,
+            })
+        }
+        Node::Slot(slot) => {
+            let branches = system.slots[slot].branches.clone();
+            if branches.iter().any(|branch| branch.pin.is_some()) {
+                return None;
+            }
+            let automaton = system.slots[slot].automaton;
+            let mut value: Option<ExprId> = None;
+            for (mode, branch) in branches.iter().enumerate().rev() {
+                let solution = solve_for(&mut system.flat.exprs, branch.lhs, branch.rhs, leaf)?;
+                value = Some(match value {
+                    None => solution,
+                    Some(others) => {
+                        let mode = u32::try_from(mode).unwrap_or(u32::MAX);
+                        let in_mode = system.flat.exprs.add(Expr::InMode(automaton, mode));
+                        system.flat.exprs.if_else(in_mode, solution, others)
+                    }
+                });
+            }
+            Some(Explicit {
+                unknown: number,
+                range,
+                index,
+                value: value?,
+            })
+        }
+    }
+}
+
+/// An array of which a piece stays in the vector stays there whole; so does one in several pieces.
+fn keep_arrays_together(matched: &Matched, in_vector: &mut [bool]) {
+    let pieces = |unknown: Segment| {
+        matched
+            .unknowns
+            .iter()
+            .filter(move |other| other.var == unknown.var)
+            .count()
+    };
+    for (number, &unknown) in matched.unknowns.iter().enumerate() {
+        let same = |other: &Segment| other.var == unknown.var;
+        let kept = matched
+            .unknowns
+            .iter()
+            .zip(&*in_vector)
+            .any(|(other, kept)| same(other) && *kept);
+        if kept || pieces(unknown) > 1 {
+            in_vector[number] = true;
+        }
+    }
+}
+
+fn depends_on(
+    system: &System,
+    matched: &Matched,
+    solution: &Explicit,
+    in_vector: &[bool],
+) -> Vec<usize> {
+    let mut found = Vec::new();
+    for id in system.flat.exprs.below(&[solution.value]) {
+        let Expr::Var(var, index) = system.flat.exprs[id] else {
+            continue;
+        };
+        let (first, last) = System::interval(index, solution.range);
+        let start = matched
+            .unknowns
+            .partition_point(|unknown| unknown.var < var);
+        for (offset, unknown) in matched.unknowns[start..].iter().enumerate() {
+            if unknown.var != var {
+                break;
+            }
+            let number = start + offset;
+            if !in_vector[number] && unknown.overlaps(first, last) && !found.contains(&number) {
+                found.push(number);
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,210 @@
+//! The initial system: which states start where, and which equations hold at the start (I1 to I3).
+//!
+//! One condition is needed for each state that no initial mode fixes. Fixed start values and initial equations come
+//! first; what is missing is filled from the start values of states, what is too much is reported.
+
+use crate::graph::Bipartite;
+use crate::system::{Cell, System};
+use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_ir::dae::{Dae, InitialCondition, Reason, Space};
+use hyde_ir::{Expr, ExprId, Range, VarId};
+
+/// Fills in the initial conditions of the DAE.
+pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut Diagnostics) {
+    refuse_conflicts(dae, system, diagnostics);
+    let pinned: Vec<usize> = dae
+        .pins
+        .iter()
+        .filter(|pin| dae.automata[pin.automaton].initial == pin.mode)
+        .map(|pin| pin.state)
+        .collect();
+    // The states that need a condition, in blocks: position, length, whether the start value is fixed.
+    let mut fixed: Vec<(usize, usize)> = Vec::new();
+    let mut free: Vec<usize> = Vec::new();
+    for block in dae.unknowns.iter().filter(|block| block.differential) {
+        let array = dae.variables[block.var].len.is_some();
+        if array && block.len > 1 {
+            if dae.variables[block.var].fixed {
+                fixed.push((block.offset, block.len));
+            } else {
+                free.extend(block.offset..block.offset + block.len);
+            }
+            continue;
+        }
+        if pinned.contains(&block.offset) {
+            continue;
+        }
+        let given = system
+            .starts
+            .get(&(block.var, block.first))
+            .is_some_and(|list| list.iter().any(|(_, fixed, _)| *fixed));
+        if given || (array && dae.variables[block.var].fixed) {
+            fixed.push((block.offset, 1));
+        } else {
+            free.push(block.offset);
+        }
+    }
+    let equations: Vec<(Range, ExprId, hyde_diag::Origin)> = system
+        .flat
+        .initial_equations
+        .iter()
+        .map(|equation| {
+            let value = dae.exprs.minus(equation.lhs, equation.rhs);
+            (equation.range, value, equation.origin.clone())
+        })
+        .collect();
+    let needed: usize = equations.iter().map(|(range, ..)| range.len()).sum();
+    if needed > free.len() {
+        too_many(dae, &equations, &fixed, free.len(), diagnostics);
+        return;
+    }
+    let filled = fill(dae, &equations, &free);
+    for (state, len) in fixed {
+        dae.initial.push(InitialCondition::Fixed {
+            state,
+            len,
+            reason: Reason::Declared,
+        });
+    }
+    for (range, value, origin) in equations {
+        dae.initial.push(InitialCondition::Equation {
+            range,
+            value,
+            origin,
+        });
+    }
+    for state in filled {
+        dae.initial.push(InitialCondition::Fixed {
+            state,
+            len: 1,
+            reason: Reason::Filled,
+        });
+    }
+}
+
+/// The free states that no initial equation takes: those keep their start values.
+fn fill(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usize]) -> Vec<usize> {
+    let mut edges = Vec::new();
+    for (range, value, _) in equations {
+        let mut own = Vec::new();
+        for id in dae.exprs.below(&[*value]) {
+            let (Expr::Var(var, index) | Expr::Der(var, index)) = dae.exprs[id] else {
+                continue;
+            };
+            let Some(place) = dae.places[var].filter(|place| place.space == Space::Unknown) else {
+                continue;
+            };
+            let (first, last) = System::interval(index, *range);
+            let cells = place.base + first..=place.base + last;
+            own.extend((0..free.len()).filter(|&number| cells.contains(&free[number])));
+        }
+        // An equation over a range takes as many states as it has values.
+        edges.extend(std::iter::repeat_n(own, range.len()));
+    }
+    let count = edges.len();
+    let matching = Bipartite {
+        edges,
+        n_right: free.len(),
+    }
+    .maximum_matching();
+    let unplaced = matching
+        .of_left
+        .iter()
+        .filter(|right| right.is_none())
+        .count();
+    let mut left: Vec<usize> = (0..free.len())
+        .filter(|&number| matching.of_right[number].is_none())
+        .map(|number| free[number])
+        .collect();
+    // Equations that name no free state directly determine some through the others: take the last ones declared.
+    left.truncate(left.len().saturating_sub(unplaced));
+    debug_assert!(
+        left.len() + count >= free.len() || unplaced > 0,
+        "one condition a state"
+    );
+    left
+}
+
+fn too_many(
+    dae: &Dae,
+    equations: &[(Range, ExprId, hyde_diag::Origin)],
+    fixed: &[(usize, usize)],
+    free: usize,
+    diagnostics: &mut Diagnostics,
+) {
+    let mut diagnostic = Diagnostic::error(
+        Code::TooManyConditions,
+        format!(
+            "{} initial equations for {free} states that are not fixed",
+            equations.len()
+        ),
+    );
+    for (_, _, origin) in equations {
+        diagnostic = diagnostic.label(origin.span, "an initial equation");
+    }
+    let names: Vec<String> = fixed
+        .iter()
+        .take(8)
+        .filter_map(|(offset, _)| dae.unknowns.iter().find(|block| block.offset == *offset))
+        .map(|block| format!("`{}`", dae.variables[block.var].element_name(block.first)))
+        .collect();
+    if !names.is_empty() {
+        diagnostic = diagnostic.note(format!("fixed by their declaration: {}", names.join(", ")));
+    }
+    diagnostics.push(
+        diagnostic
+            .help("take `fixed = true` from the states that an initial equation is to determine"),
+    );
+}
+
+/// Joined states with different fixed start values (I1).
+fn refuse_conflicts(dae: &Dae, system: &mut System, diagnostics: &mut Diagnostics) {
+    // Values are compared with declared parameters; the expressions live in the DAE now.
+    system.flat.exprs = dae.exprs.clone();
+    let declared = system.declared_values();
+    let starts: Vec<(Cell, Vec<(ExprId, VarId)>)> = system
+        .starts
+        .iter()
+        .map(|(cell, list)| {
+            let fixed = list
+                .iter()
+                .filter(|(_, fixed, _)| *fixed)
+                .map(|(value, _, var)| (*value, *var));
+            (*cell, fixed.collect())
+        })
+        .collect();
+    for (cell, fixed) in starts {
+        let Some(&(first, given_first)) = fixed.first() else {
+            continue;
+        };
+        let value = system.value_with(&declared, first);
+        for &(other, given_by) in &fixed[1..] {
+            let second = system.value_with(&declared, other);
+            let equal = other == first
+                || matches!((value, second), (Some(a), Some(b)) if (a - b).abs() <= 1e-12 * a.abs().max(b.abs()));
+            if equal {
+                continue;
+            }
+            let (a, b) = (&dae.variables[given_first], &dae.variables[given_by]);
+            let show = |value: Option<f64>| {
+                value.map_or("another value".to_owned(), |value| value.to_string())
+            };
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::ConflictingStarts,
+                    format!(
+                        "`{}` and `{}` are joined and start at different values",
+                        a.name, b.name
+                    ),
+                )
+                .label(a.origin.span, format!("starts at {}", show(value)))
+                .label(b.origin.span, format!("starts at {}", show(second)))
+                .note(format!(
+                    "both are `{}`",
+                    dae.variables[cell.0].element_name(cell.1)
+                ))
+                .help("give both the same start value, or take `fixed` from one"),
+            );
+        }
+    }
+}

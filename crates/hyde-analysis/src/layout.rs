@@ -1,0 +1,319 @@
+//! Gives every variable its place and every unknown its row.
+//!
+//! The solver's vector holds scalars in the order declared, then arrays, each in one piece. The memory holds the truths
+//! of relations, the modes of automata, then discrete, clocked and held variables.
+
+use crate::explicit::{Order, access};
+use crate::matching::{Matched, Node, origin};
+use crate::system::System;
+use hyde_ir::dae::{AutomatonInfo, Dae, Definition, Place, Residual, Space, Start, Unknown};
+use hyde_ir::{Expr, ExprId, Id as _, IdVec, Index, Range, VarId, VariableKind};
+
+/// Builds the DAE with its places, definitions and residuals; pins exchange rows later.
+pub(crate) fn place(system: &mut System, matched: &Matched, order: &Order) -> Dae {
+    let mut dae = Dae {
+        name: system.flat.name.clone(),
+        ..Dae::default()
+    };
+    dae.exprs = std::mem::take(&mut system.flat.exprs);
+    dae.variables = system.flat.variables.clone();
+    dae.parameters = system.flat.parameters.clone();
+    dae.parameter_order = system.flat.parameter_order.clone();
+    dae.columns = system.flat.columns.clone();
+    dae.experiment = system.flat.experiment.clone();
+    dae.relations = system.relations.clone();
+    dae.notes = system.notes.clone();
+    dae.aliases = system
+        .aliases
+        .iter()
+        .filter(|((var, _), _)| dae.variables[*var].len.is_none())
+        .map(|((var, _), alias)| (*var, *alias))
+        .collect();
+    let mut next = 0;
+    dae.parameter_places = dae
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let place = next;
+            next += parameter.size();
+            place
+        })
+        .collect();
+    dae.n_parameters = (next, next);
+    dae.places = variable_places(system, matched, order, &mut dae);
+    memory(system, &mut dae);
+    for (number, &unknown) in matched.unknowns.iter().enumerate() {
+        let (true, Some(place)) = (order.in_vector[number], dae.places[unknown.var]) else {
+            continue;
+        };
+        dae.unknowns.push(Unknown {
+            var: unknown.var,
+            first: unknown.first,
+            len: unknown.len(),
+            offset: place.base + unknown.first,
+            differential: unknown.state,
+        });
+    }
+    std::mem::swap(&mut dae.exprs, &mut system.flat.exprs);
+    for (number, unknown) in (0..matched.unknowns.len())
+        .filter(|&n| order.in_vector[n])
+        .zip(dae.unknowns.ids())
+    {
+        let base = dae.places[matched.unknowns[number].var].map_or(0, |place| place.base);
+        let (range, index) =
+            access(system, matched, number).unwrap_or((Range::SCALAR, Index::SCALAR));
+        let row = Index {
+            offset: index.offset + i32::try_from(base).unwrap_or(0),
+            ..index
+        };
+        let node = matched.equation_of[number];
+        let value = residual(system, node);
+        let origins = match node {
+            Node::Equation(_) => vec![origin(system, node)],
+            Node::Slot(slot) => system.slots[slot]
+                .branches
+                .iter()
+                .map(|branch| branch.origin.clone())
+                .collect(),
+        };
+        dae.residuals.push(Residual {
+            unknown,
+            range,
+            row,
+            value,
+            origins,
+        });
+    }
+    for explicit in &order.definitions {
+        let unknown = matched.unknowns[explicit.unknown];
+        dae.definitions.push(Definition {
+            var: unknown.var,
+            range: explicit.range,
+            index: explicit.index,
+            value: explicit.value,
+            origin: origin(system, matched.equation_of[explicit.unknown]),
+        });
+    }
+    std::mem::swap(&mut dae.exprs, &mut system.flat.exprs);
+    starts(system, &mut dae);
+    dae
+}
+
+/// `lhs - rhs`; of a slot by mode, with zero where a mode fixes a state (its row is exchanged later).
+fn residual(system: &mut System, node: Node) -> ExprId {
+    match node {
+        Node::Equation(number) => {
+            let (lhs, rhs) = (system.equations[number].lhs, system.equations[number].rhs);
+            system.flat.exprs.minus(lhs, rhs)
+        }
+        Node::Slot(number) => {
+            let branches = system.slots[number].branches.clone();
+            let automaton = system.slots[number].automaton;
+            let arena = &mut system.flat.exprs;
+            let mut value: Option<ExprId> = None;
+            for (mode, branch) in branches.iter().enumerate().rev() {
+                let own = if branch.pin.is_some() {
+                    arena.constant(0.0)
+                } else {
+                    arena.minus(branch.lhs, branch.rhs)
+                };
+                value = Some(match value {
+                    None => own,
+                    Some(others) => {
+                        let in_mode = arena.add(Expr::InMode(
+                            automaton,
+                            u32::try_from(mode).unwrap_or(u32::MAX),
+                        ));
+                        arena.if_else(in_mode, own, others)
+                    }
+                });
+            }
+            value.unwrap_or_else(|| arena.constant(0.0))
+        }
+    }
+}
+
+fn variable_places(
+    system: &System,
+    matched: &Matched,
+    order: &Order,
+    dae: &mut Dae,
+) -> IdVec<VarId, Option<Place>> {
+    let mut places: IdVec<VarId, Option<Place>> = dae.variables.iter().map(|_| None).collect();
+    let in_vector = |var: VarId| {
+        matched
+            .unknowns
+            .iter()
+            .zip(&order.in_vector)
+            .any(|(u, kept)| u.var == var && *kept)
+    };
+    let defined = |var: VarId| {
+        matched
+            .unknowns
+            .iter()
+            .zip(&order.in_vector)
+            .any(|(u, kept)| u.var == var && !*kept)
+    };
+    let mut unknowns = Vec::new();
+    for (id, variable) in system.flat.variables.enumerate() {
+        if variable.kind == VariableKind::Continuous && in_vector(id) {
+            unknowns.push((variable.len.is_some(), id));
+        } else if variable.kind == VariableKind::Continuous && defined(id) {
+            places[id] = Some(Place {
+                space: Space::Work,
+                base: dae.n_work,
+            });
+            dae.n_work += variable.size();
+        }
+    }
+    unknowns.sort_unstable();
+    for (_, id) in unknowns {
+        places[id] = Some(Place {
+            space: Space::Unknown,
+            base: dae.n_unknowns,
+        });
+        dae.n_unknowns += system.flat.variables[id].size();
+    }
+    places
+}
+
+fn memory(system: &System, dae: &mut Dae) {
+    dae.n_memory = dae.relations.len();
+    for automaton in system.flat.automata.iter() {
+        dae.automata.push(AutomatonInfo {
+            name: automaton.name.clone(),
+            modes: automaton
+                .modes
+                .iter()
+                .map(|mode| mode.name.clone())
+                .collect(),
+            initial: automaton.initial,
+            place: dae.n_memory,
+            origin: automaton.origin.clone(),
+        });
+        dae.n_memory += 1;
+    }
+    for (id, variable) in system.flat.variables.enumerate() {
+        let remembered = matches!(
+            variable.kind,
+            VariableKind::Discrete | VariableKind::Clocked(_) | VariableKind::Held(..)
+        );
+        if remembered {
+            dae.places[id] = Some(Place {
+                space: Space::Memory,
+                base: dae.n_memory,
+            });
+            dae.n_memory += variable.size();
+        }
+    }
+}
+
+/// Start values of the vector and the memory.
+fn starts(system: &mut System, dae: &mut Dae) {
+    for id in dae.variables.ids().collect::<Vec<_>>() {
+        let Some(place) = dae.places[id] else {
+            continue;
+        };
+        if place.space == Space::Work {
+            continue;
+        }
+        let variable = &dae.variables[id];
+        let list: Vec<ExprId> = match variable.len {
+            Some(_) => variable.start.clone(),
+            None => match (system.starts.get(&(id, 0)), variable.kind) {
+                (Some(given), _) => vec![best_start(given)],
+                // What is held starts as its source does.
+                (None, VariableKind::Held(_, source)) => dae.variables[source].start.clone(),
+                (None, _) => variable.start.clone(),
+            },
+        };
+        let size = variable.size();
+        let last = i32::try_from(size).unwrap_or(i32::MAX) - 1;
+        match list.as_slice() {
+            [] => {}
+            [value] if size == 1 => {
+                dae.starts.push(Start {
+                    place,
+                    range: Range::SCALAR,
+                    index: Index::SCALAR,
+                    value: *value,
+                });
+            }
+            [value] => {
+                let index = Index {
+                    stride: 1,
+                    offset: 0,
+                };
+                dae.starts.push(Start {
+                    place,
+                    range: Range { first: 0, last },
+                    index,
+                    value: *value,
+                });
+            }
+            values => {
+                for (element, &value) in values.iter().enumerate().take(size) {
+                    let index = Index::fixed(i32::try_from(element).unwrap_or(0));
+                    dae.starts.push(Start {
+                        place,
+                        range: Range::SCALAR,
+                        index,
+                        value,
+                    });
+                }
+            }
+        }
+        // An element of an array that is joined to a component starts as the component does.
+        if dae.variables[id].len.is_some() {
+            for element in 0..size {
+                if let Some(given) = system.starts.get(&(id, element)) {
+                    let index = Index::fixed(i32::try_from(element).unwrap_or(0));
+                    dae.starts.push(Start {
+                        place,
+                        range: Range::SCALAR,
+                        index,
+                        value: best_start(given),
+                    });
+                }
+            }
+        }
+    }
+    for automaton in dae.automata.iter() {
+        #[allow(clippy::cast_precision_loss, reason = "a number of modes")]
+        let value = dae.exprs.constant(automaton.initial as f64);
+        let place = Place {
+            space: Space::Memory,
+            base: automaton.place,
+        };
+        dae.starts.push(Start {
+            place,
+            range: Range::SCALAR,
+            index: Index::SCALAR,
+            value,
+        });
+    }
+    for (number, automaton) in system.flat.automata.iter().enumerate() {
+        for action in &automaton.initial_actions {
+            if let hyde_ir::flat::Action::Assign(var, index, value) = action {
+                if let Some(place) = dae.places[*var] {
+                    dae.starts.push(Start {
+                        place,
+                        range: Range::SCALAR,
+                        index: *index,
+                        value: *value,
+                    });
+                }
+            }
+        }
+        debug_assert!(number < dae.automata.len(), "one entry an automaton");
+    }
+}
+
+/// Of the start values given to joined variables a fixed one before a guess.
+fn best_start(given: &[(ExprId, bool, VarId)]) -> ExprId {
+    given
+        .iter()
+        .find(|(_, fixed, _)| *fixed)
+        .or_else(|| given.first())
+        .map_or_else(|| ExprId::from_index(0), |(value, ..)| *value)
+}

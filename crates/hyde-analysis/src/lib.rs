@@ -1,0 +1,64 @@
+//! [`analyze`]: from a [`FlatModel`] to a [`Dae`]: what is the same becomes one, what is explicit leaves the solver's
+//! vector, what remains is matched row by row.
+//!
+//! In order:
+//! 1. [`alias`] and [`derivatives`], repeated until nothing changes: variables that are equal become one, before and
+//!    after differentiation (M5); derivatives of explicit variables become explicit;
+//! 2. [`relations`]: comparisons in continuous equations become relations with root functions;
+//! 3. [`matching`]: every equation is matched to the unknown it determines, array equations as a whole (F3);
+//! 4. [`explicit`]: algebraic variables with an explicit solution become definitions, loops are torn;
+//! 5. [`layout`]: every variable gets its place;
+//! 6. [`pins`]: modes that fix a state exchange rows with the force that holds it (M3);
+//! 7. [`clocked`]: the equations of each clocked part become ordered assignments;
+//! 8. [`events`]: exits, `when` and `assert` become reactions;
+//! 9. [`initial`]: the initial system;
+//! 10. [`outputs`]: what is reported;
+//! 11. [`partials`]: derivatives of every function;
+//! 12. [`hoist`]: what depends on parameters alone is computed once a run.
+
+mod alias;
+mod clocked;
+mod derivatives;
+mod events;
+mod explicit;
+pub mod graph;
+mod hoist;
+mod initial;
+mod layout;
+mod matching;
+mod outputs;
+mod partials;
+mod pins;
+mod relations;
+mod segments;
+mod solve;
+mod system;
+mod unroll;
+
+pub use partials::{parameter_partials, rows};
+
+use hyde_diag::Diagnostics;
+use hyde_ir::{Dae, FlatModel};
+
+/// Analyses a flat model.
+///
+/// `None` if there were errors; all of them are in `diagnostics`.
+pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
+    let mut system = system::System::new(flat);
+    derivatives::simplify(&mut system, diagnostics);
+    relations::extract(&mut system);
+    let matched = matching::match_equations(&mut system, diagnostics)?;
+    let order = explicit::choose(&mut system, &matched);
+    let mut dae = layout::place(&mut system, &matched, &order);
+    pins::exchange_rows(&mut dae, &mut system, &matched, &order, diagnostics);
+    clocked::sort(&mut dae, &mut system, diagnostics);
+    events::react(&mut dae, &mut system, diagnostics);
+    initial::conditions(&mut dae, &mut system, diagnostics);
+    if diagnostics.has_errors() {
+        return None;
+    }
+    outputs::report(&mut dae, &mut system);
+    partials::differentiate(&mut dae);
+    hoist::hoist(&mut dae);
+    Some(dae)
+}

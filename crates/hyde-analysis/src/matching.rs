@@ -1,0 +1,380 @@
+//! Matches every equation to the unknown it determines, whole arrays to whole equations.
+//!
+//! The unknowns are derivatives of states and values of the other variables. What stays unmatched is told in the words
+//! of the model: a boundary flux without a condition, an input that nothing drives, states that are constrained to each
+//! other, equations too many or too few with the part of the system they conflict in (Dulmage and Mendelsohn).
+
+use crate::graph::{Bipartite, Matching};
+use crate::segments::{self, Segment};
+use crate::system::{Equation, Slot, System};
+use crate::{pins, unroll};
+use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
+use hyde_ir::{Expr, ExprId, Range};
+
+/// An equation node: a number of the list of equations, or of the slots.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Node {
+    Equation(usize),
+    Slot(usize),
+}
+
+/// The matched system.
+pub(crate) struct Matched {
+    /// The unknowns.
+    pub(crate) unknowns: Vec<Segment>,
+    /// The equation that determines each of them.
+    pub(crate) equation_of: Vec<Node>,
+}
+
+/// Matches the system; reports why it cannot.
+pub(crate) fn match_equations(
+    system: &mut System,
+    diagnostics: &mut Diagnostics,
+) -> Option<Matched> {
+    let mut unknowns = match segments::segments(system) {
+        Ok(unknowns) => unknowns,
+        Err(arrays) => {
+            unroll::unroll(system, &arrays, diagnostics)?;
+            segments::segments(system).ok()?
+        }
+    };
+    pins::mark(system, &unknowns);
+    unknowns.sort_unstable();
+    let nodes: Vec<Node> = (0..system.equations.len())
+        .map(Node::Equation)
+        .chain((0..system.slots.len()).map(Node::Slot))
+        .collect();
+    let edges: Vec<Vec<usize>> = nodes
+        .iter()
+        .map(|&node| edges(system, node, &unknowns))
+        .collect();
+    let graph = Bipartite {
+        edges,
+        n_right: unknowns.len(),
+    };
+    let matching = graph.maximum_matching();
+    if matching.of_left.contains(&None) || matching.of_right.contains(&None) {
+        report(system, &nodes, &unknowns, &graph, &matching, diagnostics);
+        return None;
+    }
+    let equation_of = matching
+        .of_right
+        .iter()
+        .map(|left| nodes[left.unwrap_or(0)])
+        .collect();
+    Some(Matched {
+        unknowns,
+        equation_of,
+    })
+}
+
+/// The sides of a node with their range; of a slot those of the modes that pin nothing, or of all if all pin.
+pub(crate) fn sides(system: &System, node: Node) -> Vec<(Range, ExprId, ExprId)> {
+    match node {
+        Node::Equation(number) => {
+            let Equation {
+                range, lhs, rhs, ..
+            } = system.equations[number];
+            vec![(range, lhs, rhs)]
+        }
+        Node::Slot(number) => {
+            let branches = &system.slots[number].branches;
+            let free: Vec<_> = branches
+                .iter()
+                .filter(|branch| branch.pin.is_none())
+                .collect();
+            let list = if free.is_empty() {
+                branches.iter().collect()
+            } else {
+                free
+            };
+            list.into_iter()
+                .map(|branch| (Range::SCALAR, branch.lhs, branch.rhs))
+                .collect()
+        }
+    }
+}
+
+/// The unknowns an equation can determine, best first: what it is written for, derivatives, the rest.
+fn edges(system: &System, node: Node, unknowns: &[Segment]) -> Vec<usize> {
+    let mut found: Vec<(u8, usize)> = Vec::new();
+    for (range, lhs, rhs) in sides(system, node) {
+        for id in system.flat.exprs.below(&[lhs, rhs]) {
+            let (var, index, derivative) = match system.flat.exprs[id] {
+                Expr::Var(var, index) => (var, index, false),
+                Expr::Der(var, index) => (var, index, true),
+                _ => continue,
+            };
+            let (first, last) = System::interval(index, range);
+            let covered = unknowns.binary_search_by(|u| (u.var, u.first).cmp(&(var, first)));
+            let Ok(number) = covered else { continue };
+            let unknown = unknowns[number];
+            if unknown.last != last || unknown.len() != range.len() || unknown.state != derivative {
+                continue;
+            }
+            let cost = match (id == lhs, derivative) {
+                (true, false) => 0,
+                (_, true) => 1,
+                (false, false) if id == rhs => 2,
+                (false, false) => 3,
+            };
+            match found.iter_mut().find(|(_, known)| *known == number) {
+                Some(known) => known.0 = known.0.min(cost),
+                None => found.push((cost, number)),
+            }
+        }
+    }
+    found.sort_unstable();
+    found.into_iter().map(|(_, number)| number).collect()
+}
+
+/// The origin of a node.
+pub(crate) fn origin(system: &System, node: Node) -> Origin {
+    match node {
+        Node::Equation(number) => system.equations[number].origin.clone(),
+        Node::Slot(number) => {
+            let Slot {
+                branches,
+                automaton,
+            } = &system.slots[number];
+            branches.first().map_or_else(
+                || system.flat.automata[*automaton].origin.clone(),
+                |b| b.origin.clone(),
+            )
+        }
+    }
+}
+
+fn report(
+    system: &System,
+    nodes: &[Node],
+    unknowns: &[Segment],
+    graph: &Bipartite,
+    matching: &Matching,
+    diagnostics: &mut Diagnostics,
+) {
+    let unmatched: Vec<usize> = (0..unknowns.len())
+        .filter(|&right| matching.of_right[right].is_none())
+        .collect();
+    let surplus: Vec<usize> = (0..nodes.len())
+        .filter(|&left| matching.of_left[left].is_none())
+        .collect();
+    // A missing boundary condition often shows at a neighbour: look for the flux in the whole part.
+    for &right in &unmatched {
+        let (_, part) = graph.under_determined(matching, right);
+        let trace = part
+            .iter()
+            .find(|&&right| system.flat.variables[unknowns[right].var].trace.is_some());
+        let input = part
+            .iter()
+            .find(|&&right| system.flat.variables[unknowns[right].var].input);
+        let diagnostic = match (trace, input) {
+            (Some(&trace), _) => missing_boundary(system, unknowns[trace]),
+            (None, Some(&input)) => unbound_input(system, unknowns[input]),
+            (None, None) => too_few(system, nodes, unknowns, graph, matching, right),
+        };
+        diagnostics.push(diagnostic);
+    }
+    for &left in &surplus {
+        let (lefts, rights) = graph.over_determined(matching, left);
+        diagnostics.push(if rights.is_empty() {
+            constrained(system, nodes[left])
+        } else {
+            too_many(system, nodes, unknowns, &lefts, &rights)
+        });
+    }
+}
+
+fn missing_boundary(system: &System, unknown: Segment) -> Diagnostic {
+    let variable = &system.flat.variables[unknown.var];
+    let place = variable.trace.clone().unwrap_or_default();
+    let flux = crate::matching::short(&variable.name);
+    let flux = flux
+        .strip_suffix(".left")
+        .or_else(|| flux.strip_suffix(".right"))
+        .unwrap_or(flux);
+    Diagnostic::error(
+        Code::MissingBoundary,
+        format!("no boundary condition at `{place}`"),
+    )
+    .label(
+        variable.origin.span,
+        format!("its flux at `{place}` is not determined"),
+    )
+    .note(format!("in instance `{}`", variable.origin.instance))
+    .note("each end needs one condition, and one more for each connector variable set there (F2)")
+    .help(format!(
+        "write `{flux} = 0 indomain {place};` for a free end, or give the value of the field there"
+    ))
+}
+
+fn unbound_input(system: &System, unknown: Segment) -> Diagnostic {
+    let variable = &system.flat.variables[unknown.var];
+    let name = &variable.name;
+    Diagnostic::error(
+        Code::UnboundInput,
+        format!("the input `{name}` has nothing to read"),
+    )
+    .label(variable.origin.span, "declared here")
+    .help(format!(
+        "bind it where its component is declared, or write an equation: `{name} = …;`"
+    ))
+}
+
+fn too_few(
+    system: &System,
+    nodes: &[Node],
+    unknowns: &[Segment],
+    graph: &Bipartite,
+    matching: &Matching,
+    right: usize,
+) -> Diagnostic {
+    let unknown = unknowns[right];
+    let variable = &system.flat.variables[unknown.var];
+    let what = name(system, unknown);
+    let (lefts, rights) = graph.under_determined(matching, right);
+    let mut diagnostic = Diagnostic::error(
+        Code::TooFewEquations,
+        format!("no equation determines `{what}`"),
+    )
+    .label(variable.origin.span, "declared here");
+    if !lefts.is_empty() {
+        let others: Vec<String> = rights
+            .iter()
+            .take(6)
+            .map(|&right| format!("`{}`", name(system, unknowns[right])))
+            .collect();
+        let more = if rights.len() > 6 { ", …" } else { "" };
+        diagnostic = diagnostic.note(format!(
+            "{} for the {} unknowns {}{more}",
+            plural(lefts.len(), "equation"),
+            rights.len(),
+            others.join(", ")
+        ));
+        for &left in lefts.iter().take(3) {
+            diagnostic = diagnostic.label(
+                origin(system, nodes[left]).span,
+                "this equation is among them",
+            );
+        }
+    }
+    let help = match variable.flow {
+        true => "connect its connector, or give the force a law".to_owned(),
+        false => format!(
+            "add an equation for it, or fix it: `{} = …;`",
+            short(&variable.name)
+        ),
+    };
+    diagnostic.help(help)
+}
+
+/// An equation between states alone: they cannot all be states.
+fn constrained(system: &System, node: Node) -> Diagnostic {
+    let mut names: Vec<String> = Vec::new();
+    for (_, lhs, rhs) in sides(system, node) {
+        for id in system.flat.exprs.below(&[lhs, rhs]) {
+            if let Expr::Var(var, index) | Expr::Der(var, index) = system.flat.exprs[id] {
+                let text = match System::cell(var, index) {
+                    Some(cell) => system.cell_name(cell),
+                    None => system.flat.variables[var].name.clone(),
+                };
+                if !names.contains(&text) && system.is_continuous(var) {
+                    names.push(text);
+                }
+            }
+        }
+    }
+    let origin = origin(system, node);
+    if names.is_empty() {
+        return Diagnostic::error(
+            Code::TooManyEquations,
+            "this equation says nothing of any unknown",
+        )
+        .label(origin.span, "all it names is known")
+        .help("remove it");
+    }
+    let list: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
+    Diagnostic::error(Code::Constrained, format!("{} are constrained to each other", list.join(" and ")))
+        .label(origin.span, "this equation fixes one by the others")
+        .note("each of them is a state with an equation for its derivative: the model needs index reduction")
+        .help("put a stiffness between the parts, or describe the joined parts by one of the states")
+}
+
+fn too_many(
+    system: &System,
+    nodes: &[Node],
+    unknowns: &[Segment],
+    lefts: &[usize],
+    rights: &[usize],
+) -> Diagnostic {
+    let names: Vec<String> = rights
+        .iter()
+        .take(6)
+        .map(|&right| format!("`{}`", name(system, unknowns[right])))
+        .collect();
+    let more = if rights.len() > 6 { ", …" } else { "" };
+    let message = format!(
+        "{} for {}: {}{more}",
+        plural(lefts.len(), "equation"),
+        plural(rights.len(), "unknown"),
+        names.join(", ")
+    );
+    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message);
+    let mut instances: Vec<String> = Vec::new();
+    for &left in lefts.iter().take(8) {
+        let origin = origin(system, nodes[left]);
+        diagnostic = diagnostic.label(origin.span, "one of the equations");
+        let instance = origin.instance.as_str().to_owned();
+        if !instance.is_empty() && !instances.contains(&instance) {
+            instances.push(instance);
+        }
+    }
+    if !instances.is_empty() {
+        let list: Vec<String> = instances
+            .iter()
+            .map(|instance| format!("`{instance}`"))
+            .collect();
+        diagnostic = diagnostic.note(format!("in {}", list.join(", ")));
+    }
+    diagnostic.help("remove one of them, or put something elastic between the parts that both fix")
+}
+
+/// The name of an unknown: of a whole array with its bounds.
+pub(crate) fn name(system: &System, unknown: Segment) -> String {
+    let variable = &system.flat.variables[unknown.var];
+    let text = if unknown.len() == 1 {
+        variable.element_name(unknown.first)
+    } else {
+        format!(
+            "{}..{}",
+            variable.element_name(unknown.first).trim_end_matches(']'),
+            unknown.last + usize::try_from(variable.first).unwrap_or(0)
+        ) + "]"
+    };
+    if unknown.state {
+        format!("der({text})")
+    } else {
+        text
+    }
+}
+
+fn plural(count: usize, word: &str) -> String {
+    if count == 1 {
+        format!("1 {word}")
+    } else {
+        format!("{count} {word}s")
+    }
+}
+
+fn short(name: &str) -> &str {
+    // `screw.q.left` is shown as `q.left`.
+    match name.rsplit_once('.') {
+        Some((before, end @ ("left" | "right"))) => {
+            let start = before.rfind('.').map_or(0, |at| at + 1);
+            let _ = end;
+            &name[start..]
+        }
+        Some((_, last)) => last,
+        None => name,
+    }
+}

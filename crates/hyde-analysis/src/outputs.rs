@@ -1,0 +1,117 @@
+//! What a run reports: every variable of the model, then what the experiment measures and reduces.
+
+use crate::system::System;
+use hyde_ir::dae::{Alias, Dae, Output};
+use hyde_ir::{Expr, Index, Quantity, Range, VariableKind};
+
+/// Arrays longer than this are not reported element by element.
+const MAX_ELEMENTS: usize = 64;
+
+/// Fills in the outputs of the DAE.
+pub(crate) fn report(dae: &mut Dae, system: &mut System) {
+    let mut skipped = Vec::new();
+    for id in dae.variables.ids().collect::<Vec<_>>() {
+        let variable = dae.variables[id].clone();
+        let discrete = match variable.kind {
+            VariableKind::Continuous => false,
+            VariableKind::Discrete | VariableKind::Clocked(_) => true,
+            VariableKind::Held(..) | VariableKind::Column(..) | VariableKind::Reduction(_) => {
+                continue;
+            }
+        };
+        let (range, index) = match variable.len {
+            None => (Range::SCALAR, Index::SCALAR),
+            Some(len) if len <= MAX_ELEMENTS => (
+                Range {
+                    first: 0,
+                    last: i32::try_from(len).unwrap_or(0) - 1,
+                },
+                Index {
+                    stride: 1,
+                    offset: 0,
+                },
+            ),
+            Some(_) => {
+                skipped.push(variable.name.clone());
+                continue;
+            }
+        };
+        if range.is_empty() {
+            continue;
+        }
+        let alias = dae
+            .aliases
+            .iter()
+            .find(|(known, _)| *known == id)
+            .map(|(_, alias)| *alias);
+        let (value, discrete) = match alias {
+            Some(Alias::Value(value)) => (value, true),
+            Some(Alias::Of {
+                var,
+                element,
+                negated,
+            }) => {
+                let index = Index::fixed(i32::try_from(element).unwrap_or(0));
+                let value = dae.exprs.add(Expr::Var(var, index));
+                let held = dae.variables[var].kind != VariableKind::Continuous;
+                (
+                    if negated {
+                        dae.exprs.negative(value)
+                    } else {
+                        value
+                    },
+                    discrete || held,
+                )
+            }
+            None if dae.place(id).is_none() => continue,
+            None => (dae.exprs.add(Expr::Var(id, index)), discrete),
+        };
+        let names = (0..variable.size())
+            .map(|element| variable.element_name(element))
+            .collect();
+        dae.outputs.push(Output {
+            names,
+            range,
+            value,
+            quantity: variable.quantity,
+            discrete,
+        });
+    }
+    if !skipped.is_empty() {
+        dae.notes.push(format!(
+            "not reported, more than {MAX_ELEMENTS} elements: {}",
+            skipped.join(", ")
+        ));
+    }
+    let experiment = &system.flat.experiment;
+    dae.experiment = experiment.clone();
+    let single = |name: String, value, quantity: &Quantity, discrete| Output {
+        names: vec![name],
+        range: Range::SCALAR,
+        value,
+        quantity: quantity.clone(),
+        discrete,
+    };
+    for measured in &experiment.measured {
+        let name = format!("measured {}", measured.name);
+        dae.outputs.push(single(
+            name,
+            measured.value,
+            &measured.quantity,
+            measured.clocked,
+        ));
+    }
+    for (number, reduction) in experiment.reductions.iter().enumerate() {
+        let quantity = dae.variables[reduction.var].quantity.clone();
+        dae.outputs.push(single(
+            format!("reduction {number}"),
+            reduction.value,
+            &quantity,
+            false,
+        ));
+    }
+    for (name, value, quantity) in experiment.bodes.iter().flat_map(|bode| &bode.outputs) {
+        dae.outputs
+            .push(single(format!("response {name}"), *value, quantity, false));
+    }
+}

@@ -1,0 +1,228 @@
+//! Modes that fix a state: `w = 0` in a mode, where w is a state (M3).
+//!
+//! ```text
+//! row of w:      M*der(w) = tau               in the mode:  der(w) = 0
+//! row of tau:    tau = s*grip + b*w           in the mode:  M*der(w) = tau
+//! ```
+//! The state's row becomes der(w) = 0 and its former equation moves to the row of the unknown that the block determines
+//! otherwise: the force that holds the state. The diagonal stays structurally sound in every mode, and w stays what it
+//! is to the last bit.
+
+use crate::alias::signed_cell;
+use crate::explicit::Order;
+use crate::matching::{Matched, Node};
+use crate::segments::Segment;
+use crate::system::{Cell, System};
+use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy};
+use hyde_ir::dae::{Dae, Pin};
+use hyde_ir::{AutomatonId, Expr, ExprId, Id as _, VariableKind};
+
+/// Marks the branches of slots that fix a state.
+pub(crate) fn mark(system: &mut System, unknowns: &[Segment]) {
+    let is_state = |cell: Cell| {
+        unknowns.iter().any(|unknown| {
+            unknown.state && unknown.var == cell.0 && unknown.overlaps(cell.1, cell.1)
+        })
+    };
+    for slot in 0..system.slots.len() {
+        for branch in 0..system.slots[slot].branches.len() {
+            let (lhs, rhs) = {
+                let branch = &system.slots[slot].branches[branch];
+                (branch.lhs, branch.rhs)
+            };
+            let pin = [(lhs, rhs), (rhs, lhs)]
+                .into_iter()
+                .find_map(|(side, value)| {
+                    let (cell, negated) = signed_cell(system, side)?;
+                    (is_state(cell) && constant_between_events(system, value))
+                        .then_some((cell, value, negated))
+                });
+            if let Some((cell, value, negated)) = pin {
+                let value = if negated {
+                    system.exprs().negative(value)
+                } else {
+                    value
+                };
+                system.slots[slot].branches[branch].pin = Some((cell, value));
+            }
+        }
+    }
+}
+
+/// Exchanges the rows of pinned states with those of the forces that hold them.
+pub(crate) fn exchange_rows(
+    dae: &mut Dae,
+    system: &mut System,
+    matched: &Matched,
+    order: &Order,
+    diagnostics: &mut Diagnostics,
+) {
+    refuse_two_pins(dae, system, diagnostics);
+    for (number, node) in matched.equation_of.iter().enumerate() {
+        let Node::Slot(slot) = *node else { continue };
+        let branches = system.slots[slot].branches.clone();
+        if branches.iter().all(|branch| branch.pin.is_none()) {
+            continue;
+        }
+        let automaton = system.slots[slot].automaton;
+        let slot_row = row_of(dae, matched, order, number);
+        for (mode, branch) in branches.iter().enumerate() {
+            let Some((cell, value)) = branch.pin else {
+                continue;
+            };
+            let Some(state_row) = row_of_state(dae, cell) else {
+                continue;
+            };
+            let arena = &mut dae.exprs;
+            let in_mode = arena.add(Expr::InMode(
+                automaton,
+                u32::try_from(mode).unwrap_or(u32::MAX),
+            ));
+            let rate = arena.add(Expr::Der(cell.0, System::cell_index(cell)));
+            let former = dae.residuals[state_row].value;
+            dae.residuals[state_row].value = arena.if_else(in_mode, rate, former);
+            let pin_origin = branch.origin.made_by(MadeBy::Pin);
+            if state_row != slot_row {
+                if !depends(dae, former, slot_row) {
+                    diagnostics.push(no_force(dae, system, automaton, mode, cell, slot_row));
+                    continue;
+                }
+                let own = dae.residuals[slot_row].value;
+                dae.residuals[slot_row].value = dae.exprs.if_else(in_mode, former, own);
+                let moved = dae.residuals[state_row].origins.clone();
+                dae.residuals[slot_row].origins.extend(moved);
+            }
+            dae.residuals[state_row].origins.push(pin_origin.clone());
+            let state = dae.unknowns[dae.residuals[state_row].unknown].offset
+                + (cell.1 - dae.unknowns[dae.residuals[state_row].unknown].first);
+            dae.pins.push(Pin {
+                automaton,
+                mode,
+                state,
+                value,
+                origin: pin_origin,
+            });
+        }
+    }
+}
+
+/// A value that changes at events only.
+fn constant_between_events(system: &System, id: ExprId) -> bool {
+    !system.flat.exprs.any(id, |expr| match expr {
+        Expr::Time | Expr::Der(..) => true,
+        Expr::Var(var, _) => !matches!(
+            system.flat.variables[var].kind,
+            VariableKind::Discrete | VariableKind::Held(..)
+        ),
+        _ => false,
+    })
+}
+
+fn refuse_two_pins(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
+    let mut seen: Vec<(Cell, AutomatonId, hyde_diag::Origin)> = Vec::new();
+    for slot in &system.slots {
+        for branch in &slot.branches {
+            let Some((cell, _)) = branch.pin else {
+                continue;
+            };
+            match seen
+                .iter()
+                .find(|(other, automaton, _)| *other == cell && *automaton != slot.automaton)
+            {
+                Some((_, automaton, origin)) => {
+                    let (a, b) = (
+                        &system.flat.automata[*automaton].name,
+                        &system.flat.automata[slot.automaton].name,
+                    );
+                    let state = dae.variables[cell.0].element_name(cell.1);
+                    diagnostics.push(
+                        Diagnostic::error(Code::TwoPins, format!("`{a}` and `{b}` both fix `{state}`"))
+                            .label(branch.origin.span, format!("`{b}` fixes it here"))
+                            .label(origin.span, format!("`{a}` fixes it here"))
+                            .note("two set-valued frictions on one body share its force in no definite way (M4)")
+                            .help("make one an effect of the other, or put a stiffness between them"),
+                    );
+                }
+                None => seen.push((cell, slot.automaton, branch.origin.clone())),
+            }
+        }
+    }
+}
+
+/// Number of the residual of an unknown that stays in the vector.
+fn row_of(dae: &Dae, matched: &Matched, order: &Order, number: usize) -> usize {
+    let before = order.in_vector[..number]
+        .iter()
+        .filter(|&&kept| kept)
+        .count();
+    debug_assert!(
+        before < dae.residuals.len() && order.in_vector[number],
+        "{:?} stays in the vector",
+        matched.unknowns[number]
+    );
+    before
+}
+
+fn row_of_state(dae: &Dae, cell: Cell) -> Option<usize> {
+    dae.residuals.iter().position(|residual| {
+        let block = &dae.unknowns[residual.unknown];
+        block.differential && block.var == cell.0 && block.first == cell.1 && block.len == 1
+    })
+}
+
+/// Whether an expression depends on the unknown of a row, through definitions too.
+fn depends(dae: &Dae, root: ExprId, row: usize) -> bool {
+    let block = &dae.unknowns[dae.residuals[row].unknown];
+    let mut pending = vec![root];
+    let mut visited = Vec::new();
+    while let Some(id) = pending.pop() {
+        for below in dae.exprs.below(&[id]) {
+            let Expr::Var(var, _) = dae.exprs[below] else {
+                continue;
+            };
+            if var == block.var {
+                return true;
+            }
+            if !visited.contains(&var) {
+                visited.push(var);
+                pending.extend(
+                    dae.definitions
+                        .iter()
+                        .filter(|d| d.var == var)
+                        .map(|d| d.value),
+                );
+            }
+        }
+    }
+    false
+}
+
+fn no_force(
+    dae: &Dae,
+    system: &System,
+    automaton: AutomatonId,
+    mode: usize,
+    cell: Cell,
+    row: usize,
+) -> Diagnostic {
+    let block = &dae.unknowns[dae.residuals[row].unknown];
+    let state = dae.variables[cell.0].element_name(cell.1);
+    let force = dae.variables[block.var].element_name(block.first);
+    let name = &system.flat.automata[automaton].modes[mode].name;
+    let origin = &system.flat.automata[automaton].modes[mode].origin;
+    debug_assert!(
+        automaton.index() < system.flat.automata.len(),
+        "an automaton of the model"
+    );
+    Diagnostic::error(
+        Code::BadPin,
+        format!("the mode `{name}` fixes `{state}`, but nothing holds it"),
+    )
+    .label(
+        origin.span,
+        format!("`{force}` is free in this mode and does not act on `{state}`"),
+    )
+    .help(
+        "let the block determine the force in its other modes, and connect it to the body it holds",
+    )
+}

@@ -1,0 +1,270 @@
+//! The model while it is analysed: its equations as one list, those of modes in slots.
+
+use hyde_diag::Origin;
+use hyde_ir::dae::Alias;
+use hyde_ir::flat::{Action, FlatModel};
+use hyde_ir::{AutomatonId, Expr, ExprArena, ExprId, Id as _, Index, Range, VarId, VariableKind};
+use std::collections::{BTreeMap, HashMap};
+
+/// An element of a variable, counted from 0.
+pub(crate) type Cell = (VarId, usize);
+
+/// A mode's equation in a slot.
+#[derive(Clone, Debug)]
+pub(crate) struct Branch {
+    pub(crate) lhs: ExprId,
+    pub(crate) rhs: ExprId,
+    pub(crate) origin: Origin,
+    /// It fixes this state to a value that is constant between events (M3).
+    pub(crate) pin: Option<(Cell, ExprId)>,
+}
+
+/// The equations that one position of a `modes` block has in its modes.
+#[derive(Clone, Debug)]
+pub(crate) struct Slot {
+    pub(crate) automaton: AutomatonId,
+    pub(crate) branches: Vec<Branch>,
+}
+
+/// An equation of the system.
+#[derive(Clone, Debug)]
+pub(crate) struct Equation {
+    pub(crate) range: Range,
+    pub(crate) lhs: ExprId,
+    pub(crate) rhs: ExprId,
+    pub(crate) origin: Origin,
+}
+
+/// The model under analysis.
+pub(crate) struct System {
+    pub(crate) flat: FlatModel,
+    pub(crate) equations: Vec<Equation>,
+    pub(crate) slots: Vec<Slot>,
+    /// Eliminated cells with what they stand for, in the order eliminated; targets may be eliminated later.
+    pub(crate) aliases: BTreeMap<Cell, Alias>,
+    /// Start values that joined variables gave to the one kept: value, fixed, and who gave it.
+    pub(crate) starts: BTreeMap<Cell, Vec<(ExprId, bool, VarId)>>,
+    pub(crate) relations: hyde_ir::IdVec<hyde_ir::RelationId, hyde_ir::dae::Relation>,
+    pub(crate) notes: Vec<String>,
+}
+
+impl System {
+    /// Splits the equations of modes into slots; everything else as it is.
+    pub(crate) fn new(mut flat: FlatModel) -> Self {
+        let equations = std::mem::take(&mut flat.equations);
+        let equations = equations
+            .into_iter()
+            .map(|e| Equation {
+                range: e.range,
+                lhs: e.lhs,
+                rhs: e.rhs,
+                origin: e.origin,
+            })
+            .collect();
+        let mut slots = Vec::new();
+        for (automaton, block) in flat.automata.enumerate() {
+            let count = block.modes.first().map_or(0, |mode| mode.equations.len());
+            for position in 0..count {
+                let branches = block
+                    .modes
+                    .iter()
+                    .filter_map(|mode| mode.equations.get(position))
+                    .map(|equation| Branch {
+                        lhs: equation.lhs,
+                        rhs: equation.rhs,
+                        origin: equation.origin.clone(),
+                        pin: None,
+                    });
+                slots.push(Slot {
+                    automaton,
+                    branches: branches.collect(),
+                });
+            }
+        }
+        let mut starts: BTreeMap<Cell, Vec<(ExprId, bool, VarId)>> = BTreeMap::new();
+        for (id, variable) in flat.variables.enumerate() {
+            if variable.len.is_none() {
+                if let Some(&start) = variable.start.first() {
+                    starts
+                        .entry((id, 0))
+                        .or_default()
+                        .push((start, variable.fixed, id));
+                }
+            }
+        }
+        Self {
+            flat,
+            equations,
+            slots,
+            aliases: BTreeMap::new(),
+            starts,
+            relations: hyde_ir::IdVec::new(),
+            notes: Vec::new(),
+        }
+    }
+
+    pub(crate) fn exprs(&mut self) -> &mut ExprArena {
+        &mut self.flat.exprs
+    }
+
+    /// Whether a variable is determined by the continuous equations.
+    pub(crate) fn is_continuous(&self, var: VarId) -> bool {
+        self.flat.variables[var].kind == VariableKind::Continuous
+    }
+
+    /// Passes every leaf of every expression of the model through `replace`. Equation `except` is left as it is.
+    pub(crate) fn rewrite_all(
+        &mut self,
+        except: Option<usize>,
+        mut replace: impl FnMut(&mut ExprArena, Expr) -> Option<ExprId>,
+    ) {
+        let mut memo: HashMap<ExprId, ExprId> = HashMap::new();
+        let flat = &mut self.flat;
+        let mut each = |arena: &mut ExprArena, id: &mut ExprId| {
+            *id = arena.rewrite(*id, &mut memo, |arena, _, expr| replace(arena, expr));
+        };
+        let arena = &mut flat.exprs;
+        for (number, equation) in self.equations.iter_mut().enumerate() {
+            if except != Some(number) {
+                each(arena, &mut equation.lhs);
+                each(arena, &mut equation.rhs);
+            }
+        }
+        for branch in self.slots.iter_mut().flat_map(|slot| &mut slot.branches) {
+            each(arena, &mut branch.lhs);
+            each(arena, &mut branch.rhs);
+        }
+        for equation in &mut flat.initial_equations {
+            each(arena, &mut equation.lhs);
+            each(arena, &mut equation.rhs);
+        }
+        for item in &mut flat.clocked_equations {
+            each(arena, &mut item.equation.lhs);
+            each(arena, &mut item.equation.rhs);
+        }
+        for automaton in flat.automata.iter_mut() {
+            for action in &mut automaton.initial_actions {
+                each(arena, action_value(action));
+            }
+            for exit in automaton.modes.iter_mut().flat_map(|mode| &mut mode.exits) {
+                each(arena, &mut exit.guard);
+                for action in &mut exit.actions {
+                    each(arena, action_value(action));
+                }
+            }
+        }
+        for (condition, actions) in flat.whens.iter_mut().flat_map(|when| &mut when.branches) {
+            each(arena, condition);
+            for action in actions {
+                each(arena, action_value(action));
+            }
+        }
+        for assert in &mut flat.asserts {
+            each(arena, &mut assert.condition);
+        }
+        for measured in &mut flat.experiment.measured {
+            each(arena, &mut measured.value);
+        }
+        for reduction in &mut flat.experiment.reductions {
+            each(arena, &mut reduction.value);
+        }
+        for (_, value, _) in flat
+            .experiment
+            .bodes
+            .iter_mut()
+            .flat_map(|bode| &mut bode.outputs)
+        {
+            each(arena, value);
+        }
+    }
+
+    /// The cells an access reaches over a range: first, last, and stride.
+    pub(crate) fn interval(index: Index, range: Range) -> (usize, usize) {
+        let (a, b) = (index.at(range.first), index.at(range.last));
+        let at = |value: i32| usize::try_from(value).unwrap_or(0);
+        (at(a.min(b)), at(a.max(b)))
+    }
+
+    /// A cell as a scalar access.
+    pub(crate) fn cell_index(cell: Cell) -> Index {
+        Index::fixed(i32::try_from(cell.1).unwrap_or(i32::MAX))
+    }
+
+    /// The name of a cell.
+    pub(crate) fn cell_name(&self, cell: Cell) -> String {
+        self.flat.variables[cell.0].element_name(cell.1)
+    }
+
+    /// The cell of a scalar access, `None` of one that moves with a counter.
+    pub(crate) fn cell(var: VarId, index: Index) -> Option<Cell> {
+        (index.stride == 0).then(|| (var, usize::try_from(index.offset).unwrap_or(0)))
+    }
+
+    /// Whether an expression is made of parameters and numbers alone.
+    pub(crate) fn is_parametric(&self, id: ExprId) -> bool {
+        !self.flat.exprs.any(id, |expr| match expr {
+            Expr::Time
+            | Expr::Counter
+            | Expr::Var(..)
+            | Expr::Der(..)
+            | Expr::Pre(..)
+            | Expr::Relation(_)
+            | Expr::InMode(..) => true,
+            Expr::Const(_)
+            | Expr::Param(..)
+            | Expr::Unary(..)
+            | Expr::Binary(..)
+            | Expr::If(..)
+            | Expr::NoEvent(_) => false,
+        })
+    }
+
+    /// The declared values of all parameters, element by element; empty where they cannot be told.
+    pub(crate) fn declared_values(&self) -> Vec<Vec<f64>> {
+        let flat = &self.flat;
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); flat.parameters.len()];
+        for &param in &flat.parameter_order {
+            let parameter = &flat.parameters[param];
+            let list: Result<Vec<f64>, ()> = (0..parameter.size())
+                .map(|element| {
+                    let value = *parameter
+                        .value
+                        .get(element)
+                        .or_else(|| parameter.value.first())
+                        .ok_or(())?;
+                    flat.exprs
+                        .evaluate(value, |expr| declared(&values, element, expr))
+                })
+                .collect();
+            values[param.index()] = list.unwrap_or_default();
+        }
+        values
+    }
+
+    /// The value of an expression of parameters with the values given; `None` if it is not one.
+    pub(crate) fn value_with(&self, values: &[Vec<f64>], id: ExprId) -> Option<f64> {
+        self.flat
+            .exprs
+            .evaluate(id, |expr| declared(values, 0, expr))
+            .ok()
+    }
+}
+
+/// The value of a leaf of parameters alone.
+fn declared(values: &[Vec<f64>], counter: usize, expr: Expr) -> Result<f64, ()> {
+    match expr {
+        Expr::Param(param, index) => {
+            let at = usize::try_from(index.at(i32::try_from(counter).unwrap_or(0))).unwrap_or(0);
+            values[param.index()].get(at).copied().ok_or(())
+        }
+        #[allow(clippy::cast_precision_loss, reason = "element numbers are small")]
+        Expr::Counter => Ok(counter as f64),
+        _ => Err(()),
+    }
+}
+
+fn action_value(action: &mut Action) -> &mut ExprId {
+    match action {
+        Action::Reinit(_, _, value) | Action::Assign(_, _, value) => value,
+    }
+}

@@ -1,0 +1,93 @@
+//! Array equations that determine no whole array are unrolled into scalar ones, up to 64 elements, with a note (F3).
+
+use crate::system::{Equation, System};
+use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_ir::{Expr, ExprId, Index, Range, VarId};
+use std::collections::HashMap;
+
+/// Arrays larger than this are not unrolled.
+const MAX_ELEMENTS: usize = 64;
+
+/// Unrolls every equation that mentions one of the arrays; `None` if one is too large.
+pub(crate) fn unroll(
+    system: &mut System,
+    arrays: &[VarId],
+    diagnostics: &mut Diagnostics,
+) -> Option<()> {
+    for &array in arrays {
+        let variable = &system.flat.variables[array];
+        if variable.size() > MAX_ELEMENTS {
+            let defining = system
+                .equations
+                .iter()
+                .find(|equation| mentions(system, equation, &[array]));
+            let mut diagnostic = Diagnostic::error(
+                Code::ArrayEquation,
+                format!(
+                    "the equations of `{}` do not determine it as a whole",
+                    variable.name
+                ),
+            )
+            .label(
+                variable.origin.span,
+                format!("an array of {} elements", variable.size()),
+            );
+            if let Some(equation) = defining {
+                diagnostic = diagnostic.label(equation.origin.span, "reads it");
+            }
+            diagnostics.push(
+                diagnostic
+                    .note(format!("up to {MAX_ELEMENTS} elements would be unrolled one by one"))
+                    .help("write one equation for each run of elements: `for i in 2:n-1 loop der(x[i]) = …; end for;` and one for each end"),
+            );
+            return None;
+        }
+        system.notes.push(format!(
+            "the equations of `{}` are unrolled element by element",
+            variable.name
+        ));
+    }
+    let mut unrolled = Vec::new();
+    for equation in std::mem::take(&mut system.equations) {
+        if equation.range == Range::SCALAR || !mentions(system, &equation, arrays) {
+            unrolled.push(equation);
+            continue;
+        }
+        for counter in equation.range.iter() {
+            let (lhs, rhs) = (
+                at(system, equation.lhs, counter),
+                at(system, equation.rhs, counter),
+            );
+            unrolled.push(Equation {
+                range: Range::SCALAR,
+                lhs,
+                rhs,
+                origin: equation.origin.clone(),
+            });
+        }
+    }
+    system.equations = unrolled;
+    Some(())
+}
+
+/// An expression at one value of its counter.
+pub(crate) fn at(system: &mut System, id: ExprId, counter: i32) -> ExprId {
+    let fixed = |index: Index| Index::fixed(index.at(counter));
+    system
+        .flat
+        .exprs
+        .rewrite(id, &mut HashMap::new(), |arena, _, expr| match expr {
+            Expr::Var(var, index) => Some(arena.add(Expr::Var(var, fixed(index)))),
+            Expr::Der(var, index) => Some(arena.add(Expr::Der(var, fixed(index)))),
+            Expr::Pre(var, index) => Some(arena.add(Expr::Pre(var, fixed(index)))),
+            Expr::Param(param, index) => Some(arena.add(Expr::Param(param, fixed(index)))),
+            Expr::Counter => Some(arena.constant(f64::from(counter))),
+            _ => None,
+        })
+}
+
+fn mentions(system: &System, equation: &Equation, arrays: &[VarId]) -> bool {
+    system.flat.exprs.below(&[equation.lhs, equation.rhs]).into_iter().any(|id| {
+        matches!(system.flat.exprs[id], Expr::Var(var, _) | Expr::Der(var, _) if arrays.contains(&var))
+    })
+}

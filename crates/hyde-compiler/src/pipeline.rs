@@ -1,0 +1,102 @@
+//! The way through the compiler, in the order written here.
+
+use crate::load::File;
+use hyde_diag::{Diagnostics, Sources};
+use hyde_flatten::Header;
+use hyde_ir::{Dae, FlatModel};
+use hyde_jit::Backend;
+use hyde_program::Program;
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+/// What is to be compiled.
+pub struct Request<'a> {
+    /// The source texts.
+    pub sources: &'a Sources,
+    /// The parsed files.
+    pub file: &'a File,
+    /// The model.
+    pub model: &'a str,
+    /// The experiment.
+    pub experiment: Option<&'a str>,
+    /// Values set from outside, SI. Those of structural parameters shape the equations.
+    pub settings: &'a BTreeMap<String, f64>,
+    /// The headers of the experiment's records.
+    pub records: &'a BTreeMap<String, Header>,
+    /// How numbers are made.
+    pub backend: Backend,
+}
+
+/// A program with the time each stage took.
+pub struct Compiled {
+    /// What can be run.
+    pub program: Program,
+    /// The stages and their times.
+    pub times: Vec<(&'static str, Duration)>,
+}
+
+/// Compiles a model with its experiment, from parsed files to a program.
+///
+/// `None` if there were errors; all of them are in `diagnostics`.
+pub fn compile(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<Compiled> {
+    let mut times = Vec::new();
+    let flat = step("flatten", &mut times, || flatten(request, diagnostics))?;
+    let dae = step("analyze", &mut times, || {
+        checked(hyde_analysis::analyze(flat, diagnostics))
+    })?;
+    let program = step("compile", &mut times, || {
+        hyde_jit::compile(dae, request.backend)
+    });
+    Some(Compiled { program, times })
+}
+
+/// The same up to the DAE, for printing.
+pub fn analyze(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<Dae> {
+    let flat = flatten(request, diagnostics)?;
+    checked(hyde_analysis::analyze(flat, diagnostics))
+}
+
+/// The flat model; refused if parsing found errors.
+pub(crate) fn flatten(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<FlatModel> {
+    if diagnostics.has_errors() {
+        return None;
+    }
+    let input = hyde_flatten::Input {
+        sources: request.sources,
+        files: &request.file.files,
+        model: request.model,
+        experiment: request.experiment,
+        settings: request.settings,
+        records: request.records,
+    };
+    let flat = hyde_flatten::flatten(&input, diagnostics)?;
+    if cfg!(debug_assertions) {
+        let valid = hyde_ir::validate_flat(&flat);
+        assert!(valid.is_ok(), "flatten broke an invariant: {valid:?}");
+    }
+    Some(flat)
+}
+
+fn checked(dae: Option<Dae>) -> Option<Dae> {
+    if let (true, Some(dae)) = (cfg!(debug_assertions), &dae) {
+        let valid = hyde_ir::validate_dae(dae);
+        assert!(valid.is_ok(), "analyze broke an invariant: {valid:?}");
+    }
+    dae
+}
+
+/// Runs a stage and takes its time.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the one place that times the stages"
+)]
+fn step<T>(
+    name: &'static str,
+    times: &mut Vec<(&'static str, Duration)>,
+    stage: impl FnOnce() -> T,
+) -> T {
+    let start = std::time::Instant::now();
+    let result = stage();
+    times.push((name, start.elapsed()));
+    result
+}

@@ -1,0 +1,418 @@
+//! Bindings: values of parameters, start values, `Real x = e`, and the times of clocked parts.
+
+use crate::dimension::Dim;
+use crate::instance::{Binding, InstanceId, Lowering, Member, Scope, Setting, Typed};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, MadeBy};
+use hyde_ir::flat::{ClockedEquation, Equation};
+use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, ParamId, Range, VarId, VariableKind};
+use hyde_syntax::ast::{Element, Expr, ExprKind, Reference};
+use hyde_units::Dimension;
+
+impl<'a> Model<'a, '_> {
+    /// Lowers every binding: parameters, clocks, start values, then the equations of bound variables.
+    pub(crate) fn lower_bindings(&mut self) {
+        for param in self.flat.parameters.ids() {
+            self.lower_parameter(param);
+        }
+        for instance in 0..self.instances.len() {
+            self.lower_clocks(instance);
+        }
+        for var in self.flat.variables.ids() {
+            self.lower_start(var);
+        }
+        self.make_traces_of_equations();
+        for var in self.flat.variables.ids().collect::<Vec<_>>() {
+            self.lower_binding(var);
+        }
+    }
+
+    /// Lowers the value of a parameter, once.
+    pub(crate) fn lower_parameter(&mut self, param: ParamId) {
+        let notes = &self.parameters[param.index()];
+        let (state, binding) = (notes.state, notes.binding);
+        let name = self.flat.parameters[param].name.clone();
+        let span = self.flat.parameters[param].origin.span;
+        match state {
+            Lowering::Done => return,
+            Lowering::InProgress => {
+                self.report(
+                    Diagnostic::error(Code::Cycle, format!("the value of `{name}` uses `{name}`"))
+                        .label(span, "in a circle"),
+                );
+                self.parameters[param.index()].state = Lowering::Done;
+                return;
+            }
+            Lowering::Waiting => self.parameters[param.index()].state = Lowering::InProgress,
+        }
+        let Some(binding) = binding else {
+            self.report(
+                Diagnostic::error(
+                    Code::NoValue,
+                    format!("the parameter `{name}` has no value"),
+                )
+                .label(span, "declared without a value")
+                .help(format!(
+                    "give it one: `{} = …` where its component is declared",
+                    short(&name)
+                )),
+            );
+            let zero = self.flat.exprs.constant(0.0);
+            self.flat.parameters[param].value = vec![zero];
+            self.parameters[param.index()].state = Lowering::Done;
+            return;
+        };
+        let (dim, truth) = (
+            self.parameters[param.index()].dim.clone(),
+            self.parameters[param.index()].boolean,
+        );
+        let len = self.flat.parameters[param].len;
+        let values = self.values(binding, len, &dim, truth);
+        self.flat.parameters[param].value = values;
+        self.parameters[param.index()].state = Lowering::Done;
+    }
+
+    /// The values of a binding of parameters: one a list item, or one for all elements.
+    fn values(
+        &mut self,
+        binding: Binding<'a>,
+        len: Option<usize>,
+        dim: &Dim,
+        truth: bool,
+    ) -> Vec<ExprId> {
+        let scope = Scope::new(binding.scope, Setting::Parameter);
+        let expr = self.element_expr(binding);
+        let items: Vec<Typed> = match (&expr.kind, len) {
+            (ExprKind::Array(items, unit), Some(len)) => {
+                if items.len() != len {
+                    self.report(
+                        Diagnostic::error(
+                            Code::BadShape,
+                            format!("{} values for {len} elements", items.len()),
+                        )
+                        .label(expr.span, "the list"),
+                    );
+                }
+                let scale =
+                    unit.as_ref()
+                        .and_then(|unit| match hyde_units::NamedUnit::parse(&unit.text) {
+                            Ok(unit) => Some(unit),
+                            Err(error) => {
+                                self.bad_unit(unit, &error);
+                                None
+                            }
+                        });
+                items
+                    .iter()
+                    .map(|item| {
+                        let mut typed = self.value(item, &scope);
+                        if let (Some(unit), Some(value)) =
+                            (&scale, self.flat.exprs.as_constant(typed.id))
+                        {
+                            typed.id = self.flat.exprs.constant(unit.unit().to_si(value));
+                            typed.dim = Dim::known(unit.unit().dimension);
+                            typed.bare = false;
+                        }
+                        typed
+                    })
+                    .collect()
+            }
+            (_, Some(len)) if self.array_length(expr, &scope).is_some() => {
+                vec![self.lower(
+                    expr,
+                    &Scope {
+                        elementwise: Some(len),
+                        ..scope
+                    },
+                )]
+            }
+            _ => vec![self.lower(expr, &scope)],
+        };
+        for item in &items {
+            if item.truth != truth && item.dim != Dim::Any {
+                let expected = if truth { "a truth" } else { "a number" };
+                self.report(
+                    Diagnostic::error(Code::WrongType, format!("{expected} is expected here"))
+                        .label(
+                            item.span,
+                            if item.truth {
+                                "true or false"
+                            } else {
+                                "a number"
+                            },
+                        ),
+                );
+            } else if !truth {
+                let declared = Typed {
+                    span: binding.span,
+                    ..self.typed(item.id, dim.clone(), binding.span)
+                };
+                self.agree(
+                    &declared,
+                    item,
+                    "the declared type and the value are",
+                    binding.scope,
+                );
+            }
+        }
+        items.into_iter().map(|item| item.id).collect()
+    }
+
+    fn lower_clocks(&mut self, instance: InstanceId) {
+        for (_, element) in self.instances[instance].elements.clone() {
+            let Element::Clocked(clocked) = element else {
+                continue;
+            };
+            let Some(Member::Instance(part)) = self.instances[instance]
+                .members
+                .get(clocked.name.text.as_str())
+            else {
+                continue;
+            };
+            let Some(clock) = self.instances[*part].clock else {
+                continue;
+            };
+            let scope = Scope::new(instance, Setting::Parameter);
+            let mut period = None;
+            for argument in &clocked.arguments {
+                let value = self.value(&argument.value, &scope);
+                let time = Typed {
+                    dim: Dim::known(Dimension::TIME),
+                    ..value.clone()
+                };
+                self.agree(
+                    &value,
+                    &time,
+                    "a clock is set in time, this relates",
+                    instance,
+                );
+                match argument.name.as_ref().map(|name| name.text.as_str()) {
+                    None => period = Some(value.id),
+                    Some("delay") => self.flat.clocks[clock].delay = value.id,
+                    Some("phase") => self.flat.clocks[clock].phase = value.id,
+                    Some(other) => self.report(
+                        Diagnostic::error(Code::BadArguments, format!("a clock has no `{other}`"))
+                            .label(argument.value.span, "unknown")
+                            .help("write `clocked name(1 [ms], delay = 0.2 [ms], phase = 0 [s])`"),
+                    ),
+                }
+            }
+            match period {
+                Some(period) => self.flat.clocks[clock].period = period,
+                None => self.report(
+                    Diagnostic::error(
+                        Code::BadArguments,
+                        format!("`{}` has no period", clocked.name.text),
+                    )
+                    .label(clocked.name.span, "how often?")
+                    .help(format!("write `clocked {}(1 [ms])`", clocked.name.text)),
+                ),
+            }
+        }
+    }
+
+    fn lower_start(&mut self, var: VarId) {
+        let Some(start) = self.notes(var).start else {
+            return;
+        };
+        let (dim, truth) = (self.dim(var), self.flat.variables[var].boolean);
+        let len = self.flat.variables[var].len;
+        if let Some(field) = self.notes(var).field {
+            let index = Index {
+                stride: 1,
+                offset: 0,
+            };
+            let place = if field.flux {
+                crate::instance::FieldPlace::Cell(field.domain, index)
+            } else {
+                crate::instance::FieldPlace::Node(field.domain, index)
+            };
+            let scope = Scope {
+                place,
+                ..Scope::new(start.scope, Setting::Parameter)
+            };
+            let value = self.value(start.expr, &scope);
+            let declared = self.typed(value.id, dim, start.span);
+            self.agree(
+                &declared,
+                &value,
+                "the field and its start value are",
+                start.scope,
+            );
+            self.flat.variables[var].start = vec![value.id];
+            return;
+        }
+        self.flat.variables[var].start = self.values(start, len, &dim, truth);
+    }
+
+    /// `Real x = e` as an equation of x.
+    fn lower_binding(&mut self, var: VarId) {
+        let notes = self.notes(var);
+        let (binding, field) = (notes.binding, notes.field);
+        let Some(binding) = binding else { return };
+        let kind = self.flat.variables[var].kind;
+        let setting = match kind {
+            VariableKind::Clocked(_) => Setting::Clocked,
+            VariableKind::Continuous
+            | VariableKind::Discrete
+            | VariableKind::Held(..)
+            | VariableKind::Column(..)
+            | VariableKind::Reduction(_) => Setting::Equation,
+        };
+        let scope = Scope::new(binding.scope, setting);
+        if let Some(field) = field {
+            self.field_binding(var, field, binding.expr, &scope, binding.span);
+            return;
+        }
+        let expr = self.element_expr(binding);
+        let len = self.flat.variables[var].len;
+        let origin = self
+            .origin(self.notes(var).instance, binding.span)
+            .made_by(MadeBy::Binding);
+        let list: Vec<(Range, Index, Typed)> = match (&expr.kind, len) {
+            (ExprKind::Array(items, None), Some(len)) if items.len() == len => (0..)
+                .zip(items)
+                .map(|(element, item)| {
+                    (
+                        Range::SCALAR,
+                        Index::fixed(element),
+                        self.lower(item, &scope),
+                    )
+                })
+                .collect(),
+            (_, Some(len)) => {
+                let range = Range {
+                    first: 0,
+                    last: i32::try_from(len).unwrap_or(i32::MAX) - 1,
+                };
+                let value = self.lower(
+                    expr,
+                    &Scope {
+                        elementwise: Some(len),
+                        ..scope
+                    },
+                );
+                vec![(
+                    range,
+                    Index {
+                        stride: 1,
+                        offset: 0,
+                    },
+                    value,
+                )]
+            }
+            (_, None) => vec![(Range::SCALAR, Index::SCALAR, self.lower(expr, &scope))],
+        };
+        for (range, index, value) in list {
+            let lhs = self.flat.exprs.add(Ir::Var(var, index));
+            let declared = Typed {
+                truth: self.flat.variables[var].boolean,
+                ..self.typed(lhs, self.dim(var), binding.span)
+            };
+            self.same_kind(&declared, &value);
+            self.agree(
+                &declared,
+                &value,
+                "the declared type and the value are",
+                binding.scope,
+            );
+            let equation = Equation {
+                range,
+                lhs,
+                rhs: value.id,
+                origin: origin.clone(),
+            };
+            match kind {
+                VariableKind::Clocked(clock) => self
+                    .flat
+                    .clocked_equations
+                    .push(ClockedEquation { clock, equation }),
+                VariableKind::Continuous
+                | VariableKind::Discrete
+                | VariableKind::Held(..)
+                | VariableKind::Column(..)
+                | VariableKind::Reduction(_) => self.flat.equations.push(equation),
+            }
+        }
+    }
+
+    /// The expression of a binding; of a list given to an array of components, the item meant.
+    fn element_expr(&self, binding: Binding<'a>) -> &'a Expr {
+        match (&binding.expr.kind, binding.element) {
+            (ExprKind::Array(items, None), Some(element)) => {
+                items.get(element).unwrap_or(binding.expr)
+            }
+            _ => binding.expr,
+        }
+    }
+
+    /// The length of the whole arrays an expression reads, if it reads any.
+    pub(crate) fn array_length(&self, expr: &'a Expr, scope: &Scope<'a>) -> Option<usize> {
+        match &expr.kind {
+            ExprKind::Reference(reference) => self.length_of(reference, scope),
+            ExprKind::Unary(_, inner) => self.array_length(inner, scope),
+            ExprKind::Binary(_, a, b) => self
+                .array_length(a, scope)
+                .or_else(|| self.array_length(b, scope)),
+            ExprKind::Call(function, arguments) => {
+                if function.as_word() == Some("sum") {
+                    return None;
+                }
+                arguments
+                    .iter()
+                    .find_map(|argument| self.array_length(&argument.value, scope))
+            }
+            ExprKind::If(branches, otherwise) => branches
+                .iter()
+                .find_map(|(c, v)| {
+                    self.array_length(c, scope)
+                        .or_else(|| self.array_length(v, scope))
+                })
+                .or_else(|| self.array_length(otherwise, scope)),
+            ExprKind::Array(..)
+            | ExprKind::Number(..)
+            | ExprKind::String(_)
+            | ExprKind::Boolean(_) => None,
+        }
+    }
+
+    fn length_of(&self, reference: &'a Reference, scope: &Scope<'a>) -> Option<usize> {
+        let mut at = scope.instance;
+        let mut parts = reference.parts.iter();
+        let mut part = parts.next()?;
+        let mut member = loop {
+            match (
+                self.instances[at].members.get(part.name.text.as_str()),
+                self.instances[at].outer,
+            ) {
+                (Some(member), _) => break member,
+                (None, Some(outer)) => at = outer,
+                (None, None) => return None,
+            }
+        };
+        loop {
+            match member {
+                Member::Variable(var) => {
+                    let whole = part.subscripts.is_empty() && self.notes(*var).field.is_none();
+                    return self.flat.variables[*var].len.filter(|_| whole);
+                }
+                Member::Parameter(param) => {
+                    return self.flat.parameters[*param]
+                        .len
+                        .filter(|_| part.subscripts.is_empty());
+                }
+                Member::Instance(inner) => at = *inner,
+                // Every element of an array of components has the same variables.
+                Member::Instances(list) => at = *list.first()?,
+                Member::Domain(_) => return None,
+            }
+            part = parts.next()?;
+            member = self.instances[at].members.get(part.name.text.as_str())?;
+        }
+    }
+}
+
+/// The last part of a dotted name.
+pub(crate) fn short(name: &str) -> &str {
+    name.rsplit('.').next().unwrap_or(name)
+}

@@ -1,0 +1,293 @@
+//! Connection sets: potentials equal, flows sum to zero.
+//!
+//! A connector counts once from inside its component's parent (inside, flow into the component) and once from its own
+//! model (outside, flow out of it). `connect(a, b, c)` joins; of each set all potentials are equal, and the flows of the
+//! inside ones minus those of the outside ones sum to zero. A connector in no set has zero flow (U4).
+
+use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
+use crate::lower::Resolved;
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, MadeBy, Origin, Span};
+use hyde_ir::flat::Equation;
+use hyde_ir::{Range, VarId, VariableKind};
+use hyde_syntax::ast::{ClassKind, Reference};
+
+/// A `connect` of connectors, as written.
+pub(crate) struct Connection {
+    sides: Vec<(InstanceId, bool)>,
+    origin: Origin,
+}
+
+impl<'a> Model<'a, '_> {
+    /// Lowers `connect(a, b, …)`: connectors are kept for the sets, signals are equated at once.
+    pub(crate) fn connection(&mut self, sides: &'a [Reference], scope: &Scope<'a>, span: Span) {
+        let mut connectors = Vec::new();
+        let mut signals: Vec<(VarId, &'a Reference)> = Vec::new();
+        for side in sides {
+            match self.resolve(side, scope) {
+                Some(Resolved::Instance(instance))
+                    if self.instances[instance].class.kind == ClassKind::Connector =>
+                {
+                    let outside = self.instances[instance].parent == Some(scope.instance);
+                    let inside_part = self.instances[instance]
+                        .parent
+                        .and_then(|parent| self.instances[parent].parent);
+                    if !outside
+                        && inside_part != Some(scope.instance)
+                        && self.instances[scope.instance].outer.is_none()
+                    {
+                        self.report(
+                            Diagnostic::error(
+                                Code::BadConnection,
+                                format!("`{}` is too deep to connect", side.dotted()),
+                            )
+                            .label(side.span, "a connector of a part of a part")
+                            .help("connect it inside the part, or give the part a connector"),
+                        );
+                        return;
+                    }
+                    connectors.push((instance, !outside, side));
+                }
+                Some(Resolved::Variable(var, None)) => signals.push((var, side)),
+                Some(Resolved::Instance(instance)) => {
+                    let class = self.instances[instance].class.name.text.clone();
+                    let known: Vec<&str> = self.instances[instance]
+                        .members
+                        .iter()
+                        .filter(|(_, member)| self.is_connector(member))
+                        .map(|(name, _)| *name)
+                        .collect();
+                    let diagnostic = Diagnostic::error(
+                        Code::BadConnection,
+                        format!(
+                            "`{}` is a component ({class}), not a connector",
+                            side.dotted()
+                        ),
+                    )
+                    .label(side.span, "a component");
+                    let help = crate::model::listed(&known);
+                    self.report(if known.is_empty() {
+                        diagnostic
+                    } else {
+                        diagnostic.help(format!("connect one of its connectors: {help}"))
+                    });
+                    return;
+                }
+                Some(_) => {
+                    self.report(
+                        Diagnostic::error(
+                            Code::BadConnection,
+                            format!("`{}` is no connector", side.dotted()),
+                        )
+                        .label(side.span, "cannot be connected"),
+                    );
+                    return;
+                }
+                None => return,
+            }
+        }
+        match (connectors.first().copied(), signals.first().copied()) {
+            (Some((_, _, connector)), Some((_, signal))) => self.report(
+                Diagnostic::error(
+                    Code::BadConnection,
+                    "a connector and a signal are connected",
+                )
+                .label(connector.span, "a connector")
+                .label(signal.span, "a signal"),
+            ),
+            (Some((first, ..)), None) => {
+                let same = |instance: InstanceId| {
+                    std::ptr::eq(self.instances[instance].class, self.instances[first].class)
+                };
+                if let Some((other, _, side)) = connectors
+                    .iter()
+                    .copied()
+                    .find(|(instance, ..)| !same(*instance))
+                {
+                    let (a, b) = (
+                        &self.instances[first].class.name.text,
+                        &self.instances[other].class.name.text,
+                    );
+                    let message =
+                        format!("connectors of different types are connected: `{a}` and `{b}`");
+                    let diagnostic = Diagnostic::error(Code::BadConnection, message)
+                        .label(side.span, format!("a `{b}`"))
+                        .label(connectors[0].2.span, format!("a `{a}`"));
+                    self.report(diagnostic);
+                    return;
+                }
+                let sides = connectors
+                    .iter()
+                    .map(|(instance, inside, _)| (*instance, *inside))
+                    .collect();
+                let origin = self
+                    .origin(scope.instance, span)
+                    .made_by(MadeBy::Connection);
+                self.connections.push(Connection { sides, origin });
+            }
+            (None, Some((first, written))) => {
+                let mut equations = Vec::new();
+                for &(other, side) in &signals[1..] {
+                    let lhs = self.flat.exprs.var(other);
+                    let rhs = self.flat.exprs.var(first);
+                    let left = Typed {
+                        truth: self.flat.variables[other].boolean,
+                        ..self.typed(lhs, self.dim(other), side.span)
+                    };
+                    let right = Typed {
+                        truth: self.flat.variables[first].boolean,
+                        ..self.typed(rhs, self.dim(first), written.span)
+                    };
+                    self.same_kind(&left, &right);
+                    self.agree(&left, &right, "`connect` joins", scope.instance);
+                    let origin = self
+                        .origin(scope.instance, span)
+                        .made_by(MadeBy::Connection);
+                    equations.push(Equation {
+                        range: Range::SCALAR,
+                        lhs,
+                        rhs,
+                        origin,
+                    });
+                }
+                let clocked = matches!(self.flat.variables[first].kind, VariableKind::Clocked(_));
+                match (clocked, self.instances[scope.instance].clock) {
+                    (true, Some(clock)) if scope.setting == Setting::Clocked => {
+                        let list = equations
+                            .into_iter()
+                            .map(|equation| hyde_ir::flat::ClockedEquation { clock, equation });
+                        self.flat.clocked_equations.extend(list);
+                    }
+                    _ => self.flat.equations.extend(equations),
+                }
+            }
+            (None, None) => {}
+        }
+    }
+
+    /// Turns all connections into equations.
+    pub(crate) fn connect(&mut self) {
+        let sets = self.connection_sets();
+        let mut connected_inside = vec![false; self.instances.len()];
+        for (members, origin) in &sets {
+            for &(instance, inside) in members {
+                connected_inside[instance] |= inside;
+            }
+            self.set_equations(members, origin);
+        }
+        for id in 0..self.instances.len() {
+            if self.instances[id].class.kind != ClassKind::Connector || connected_inside[id] {
+                continue;
+            }
+            // A top-level connector, and one that no parent connects: nothing flows in.
+            for var in self.variables_of(id) {
+                if !self.flat.variables[var].flow {
+                    continue;
+                }
+                let lhs = self.flat.exprs.var(var);
+                let rhs = self.flat.exprs.constant(0.0);
+                let origin = self
+                    .origin(id, self.instances[id].span)
+                    .made_by(MadeBy::Unconnected);
+                self.flat.equations.push(Equation {
+                    range: Range::SCALAR,
+                    lhs,
+                    rhs,
+                    origin,
+                });
+            }
+        }
+    }
+
+    /// The sets of joined connectors, in the order of their first `connect`.
+    fn connection_sets(&mut self) -> Vec<(Vec<(InstanceId, bool)>, Origin)> {
+        let mut sets: Vec<(Vec<(InstanceId, bool)>, Origin)> = Vec::new();
+        for connection in std::mem::take(&mut self.connections) {
+            let mut merged: Vec<(InstanceId, bool)> = Vec::new();
+            let mut origin = connection.origin;
+            let mut rest = Vec::new();
+            for (set, first) in sets {
+                if set.iter().any(|side| connection.sides.contains(side)) {
+                    merged.extend(set);
+                    origin = first;
+                } else {
+                    rest.push((set, first));
+                }
+            }
+            for side in connection.sides {
+                if !merged.contains(&side) {
+                    merged.push(side);
+                }
+            }
+            rest.push((merged, origin));
+            sets = rest;
+        }
+        sets
+    }
+
+    fn set_equations(&mut self, members: &[(InstanceId, bool)], origin: &Origin) {
+        let Some(&(first, _)) = members.first() else {
+            return;
+        };
+        for (position, var) in self.variables_of(first).into_iter().enumerate() {
+            let of = |model: &Self, instance: InstanceId| {
+                model.variables_of(instance).get(position).copied()
+            };
+            if self.flat.variables[var].flow {
+                let mut sum = self.flat.exprs.constant(0.0);
+                for &(instance, inside) in members {
+                    let Some(flow) = of(self, instance) else {
+                        continue;
+                    };
+                    let term = self.flat.exprs.var(flow);
+                    sum = if inside {
+                        self.flat.exprs.plus(sum, term)
+                    } else {
+                        self.flat.exprs.minus(sum, term)
+                    };
+                }
+                let rhs = self.flat.exprs.constant(0.0);
+                self.flat.equations.push(Equation {
+                    range: Range::SCALAR,
+                    lhs: sum,
+                    rhs,
+                    origin: origin.clone(),
+                });
+                continue;
+            }
+            for &(instance, _) in &members[1..] {
+                let Some(other) = of(self, instance) else {
+                    continue;
+                };
+                if other == var {
+                    continue;
+                }
+                let (lhs, rhs) = (self.flat.exprs.var(other), self.flat.exprs.var(var));
+                self.flat.equations.push(Equation {
+                    range: Range::SCALAR,
+                    lhs,
+                    rhs,
+                    origin: origin.clone(),
+                });
+            }
+        }
+    }
+
+    /// The variables of a connector in the order of their names.
+    fn variables_of(&self, connector: InstanceId) -> Vec<VarId> {
+        let members = self.instances[connector].members.values();
+        members
+            .filter_map(|member| match member {
+                Member::Variable(var) => Some(*var),
+                Member::Parameter(_)
+                | Member::Instance(_)
+                | Member::Instances(_)
+                | Member::Domain(_) => None,
+            })
+            .collect()
+    }
+
+    fn is_connector(&self, member: &Member) -> bool {
+        matches!(member, Member::Instance(id) if self.instances[*id].class.kind == ClassKind::Connector)
+    }
+}

@@ -1,0 +1,308 @@
+//! Dimensions of expressions, known and still unknown, and the constraints between them.
+//!
+//! A dimension is a known part times powers of unknown ones ([`Dim::Of`]): a `Real` without a unit, a record's column
+//! without one. Every `+`, `=`, comparison, binding and connection demands that two of them agree. What can be decided
+//! is decided at once; the rest waits until the end of flatten, where a constraint with one unknown left determines it.
+//! What nothing determines is a pure number (U2).
+
+use crate::instance::InstanceId;
+use hyde_diag::{Code, Diagnostic, InstancePath, Span};
+use hyde_units::{Agreement, AngleExponent, Dimension, Exponent};
+
+/// An unknown dimension.
+pub(crate) type Unknown = usize;
+
+/// The dimension of an expression.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Dim {
+    /// A literal 0: fits any (U2).
+    Any,
+    /// Known part and powers of unknowns.
+    Of(Dimension, Vec<(Unknown, Exponent)>),
+}
+
+impl Dim {
+    pub(crate) const NUMBER: Self = Self::Of(Dimension::DIMENSIONLESS, Vec::new());
+
+    /// A pure number of which it is not known whether it counts angles: `pi`.
+    pub(crate) fn neutral_number() -> Self {
+        let torque = Dimension::si([1, 2, -2, 0, 0, 0, 0], 0);
+        let neutral = hyde_units::parse_unit("N.m").map_or(torque, |unit| unit.dimension);
+        Self::known(neutral.divide(neutral))
+    }
+
+    pub(crate) fn known(dimension: Dimension) -> Self {
+        Self::Of(dimension, Vec::new())
+    }
+
+    pub(crate) fn unknown(unknown: Unknown) -> Self {
+        Self::Of(Dimension::DIMENSIONLESS, vec![(unknown, Exponent::ONE)])
+    }
+
+    pub(crate) fn as_known(&self) -> Option<Dimension> {
+        match self {
+            Self::Of(dimension, unknowns) if unknowns.is_empty() => Some(*dimension),
+            Self::Of(..) | Self::Any => None,
+        }
+    }
+
+    pub(crate) fn multiply(&self, other: &Self) -> Self {
+        self.combine(other, false)
+    }
+
+    pub(crate) fn divide(&self, other: &Self) -> Self {
+        self.combine(other, true)
+    }
+
+    /// `None` where an exponent cannot be kept exactly.
+    pub(crate) fn power(&self, exponent: Exponent) -> Option<Self> {
+        match self {
+            Self::Any => Some(Self::Any),
+            Self::Of(dimension, unknowns) => {
+                let powers = unknowns.iter().map(|&(u, e)| Some((u, e.times(exponent)?)));
+                Some(Self::Of(
+                    dimension.power(exponent)?,
+                    powers.collect::<Option<Vec<_>>>()?,
+                ))
+            }
+        }
+    }
+
+    fn combine(&self, other: &Self, inverse: bool) -> Self {
+        let (Self::Of(a, left), Self::Of(b, right)) = (self, other) else {
+            return Self::Any;
+        };
+        let known = if inverse {
+            a.divide(*b)
+        } else {
+            a.multiply(*b)
+        };
+        let mut unknowns = left.clone();
+        for &(unknown, exponent) in right {
+            let exponent = if inverse { -exponent } else { exponent };
+            match unknowns.iter_mut().find(|(u, _)| *u == unknown) {
+                Some((_, e)) => *e = *e + exponent,
+                None => unknowns.push((unknown, exponent)),
+            }
+        }
+        unknowns.retain(|(_, e)| !e.is_zero());
+        Self::Of(known, unknowns)
+    }
+}
+
+/// Why two dimensions must agree.
+#[derive(Clone, Debug)]
+pub(crate) struct Demand {
+    /// `+ adds`, `= equates`: as said in the message.
+    pub(crate) what: &'static str,
+    /// The two sides.
+    pub(crate) spans: (Span, Span),
+    /// In which instance: its names may repair it.
+    pub(crate) instance: InstanceId,
+    /// The sides are bare numbers without a unit.
+    pub(crate) bare: (bool, bool),
+}
+
+/// The path of an instance, and its parameters with their dimensions: what a repair may name.
+pub(crate) type InScope<'s> = &'s dyn Fn(InstanceId) -> (InstancePath, Vec<(String, Dimension)>);
+
+/// All unknown dimensions and the constraints that wait for them.
+#[derive(Default)]
+pub(crate) struct Dimensions {
+    solved: Vec<Option<Dimension>>,
+    waiting: Vec<(Dim, Dim, Demand)>,
+}
+
+impl Dimensions {
+    pub(crate) fn fresh(&mut self) -> Unknown {
+        self.solved.push(None);
+        self.solved.len() - 1
+    }
+
+    /// Demands that two dimensions agree.
+    pub(crate) fn agree(
+        &mut self,
+        a: &Dim,
+        b: &Dim,
+        demand: Demand,
+        in_scope: InScope<'_>,
+    ) -> Option<Diagnostic> {
+        if *a == Dim::Any || *b == Dim::Any {
+            return None;
+        }
+        let (a, b) = (self.resolve(a), self.resolve(b));
+        match (a.as_known(), b.as_known()) {
+            (Some(a), Some(b)) => verdict(a, b, &demand, in_scope),
+            _ => {
+                self.waiting.push((a, b, demand));
+                None
+            }
+        }
+    }
+
+    /// With every unknown that is solved by now put in.
+    pub(crate) fn resolve(&self, dim: &Dim) -> Dim {
+        let Dim::Of(known, unknowns) = dim else {
+            return Dim::Any;
+        };
+        let mut result = Dim::known(*known);
+        for &(unknown, exponent) in unknowns {
+            let factor = match self.solved[unknown] {
+                Some(dimension) => Dim::known(dimension).power(exponent).unwrap_or(Dim::Any),
+                None => Dim::Of(Dimension::DIMENSIONLESS, vec![(unknown, exponent)]),
+            };
+            result = result.multiply(&factor);
+        }
+        result
+    }
+
+    /// Solves what the constraints determine, makes the rest pure numbers, and reports what disagrees.
+    pub(crate) fn solve(&mut self, in_scope: InScope<'_>) -> Vec<Diagnostic> {
+        let mut found = Vec::new();
+        loop {
+            let mut progress = false;
+            for (a, b, demand) in std::mem::take(&mut self.waiting) {
+                let Dim::Of(known, unknowns) = self.resolve(&a.divide(&b)) else {
+                    continue;
+                };
+                match unknowns.as_slice() {
+                    [] => {
+                        progress = true;
+                        let (a, b) = (self.resolve(&a), self.resolve(&b));
+                        // Powers of the same unknown may have cancelled: compare what is left.
+                        let (a, b) = match (a.as_known(), b.as_known()) {
+                            (Some(a), Some(b)) => (a, b),
+                            _ => (known, Dimension::DIMENSIONLESS),
+                        };
+                        found.extend(verdict(a, b, &demand, in_scope));
+                    }
+                    [(unknown, exponent)] => {
+                        progress = true;
+                        let inverse = exponent.as_integer().and_then(|n| Exponent::ratio(-1, n));
+                        let inverse =
+                            inverse.or_else(|| Exponent::from_f64(-1.0 / exponent.to_f64()));
+                        self.solved[*unknown] = inverse.and_then(|inverse| known.power(inverse));
+                        self.waiting.push((a, b, demand));
+                    }
+                    _ => self.waiting.push((a, b, demand)),
+                }
+            }
+            if !progress {
+                let Some(free) = self.first_free() else { break };
+                self.solved[free] = Some(Dimension::DIMENSIONLESS);
+            }
+        }
+        found
+    }
+
+    /// The dimension of an unknown after [`Dimensions::solve`].
+    pub(crate) fn solution(&self, unknown: Unknown) -> Dimension {
+        self.solved[unknown].unwrap_or(Dimension::DIMENSIONLESS)
+    }
+
+    fn first_free(&self) -> Option<Unknown> {
+        self.waiting
+            .iter()
+            .find_map(|(a, b, _)| match self.resolve(&a.divide(b)) {
+                Dim::Of(_, unknowns) => unknowns.first().map(|(unknown, _)| *unknown),
+                Dim::Any => None,
+            })
+    }
+}
+
+fn verdict(
+    a: Dimension,
+    b: Dimension,
+    demand: &Demand,
+    in_scope: InScope<'_>,
+) -> Option<Diagnostic> {
+    let (left, right) = demand.spans;
+    match a.agreement(b) {
+        Agreement::Same => None,
+        Agreement::AngleDiffers => Some(
+            Diagnostic::warning(Code::AngleMismatch, format!("{} {} and {}", demand.what, short(a), short(b)))
+                .label(left, format!("this is {}", short(a)))
+                .label(right, format!("this is {}", short(b)))
+                .note("the two differ only in how often an angle is in them: Hz counts turns, rad/s radians")
+                .help(angle_repair(a, b)),
+        ),
+        Agreement::Different => {
+            let diagnostic =
+                Diagnostic::error(Code::UnitMismatch, format!("{} {} and {}", demand.what, short(a), short(b)))
+                    .label(left, format!("this is {a}"))
+                    .label(right, format!("this is {b}"));
+            let (instance, names) = in_scope(demand.instance);
+            let diagnostic = if instance.as_str().is_empty() {
+                diagnostic
+            } else {
+                diagnostic.note(format!("in instance `{instance}`"))
+            };
+            Some(match repair(a, b, demand, &names) {
+                Some(help) => diagnostic.help(help),
+                None => diagnostic,
+            })
+        }
+    }
+}
+
+/// A dimension in one word: its usual unit.
+fn short(dimension: Dimension) -> String {
+    let unit = dimension.usual_unit();
+    if unit.is_empty() || unit == "1" {
+        "a pure number".to_owned()
+    } else {
+        unit
+    }
+}
+
+fn angle_repair(a: Dimension, b: Dimension) -> String {
+    let turns = |d: Dimension| d.angle() == AngleExponent::Known(Exponent::ZERO);
+    if turns(a) || turns(b) {
+        "multiply what counts turns by 2*pi, or give the angle its unit: `1 [rad]`, `1 [rev]`"
+            .to_owned()
+    } else {
+        "check which of the two is per radian".to_owned()
+    }
+}
+
+/// What would make the two sides agree.
+fn repair(
+    a: Dimension,
+    b: Dimension,
+    demand: &Demand,
+    names: &[(String, Dimension)],
+) -> Option<String> {
+    if demand.bare.0 && a.is_dimensionless() {
+        return Some(format!("give the number a unit: `… [{}]`", b.usual_unit()));
+    }
+    if demand.bare.1 && b.is_dimensionless() {
+        return Some(format!("give the number a unit: `… [{}]`", a.usual_unit()));
+    }
+    let ratio = a.divide(b);
+    let same = |x: Dimension, y: Dimension| x.agreement(y) != Agreement::Different;
+    for (name, dimension) in names {
+        if dimension.is_dimensionless() {
+            continue;
+        }
+        if same(*dimension, ratio) {
+            return Some(format!(
+                "multiply the second by `{name}`, or divide the first by it"
+            ));
+        }
+        if same(dimension.divide(*dimension).divide(*dimension), ratio) {
+            return Some(format!(
+                "multiply the first by `{name}`, or divide the second by it"
+            ));
+        }
+    }
+    if same(ratio, Dimension::TIME) {
+        return Some("the second is a rate of the first: take `der(…)` of the first, or multiply the second by a time".to_owned());
+    }
+    if same(ratio, Dimension::DIMENSIONLESS.divide(Dimension::TIME)) {
+        return Some("the first is a rate of the second: take `der(…)` of the second, or multiply the first by a time".to_owned());
+    }
+    Some(format!(
+        "the first divided by the second is {}: a factor of that dimension is missing or too many",
+        short(ratio)
+    ))
+}

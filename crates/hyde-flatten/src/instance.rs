@@ -1,0 +1,194 @@
+//! The tree of instances, and what flatten knows of variables and parameters until they are lowered.
+
+use crate::dimension::Dim;
+use crate::names::FileIndex;
+use hyde_diag::{InstancePath, Span};
+use hyde_ir::{ClockId, ExprId, Index, ParamId, VarId};
+use hyde_syntax::ast::{Class, Element, Expr};
+use std::collections::BTreeMap;
+
+/// An instance by its number.
+pub(crate) type InstanceId = usize;
+/// A discretised domain by its number.
+pub(crate) type DomainId = usize;
+
+/// A component, connector or clocked part of the model.
+pub(crate) struct Instance<'a> {
+    pub(crate) path: InstancePath,
+    pub(crate) file: FileIndex,
+    pub(crate) class: &'a Class,
+    pub(crate) parent: Option<InstanceId>,
+    /// Of a clocked part: the model around it, where names are looked up that are not its own.
+    pub(crate) outer: Option<InstanceId>,
+    /// The partition its variables belong to.
+    pub(crate) clock: Option<ClockId>,
+    pub(crate) members: BTreeMap<&'a str, Member>,
+    /// Its elements, those of its bases first, each with the file it is written in.
+    pub(crate) elements: Vec<(FileIndex, &'a Element)>,
+    pub(crate) span: Span,
+}
+
+/// What a name within an instance stands for.
+#[derive(Clone)]
+pub(crate) enum Member {
+    Variable(VarId),
+    Parameter(ParamId),
+    Instance(InstanceId),
+    Instances(Vec<InstanceId>),
+    Domain(DomainId),
+}
+
+/// An expression with the instance in whose scope it stands.
+#[derive(Clone, Copy)]
+pub(crate) struct Binding<'a> {
+    pub(crate) expr: &'a Expr,
+    pub(crate) scope: InstanceId,
+    /// The element meant, where an array is given to the elements of an array of components.
+    pub(crate) element: Option<usize>,
+    pub(crate) span: Span,
+}
+
+/// What flatten knows of a variable beside what the flat model holds.
+pub(crate) struct VariableNotes<'a> {
+    pub(crate) instance: InstanceId,
+    pub(crate) dim: Dim,
+    pub(crate) binding: Option<Binding<'a>>,
+    pub(crate) start: Option<Binding<'a>>,
+    pub(crate) field: Option<Field>,
+}
+
+/// What flatten knows of a parameter beside what the flat model holds.
+pub(crate) struct ParameterNotes<'a> {
+    pub(crate) dim: Dim,
+    pub(crate) binding: Option<Binding<'a>>,
+    pub(crate) state: Lowering,
+    pub(crate) boolean: bool,
+}
+
+/// How far a parameter's binding is lowered.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Lowering {
+    Waiting,
+    InProgress,
+    Done,
+}
+
+/// A field: its domain, and where its values lie.
+#[derive(Clone, Copy)]
+pub(crate) struct Field {
+    pub(crate) domain: DomainId,
+    /// Values between the nodes (a flux) rather than at them.
+    pub(crate) flux: bool,
+    /// The fluxes through the left and the right end, once a field equation has asked for them.
+    pub(crate) traces: Option<(VarId, VarId)>,
+}
+
+/// A domain with its mesh: `cells` equal cells between `from` and `to`.
+pub(crate) struct Domain<'a> {
+    pub(crate) instance: InstanceId,
+    pub(crate) name: &'a str,
+    pub(crate) coordinate: &'a str,
+    pub(crate) from: &'a Expr,
+    pub(crate) to: &'a Expr,
+    pub(crate) cells: usize,
+    pub(crate) averaged: bool,
+    pub(crate) span: Span,
+    /// Lower end and cell length once lowered, with their dimension.
+    pub(crate) mesh: Option<(ExprId, ExprId, Dim)>,
+}
+
+/// What a counter of a `for` equation stands for while its body is lowered.
+#[derive(Clone, Copy)]
+pub(crate) enum Counter {
+    /// The counter of the range equation.
+    Symbolic,
+    /// A number: the loop is unrolled.
+    Fixed(i32),
+}
+
+/// Where a field expression is evaluated.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum FieldPlace {
+    /// Nowhere: a field has no single value.
+    Nowhere,
+    /// At nodes.
+    Node(DomainId, Index),
+    /// In the middle of cells: cell j lies between nodes j-1 and j.
+    Cell(DomainId, Index),
+}
+
+/// What the expression is for: it decides what may stand in it.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Setting {
+    /// A continuous equation: relations are events.
+    Equation,
+    /// A guard or condition: relations are root functions of it.
+    Condition,
+    /// What an event sets: `pre` is the value before it.
+    Action,
+    /// A clocked equation.
+    Clocked,
+    /// A parameter's value or a start value: parameters alone.
+    Parameter,
+    /// A measured or reported quantity, or what a clocked part samples: read only.
+    Report,
+    /// A measure or expectation: numbers over reductions of a whole run.
+    Measure,
+}
+
+/// Where an expression stands.
+#[derive(Clone)]
+pub(crate) struct Scope<'a> {
+    pub(crate) instance: InstanceId,
+    pub(crate) setting: Setting,
+    pub(crate) counters: Vec<(&'a str, Counter)>,
+    /// Mode parameters in scope.
+    pub(crate) locals: Vec<(&'a str, VarId)>,
+    pub(crate) place: FieldPlace,
+    /// Whole arrays are read element by element, this many.
+    pub(crate) elementwise: Option<usize>,
+    /// The records of the experiment can be read.
+    pub(crate) records: bool,
+}
+
+impl Scope<'_> {
+    pub(crate) fn new(instance: InstanceId, setting: Setting) -> Self {
+        Self {
+            instance,
+            setting,
+            counters: Vec::new(),
+            locals: Vec::new(),
+            place: FieldPlace::Nowhere,
+            elementwise: None,
+            records: false,
+        }
+    }
+
+    pub(crate) fn at(&self, place: FieldPlace) -> Self {
+        Self {
+            place,
+            ..self.clone()
+        }
+    }
+
+    pub(crate) fn with(&self, setting: Setting) -> Self {
+        Self {
+            setting,
+            ..self.clone()
+        }
+    }
+}
+
+/// A lowered expression.
+#[derive(Clone, Debug)]
+pub(crate) struct Typed {
+    pub(crate) id: ExprId,
+    pub(crate) dim: Dim,
+    /// A truth rather than a number.
+    pub(crate) truth: bool,
+    /// A bare number without a unit.
+    pub(crate) bare: bool,
+    /// `2*pi`: doubtful beside what is already per angle (U1).
+    pub(crate) two_pi: bool,
+    pub(crate) span: Span,
+}

@@ -1,0 +1,1153 @@
+//! Instantiates a model: a tree of instances, each with its parameters, variables and parts.
+//!
+//! `M m(R = 2)` with `model M extends B(R = 1); parameter Resistance R = 3; end M;` makes the instance `m` with the
+//! parameter `m.R`, whose binding is the outermost of: the modification in the enclosing model (evaluated there), the
+//! modification of the `extends` clause, the declaration. Nothing is evaluated here but what decides the structure:
+//! dimensions of arrays and numbers of cells ([`crate::structural`]).
+
+use crate::dimension::Dim;
+use crate::instance::{
+    Binding, Domain, Field, Instance, InstanceId, Lowering, Member, ParameterNotes, VariableNotes,
+};
+use crate::model::Model;
+use crate::names::{FileIndex, TypeName, nearest};
+use hyde_diag::{Code, Diagnostic, InstancePath, Span};
+use hyde_ir::{ClockId, Parameter, Quantity, Variable, VariableKind, flat};
+use hyde_syntax::ast::{
+    self, Change, Class, ClassBody, ClassKind, Declaration, Declarator, Element, EquationKind,
+    Expr, ExprKind, Prefix, Reference,
+};
+use hyde_units::NamedUnit;
+
+/// A modification of something below an instance, with the scope its value stands in.
+#[derive(Clone)]
+pub(crate) struct Modifier<'a> {
+    target: Vec<&'a str>,
+    change: &'a Change,
+    scope: InstanceId,
+    element: Option<usize>,
+    /// Index into the model's list of modifications, to tell which were used.
+    number: usize,
+}
+
+/// Elements of a class and its bases, each with the modifications of the `extends` clauses on the way.
+struct Collected<'a> {
+    element: &'a Element,
+    file: FileIndex,
+    modifiers: Vec<Modifier<'a>>,
+}
+
+impl<'a> Model<'a, '_> {
+    /// Instantiates the model asked for; `None` if there is none of that name.
+    pub(crate) fn instantiate_root(&mut self) -> Option<InstanceId> {
+        let name = self.input.model;
+        let Some(class) = self.names.own_class(name) else {
+            let file = self.input.files.first()?.0;
+            self.report(
+                Diagnostic::error(
+                    Code::NoExperiment,
+                    format!("the file has no model `{name}`"),
+                )
+                .label(Span::new(file, 0, 0), "searched in this file"),
+            );
+            return None;
+        };
+        self.flat.name = class.name.text.clone();
+        let mut modifiers = Vec::new();
+        if let Some(experiment) = self
+            .input
+            .experiment
+            .and_then(|name| self.names.own_experiment(name))
+        {
+            self.modifiers_of(&experiment.changes, 0, &mut modifiers);
+        }
+        let root = self.instantiate(
+            0,
+            class,
+            InstancePath::root(),
+            modifiers,
+            None,
+            None,
+            class.name.span,
+        );
+        self.report_unused_modifications();
+        Some(root)
+    }
+
+    fn instantiate(
+        &mut self,
+        file: FileIndex,
+        class: &'a Class,
+        path: InstancePath,
+        modifiers: Vec<Modifier<'a>>,
+        parent: Option<InstanceId>,
+        clock: Option<ClockId>,
+        span: Span,
+    ) -> InstanceId {
+        let id = self.instances.len();
+        self.instances.push(Instance {
+            path,
+            file,
+            class,
+            parent,
+            outer: None,
+            clock,
+            members: std::collections::BTreeMap::new(),
+            elements: Vec::new(),
+            span,
+        });
+        if self.depth(id) > 40 {
+            self.report(
+                Diagnostic::error(
+                    Code::Cycle,
+                    format!("`{}` contains itself", class.name.text),
+                )
+                .label(class.name.span, "instantiated inside itself without end")
+                .help("a model cannot be a component of itself"),
+            );
+            return id;
+        }
+        let mut collected = Vec::new();
+        self.collect(id, file, class, modifiers, &mut collected, 0);
+        self.members(id, &collected);
+        id
+    }
+
+    /// Makes the members of an instance from its collected elements: parameters first, for dimensions may use them.
+    fn members(&mut self, id: InstanceId, collected: &[Collected<'a>]) {
+        let discrete: Vec<&'a str> = collected
+            .iter()
+            .flat_map(|item| assigned_in_when(item.element))
+            .collect();
+        let is_parameter = |element: &Element| {
+            matches!(element, Element::Declaration(d) if d.prefixes.iter().any(|p| {
+                matches!(p, Prefix::Parameter | Prefix::Constant | Prefix::Size | Prefix::Shape)
+            }))
+        };
+        for item in collected.iter().filter(|item| is_parameter(item.element)) {
+            if let Element::Declaration(declaration) = item.element {
+                self.declare_parameters(id, item, declaration);
+            }
+        }
+        for item in collected {
+            if let Element::Domain(domain) = item.element {
+                let method = collected.iter().find_map(|other| match other.element {
+                    Element::Discretize(method) if method.domain.text == domain.name.text => {
+                        Some(method)
+                    }
+                    _ => None,
+                });
+                self.declare_domain(id, domain, method);
+            }
+        }
+        for item in collected.iter().filter(|item| !is_parameter(item.element)) {
+            match item.element {
+                Element::Declaration(declaration) => {
+                    self.declare(id, item, declaration, &discrete, collected)
+                }
+                Element::Clocked(clocked) => self.clocked(id, item, clocked),
+                Element::Discretize(method) => {
+                    if !matches!(
+                        self.instances[id].members.get(method.domain.text.as_str()),
+                        Some(Member::Domain(_))
+                    ) {
+                        let word = &method.domain.text;
+                        self.report(
+                            Diagnostic::error(
+                                Code::UnknownName,
+                                format!("no domain is called `{word}` here"),
+                            )
+                            .label(method.domain.span, "not known")
+                            .help("declare it: `domain bar(x in 0 .. len);`"),
+                        );
+                    }
+                }
+                _ => {}
+            }
+        }
+        self.instances[id].elements = collected
+            .iter()
+            .map(|item| (item.file, item.element))
+            .collect();
+    }
+
+    /// The elements of a class, those of its bases first.
+    fn collect(
+        &mut self,
+        id: InstanceId,
+        file: FileIndex,
+        class: &'a Class,
+        modifiers: Vec<Modifier<'a>>,
+        out: &mut Vec<Collected<'a>>,
+        depth: usize,
+    ) {
+        if depth > 40 {
+            self.report(
+                Diagnostic::error(Code::Cycle, format!("`{}` extends itself", class.name.text))
+                    .label(class.name.span, "declared here"),
+            );
+            return;
+        }
+        match &class.body {
+            ClassBody::Short {
+                base,
+                changes,
+                effects,
+            } => {
+                if let Some(used) = effects.first() {
+                    self.not_yet("adding effects to a model", used.effect.span);
+                }
+                self.collect_base(id, file, base, changes, modifiers, out, depth);
+            }
+            ClassBody::Long { elements, .. } => {
+                for element in elements {
+                    if let Element::Extends(base, changes) = element {
+                        self.collect_base(id, file, base, changes, modifiers.clone(), out, depth);
+                    } else {
+                        out.push(Collected {
+                            element,
+                            file,
+                            modifiers: modifiers.clone(),
+                        });
+                    }
+                }
+            }
+        }
+    }
+
+    #[allow(clippy::too_many_arguments, reason = "the state of a walk over bases")]
+    fn collect_base(
+        &mut self,
+        id: InstanceId,
+        file: FileIndex,
+        base: &'a Reference,
+        changes: &'a [Change],
+        mut modifiers: Vec<Modifier<'a>>,
+        out: &mut Vec<Collected<'a>>,
+        depth: usize,
+    ) {
+        self.modifiers_of(changes, id, &mut modifiers);
+        match self.names.class(file, base) {
+            Some((file, class)) => self.collect(id, file, class, modifiers, out, depth + 1),
+            None => {
+                let diagnostic = self.names.unknown(file, base);
+                self.report(diagnostic);
+            }
+        }
+    }
+
+    /// Declares variables or components.
+    fn declare(
+        &mut self,
+        id: InstanceId,
+        item: &Collected<'a>,
+        declaration: &'a Declaration,
+        discrete: &[&'a str],
+        collected: &[Collected<'a>],
+    ) {
+        let class = self.names.class(item.file, &declaration.type_name);
+        let quantity = self.names.quantity(item.file, &declaration.type_name);
+        for declarator in &declaration.declarators {
+            if !self.free_name(id, declarator) {
+                continue;
+            }
+            let as_component = match (&class, &quantity) {
+                (Some(_), None) => true,
+                (None, Some(_)) => false,
+                (Some(_), Some(_)) => means_component(declaration, declarator, collected),
+                (None, None) => {
+                    let diagnostic = self.names.unknown(item.file, &declaration.type_name);
+                    self.report(diagnostic);
+                    return;
+                }
+            };
+            match (as_component, class, quantity) {
+                (true, Some((file, class)), _) => {
+                    self.declare_component(id, item, declaration, declarator, file, class)
+                }
+                (_, _, Some(quantity)) => {
+                    self.declare_variable(id, item, declaration, declarator, quantity, discrete)
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn declare_component(
+        &mut self,
+        id: InstanceId,
+        item: &Collected<'a>,
+        declaration: &'a Declaration,
+        declarator: &'a Declarator,
+        file: FileIndex,
+        class: &'a Class,
+    ) {
+        if class.kind == ClassKind::Effect {
+            self.report(
+                Diagnostic::error(
+                    Code::WrongType,
+                    format!("`{}` is an effect, not a component", class.name.text),
+                )
+                .label(
+                    declaration.type_name.span,
+                    "an effect is switched on at a site",
+                )
+                .help(format!(
+                    "write `model New = Old with {} on site;`",
+                    class.name.text
+                )),
+            );
+            return;
+        }
+        if let Some(binding) = &declarator.binding {
+            self.report(
+                Diagnostic::error(
+                    Code::WrongType,
+                    format!(
+                        "the component `{}` cannot equal an expression",
+                        declarator.name.text
+                    ),
+                )
+                .label(binding.span, "a value for a component")
+                .help("modify its parameters: `Mass m(M = 3 [kg]);`"),
+            );
+        }
+        let count = self.length(id, &declaration.dims, &declarator.dims);
+        let name = declarator.name.text.as_str();
+        let mut inner = self.modifiers_for(name, &item.modifiers);
+        self.modifiers_of(&declarator.changes, id, &mut inner);
+        let (path, clock) = (self.path(id), self.instances[id].clock);
+        let span = declarator.name.span;
+        match count {
+            None => {
+                let part =
+                    self.instantiate(file, class, path.child(name), inner, Some(id), clock, span);
+                self.instances[id]
+                    .members
+                    .insert(name, Member::Instance(part));
+            }
+            Some(count) => {
+                let mut parts = Vec::new();
+                for index in 0..count {
+                    let mut own = inner.clone();
+                    for modifier in &mut own {
+                        if !modifier.change.each && modifier.element.is_none() {
+                            modifier.element = Some(index);
+                        }
+                    }
+                    let child = path.child(&format!("{name}[{}]", index + 1));
+                    parts.push(self.instantiate(file, class, child, own, Some(id), clock, span));
+                }
+                self.instances[id]
+                    .members
+                    .insert(name, Member::Instances(parts));
+            }
+        }
+    }
+
+    fn declare_variable(
+        &mut self,
+        id: InstanceId,
+        item: &Collected<'a>,
+        declaration: &'a Declaration,
+        declarator: &'a Declarator,
+        kind: TypeName<'a>,
+        discrete: &[&'a str],
+    ) {
+        let name = declarator.name.text.as_str();
+        let has = |prefix| declaration.prefixes.contains(&prefix);
+        let modifiers = self.modifiers_for(name, &item.modifiers);
+        let binding = self.binding(id, declarator, &modifiers);
+        let attribute =
+            |model: &mut Self, word: &str| model.attribute(id, declarator, &modifiers, word);
+        let start = attribute(self, "start");
+        let fixed = attribute(self, "fixed");
+        self.check_attributes(declarator, &modifiers);
+        let fixed = fixed.is_some_and(|fixed| matches!(fixed.expr.kind, ExprKind::Boolean(true)));
+        let (dim, quantity) = self.quantity(item.file, kind, binding.map(|binding| binding.expr));
+        let clock = self.instances[id].clock;
+        let variable_kind = match clock {
+            Some(clock) => VariableKind::Clocked(clock),
+            None if discrete.contains(&name) => VariableKind::Discrete,
+            None => VariableKind::Continuous,
+        };
+        let field = if has(Prefix::Field) {
+            self.field(id, declarator)
+        } else {
+            None
+        };
+        let (len, first) = match field {
+            Some(field) => {
+                let cells = self.domains[field.domain].cells;
+                (
+                    Some(if field.flux { cells } else { cells + 1 }),
+                    i32::from(field.flux),
+                )
+            }
+            None => (self.length(id, &declaration.dims, &declarator.dims), 1),
+        };
+        let origin = self.origin(id, declarator.name.span);
+        let flow = has(Prefix::Flow);
+        if flow && self.instances[id].class.kind != ClassKind::Connector {
+            self.report(
+                Diagnostic::error(
+                    Code::BadConnection,
+                    format!("`flow` on `{name}`, which is in no connector"),
+                )
+                .label(declaration.span, "only the variables of a connector flow"),
+            );
+        }
+        self.variables.push(VariableNotes {
+            instance: id,
+            dim,
+            binding,
+            start,
+            field,
+        });
+        let var = self.flat.variables.push(Variable {
+            name: self.instances[id].path.member(name),
+            len,
+            first,
+            kind: variable_kind,
+            quantity,
+            start: Vec::new(),
+            fixed,
+            flow,
+            boolean: matches!(kind, TypeName::Boolean),
+            input: has(Prefix::Input),
+            trace: None,
+            origin,
+        });
+        self.instances[id]
+            .members
+            .insert(name, Member::Variable(var));
+    }
+
+    fn declare_parameters(
+        &mut self,
+        id: InstanceId,
+        item: &Collected<'a>,
+        declaration: &'a Declaration,
+    ) {
+        let Some(kind) = self.names.quantity(item.file, &declaration.type_name) else {
+            let diagnostic = match self.names.class(item.file, &declaration.type_name) {
+                Some(_) => Diagnostic::error(Code::WrongType, "a model cannot be a parameter")
+                    .label(declaration.type_name.span, "this is a model")
+                    .help("declare it without `parameter`; exchange it by `replaceable`"),
+                None => self.names.unknown(item.file, &declaration.type_name),
+            };
+            self.report(diagnostic);
+            return;
+        };
+        let has = |prefix| declaration.prefixes.contains(&prefix);
+        for declarator in &declaration.declarators {
+            if !self.free_name(id, declarator) {
+                continue;
+            }
+            let name = declarator.name.text.as_str();
+            let modifiers = self.modifiers_for(name, &item.modifiers);
+            let outermost = modifiers.iter().find(|modifier| modifier.target.is_empty());
+            if let (true, Some(modifier)) = (has(Prefix::Final) || has(Prefix::Constant), outermost)
+            {
+                self.report(
+                    Diagnostic::error(Code::FinalModified, format!("`{name}` is final"))
+                        .label(modifier.change.target.span, "cannot be modified")
+                        .label(declarator.name.span, "declared final here"),
+                );
+            }
+            let declared = declarator
+                .prior
+                .as_ref()
+                .or_else(|| outermost.and_then(|m| m.change.prior.as_ref()));
+            let prior = outermost.and_then(|m| m.change.prior.as_ref()).or(declared);
+            let prior = prior.and_then(|prior| self.prior(prior));
+            let source = outermost
+                .and_then(|m| m.change.source.clone())
+                .or_else(|| declarator.source.clone());
+            let binding = self.binding(id, declarator, &modifiers);
+            self.check_attributes(declarator, &modifiers);
+            let (dim, quantity) =
+                self.quantity(item.file, kind, binding.map(|binding| binding.expr));
+            let len = self.length(id, &declaration.dims, &declarator.dims);
+            let span = binding.map_or(declarator.name.span, |binding| binding.span);
+            let path = self.path(id);
+            let is_final = has(Prefix::Final)
+                || has(Prefix::Constant)
+                || outermost.is_some_and(|m| m.change.is_final);
+            self.parameters.push(ParameterNotes {
+                dim,
+                binding,
+                state: Lowering::Waiting,
+                boolean: matches!(kind, TypeName::Boolean),
+            });
+            let param = self.flat.parameters.push(Parameter {
+                name: path.member(name),
+                len,
+                value: Vec::new(),
+                quantity,
+                structural: false,
+                is_final,
+                derived: false,
+                prior,
+                source,
+                origin: self.origin(id, span),
+            });
+            self.instances[id]
+                .members
+                .insert(name, Member::Parameter(param));
+        }
+    }
+
+    fn declare_domain(
+        &mut self,
+        id: InstanceId,
+        domain: &'a ast::Domain,
+        method: Option<&'a ast::Discretize>,
+    ) {
+        let name = domain.name.text.as_str();
+        let span = domain.name.span;
+        let Some(method) = method else {
+            self.report(
+                Diagnostic::error(
+                    Code::FieldUse,
+                    format!("the domain `{name}` is not discretised"),
+                )
+                .label(span, "how many cells?")
+                .help(format!("write `discretize {name} by fem(n = 24);`")),
+            );
+            return;
+        };
+        let averaged = match method.method.text.as_str() {
+            "fem" => true,
+            "fv" => false,
+            other => {
+                self.report(
+                    Diagnostic::error(
+                        Code::NotYet,
+                        format!("no discretisation is called `{other}` in this version"),
+                    )
+                    .label(method.method.span, "not known")
+                    .help("write `fem(n = …)` or `fv(n = …)`"),
+                );
+                return;
+            }
+        };
+        let cells = method
+            .arguments
+            .iter()
+            .find(|a| a.name.as_ref().is_some_and(|name| name.text == "n"));
+        let Some(cells) = cells else {
+            self.report(
+                Diagnostic::error(Code::BadArguments, format!("how many cells has `{name}`?"))
+                    .label(method.method.span, "no `n` given")
+                    .help(format!("write `{}(n = 24)`", method.method.text)),
+            );
+            return;
+        };
+        let Some(count) = self.structural_integer(id, &cells.value) else {
+            return;
+        };
+        let Some(cells) = usize::try_from(count)
+            .ok()
+            .filter(|&n| (2..=10_000_000).contains(&n))
+        else {
+            self.report(
+                Diagnostic::error(
+                    Code::BadArguments,
+                    format!("`{name}` cannot have {count} cells"),
+                )
+                .label(cells.value.span, "at least 2"),
+            );
+            return;
+        };
+        let domain = Domain {
+            instance: id,
+            name,
+            coordinate: &domain.coordinate.text,
+            from: &domain.range.from,
+            to: &domain.range.to,
+            cells,
+            averaged,
+            span,
+            mesh: None,
+        };
+        self.domains.push(domain);
+        self.instances[id]
+            .members
+            .insert(name, Member::Domain(self.domains.len() - 1));
+    }
+
+    /// The domain of a field and whether its values lie between the nodes: those of a flux, whose binding has `pder`.
+    fn field(&mut self, id: InstanceId, declarator: &'a Declarator) -> Option<Field> {
+        let name = &declarator.name;
+        let Some(domain) = &declarator.domain else {
+            self.report(
+                Diagnostic::error(
+                    Code::FieldUse,
+                    format!("on which domain is the field `{}`?", name.text),
+                )
+                .label(name.span, "a field needs a domain")
+                .help(format!("write `field … {} on bar;`", name.text)),
+            );
+            return None;
+        };
+        match self.instances[id].members.get(domain.text.as_str()) {
+            Some(Member::Domain(domain)) => {
+                let flux = declarator
+                    .binding
+                    .as_ref()
+                    .is_some_and(|binding| calls(binding, "pder"));
+                Some(Field {
+                    domain: *domain,
+                    flux,
+                    traces: None,
+                })
+            }
+            _ => {
+                self.report(
+                    Diagnostic::error(
+                        Code::UnknownName,
+                        format!("no domain is called `{}` here", domain.text),
+                    )
+                    .label(domain.span, "not known")
+                    .help("declare it: `domain bar(x in 0 .. len);`"),
+                );
+                None
+            }
+        }
+    }
+
+    fn clocked(&mut self, id: InstanceId, item: &Collected<'a>, clocked: &'a ast::Clocked) {
+        let name = clocked.name.text.as_str();
+        if self.instances[id].clock.is_some() {
+            self.report(
+                Diagnostic::error(Code::ClockBorder, "a clocked part inside a clocked part")
+                    .label(clocked.name.span, "move it beside the other"),
+            );
+            return;
+        }
+        let origin = self.origin(id, clocked.name.span);
+        let nothing = self.flat.exprs.constant(0.0);
+        let path = self.path(id).child(name);
+        let clock = self.flat.clocks.push(flat::Clock {
+            name: path.as_str().to_owned(),
+            period: nothing,
+            delay: nothing,
+            phase: nothing,
+            origin,
+        });
+        let part = self.instances.len();
+        self.instances.push(Instance {
+            path,
+            file: item.file,
+            class: self.instances[id].class,
+            parent: Some(id),
+            outer: Some(id),
+            clock: Some(clock),
+            members: std::collections::BTreeMap::new(),
+            elements: Vec::new(),
+            span: clocked.name.span,
+        });
+        self.instances[id]
+            .members
+            .insert(name, Member::Instance(part));
+        let modifiers = self.modifiers_for(name, &item.modifiers);
+        let collected: Vec<Collected<'a>> = clocked
+            .elements
+            .iter()
+            .map(|element| Collected {
+                element,
+                file: item.file,
+                modifiers: modifiers.clone(),
+            })
+            .collect();
+        self.members(part, &collected);
+    }
+
+    /// The dimension and printed unit of a declared type; `Real` takes those of a literal it is bound to.
+    fn quantity(
+        &mut self,
+        file: FileIndex,
+        kind: TypeName<'a>,
+        binding: Option<&'a Expr>,
+    ) -> (Dim, Quantity) {
+        let written = binding
+            .and_then(literal_unit)
+            .and_then(|unit| NamedUnit::parse(&unit.text).ok());
+        let (dim, unit) = match kind {
+            TypeName::Integer | TypeName::Boolean => return (Dim::NUMBER, Quantity::number()),
+            TypeName::Real => match &written {
+                Some(unit) => (Dim::known(unit.unit().dimension), None),
+                None => (Dim::unknown(self.dimensions.fresh()), None),
+            },
+            TypeName::Quantity(file_of_type, item) => {
+                let unit = self.type_unit(file_of_type, item, 0);
+                let dim = unit
+                    .as_ref()
+                    .map_or(Dim::NUMBER, |unit| Dim::known(unit.unit().dimension));
+                (dim, unit)
+            }
+        };
+        let _ = file;
+        let same = |unit: &NamedUnit| dim.as_known() == Some(unit.unit().dimension);
+        let quantity = match (written.filter(same), unit) {
+            (Some(unit), _) | (None, Some(unit)) => Quantity {
+                dimension: unit.unit().dimension,
+                unit,
+            },
+            (None, None) => Quantity::number(),
+        };
+        (dim, quantity)
+    }
+
+    fn type_unit(
+        &mut self,
+        file: FileIndex,
+        item: &'a ast::TypeItem,
+        depth: usize,
+    ) -> Option<NamedUnit> {
+        if let Some(unit) = &item.unit {
+            return match NamedUnit::parse(&unit.text) {
+                Ok(unit) => Some(unit),
+                Err(error) => {
+                    self.bad_unit(unit, &error);
+                    None
+                }
+            };
+        }
+        if depth > 20 {
+            return None;
+        }
+        match self.names.quantity(file, &item.base) {
+            Some(TypeName::Quantity(file, base)) => self.type_unit(file, base, depth + 1),
+            Some(TypeName::Real | TypeName::Integer | TypeName::Boolean) => None,
+            None => {
+                let diagnostic = self.names.unknown(file, &item.base);
+                self.report(diagnostic);
+                None
+            }
+        }
+    }
+
+    fn prior(&mut self, prior: &'a ast::Prior) -> Option<hyde_ir::Prior> {
+        if prior.percent {
+            return Some(hyde_ir::Prior::Relative(prior.value / 100.0));
+        }
+        let scale = match &prior.unit {
+            None => 1.0,
+            Some(unit) => match NamedUnit::parse(&unit.text) {
+                Ok(unit) => unit.unit().difference_to_si(1.0),
+                Err(error) => {
+                    self.bad_unit(unit, &error);
+                    return None;
+                }
+            },
+        };
+        Some(hyde_ir::Prior::Absolute(prior.value * scale))
+    }
+
+    /// The value of a name: the outermost modification, else the declaration.
+    fn binding(
+        &mut self,
+        id: InstanceId,
+        declarator: &'a Declarator,
+        modifiers: &[Modifier<'a>],
+    ) -> Option<Binding<'a>> {
+        let modified = modifiers
+            .iter()
+            .find(|modifier| modifier.target.is_empty() && modifier.change.value.is_some());
+        match modified {
+            Some(modifier) => {
+                let expr = modifier.change.value.as_ref()?;
+                Some(Binding {
+                    expr,
+                    scope: modifier.scope,
+                    element: modifier.element,
+                    span: modifier.change.target.span,
+                })
+            }
+            None => {
+                let expr = declarator.binding.as_ref()?;
+                Some(Binding {
+                    expr,
+                    scope: id,
+                    element: None,
+                    span: declarator.name.span,
+                })
+            }
+        }
+    }
+
+    /// `start` or `fixed` of a variable: the outermost modification, else the declaration.
+    fn attribute(
+        &mut self,
+        id: InstanceId,
+        declarator: &'a Declarator,
+        modifiers: &[Modifier<'a>],
+        word: &str,
+    ) -> Option<Binding<'a>> {
+        let modified = modifiers
+            .iter()
+            .find(|modifier| modifier.target == [word] && modifier.change.value.is_some());
+        if let Some(modifier) = modified {
+            self.modifications[modifier.number].2 = true;
+            let expr = modifier.change.value.as_ref()?;
+            return Some(Binding {
+                expr,
+                scope: modifier.scope,
+                element: modifier.element,
+                span: expr.span,
+            });
+        }
+        let change = declarator
+            .changes
+            .iter()
+            .find(|change| change.target.as_word() == Some(word))?;
+        let expr = change.value.as_ref()?;
+        Some(Binding {
+            expr,
+            scope: id,
+            element: None,
+            span: expr.span,
+        })
+    }
+
+    fn check_attributes(&mut self, declarator: &'a Declarator, modifiers: &[Modifier<'a>]) {
+        for modifier in modifiers {
+            if modifier.target.is_empty()
+                || matches!(modifier.target.as_slice(), ["start" | "fixed"])
+            {
+                self.modifications[modifier.number].2 = true;
+            }
+        }
+        for change in &declarator.changes {
+            if !matches!(change.target.as_word(), Some("start" | "fixed")) {
+                self.report(
+                    Diagnostic::error(
+                        Code::UnknownModification,
+                        format!("a variable has no attribute `{}`", change.target.dotted()),
+                    )
+                    .label(change.target.span, "changes nothing")
+                    .help("attributes are `start` and `fixed`"),
+                );
+            }
+        }
+    }
+
+    /// The modifications of `name`, with it taken off their targets.
+    fn modifiers_for(&mut self, name: &str, modifiers: &[Modifier<'a>]) -> Vec<Modifier<'a>> {
+        let mut found = Vec::new();
+        for modifier in modifiers
+            .iter()
+            .filter(|modifier| modifier.target.first() == Some(&name))
+        {
+            let mut inner = modifier.clone();
+            inner.target.remove(0);
+            if inner.target.is_empty() {
+                self.modifications[inner.number].2 = true;
+            }
+            found.push(inner);
+        }
+        found
+    }
+
+    /// Nested changes as a list of single ones.
+    fn modifiers_of(
+        &mut self,
+        changes: &'a [Change],
+        scope: InstanceId,
+        out: &mut Vec<Modifier<'a>>,
+    ) {
+        self.modifiers_below(changes, scope, &[], out);
+    }
+
+    fn modifiers_below(
+        &mut self,
+        changes: &'a [Change],
+        scope: InstanceId,
+        above: &[&'a str],
+        out: &mut Vec<Modifier<'a>>,
+    ) {
+        for change in changes {
+            if change.redeclare.is_some() {
+                self.not_yet("redeclaration", change.target.span);
+                continue;
+            }
+            let mut target = above.to_vec();
+            target.extend(
+                change
+                    .target
+                    .parts
+                    .iter()
+                    .map(|part| part.name.text.as_str()),
+            );
+            self.modifiers_below(&change.changes, scope, &target, out);
+            if change.value.is_some() || change.prior.is_some() || change.source.is_some() {
+                let number = self.modifications.len();
+                self.modifications
+                    .push((change.target.span, target.join("."), false));
+                out.push(Modifier {
+                    target,
+                    change,
+                    scope,
+                    element: None,
+                    number,
+                });
+            }
+        }
+    }
+
+    fn report_unused_modifications(&mut self) {
+        let unused: Vec<(Span, String)> = self
+            .modifications
+            .iter()
+            .filter(|(.., used)| !used)
+            .map(|(span, name, _)| (*span, name.clone()))
+            .collect();
+        for (span, name) in unused {
+            let known: Vec<&str> = self
+                .instances
+                .iter()
+                .flat_map(|instance| instance.members.keys().copied())
+                .collect();
+            let last = name.rsplit('.').next().unwrap_or(&name);
+            let diagnostic = Diagnostic::error(
+                Code::UnknownModification,
+                format!("there is no `{name}` to modify"),
+            )
+            .label(span, "changes nothing");
+            let near = nearest(last, known.into_iter()).filter(|near| *near != last);
+            self.report(match near {
+                Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+                None => diagnostic,
+            });
+        }
+    }
+
+    fn free_name(&mut self, id: InstanceId, declarator: &'a Declarator) -> bool {
+        let name = declarator.name.text.as_str();
+        if self.instances[id].members.contains_key(name) {
+            self.report(
+                Diagnostic::error(Code::Duplicate, format!("`{name}` is declared twice"))
+                    .label(declarator.name.span, "declared again here")
+                    .help("rename one of the two; a base may have declared it"),
+            );
+            return false;
+        }
+        true
+    }
+
+    /// The length that dimensions after the type or the name give.
+    fn length(
+        &mut self,
+        id: InstanceId,
+        of_type: &'a [Expr],
+        of_name: &'a [Expr],
+    ) -> Option<usize> {
+        let dims: Vec<&'a Expr> = of_name.iter().chain(of_type).collect();
+        match dims.as_slice() {
+            [] => None,
+            [dim] => {
+                let length = self.structural_integer(id, dim)?;
+                if !(0..=100_000_000).contains(&length) {
+                    self.report(
+                        Diagnostic::error(
+                            Code::BadShape,
+                            format!("an array cannot have {length} elements"),
+                        )
+                        .label(dim.span, "the number of elements"),
+                    );
+                    return None;
+                }
+                usize::try_from(length).ok()
+            }
+            [_, second, ..] => {
+                self.report(
+                    Diagnostic::error(Code::NotYet, "arrays have one dimension in this version")
+                        .label(second.span, "a second dimension"),
+                );
+                None
+            }
+        }
+    }
+
+    fn depth(&self, id: InstanceId) -> usize {
+        std::iter::successors(Some(id), |&id| self.instances[id].parent).count()
+    }
+
+    /// Refuses what is parsed but not compiled in this version.
+    pub(crate) fn not_yet(&mut self, what: &str, span: Span) {
+        self.report(
+            Diagnostic::error(
+                Code::NotYet,
+                format!("{what} is parsed but not compiled in this version"),
+            )
+            .label(span, "not compiled yet"),
+        );
+    }
+}
+
+/// Whether a name declared with a word that is both a type and a model means a component: it is used with a dot or
+/// modified as one.
+fn means_component(
+    declaration: &Declaration,
+    declarator: &Declarator,
+    collected: &[Collected<'_>],
+) -> bool {
+    let quantity = [
+        Prefix::Input,
+        Prefix::Output,
+        Prefix::Flow,
+        Prefix::Site,
+        Prefix::Field,
+    ];
+    if declarator.binding.is_some()
+        || declaration
+            .prefixes
+            .iter()
+            .any(|prefix| quantity.contains(prefix))
+    {
+        return false;
+    }
+    if !declarator.changes.is_empty() {
+        return declarator
+            .changes
+            .iter()
+            .any(|change| !matches!(change.target.as_word(), Some("start" | "fixed")));
+    }
+    collected
+        .iter()
+        .any(|item| element_uses_member(item.element, &declarator.name.text))
+}
+
+fn element_uses_member(element: &Element, name: &str) -> bool {
+    let expr = |e: &Expr| uses_member(e, name);
+    match element {
+        Element::Equation(equation) | Element::InitialEquation(equation) => {
+            equation_uses_member(equation, name)
+        }
+        Element::Declaration(declaration) => declaration.declarators.iter().any(|declarator| {
+            declarator.binding.as_ref().is_some_and(expr)
+                || declarator
+                    .changes
+                    .iter()
+                    .any(|change| change.value.as_ref().is_some_and(expr))
+        }),
+        Element::Clocked(clocked) => clocked
+            .elements
+            .iter()
+            .any(|inner| element_uses_member(inner, name)),
+        Element::Modes(modes) => modes.modes.iter().any(|mode| {
+            mode.equations
+                .iter()
+                .any(|equation| equation_uses_member(equation, name))
+                || mode.exits.iter().any(|exit| expr(&exit.guard))
+        }),
+        _ => false,
+    }
+}
+
+fn equation_uses_member(equation: &ast::Equation, name: &str) -> bool {
+    let inside =
+        |list: &[ast::Equation]| list.iter().any(|inner| equation_uses_member(inner, name));
+    match &equation.kind {
+        EquationKind::Connect(sides) => sides.iter().any(|side| starts_with_member(side, name)),
+        EquationKind::Equality { lhs, rhs, .. } => uses_member(lhs, name) || uses_member(rhs, name),
+        EquationKind::For { equations, .. } => inside(equations),
+        EquationKind::If {
+            branches,
+            otherwise,
+        } => branches.iter().any(|(_, list)| inside(list)) || inside(otherwise),
+        EquationKind::When(branches) => branches.iter().any(|(_, list)| inside(list)),
+        EquationKind::Assert(condition, _) => uses_member(condition, name),
+        EquationKind::Reinit(state, value) => {
+            starts_with_member(state, name) || uses_member(value, name)
+        }
+    }
+}
+
+fn uses_member(expr: &Expr, name: &str) -> bool {
+    match &expr.kind {
+        ExprKind::Reference(reference) => starts_with_member(reference, name),
+        ExprKind::Call(function, arguments) => {
+            starts_with_member(function, name)
+                || arguments
+                    .iter()
+                    .any(|argument| uses_member(&argument.value, name))
+        }
+        ExprKind::Unary(_, inner) => uses_member(inner, name),
+        ExprKind::Binary(_, a, b) => uses_member(a, name) || uses_member(b, name),
+        ExprKind::If(branches, otherwise) => {
+            branches
+                .iter()
+                .any(|(c, v)| uses_member(c, name) || uses_member(v, name))
+                || uses_member(otherwise, name)
+        }
+        ExprKind::Array(items, _) => items.iter().any(|item| uses_member(item, name)),
+        ExprKind::Number(..) | ExprKind::String(_) | ExprKind::Boolean(_) => false,
+    }
+}
+
+fn starts_with_member(reference: &Reference, name: &str) -> bool {
+    reference.parts.len() > 1 && reference.parts[0].name.text == name
+}
+
+/// Whether an expression calls a function.
+pub(crate) fn calls(expr: &Expr, function: &str) -> bool {
+    match &expr.kind {
+        ExprKind::Call(name, arguments) => {
+            name.as_word() == Some(function)
+                || arguments
+                    .iter()
+                    .any(|argument| calls(&argument.value, function))
+        }
+        ExprKind::Unary(_, inner) => calls(inner, function),
+        ExprKind::Binary(_, a, b) => calls(a, function) || calls(b, function),
+        ExprKind::If(branches, otherwise) => {
+            branches
+                .iter()
+                .any(|(c, v)| calls(c, function) || calls(v, function))
+                || calls(otherwise, function)
+        }
+        ExprKind::Array(items, _) => items.iter().any(|item| calls(item, function)),
+        ExprKind::Number(..)
+        | ExprKind::String(_)
+        | ExprKind::Boolean(_)
+        | ExprKind::Reference(_) => false,
+    }
+}
+
+/// The names that the `when` clauses of an element assign.
+fn assigned_in_when(element: &Element) -> Vec<&str> {
+    let Element::Equation(equation) = element else {
+        return Vec::new();
+    };
+    let EquationKind::When(branches) = &equation.kind else {
+        return Vec::new();
+    };
+    let equations = branches.iter().flat_map(|(_, list)| list);
+    let assigned = equations.filter_map(|equation| match &equation.kind {
+        EquationKind::Equality {
+            lhs:
+                Expr {
+                    kind: ExprKind::Reference(name),
+                    ..
+                },
+            ..
+        } => name.as_word(),
+        _ => None,
+    });
+    assigned.collect()
+}
+
+/// The unit of a literal, possibly negative.
+fn literal_unit(expr: &Expr) -> Option<&ast::UnitText> {
+    match &expr.kind {
+        ExprKind::Number(_, unit) => unit.as_ref(),
+        ExprKind::Unary(_, inner) => literal_unit(inner),
+        ExprKind::Array(items, unit) => unit
+            .as_ref()
+            .or_else(|| items.first().and_then(literal_unit)),
+        _ => None,
+    }
+}

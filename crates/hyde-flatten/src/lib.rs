@@ -1,0 +1,74 @@
+//! [`flatten`]: from trees to a [`FlatModel`]. Names become ids, components their equations.
+//!
+//! In order:
+//! 1. the classes and types of every file are indexed ([`names`]);
+//! 2. the model is instantiated: a tree of instances with their variables, parameters and parts, every modification
+//!    laid where it belongs ([`instantiate`]);
+//! 3. bindings, equations, modes, events and clocked parts are lowered to IR in the scope of their instance
+//!    ([`lower`], [`equation`], [`modes`], [`field`]), each expression with its dimension ([`dimension`]);
+//! 4. connection sets become equations ([`connect`]);
+//! 5. the experiment drives the free inputs and names what is measured ([`experiment`]);
+//! 6. what is known of dimensions is solved for the rest, and parameters are put in order ([`finish`]).
+//!
+//! Arrays and fields are not unrolled: a `for` equation or a field equation is one equation over a range.
+
+mod bind;
+mod call;
+mod connect;
+mod dimension;
+mod equation;
+mod experiment;
+mod field;
+mod finish;
+mod instance;
+mod instantiate;
+mod lower;
+mod model;
+mod modes;
+mod names;
+mod structural;
+
+use hyde_diag::{Diagnostics, FileId, Sources};
+use hyde_ir::FlatModel;
+use hyde_syntax::ast;
+use hyde_units::NamedUnit;
+use std::collections::BTreeMap;
+
+/// The header of a record: its columns with their units, and whether the first one is time.
+#[derive(Clone, Debug, Default)]
+pub struct Header {
+    /// Name and unit of each column; no unit where the file gives none.
+    pub columns: Vec<(String, Option<NamedUnit>)>,
+}
+
+/// What is to be flattened.
+pub struct Input<'a> {
+    /// The source texts, for messages.
+    pub sources: &'a Sources,
+    /// Every file that may be named, the user's file first.
+    pub files: &'a [(FileId, ast::File)],
+    /// The model, in the first file.
+    pub model: &'a str,
+    /// The experiment, in the first file.
+    pub experiment: Option<&'a str>,
+    /// Values set from outside, by full name of the parameter, SI.
+    pub settings: &'a BTreeMap<String, f64>,
+    /// The headers of the experiment's records by their name there.
+    pub records: &'a BTreeMap<String, Header>,
+}
+
+/// Flattens a model with its experiment.
+///
+/// `None` if there were errors; all of them are in `diagnostics`.
+pub fn flatten(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<FlatModel> {
+    let before = diagnostics.error_count();
+    let mut model = model::Model::new(input, diagnostics);
+    let root = model.instantiate_root()?;
+    model.lower_bindings();
+    model.lower_equations();
+    model.connect();
+    model.experiment(root);
+    model.finish();
+    let flat = model.flat;
+    (diagnostics.error_count() == before).then_some(flat)
+}

@@ -1,0 +1,255 @@
+//! [`Model`]: the flat model while it is being built, with the tree of instances beside it.
+
+use crate::Input;
+use crate::dimension::{Demand, Dim, Dimensions};
+use crate::instance::{
+    Domain, Instance, InstanceId, Member, ParameterNotes, Scope, Typed, VariableNotes,
+};
+use crate::names::{self, Names};
+use hyde_diag::{Code, Diagnostic, Diagnostics, InstancePath, MadeBy, Origin, Span};
+use hyde_ir::{
+    ClockId, ColumnId, ExprId, FlatModel, ParamId, Quantity, VarId, Variable, VariableKind,
+};
+use hyde_syntax::ast::Reference;
+use hyde_units::Dimension;
+use std::collections::BTreeMap;
+
+/// Everything flatten knows so far.
+pub(crate) struct Model<'a, 'd> {
+    pub(crate) input: &'a Input<'a>,
+    pub(crate) names: Names<'a>,
+    pub(crate) flat: FlatModel,
+    pub(crate) instances: Vec<Instance<'a>>,
+    /// Beside `flat.variables`.
+    pub(crate) variables: Vec<VariableNotes<'a>>,
+    /// Beside `flat.parameters`.
+    pub(crate) parameters: Vec<ParameterNotes<'a>>,
+    pub(crate) domains: Vec<Domain<'a>>,
+    pub(crate) dimensions: Dimensions,
+    /// Modifications with whether anything used them.
+    pub(crate) modifications: Vec<(Span, String, bool)>,
+    /// Connected connectors and signals, in the order written.
+    pub(crate) connections: Vec<crate::connect::Connection>,
+    /// Held variables by clock and source.
+    pub(crate) held: BTreeMap<(ClockId, VarId), VarId>,
+    /// Column variables: linear and held.
+    pub(crate) column_variables: BTreeMap<ColumnId, (VarId, VarId)>,
+    /// Parameters that stand for the first value of a column.
+    pub(crate) column_firsts: BTreeMap<(String, String), ParamId>,
+    /// A subscript met that keeps its `for` equation from being one equation over a range.
+    pub(crate) needs_unrolling: bool,
+    pub(crate) diagnostics: &'d mut Diagnostics,
+}
+
+impl<'a, 'd> Model<'a, 'd> {
+    pub(crate) fn new(input: &'a Input<'a>, diagnostics: &'d mut Diagnostics) -> Self {
+        Self {
+            input,
+            names: Names::new(input),
+            flat: FlatModel::default(),
+            instances: Vec::new(),
+            variables: Vec::new(),
+            parameters: Vec::new(),
+            domains: Vec::new(),
+            dimensions: Dimensions::default(),
+            modifications: Vec::new(),
+            connections: Vec::new(),
+            held: BTreeMap::new(),
+            column_variables: BTreeMap::new(),
+            column_firsts: BTreeMap::new(),
+            needs_unrolling: false,
+            diagnostics,
+        }
+    }
+
+    pub(crate) fn report(&mut self, diagnostic: Diagnostic) {
+        self.diagnostics.push(diagnostic);
+    }
+
+    pub(crate) fn path(&self, instance: InstanceId) -> InstancePath {
+        self.instances[instance].path.clone()
+    }
+
+    pub(crate) fn origin(&self, instance: InstanceId, span: Span) -> Origin {
+        Origin::source(span, &self.instances[instance].path)
+    }
+
+    pub(crate) fn dim(&self, var: VarId) -> Dim {
+        self.variables[hyde_ir::Id::index(var)].dim.clone()
+    }
+
+    pub(crate) fn notes(&self, var: VarId) -> &VariableNotes<'a> {
+        &self.variables[hyde_ir::Id::index(var)]
+    }
+
+    /// Demands that two dimensions agree, and reports it if they cannot.
+    pub(crate) fn agree(&mut self, a: &Typed, b: &Typed, what: &'static str, instance: InstanceId) {
+        let demand = Demand {
+            what,
+            spans: (a.span, b.span),
+            instance,
+            bare: (a.bare, b.bare),
+        };
+        let Self {
+            dimensions,
+            instances,
+            parameters,
+            flat,
+            diagnostics,
+            ..
+        } = self;
+        let found = dimensions.agree(&a.dim, &b.dim, demand, &|id| {
+            in_scope(instances, parameters, flat, id)
+        });
+        if let Some(diagnostic) = found {
+            diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Solves the dimensions that are still unknown, and reports what disagrees.
+    pub(crate) fn solve_dimensions(&mut self) {
+        let Self {
+            dimensions,
+            instances,
+            parameters,
+            flat,
+            diagnostics,
+            ..
+        } = self;
+        for diagnostic in dimensions.solve(&|id| in_scope(instances, parameters, flat, id)) {
+            diagnostics.push(diagnostic);
+        }
+    }
+
+    /// Adds a variable that the compiler makes.
+    pub(crate) fn add_variable(
+        &mut self,
+        instance: InstanceId,
+        name: String,
+        kind: VariableKind,
+        dim: Dim,
+        span: Span,
+        made_by: MadeBy,
+    ) -> VarId {
+        self.variables.push(VariableNotes {
+            instance,
+            dim,
+            binding: None,
+            start: None,
+            field: None,
+        });
+        let origin = self.origin(instance, span).made_by(made_by);
+        self.flat.variables.push(Variable {
+            name,
+            len: None,
+            first: 1,
+            kind,
+            quantity: Quantity::number(),
+            start: Vec::new(),
+            fixed: false,
+            flow: false,
+            boolean: false,
+            input: false,
+            trace: None,
+            origin,
+        })
+    }
+
+    /// A placeholder for what could not be lowered; its mistake is already reported.
+    pub(crate) fn poison(&mut self, span: Span) -> Typed {
+        let id = self.flat.exprs.constant(0.0);
+        Typed {
+            id,
+            dim: Dim::Any,
+            truth: false,
+            bare: false,
+            two_pi: false,
+            span,
+        }
+    }
+
+    pub(crate) fn typed(&self, id: ExprId, dim: Dim, span: Span) -> Typed {
+        Typed {
+            id,
+            dim,
+            truth: false,
+            bare: false,
+            two_pi: false,
+            span,
+        }
+    }
+
+    /// "nothing is called that", with the nearest name there is.
+    pub(crate) fn unknown_name(
+        &mut self,
+        scope: &Scope<'a>,
+        at: InstanceId,
+        word: &str,
+        whole: &Reference,
+    ) {
+        let mut known: Vec<&str> = self.instances[at].members.keys().copied().collect();
+        let mut outer = self.instances[at].outer;
+        while let Some(instance) = outer {
+            known.extend(self.instances[instance].members.keys().copied());
+            outer = self.instances[instance].outer;
+        }
+        if at == scope.instance {
+            known.extend(scope.locals.iter().map(|(name, _)| *name));
+            known.extend(scope.counters.iter().map(|(name, _)| *name));
+            known.extend(["time", "pi"]);
+        }
+        let instance = &self.instances[at];
+        let place = match (instance.path.as_str(), instance.class.name.text.as_str()) {
+            ("", class) => format!("model `{class}`"),
+            (path, class) => format!("`{path}` ({class})"),
+        };
+        let diagnostic = Diagnostic::error(
+            Code::UnknownName,
+            format!("nothing is called `{word}` in {place}"),
+        )
+        .label(whole.span, "not known");
+        let diagnostic = match names::nearest(word, known.iter().copied()) {
+            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+            None if known.is_empty() => diagnostic,
+            None => diagnostic.help(format!("known here: {}", listed(&known))),
+        };
+        self.report(diagnostic);
+    }
+}
+
+/// The path of an instance and its parameters with a known dimension, those of its parent after its own.
+fn in_scope(
+    instances: &[Instance<'_>],
+    parameters: &[ParameterNotes<'_>],
+    flat: &FlatModel,
+    id: InstanceId,
+) -> (InstancePath, Vec<(String, Dimension)>) {
+    let mut found = Vec::new();
+    let chain = [Some(id), instances[id].parent];
+    for instance in chain.into_iter().flatten() {
+        for member in instances[instance].members.values() {
+            if let Member::Parameter(param) = member {
+                if let Some(dimension) = parameters[hyde_ir::Id::index(*param)].dim.as_known() {
+                    let name = &flat.parameters[*param].name;
+                    let short = name.rsplit('.').next().unwrap_or(name);
+                    found.push((short.to_owned(), dimension));
+                }
+            }
+        }
+    }
+    (instances[id].path.clone(), found)
+}
+
+/// A few names for a message.
+pub(crate) fn listed(names: &[&str]) -> String {
+    let mut sorted: Vec<&str> = names.to_vec();
+    sorted.sort_unstable();
+    sorted.dedup();
+    let shown: Vec<String> = sorted
+        .iter()
+        .take(8)
+        .map(|name| format!("`{name}`"))
+        .collect();
+    let more = if sorted.len() > 8 { ", …" } else { "" };
+    format!("{}{more}", shown.join(", "))
+}

@@ -1,0 +1,182 @@
+//! What the names of classes and types mean in each file: its own, its imports, and packages by their full name.
+
+use crate::Input;
+use hyde_diag::{Code, Diagnostic, FileId};
+use hyde_syntax::ast::{self, Class, Item, Reference, TypeItem};
+
+/// A file by its number in the input.
+pub(crate) type FileIndex = usize;
+
+/// What a type name means.
+#[derive(Clone, Copy)]
+pub(crate) enum TypeName<'a> {
+    Real,
+    Integer,
+    Boolean,
+    Quantity(FileIndex, &'a TypeItem),
+}
+
+/// The classes and types of all files.
+#[derive(Clone, Copy)]
+pub(crate) struct Names<'a> {
+    files: &'a [(FileId, ast::File)],
+}
+
+impl<'a> Names<'a> {
+    pub(crate) fn new(input: &Input<'a>) -> Self {
+        Self { files: input.files }
+    }
+
+    /// The class a name means in a file.
+    pub(crate) fn class(self, file: FileIndex, name: &Reference) -> Option<(FileIndex, &'a Class)> {
+        self.look_up(file, name, |item, word| match item {
+            Item::Class(class) if class.name.text == word => Some(class),
+            Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
+        })
+    }
+
+    /// The type a name means in a file.
+    pub(crate) fn quantity(self, file: FileIndex, name: &Reference) -> Option<TypeName<'a>> {
+        match name.as_word() {
+            Some("Real") => return Some(TypeName::Real),
+            Some("Integer") => return Some(TypeName::Integer),
+            Some("Boolean") => return Some(TypeName::Boolean),
+            Some(_) | None => {}
+        }
+        let (file, item) = self.look_up(file, name, |item, word| match item {
+            Item::Type(item) if item.name.text == word => Some(item),
+            Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
+        })?;
+        Some(TypeName::Quantity(file, item))
+    }
+
+    /// A class of the first file, by its name.
+    pub(crate) fn own_class(self, name: &str) -> Option<&'a Class> {
+        self.own_items().find_map(|item| match item {
+            Item::Class(class) if class.name.text == name => Some(class),
+            Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
+        })
+    }
+
+    /// An experiment of the first file, by its name.
+    pub(crate) fn own_experiment(self, name: &str) -> Option<&'a ast::Experiment> {
+        self.own_items().find_map(|item| match item {
+            Item::Experiment(experiment) if experiment.name.text == name => Some(experiment),
+            Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
+        })
+    }
+
+    /// "no such type or model", with the nearest names that there are.
+    pub(crate) fn unknown(self, file: FileIndex, name: &Reference) -> Diagnostic {
+        let text = name.dotted();
+        let mut known: Vec<&str> = Vec::new();
+        for (index, (_, tree)) in self.files.iter().enumerate() {
+            if index == file || self.imports_everything(file, index) {
+                known.extend(tree.items.iter().filter_map(declared_name));
+            }
+        }
+        known.extend(["Real", "Integer", "Boolean"]);
+        let diagnostic = Diagnostic::error(
+            Code::UnknownType,
+            format!("no type or model is called `{text}` here"),
+        )
+        .label(name.span, "not known in this file");
+        match nearest(&text, known.iter().copied()) {
+            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+            None => diagnostic
+                .help("declare it, or import the package it is in: `import Rotational.*;`"),
+        }
+    }
+
+    fn own_items(self) -> impl Iterator<Item = &'a Item> {
+        self.files
+            .first()
+            .into_iter()
+            .flat_map(|(_, file)| &file.items)
+    }
+
+    fn look_up<T: ?Sized>(
+        self,
+        file: FileIndex,
+        name: &Reference,
+        pick: impl Fn(&'a Item, &str) -> Option<&'a T>,
+    ) -> Option<(FileIndex, &'a T)> {
+        let in_file = |index: FileIndex, word: &str| {
+            let tree = &self.files.get(index)?.1;
+            tree.items
+                .iter()
+                .find_map(|item| pick(item, word))
+                .map(|found| (index, found))
+        };
+        let (last, package) = name.parts.split_last()?;
+        let word = last.name.text.as_str();
+        if package.is_empty() {
+            if let Some(found) = in_file(file, word) {
+                return Some(found);
+            }
+            let imports = &self.files.get(file)?.1.imports;
+            let exact = imports
+                .iter()
+                .filter(|import| !import.everything)
+                .find_map(|import| {
+                    let (last, package) = import.path.parts.split_last()?;
+                    if last.name.text != word {
+                        return None;
+                    }
+                    in_file(self.package(&dotted(package))?, word)
+                });
+            return exact.or_else(|| {
+                imports
+                    .iter()
+                    .filter(|import| import.everything)
+                    .find_map(|import| in_file(self.package(&import.path.dotted())?, word))
+            });
+        }
+        in_file(self.package(&dotted(package))?, word)
+    }
+
+    fn package(self, name: &str) -> Option<FileIndex> {
+        self.files.iter().position(|(_, tree)| {
+            tree.package
+                .as_ref()
+                .is_some_and(|(path, _)| path.dotted() == name)
+        })
+    }
+
+    fn imports_everything(self, file: FileIndex, other: FileIndex) -> bool {
+        let Some((_, tree)) = self.files.get(file) else {
+            return false;
+        };
+        tree.imports
+            .iter()
+            .any(|import| import.everything && self.package(&import.path.dotted()) == Some(other))
+    }
+}
+
+/// The known name nearest to a misspelt one, if one is near.
+pub(crate) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+    let word = name.rsplit('.').next().unwrap_or(name);
+    known
+        .map(|candidate| {
+            (
+                strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase()),
+                candidate,
+            )
+        })
+        .filter(|(distance, candidate)| *distance <= candidate.len().max(word.len()).div_ceil(3))
+        .min()
+        .map(|(_, candidate)| candidate)
+}
+
+fn dotted(parts: &[ast::Part]) -> String {
+    let words: Vec<&str> = parts.iter().map(|part| part.name.text.as_str()).collect();
+    words.join(".")
+}
+
+fn declared_name(item: &Item) -> Option<&str> {
+    match item {
+        Item::Class(class) => Some(&class.name.text),
+        Item::Type(item) => Some(&item.name.text),
+        Item::Experiment(_) | Item::Study(_) => None,
+    }
+}

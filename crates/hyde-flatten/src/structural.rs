@@ -1,0 +1,98 @@
+//! Values that decide the structure: numbers of cells, dimensions of arrays, subscripts, positions on a mesh.
+//!
+//! The parameters such a value uses become structural: a change of one of them compiles anew. Every other parameter
+//! stays plain.
+
+use crate::instance::{InstanceId, Lowering, Scope, Setting};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic};
+use hyde_ir::{Expr as Ir, ExprId, Id as _, ParamId};
+use hyde_syntax::ast::Expr;
+
+impl<'a> Model<'a, '_> {
+    /// The whole number an expression of parameters has.
+    pub(crate) fn structural_integer(
+        &mut self,
+        instance: InstanceId,
+        expr: &'a Expr,
+    ) -> Option<i64> {
+        self.structural_integer_in(&Scope::new(instance, Setting::Parameter), expr)
+    }
+
+    /// The same in a given scope.
+    pub(crate) fn structural_integer_in(
+        &mut self,
+        scope: &Scope<'a>,
+        expr: &'a Expr,
+    ) -> Option<i64> {
+        let value = self.structural_number(scope, expr)?;
+        if value.fract() != 0.0 || value.abs() > 1e15 {
+            self.report(
+                Diagnostic::error(Code::NotConstant, format!("{value} is no whole number"))
+                    .label(expr.span, "counts something"),
+            );
+            return None;
+        }
+        #[allow(
+            clippy::cast_possible_truncation,
+            reason = "checked to be whole and small"
+        )]
+        Some(value as i64)
+    }
+
+    /// The number an expression of parameters has, SI.
+    pub(crate) fn structural_number(&mut self, scope: &Scope<'a>, expr: &'a Expr) -> Option<f64> {
+        let errors = self.diagnostics.error_count();
+        let typed = self.lower(expr, &scope.with(Setting::Parameter));
+        if self.diagnostics.error_count() > errors {
+            return None;
+        }
+        let value = self.evaluate(typed.id);
+        if value.is_none() && self.diagnostics.error_count() == errors {
+            self.report(
+                Diagnostic::error(Code::NotConstant, "this must be known before the run")
+                    .label(expr.span, "is not made of numbers and parameters alone"),
+            );
+        }
+        value
+    }
+
+    /// The value of a lowered expression of parameters, which become structural.
+    pub(crate) fn evaluate(&mut self, id: ExprId) -> Option<f64> {
+        let leaves: Vec<Ir> = self
+            .flat
+            .exprs
+            .below(&[id])
+            .into_iter()
+            .map(|id| self.flat.exprs[id])
+            .collect();
+        let mut values = Vec::new();
+        for leaf in leaves {
+            if let Ir::Param(param, index) = leaf {
+                let element = usize::try_from(index.offset).unwrap_or(0);
+                values.push((leaf, self.parameter_value(param, element)?));
+            }
+        }
+        let leaf = |expr: Ir| {
+            values
+                .iter()
+                .find(|(known, _)| *known == expr)
+                .map(|(_, value)| *value)
+                .ok_or(())
+        };
+        self.flat.exprs.evaluate(id, leaf).ok()
+    }
+
+    fn parameter_value(&mut self, param: ParamId, element: usize) -> Option<f64> {
+        self.flat.parameters[param].structural = true;
+        if let Some(&value) = self.input.settings.get(&self.flat.parameters[param].name) {
+            return Some(value);
+        }
+        if self.parameters[param.index()].state != Lowering::Done {
+            self.lower_parameter(param);
+        }
+        let values = &self.flat.parameters[param].value;
+        let value = *values.get(element).or_else(|| values.first())?;
+        self.evaluate(value)
+    }
+}

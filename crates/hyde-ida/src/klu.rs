@@ -1,0 +1,159 @@
+//! LU factorization of a sparse matrix by KLU, with the symbolic analysis and the pivots kept.
+//!
+//! T. A. Davis and E. Palamadai Natarajan, Algorithm 907: KLU, ACM Trans. Math. Softw. 37 (2010), and the KLU user
+//! guide. SUNDIALS has an interface of its own to KLU; this one differs in that a restart of IDA keeps the analysis
+//! and the pivots, that a matrix whose pivots do not serve any more gets new ones at once, which matters when a mode of
+//! the model has changed, and that the unknown without a pivot is known.
+
+use std::ptr;
+
+use sundials_sys as sys;
+// Its build script finds the library; without a use of the crate the linker would not see it.
+use suitesparse_sys as _;
+
+use crate::{Error, Pattern, Singular};
+
+/// Below this reciprocal growth of the entries while factoring, the old pivots are given up: half of the digits of the
+/// solution may be lost then (user guide, `klu_rgrowth`).
+const SMALLEST_RECIPROCAL_GROWTH: f64 = 1e-8;
+
+/// A pattern's analysis and, after `factor`, a matrix's factors.
+#[derive(Debug)]
+pub(crate) struct KluFactors {
+    common: sys::klu_l_common,
+    symbolic: *mut sys::klu_l_symbolic,
+    numeric: *mut sys::klu_l_numeric,
+}
+
+/// How the pivots were found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pivots {
+    New,
+    Kept,
+}
+
+// SAFETY: the analysis and the factors are heap memory that only this value points to, and KLU keeps no state outside
+// them and `common`.
+unsafe impl Send for KluFactors {}
+
+impl KluFactors {
+    /// Analyses the pattern: block triangular form and an ordering that keeps the factors sparse.
+    pub(crate) fn new(pattern: &Pattern) -> Result<Self, Error> {
+        let mut common = std::mem::MaybeUninit::<sys::klu_l_common>::zeroed();
+        // SAFETY: `klu_l_defaults` fills all of the struct, for which all zero bits are a value: numbers and pointers.
+        let mut common = unsafe {
+            sys::klu_l_defaults(common.as_mut_ptr());
+            common.assume_init()
+        };
+        let (starts, rows) = indices(pattern);
+        // SAFETY: a `Pattern` is n columns with ascending rows inside the matrix, which KLU reads and does not write.
+        let symbolic =
+            unsafe { sys::klu_l_analyze(pattern.n() as i64, starts, rows, &raw mut common) };
+        if symbolic.is_null() {
+            return Err(Error::OutOfMemory);
+        }
+        Ok(Self {
+            common,
+            symbolic,
+            numeric: ptr::null_mut(),
+        })
+    }
+
+    /// Factors the matrix with these values; the pattern must be the one analysed.
+    pub(crate) fn factor(&mut self, pattern: &Pattern, values: &[f64]) -> Result<Pivots, Singular> {
+        if self.refactor(pattern, values) {
+            return Ok(Pivots::Kept);
+        }
+        self.free_numeric();
+        let (starts, rows) = indices(pattern);
+        // SAFETY: pattern and values belong together (checked by the caller) and are only read; `symbolic` is theirs.
+        self.numeric = unsafe {
+            sys::klu_l_factor(
+                starts,
+                rows,
+                values.as_ptr().cast_mut(),
+                self.symbolic,
+                &raw mut self.common,
+            )
+        };
+        if self.numeric.is_null() {
+            let unknown = usize::try_from(self.common.singular_col)
+                .unwrap_or(0)
+                .min(pattern.n() - 1);
+            return Err(Singular { unknown });
+        }
+        Ok(Pivots::New)
+    }
+
+    /// Replaces `b` by the solution; the last `factor` must have succeeded.
+    pub(crate) fn solve(&mut self, b: &mut [f64]) {
+        // SAFETY: there are factors, and `b` has as many entries as the matrix has rows (both checked by the caller);
+        // without factors KLU would do nothing.
+        unsafe {
+            let n = b.len() as i64;
+            sys::klu_l_solve(
+                self.symbolic,
+                self.numeric,
+                n,
+                1,
+                b.as_mut_ptr(),
+                &raw mut self.common,
+            );
+        }
+    }
+
+    /// An estimate of 1 over the condition number in the 1-norm.
+    pub(crate) fn reciprocal_condition(&mut self, pattern: &Pattern, values: &[f64]) -> f64 {
+        let (starts, _) = indices(pattern);
+        // SAFETY: as in `factor`; the values are those of the factors.
+        unsafe {
+            let values = values.as_ptr().cast_mut();
+            sys::klu_l_condest(
+                starts,
+                values,
+                self.symbolic,
+                self.numeric,
+                &raw mut self.common,
+            );
+        }
+        1.0 / self.common.condest
+    }
+
+    /// Factors with the pivots there are, and says whether they serve.
+    fn refactor(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
+        if self.numeric.is_null() {
+            return false;
+        }
+        let (starts, rows) = indices(pattern);
+        let values = values.as_ptr().cast_mut();
+        // SAFETY: as in `factor`; `numeric` holds factors of a matrix of this pattern.
+        unsafe {
+            let (symbolic, numeric, common) = (self.symbolic, self.numeric, &raw mut self.common);
+            sys::klu_l_refactor(starts, rows, values, symbolic, numeric, common) != 0
+                && sys::klu_l_rgrowth(starts, rows, values, symbolic, numeric, common) != 0
+        }
+        .then_some(self.common.rgrowth)
+        .is_some_and(|growth| growth >= SMALLEST_RECIPROCAL_GROWTH)
+    }
+
+    fn free_numeric(&mut self) {
+        // SAFETY: KLU accepts a null pointer and leaves one.
+        unsafe { sys::klu_l_free_numeric(&raw mut self.numeric, &raw mut self.common) };
+    }
+}
+
+impl Drop for KluFactors {
+    fn drop(&mut self) {
+        self.free_numeric();
+        // SAFETY: the analysis is not used after this.
+        unsafe { sys::klu_l_free_symbolic(&raw mut self.symbolic, &raw mut self.common) };
+    }
+}
+
+/// The pattern as KLU's parameters, which are not `const` but only read.
+fn indices(pattern: &Pattern) -> (*mut i64, *mut i64) {
+    (
+        pattern.column_starts().as_ptr().cast_mut(),
+        pattern.rows().as_ptr().cast_mut(),
+    )
+}

@@ -1,0 +1,161 @@
+//! The linear solver on its own, dense and sparse.
+
+use hyde_ida::{LinearMethod, Pattern, SparseSolver};
+
+const METHODS: [LinearMethod; 2] = [LinearMethod::Dense, LinearMethod::Klu];
+
+/// Numbers in -1 .. 1, the same each time (a linear congruential generator, Knuth's MMIX).
+struct Numbers(u64);
+
+impl Iterator for Numbers {
+    type Item = f64;
+
+    fn next(&mut self) -> Option<f64> {
+        self.0 = self
+            .0
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
+        Some((self.0 >> 11) as f64 / (1_u64 << 52) as f64 - 1.0)
+    }
+}
+
+/// A chain with a border: the diagonal, its neighbours, the first row and the last column.
+fn bordered_chain(n: usize) -> Pattern {
+    let present =
+        |row: usize, column: usize| row.abs_diff(column) <= 1 || row == 0 || column == n - 1;
+    let (mut starts, mut rows) = (vec![0], Vec::new());
+    for column in 0..n {
+        rows.extend(
+            (0..n)
+                .filter(|&row| present(row, column))
+                .map(|row| row as i64),
+        );
+        starts.push(rows.len() as i64);
+    }
+    Pattern::new(n, starts, rows).unwrap()
+}
+
+fn product(pattern: &Pattern, values: &[f64], x: &[f64]) -> Vec<f64> {
+    let mut b = vec![0.0; x.len()];
+    for (row, column, entry) in pattern.entries() {
+        b[row] += values[entry] * x[column];
+    }
+    b
+}
+
+#[test]
+fn solves_what_a_product_made() {
+    for n in [1, 2, 5, 12, 13, 40] {
+        for method in METHODS {
+            let pattern = bordered_chain(n);
+            let mut solver = SparseSolver::new(pattern.clone(), method).unwrap();
+            let mut numbers = Numbers(n as u64);
+            for _ in 0..3 {
+                // Rows of very different size, as in equations of different units.
+                let values: Vec<f64> = pattern
+                    .entries()
+                    .map(|(row, ..)| numbers.next().unwrap() * 10_f64.powi(row as i32 % 9 - 4))
+                    .collect();
+                let x: Vec<f64> = numbers.by_ref().take(n).collect();
+                let mut b = product(&pattern, &values, &x);
+                solver.factor(&values).unwrap();
+                solver.solve(&mut b);
+                // Rounding, times the condition after scaling, times what the scaling of the unknowns may hide.
+                let bound = 1e-13 / solver.reciprocal_condition(&values).unwrap();
+                for (found, x) in b.iter().zip(&x) {
+                    assert!(
+                        (found - x).abs() < bound,
+                        "{method:?} {n}: {found} instead of {x}"
+                    );
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn a_zero_column_and_equal_columns_are_singular() {
+    for method in METHODS {
+        let pattern = Pattern::dense(3).unwrap();
+        let mut solver = SparseSolver::new(pattern, method).unwrap();
+        let zero = solver
+            .factor(&[1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 2.0, 1.0, 5.0])
+            .unwrap_err();
+        assert_eq!(zero.unknown, 1, "{method:?}");
+        let equal = solver
+            .factor(&[1.0, 2.0, 4.0, 0.0, 1.0, 0.0, 1.0, 2.0, 4.0])
+            .unwrap_err();
+        assert!(
+            equal.unknown == 0 || equal.unknown == 2,
+            "{method:?}: {equal}"
+        );
+        solver
+            .factor(&[1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 3.0])
+            .unwrap();
+        let mut b = [1.0, 1.0, 1.0];
+        solver.solve(&mut b);
+        // Powers of 2, and one division.
+        assert_eq!(b, [1.0, 0.5, 1.0 / 3.0]);
+    }
+}
+
+#[test]
+fn an_empty_row_or_column_is_singular() {
+    for method in METHODS {
+        let empty_column = Pattern::new(2, vec![0, 2, 2], vec![0, 1]).unwrap();
+        let error = SparseSolver::new(empty_column, method)
+            .unwrap()
+            .factor(&[1.0, 1.0])
+            .unwrap_err();
+        assert_eq!(error.unknown, 1, "{method:?}");
+        let empty_row = Pattern::new(2, vec![0, 1, 2], vec![0, 0]).unwrap();
+        SparseSolver::new(empty_row, method)
+            .unwrap()
+            .factor(&[1.0, 1.0])
+            .unwrap_err();
+    }
+}
+
+#[test]
+fn old_pivots_are_given_up_when_they_do_not_serve() {
+    for method in METHODS {
+        let pattern = Pattern::dense(2).unwrap();
+        let mut solver = SparseSolver::new(pattern, method).unwrap();
+        solver.factor(&[1.0, 0.0, 0.0, 1.0]).unwrap();
+        // As when a mode changes: the pivots of the first matrix are zero, then nearly zero, in these.
+        for tiny in [0.0, 1e-30] {
+            solver.factor(&[tiny, 1.0, 1.0, tiny]).unwrap();
+            let mut b = [2.0, 3.0];
+            solver.solve(&mut b);
+            // Exchanged rows, no arithmetic but with `tiny`.
+            assert_eq!(b, [3.0, 2.0], "{method:?}");
+            solver.factor(&[1.0, 0.0, 0.0, 1.0]).unwrap();
+        }
+    }
+}
+
+#[test]
+fn the_condition_does_not_depend_on_units() {
+    for method in METHODS {
+        let solver = SparseSolver::new(Pattern::dense(2).unwrap(), method).unwrap();
+        let condition = |values: &[f64]| solver.reciprocal_condition(values).unwrap();
+        assert_eq!(condition(&[1e6, 0.0, 0.0, 1e-6]), 1.0, "{method:?}");
+        assert_eq!(condition(&[1.0, 2.0, 2.0, 4.0]), 0.0, "{method:?}");
+        // [[1, 1], [1, 1 + d]], with rows and columns in other units: norm 2, norm of the inverse 2 (1 + d) / d.
+        let d = 1e-8;
+        let found = condition(&[1e3, 1e-2, 1e8, 1e3 * (1.0 + d)]);
+        // The cancellation in 1 + d - 1 leaves 8 digits; the estimate of a 2 by 2 matrix is exact.
+        assert!(
+            (found / (d / 4.0) - 1.0).abs() < 1e-6,
+            "{method:?}: {found}"
+        );
+    }
+}
+
+#[test]
+#[should_panic(expected = "must be factored")]
+fn solving_without_factors_is_a_mistake_of_the_caller() {
+    SparseSolver::new(Pattern::dense(2).unwrap(), LinearMethod::Klu)
+        .unwrap()
+        .solve(&mut [1.0, 2.0]);
+}

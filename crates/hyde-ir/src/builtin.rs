@@ -1,0 +1,96 @@
+//! The operations of the IR, one row each: name and meaning. Interpreter, machine code and differentiation follow
+//! this table; the functions behind it come from one mathematical library on every machine.
+
+macro_rules! operations {
+    ($(#[$meta:meta])* $kind:ident, $signature:ty, ($($arg:ident),+), $call:tt;
+     $($name:ident $text:literal $doc:literal => $meaning:expr;)*) => {
+        $(#[$meta])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+        pub enum $kind { $(#[doc = $doc] $name,)* }
+
+        impl $kind {
+            /// Every operation of the table.
+            pub const ALL: &'static [Self] = &[$(Self::$name,)*];
+
+            /// Its name in printed IR.
+            #[must_use]
+            pub fn name(self) -> &'static str {
+                match self { $(Self::$name => $text,)* }
+            }
+
+            /// Its meaning.
+            #[must_use]
+            pub fn apply(self, $($arg: f64),+) -> f64 {
+                let meaning: $signature = match self { $(Self::$name => $meaning,)* };
+                meaning $call
+            }
+        }
+    };
+}
+
+operations! {
+    /// An operation on one value.
+    UnaryOp, fn(f64) -> f64, (a), (a);
+    Neg "-" "Negation." => |a| -a;
+    Not "not" "1 where the argument is 0, else 0." => |a| truth(a == 0.0);
+    Abs "abs" "Magnitude." => f64::abs;
+    Sqrt "sqrt" "Square root." => f64::sqrt;
+    Floor "floor" "Largest integer not above." => f64::floor;
+    Ceil "ceil" "Smallest integer not below." => f64::ceil;
+    Exp "exp" "Exponential." => libm::exp;
+    Log "log" "Natural logarithm." => libm::log;
+    Log10 "log10" "Decimal logarithm." => libm::log10;
+    Sin "sin" "Sine." => libm::sin;
+    Cos "cos" "Cosine." => libm::cos;
+    Tan "tan" "Tangent." => libm::tan;
+    Asin "asin" "Arc sine." => libm::asin;
+    Acos "acos" "Arc cosine." => libm::acos;
+    Atan "atan" "Arc tangent." => libm::atan;
+    Sinh "sinh" "Hyperbolic sine." => libm::sinh;
+    Cosh "cosh" "Hyperbolic cosine." => libm::cosh;
+    Tanh "tanh" "Hyperbolic tangent." => libm::tanh;
+}
+
+operations! {
+    /// An operation on two values.
+    BinaryOp, fn(f64, f64) -> f64, (a, b), (a, b);
+    Add "+" "Sum." => |a, b| a + b;
+    Sub "-" "Difference." => |a, b| a - b;
+    Mul "*" "Product." => |a, b| a * b;
+    Div "/" "Quotient." => |a, b| a / b;
+    Pow "^" "Power." => libm::pow;
+    Min "min" "The second where it is less, else the first." => |a, b| if b < a { b } else { a };
+    Max "max" "The second where it is greater, else the first." => |a, b| if b > a { b } else { a };
+    Atan2 "atan2" "Angle of the point (b, a)." => libm::atan2;
+    FloorTo "floor_to" "Largest multiple of b not above a: a quantiser, differentiated as the identity (S3)." => |a, b| (a / b).floor() * b;
+    RoundTo "round_to" "Nearest multiple of b: a quantiser, differentiated as the identity (S3)." => |a, b| (a / b + 0.5).floor() * b;
+    Lt "<" "1 where a < b, else 0." => |a, b| truth(a < b);
+    Le "<=" "1 where a <= b, else 0." => |a, b| truth(a <= b);
+    Gt ">" "1 where a > b, else 0." => |a, b| truth(a > b);
+    Ge ">=" "1 where a >= b, else 0." => |a, b| truth(a >= b);
+    Eq "==" "1 where equal, else 0." => |a, b| truth(a == b);
+    Ne "<>" "1 where not equal, else 0." => |a, b| truth(a != b);
+    And "and" "1 where both are not 0, else 0." => |a, b| truth(a != 0.0 && b != 0.0);
+    Or "or" "1 where one is not 0, else 0." => |a, b| truth(a != 0.0 || b != 0.0);
+}
+
+impl BinaryOp {
+    /// Whether it compares its operands.
+    #[must_use]
+    pub fn is_comparison(self) -> bool {
+        matches!(
+            self,
+            Self::Lt | Self::Le | Self::Gt | Self::Ge | Self::Eq | Self::Ne
+        )
+    }
+
+    /// Whether it yields a truth.
+    #[must_use]
+    pub fn is_truth(self) -> bool {
+        self.is_comparison() || matches!(self, Self::And | Self::Or)
+    }
+}
+
+fn truth(condition: bool) -> f64 {
+    f64::from(u8::from(condition))
+}

@@ -1,0 +1,247 @@
+//! Derivatives of expressions: each operation has its rule beside its meaning.
+//!
+//! [`ExprArena::tangent`] carries derivatives of the leaves up to the root (one direction, any leaves);
+//! [`ExprArena::gradient`] carries the root's sensitivity down to every leaf (all leaves in one pass). Both visit a
+//! shared node once. Truths, modes and counters are constant; quantisers count as the identity (S3).
+
+use crate::expr::{Expr, ExprArena};
+use crate::id::ExprId;
+use crate::{BinaryOp, UnaryOp};
+use std::collections::{BTreeMap, HashMap};
+
+impl ExprArena {
+    /// The derivative of `root` where `leaf` gives the derivative of each leaf, `None` for zero.
+    pub fn tangent(
+        &mut self,
+        root: ExprId,
+        mut leaf: impl FnMut(&mut Self, Expr) -> Option<ExprId>,
+    ) -> ExprId {
+        let mut known: HashMap<ExprId, Option<ExprId>> = HashMap::new();
+        for id in self.below(&[root]) {
+            let expr = self[id];
+            let mut children = Vec::new();
+            expr.for_each_child(|child| children.push(child));
+            let derivative = if children.is_empty() {
+                leaf(self, expr).filter(|&d| !self.is_constant(d, 0.0))
+            } else if let Expr::If(c, a, b) = expr {
+                match (known[&a], known[&b]) {
+                    (None, None) => None,
+                    (da, db) => {
+                        let zero = self.constant(0.0);
+                        Some(self.if_else(c, da.unwrap_or(zero), db.unwrap_or(zero)))
+                    }
+                }
+            } else {
+                let mut sum: Option<ExprId> = None;
+                for (position, child) in children.iter().enumerate() {
+                    let Some(dc) = known[child] else { continue };
+                    let Some(factor) = self.factor(id, position) else {
+                        continue;
+                    };
+                    let term = self.times(factor, dc);
+                    sum = Some(sum.map_or(term, |sum| self.plus(sum, term)));
+                }
+                sum
+            };
+            known.insert(id, derivative);
+        }
+        known[&root].unwrap_or_else(|| self.constant(0.0))
+    }
+
+    /// The derivative of `root` by each of its leaves that `wanted` picks, in the order of the leaves' ids.
+    pub fn gradient(&mut self, root: ExprId, wanted: impl Fn(Expr) -> bool) -> Vec<(Expr, ExprId)> {
+        let nodes = self.below(&[root]);
+        let mut relevant: HashMap<ExprId, bool> = HashMap::new();
+        for &id in &nodes {
+            let mut depends = wanted(self[id]);
+            self[id].for_each_child(|child| depends |= relevant[&child]);
+            relevant.insert(id, depends);
+        }
+        let mut adjoints: BTreeMap<ExprId, ExprId> = BTreeMap::new();
+        let one = self.constant(1.0);
+        adjoints.insert(root, one);
+        let mut found = Vec::new();
+        for &id in nodes.iter().rev() {
+            let Some(&adjoint) = adjoints.get(&id) else {
+                continue;
+            };
+            let expr = self[id];
+            let mut children = Vec::new();
+            expr.for_each_child(|child| children.push(child));
+            if children.is_empty() {
+                if wanted(expr) && !self.is_constant(adjoint, 0.0) {
+                    found.push((expr, adjoint));
+                }
+                continue;
+            }
+            for (position, child) in children.into_iter().enumerate() {
+                if !relevant[&child] {
+                    continue;
+                }
+                let term = if let Expr::If(c, ..) = expr {
+                    let zero = self.constant(0.0);
+                    match position {
+                        1 => self.if_else(c, adjoint, zero),
+                        2 => self.if_else(c, zero, adjoint),
+                        _ => continue,
+                    }
+                } else {
+                    let Some(factor) = self.factor(id, position) else {
+                        continue;
+                    };
+                    self.times(adjoint, factor)
+                };
+                let sum = match adjoints.get(&child) {
+                    Some(&old) => self.plus(old, term),
+                    None => term,
+                };
+                adjoints.insert(child, sum);
+            }
+        }
+        found.reverse();
+        found
+    }
+
+    /// The partial derivative of node `id` by its child at `position`; `None` for zero.
+    fn factor(&mut self, id: ExprId, position: usize) -> Option<ExprId> {
+        match self[id] {
+            Expr::Unary(op, a) => self.unary_factor(op, a, id),
+            Expr::NoEvent(_) => Some(self.constant(1.0)),
+            Expr::Binary(op, a, b) => self.binary_factor(op, a, b, id, position == 0),
+            Expr::Const(_)
+            | Expr::Time
+            | Expr::Counter
+            | Expr::Param(..)
+            | Expr::Var(..)
+            | Expr::Der(..)
+            | Expr::Pre(..)
+            | Expr::Relation(_)
+            | Expr::InMode(..)
+            | Expr::If(..) => None,
+        }
+    }
+
+    fn unary_factor(&mut self, op: UnaryOp, a: ExprId, value: ExprId) -> Option<ExprId> {
+        let one = self.constant(1.0);
+        Some(match op {
+            UnaryOp::Neg => self.constant(-1.0),
+            UnaryOp::Not | UnaryOp::Floor | UnaryOp::Ceil => return None,
+            UnaryOp::Abs => {
+                let zero = self.constant(0.0);
+                let below = self.binary(BinaryOp::Lt, a, zero);
+                let minus = self.constant(-1.0);
+                let sign = self.if_else(below, minus, one);
+                self.no_event(sign)
+            }
+            UnaryOp::Sqrt => {
+                let half = self.constant(0.5);
+                self.over(half, value)
+            }
+            UnaryOp::Exp => value,
+            UnaryOp::Log => self.over(one, a),
+            UnaryOp::Log10 => {
+                let factor = self.constant(std::f64::consts::LOG10_E);
+                self.over(factor, a)
+            }
+            UnaryOp::Sin => self.unary(UnaryOp::Cos, a),
+            UnaryOp::Cos => {
+                let sine = self.unary(UnaryOp::Sin, a);
+                self.negative(sine)
+            }
+            UnaryOp::Tan => {
+                let square = self.times(value, value);
+                self.plus(one, square)
+            }
+            UnaryOp::Asin | UnaryOp::Acos => {
+                let square = self.times(a, a);
+                let rest = self.minus(one, square);
+                let root = self.unary(UnaryOp::Sqrt, rest);
+                let factor = self.over(one, root);
+                if op == UnaryOp::Asin {
+                    factor
+                } else {
+                    self.negative(factor)
+                }
+            }
+            UnaryOp::Atan => {
+                let square = self.times(a, a);
+                let below = self.plus(one, square);
+                self.over(one, below)
+            }
+            UnaryOp::Sinh => self.unary(UnaryOp::Cosh, a),
+            UnaryOp::Cosh => self.unary(UnaryOp::Sinh, a),
+            UnaryOp::Tanh => {
+                let square = self.times(value, value);
+                self.minus(one, square)
+            }
+        })
+    }
+
+    fn binary_factor(
+        &mut self,
+        op: BinaryOp,
+        a: ExprId,
+        b: ExprId,
+        value: ExprId,
+        by_first: bool,
+    ) -> Option<ExprId> {
+        let one = self.constant(1.0);
+        Some(match op {
+            BinaryOp::Add => one,
+            BinaryOp::Sub => self.constant(if by_first { 1.0 } else { -1.0 }),
+            BinaryOp::Mul => {
+                if by_first {
+                    b
+                } else {
+                    a
+                }
+            }
+            BinaryOp::Div if by_first => self.over(one, b),
+            BinaryOp::Div => {
+                let quotient = self.over(value, b);
+                self.negative(quotient)
+            }
+            BinaryOp::Pow if by_first => {
+                let less = self.minus(b, one);
+                let power = self.binary(BinaryOp::Pow, a, less);
+                self.times(b, power)
+            }
+            BinaryOp::Pow => {
+                let log = self.unary(UnaryOp::Log, a);
+                self.times(value, log)
+            }
+            BinaryOp::Min | BinaryOp::Max => {
+                let comparison = if op == BinaryOp::Min {
+                    BinaryOp::Lt
+                } else {
+                    BinaryOp::Gt
+                };
+                let second = self.binary(comparison, b, a);
+                let zero = self.constant(0.0);
+                let chosen = if by_first {
+                    self.if_else(second, zero, one)
+                } else {
+                    self.if_else(second, one, zero)
+                };
+                self.no_event(chosen)
+            }
+            BinaryOp::Atan2 => {
+                let (aa, bb) = (self.times(a, a), self.times(b, b));
+                let below = self.plus(aa, bb);
+                let above = if by_first { b } else { self.negative(a) };
+                self.over(above, below)
+            }
+            BinaryOp::FloorTo | BinaryOp::RoundTo if by_first => one,
+            BinaryOp::FloorTo
+            | BinaryOp::RoundTo
+            | BinaryOp::Lt
+            | BinaryOp::Le
+            | BinaryOp::Gt
+            | BinaryOp::Ge
+            | BinaryOp::Eq
+            | BinaryOp::Ne
+            | BinaryOp::And
+            | BinaryOp::Or => return None,
+        })
+    }
+}

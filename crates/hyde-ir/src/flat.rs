@@ -1,0 +1,267 @@
+//! [`FlatModel`]: what flatten leaves. Every variable and equation of every instance; nothing solved yet.
+
+use crate::id::{AutomatonId, ClockId, ColumnId, ExprId, IdVec, ParamId, VarId};
+use crate::{Column, ExprArena, Index, Parameter, Quantity, Range, Variable};
+use hyde_diag::Origin;
+
+/// `lhs = rhs`, for every value of the counter in the range.
+#[derive(Clone, Debug)]
+pub struct Equation {
+    /// Values of the counter.
+    pub range: Range,
+    /// Left side.
+    pub lhs: ExprId,
+    /// Right side.
+    pub rhs: ExprId,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// What an event sets.
+#[derive(Clone, Debug)]
+pub enum Action {
+    /// `reinit(x, e)`: a state takes a value.
+    Reinit(VarId, Index, ExprId),
+    /// A discrete variable takes a value.
+    Assign(VarId, Index, ExprId),
+}
+
+/// An exit of a mode.
+#[derive(Clone, Debug)]
+pub struct Transition {
+    /// Becomes true: leave the mode.
+    pub guard: ExprId,
+    /// Number of the mode entered.
+    pub target: usize,
+    /// Values of the entered mode's parameters, and resets of states.
+    pub actions: Vec<Action>,
+    /// The jump of a pinned state on entry is meant (M3).
+    pub impact: bool,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// A mode of an automaton.
+#[derive(Clone, Debug)]
+pub struct Mode {
+    /// Its name.
+    pub name: String,
+    /// Its equations; as many in every mode (M1).
+    pub equations: Vec<Equation>,
+    /// Its exits in order of priority (M2).
+    pub exits: Vec<Transition>,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// A `modes` block of an instance.
+#[derive(Clone, Debug)]
+pub struct Automaton {
+    /// Full name: the instance, and the block's own name if it has one.
+    pub name: String,
+    /// Its modes in the order written.
+    pub modes: Vec<Mode>,
+    /// Number of the first mode.
+    pub initial: usize,
+    /// Values of the first mode's parameters.
+    pub initial_actions: Vec<Action>,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// `when condition then … elsewhen … end when`.
+#[derive(Clone, Debug)]
+pub struct When {
+    /// Conditions in order of priority, each with what it sets on becoming true.
+    pub branches: Vec<(ExprId, Vec<Action>)>,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// A clocked partition: period, delay and phase in s, of parameters alone.
+#[derive(Clone, Debug)]
+pub struct Clock {
+    /// Full name.
+    pub name: String,
+    /// Time between ticks.
+    pub period: ExprId,
+    /// From a tick to the change of what it holds.
+    pub delay: ExprId,
+    /// Time of the first tick.
+    pub phase: ExprId,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// An equation of a clocked partition.
+#[derive(Clone, Debug)]
+pub struct ClockedEquation {
+    /// The partition.
+    pub clock: ClockId,
+    /// The equation.
+    pub equation: Equation,
+}
+
+/// A condition that must hold during a run.
+#[derive(Clone, Debug)]
+pub struct Assert {
+    /// True while all is well.
+    pub condition: ExprId,
+    /// Said when it fails.
+    pub message: String,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// A step of preparing a measured column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Preparation {
+    /// `lowpass(x, f)`: Butterworth of order 4, forwards and backwards, corner in Hz.
+    Lowpass(f64),
+    /// `slope(x)`: central differences over time.
+    Slope,
+    /// Multiplied by a number in SI.
+    Scale(f64),
+}
+
+/// `measured column = expression ~ noise`.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// As written left of the equals sign: the name of the channel.
+    pub name: String,
+    /// The record and its column.
+    pub column: ColumnId,
+    /// What is done to the column, in order.
+    pub preparation: Vec<Preparation>,
+    /// What the model has for it.
+    pub value: ExprId,
+    /// Compared after the tick (clocked) or before (continuous).
+    pub clocked: bool,
+    /// Standard deviation of white noise, SI, of parameters alone.
+    pub noise: Option<ExprId>,
+    /// Dimension and printed unit.
+    pub quantity: Quantity,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// How a signal over time becomes one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReductionKind {
+    /// Largest value.
+    Max,
+    /// Smallest value.
+    Min,
+    /// Root mean square over time.
+    Rms,
+    /// Mean over time.
+    Mean,
+    /// Value at the start.
+    First,
+    /// Value at the stop.
+    Last,
+}
+
+/// A reduction of a signal over the run.
+#[derive(Clone, Debug)]
+pub struct Reduction {
+    /// How.
+    pub kind: ReductionKind,
+    /// Of what.
+    pub value: ExprId,
+    /// The variable that stands for the result.
+    pub var: VarId,
+}
+
+/// `expect condition` or `measure T name = value`, over reductions.
+#[derive(Clone, Debug)]
+pub struct Measure {
+    /// The measure's name, or the condition as written.
+    pub name: String,
+    /// A number, or a truth for an expectation.
+    pub value: ExprId,
+    /// Whether it is an expectation.
+    pub expectation: bool,
+    /// Dimension and printed unit.
+    pub quantity: Quantity,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// When a run ends.
+#[derive(Clone, Debug)]
+pub enum Stop {
+    /// At a time in s, of parameters alone.
+    At(ExprId),
+    /// At the last row of a record.
+    EndOf(String),
+}
+
+/// `bode from input to outputs over f1 .. f2`.
+#[derive(Clone, Debug)]
+pub struct Bode {
+    /// The driven input.
+    pub input: VarId,
+    /// The outputs, with their printed names.
+    pub outputs: Vec<(String, ExprId, Quantity)>,
+    /// From and to in Hz, of parameters alone.
+    pub band: (ExprId, ExprId),
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// What an experiment adds to its model beside equations.
+#[derive(Clone, Debug, Default)]
+pub struct Experiment {
+    /// Its name; empty for a model run as it stands.
+    pub name: String,
+    /// The records it names.
+    pub records: Vec<String>,
+    /// Measured channels.
+    pub measured: Vec<Measured>,
+    /// Reductions that measures and expectations use.
+    pub reductions: Vec<Reduction>,
+    /// Measures and expectations.
+    pub measures: Vec<Measure>,
+    /// Frequency responses asked for.
+    pub bodes: Vec<Bode>,
+    /// When it ends.
+    pub stop: Option<Stop>,
+    /// Time between rows of the results in s, of parameters alone.
+    pub every: Option<ExprId>,
+    /// Options of the solver by name (`rtol`), of parameters alone.
+    pub solve: Vec<(String, ExprId)>,
+}
+
+/// A model with an experiment, flat.
+#[derive(Clone, Debug, Default)]
+pub struct FlatModel {
+    /// Name of the model.
+    pub name: String,
+    /// All expressions.
+    pub exprs: ExprArena,
+    /// All variables.
+    pub variables: IdVec<VarId, Variable>,
+    /// All parameters, as declared.
+    pub parameters: IdVec<ParamId, Parameter>,
+    /// All parameters, each after those its value uses.
+    pub parameter_order: Vec<ParamId>,
+    /// The record columns read.
+    pub columns: IdVec<ColumnId, Column>,
+    /// Continuous equations, those of modes apart.
+    pub equations: Vec<Equation>,
+    /// Equations that hold at the start.
+    pub initial_equations: Vec<Equation>,
+    /// The `modes` blocks.
+    pub automata: IdVec<AutomatonId, Automaton>,
+    /// The `when` clauses.
+    pub whens: Vec<When>,
+    /// The clocked partitions.
+    pub clocks: IdVec<ClockId, Clock>,
+    /// The equations of clocked partitions.
+    pub clocked_equations: Vec<ClockedEquation>,
+    /// Conditions that must hold.
+    pub asserts: Vec<Assert>,
+    /// What the experiment adds.
+    pub experiment: Experiment,
+}

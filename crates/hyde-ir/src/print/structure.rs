@@ -1,0 +1,136 @@
+//! Prints the structure of a [`Dae`]: what became of every variable, and in which order the rest is solved.
+
+use super::{comment, dae};
+use crate::dae::{Alias, Dae, InitialCondition, Reason, Space};
+use hyde_diag::Sources;
+use std::fmt::Write as _;
+
+/// The structure as text: eliminated variables, states, implicit algebraic variables with the equation each is
+/// matched to, explicit variables in order, pins, initial conditions, and notes.
+#[must_use]
+pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
+    let labels = dae::Labels::new(dae);
+    let names = labels.names();
+    let mut out = format!(
+        "structure {}\n  {} unknowns, {} explicit, {} eliminated, {} in memory\n",
+        dae.name,
+        dae.n_unknowns,
+        dae.definitions.iter().map(|d| d.range.len()).sum::<usize>(),
+        dae.aliases.len(),
+        dae.n_memory
+    );
+    for (title, differential) in [("states", true), ("algebraic variables", false)] {
+        let blocks: Vec<_> = dae
+            .unknowns
+            .enumerate()
+            .filter(|(_, block)| block.differential == differential)
+            .collect();
+        if !blocks.is_empty() {
+            let _ = writeln!(out, "{title}");
+        }
+        for (id, block) in blocks {
+            let variable = &dae.variables[block.var];
+            let mut name = variable.element_name(block.first);
+            if block.len > 1 {
+                let _ = write!(
+                    name,
+                    " .. {}",
+                    variable.element_name(block.first + block.len - 1)
+                );
+            }
+            let residual = dae.residuals.iter().find(|residual| residual.unknown == id);
+            let origins: Vec<String> = residual
+                .map(|residual| {
+                    residual
+                        .origins
+                        .iter()
+                        .map(|origin| comment(origin, sources))
+                        .collect()
+                })
+                .unwrap_or_default();
+            let _ = writeln!(out, "  {:>4} {name}{}", block.offset, origins.join(","));
+        }
+    }
+    if !dae.definitions.is_empty() {
+        let _ = writeln!(out, "explicit variables");
+    }
+    for definition in &dae.definitions {
+        let lead = super::counted(definition.range);
+        let target = names.element(definition.var, definition.index);
+        let _ = writeln!(
+            out,
+            "  {lead}{target}{}",
+            comment(&definition.origin, sources)
+        );
+    }
+    if !dae.aliases.is_empty() {
+        let _ = writeln!(out, "eliminated variables");
+    }
+    for (var, alias) in &dae.aliases {
+        let name = &dae.variables[*var].name;
+        let target = match alias {
+            Alias::Of {
+                var,
+                element,
+                negated,
+            } => {
+                let sign = if *negated { "-" } else { "" };
+                format!("{sign}{}", dae.variables[*var].element_name(*element))
+            }
+            Alias::Value(value) => names.expr(*value),
+        };
+        let _ = writeln!(out, "  {name} = {target}");
+    }
+    if !dae.pins.is_empty() {
+        let _ = writeln!(out, "pins");
+    }
+    for pin in &dae.pins {
+        let automaton = &dae.automata[pin.automaton];
+        let state = dae::unknown_name(dae, pin.state);
+        let value = names.expr(pin.value);
+        let mode = &automaton.modes[pin.mode];
+        let _ = writeln!(out, "  {}.{mode}: {state} = {value}", automaton.name);
+    }
+    let _ = writeln!(out, "initial conditions");
+    for condition in &dae.initial {
+        let text = match condition {
+            InitialCondition::Fixed { state, len, reason } => {
+                let mut name = dae::unknown_name(dae, *state);
+                if *len > 1 {
+                    let _ = write!(name, " .. {}", dae::unknown_name(dae, state + len - 1));
+                }
+                let why = if *reason == Reason::Filled {
+                    " (not declared fixed)"
+                } else {
+                    ""
+                };
+                format!("{name} = start{why}")
+            }
+            InitialCondition::Equation {
+                range,
+                value,
+                origin,
+            } => {
+                format!(
+                    "{}0 = {}{}",
+                    super::counted(*range),
+                    names.expr(*value),
+                    comment(origin, sources)
+                )
+            }
+        };
+        let _ = writeln!(out, "  {text}");
+    }
+    let work = dae.variables.ids().filter(|&var| {
+        dae.place(var)
+            .is_some_and(|place| place.space == Space::Work)
+    });
+    debug_assert!(
+        work.count() <= dae.n_work,
+        "every explicit variable has a place"
+    );
+    for note in &dae.notes {
+        let _ = writeln!(out, "note: {note}");
+    }
+    out
+}

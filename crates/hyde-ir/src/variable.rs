@@ -1,0 +1,162 @@
+//! Variables, parameters and record columns, as both stages hold them.
+
+use crate::id::{ClockId, ColumnId, ExprId, VarId};
+use hyde_diag::Origin;
+use hyde_units::{Dimension, NamedUnit};
+
+/// What a value means: its dimension, and the unit in which people read it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Quantity {
+    /// For checking.
+    pub dimension: Dimension,
+    /// For printing; values are kept in SI.
+    pub unit: NamedUnit,
+}
+
+impl Quantity {
+    /// The quantity of a dimension in its usual unit.
+    #[must_use]
+    pub fn usual(dimension: Dimension) -> Self {
+        Self {
+            dimension,
+            unit: NamedUnit::usual(dimension),
+        }
+    }
+
+    /// A pure number.
+    #[must_use]
+    pub fn number() -> Self {
+        Self::usual(Dimension::DIMENSIONLESS)
+    }
+}
+
+/// How a record column is read between its rows (C4).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Interpolation {
+    /// The value of the last row, right-continuous.
+    Held,
+    /// Linear between rows.
+    Linear,
+}
+
+/// What determines a variable.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum VariableKind {
+    /// The continuous equations.
+    Continuous,
+    /// `when` clauses and transitions: constant between events.
+    Discrete,
+    /// The equations of a clocked part: constant between its ticks.
+    Clocked(ClockId),
+    /// `hold(source)`: the clocked variable, after the clock's delay.
+    Held(ClockId, VarId),
+    /// A column of a record.
+    Column(ColumnId, Interpolation),
+    /// A number known after the run: the reduction of that number.
+    Reduction(usize),
+}
+
+/// A scalar variable, or an array whose elements share everything but their value.
+#[derive(Clone, Debug)]
+pub struct Variable {
+    /// Full dotted name.
+    pub name: String,
+    /// Number of elements of an array; `None` for a scalar.
+    pub len: Option<usize>,
+    /// What the first element is called: 1 for arrays, 0 for the nodes of a field.
+    pub first: i32,
+    /// What determines it.
+    pub kind: VariableKind,
+    /// Dimension and printed unit.
+    pub quantity: Quantity,
+    /// Start value, of parameters alone: none, one for all elements (it may use the counter, from 0), or one each.
+    pub start: Vec<ExprId>,
+    /// Whether the start value is a condition rather than a guess.
+    pub fixed: bool,
+    /// Whether it is the flow of a connector.
+    pub flow: bool,
+    /// Truth-valued (1 or 0).
+    pub boolean: bool,
+    /// An `input`: something outside its component must determine it.
+    pub input: bool,
+    /// For the boundary flux of a field: `left end of bar`, said when its boundary condition is missing (F2).
+    pub trace: Option<String>,
+    /// Where it is declared.
+    pub origin: Origin,
+}
+
+impl Variable {
+    /// Number of elements; 1 for a scalar.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.len.unwrap_or(1)
+    }
+
+    /// The name of an element (counted from 0): `th[3]`, or the plain name of a scalar.
+    #[must_use]
+    pub fn element_name(&self, element: usize) -> String {
+        match self.len {
+            None => self.name.clone(),
+            Some(_) => format!(
+                "{}[{}]",
+                self.name,
+                i64::from(self.first) + i64::try_from(element).unwrap_or(0)
+            ),
+        }
+    }
+}
+
+/// The spread of an uncertain number around its value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Prior {
+    /// Uniform in value times (1 ± this).
+    Relative(f64),
+    /// Uniform in value ± this, SI.
+    Absolute(f64),
+}
+
+/// A parameter: constant during a run.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Full dotted name.
+    pub name: String,
+    /// Number of elements of an array; `None` for a scalar.
+    pub len: Option<usize>,
+    /// Its value, of numbers and other parameters: one for all elements (it may use the counter, from 0), or one each.
+    pub value: Vec<ExprId>,
+    /// Dimension and printed unit.
+    pub quantity: Quantity,
+    /// A change of it changes the equations and compiles anew.
+    pub structural: bool,
+    /// May not be set.
+    pub is_final: bool,
+    /// Made by the compiler from other parameters; not shown and not set.
+    pub derived: bool,
+    /// Its spread, if it is uncertain.
+    pub prior: Option<Prior>,
+    /// Where the number comes from, in the author's words.
+    pub source: Option<String>,
+    /// Where it is declared or last modified.
+    pub origin: Origin,
+}
+
+impl Parameter {
+    /// Number of elements; 1 for a scalar.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        self.len.unwrap_or(1)
+    }
+}
+
+/// A column of a record, or the same one row ahead.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    /// The record as the experiment calls it.
+    pub record: String,
+    /// The name in the header.
+    pub column: String,
+    /// `file.col.next`: the value one row ahead.
+    pub next: bool,
+    /// SI value = raw value * scale + offset where the header has no unit; (1, 0) where it has one.
+    pub scale: (f64, f64),
+}

@@ -1,0 +1,439 @@
+//! [`Compiled`]: the kernels of a DAE, by machine code or by interpretation.
+
+use crate::interpret::{Frame, Interpreter};
+use crate::native::Native;
+use crate::routine::{Leaf, Routine, Slot, Step};
+use hyde_ir::dae::{self, Dae, Space};
+use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, Range, VariableKind};
+use hyde_program::{Constant, Function, Kernels, PartialEntry, Point, Workspace, Wrt};
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+/// How numbers are made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Backend {
+    /// Machine code by Cranelift.
+    #[default]
+    Native,
+    /// The interpreter of the IR: slow, the oracle of the tests.
+    Interpreter,
+}
+
+/// The kernels of a DAE.
+pub(crate) struct Compiled {
+    pub(crate) dae: Dae,
+    backend: Backend,
+    values: BTreeMap<dae::Function, Kernel>,
+    partials: BTreeMap<dae::Function, Kernel>,
+    ticks: Vec<Kernel>,
+    conditions: Kernel,
+    /// Parameters in the order of computation.
+    parameters: Vec<(ParamId, Interpreter)>,
+    start: Interpreter,
+}
+
+/// A kernel, made at its first use.
+struct Kernel {
+    routine: Routine,
+    code: OnceLock<Code>,
+}
+
+enum Code {
+    Native(Native),
+    Interpreter(Interpreter),
+}
+
+impl Compiled {
+    pub(crate) fn new(dae: Dae, backend: Backend) -> Self {
+        let kernel = |routine: Routine| Kernel {
+            routine,
+            code: OnceLock::new(),
+        };
+        let values = dae::Function::ALL
+            .into_iter()
+            .map(|f| (f, kernel(Routine::values(&dae, f))))
+            .collect();
+        let partials = dae::Function::ALL
+            .into_iter()
+            .map(|f| (f, kernel(Routine::partials(&dae, f, dae.partials(f)))))
+            .collect();
+        let ticks = dae
+            .ticks
+            .ids()
+            .map(|clock| kernel(Routine::tick(&dae, clock)))
+            .collect();
+        let conditions = kernel(Routine::conditions(&dae));
+        let parameters = dae
+            .parameter_order
+            .iter()
+            .map(|&param| (param, parameter_code(&dae, param)))
+            .collect();
+        let start = Interpreter::new(&dae, &start_routine(&dae));
+        Self {
+            dae,
+            backend,
+            values,
+            partials,
+            ticks,
+            conditions,
+            parameters,
+            start,
+        }
+    }
+
+    fn run(&self, kernel: &Kernel, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]) {
+        let code = kernel.code.get_or_init(|| match self.backend {
+            Backend::Native => match Native::new(&self.dae, &kernel.routine) {
+                Some(native) => Code::Native(native),
+                None => Code::Interpreter(Interpreter::new(&self.dae, &kernel.routine)),
+            },
+            Backend::Interpreter => Code::Interpreter(Interpreter::new(&self.dae, &kernel.routine)),
+        });
+        self.check(at, workspace, out);
+        let Point { t, y, yp, z, u, p } = at;
+        let mut frame = Frame {
+            t,
+            y,
+            yp,
+            z,
+            u,
+            p,
+            work: &mut workspace.work,
+            out,
+        };
+        match code {
+            Code::Native(native) => native.run(&mut frame),
+            Code::Interpreter(interpreter) => interpreter.run(&mut frame),
+        }
+    }
+
+    /// Machine code does not check bounds: the lengths are checked here, at every call.
+    fn check(&self, at: Point<'_>, workspace: &Workspace, out: &[f64]) {
+        let dae = &self.dae;
+        let enough = at.y.len() >= dae.n_unknowns
+            && at.yp.len() >= dae.n_unknowns
+            && at.z.len() >= dae.n_memory
+            && at.u.len() >= 2 * dae.columns.len()
+            && at.p.len() >= dae.n_parameters.1
+            && workspace.work.len() >= dae.n_work;
+        assert!(
+            enough,
+            "a kernel is called with vectors of its program's lengths"
+        );
+        let _ = out;
+    }
+}
+
+impl Kernels for Compiled {
+    fn parameters(&self, set: &[(usize, f64)], p: &mut [f64]) {
+        for (param, code) in &self.parameters {
+            let place = self.dae.parameter_places[*param];
+            let size = self.dae.parameters[*param].size();
+            let before: Vec<f64> = p.to_vec();
+            let mut frame = Frame {
+                t: 0.0,
+                y: &[],
+                yp: &[],
+                z: &[],
+                u: &[],
+                p: &before,
+                work: &mut [],
+                out: p,
+            };
+            code.run(&mut frame);
+            for &(position, value) in set {
+                if (place..place + size).contains(&position) {
+                    p[position] = value;
+                }
+            }
+        }
+    }
+
+    fn start(&self, p: &[f64], y: &mut [f64], z: &mut [f64]) {
+        y.iter_mut()
+            .chain(z.iter_mut())
+            .for_each(|value| *value = 0.0);
+        let mut out = vec![0.0; y.len() + z.len()];
+        let mut frame = Frame {
+            t: 0.0,
+            y: &[],
+            yp: &[],
+            z: &[],
+            u: &[],
+            p,
+            work: &mut [],
+            out: &mut out,
+        };
+        self.start.run(&mut frame);
+        y.copy_from_slice(&out[..y.len()]);
+        z.copy_from_slice(&out[y.len()..]);
+    }
+
+    fn constant(&self, which: Constant, p: &[f64]) -> Option<f64> {
+        let dae = &self.dae;
+        let experiment = &dae.experiment;
+        let option = |name: &str| {
+            experiment
+                .solve
+                .iter()
+                .find(|(known, _)| known == name)
+                .map(|(_, value)| *value)
+        };
+        let id = match which {
+            Constant::Period(clock) => dae.ticks[ClockId::from_index(clock)].period,
+            Constant::Delay(clock) => dae.ticks[ClockId::from_index(clock)].delay,
+            Constant::Phase(clock) => dae.ticks[ClockId::from_index(clock)].phase,
+            Constant::TimeEvent(relation) => {
+                dae.relations[hyde_ir::RelationId::from_index(relation)].time_event?
+            }
+            Constant::Stop => match experiment.stop {
+                Some(hyde_ir::flat::Stop::At(id)) => id,
+                Some(hyde_ir::flat::Stop::EndOf(_)) | None => return None,
+            },
+            Constant::Every => experiment.every?,
+            Constant::Rtol => option("rtol")?,
+            Constant::Atol => option("atol")?,
+            Constant::MaxStep => option("max_step")?,
+            Constant::Noise(channel) => experiment.measured.get(channel)?.noise?,
+            Constant::BandFrom(bode) => experiment.bodes.get(bode)?.band.0,
+            Constant::BandTo(bode) => experiment.bodes.get(bode)?.band.1,
+        };
+        self.evaluate_parametric(id, p)
+    }
+
+    fn evaluate(
+        &self,
+        function: Function,
+        at: Point<'_>,
+        workspace: &mut Workspace,
+        out: &mut [f64],
+    ) {
+        let function = in_dae(function);
+        assert!(out.len() >= self.dae.rows(function), "room for every value");
+        self.run(&self.values[&function], at, workspace, out);
+    }
+
+    fn partials(
+        &self,
+        function: Function,
+        at: Point<'_>,
+        workspace: &mut Workspace,
+        out: &mut [f64],
+    ) {
+        let function = in_dae(function);
+        let count: usize = self
+            .dae
+            .partials(function)
+            .iter()
+            .map(|partial| partial.range.len())
+            .sum();
+        assert!(out.len() >= count, "room for every value");
+        self.run(&self.partials[&function], at, workspace, out);
+    }
+
+    fn parameter_partials(
+        &self,
+        function: Function,
+        parameters: &[usize],
+        at: Point<'_>,
+        workspace: &mut Workspace,
+    ) -> Vec<(PartialEntry, f64)> {
+        let chosen: Vec<(ParamId, usize)> = parameters
+            .iter()
+            .filter_map(|&position| self.parameter_at(position))
+            .collect();
+        let mut dae = self.dae.clone();
+        let all = hyde_analysis::parameter_partials(&mut dae, &chosen);
+        let list = all
+            .into_iter()
+            .find(|(f, _)| *f == in_dae(function))
+            .map(|(_, list)| list)
+            .unwrap_or_default();
+        let routine = Routine::partials(&dae, in_dae(function), &list);
+        let entries = entries(&list);
+        let mut values = vec![0.0; entries.len()];
+        self.check(at, workspace, &values);
+        let Point { t, y, yp, z, u, p } = at;
+        let mut frame = Frame {
+            t,
+            y,
+            yp,
+            z,
+            u,
+            p,
+            work: &mut workspace.work,
+            out: &mut values,
+        };
+        match (self.backend, Native::new(&dae, &routine)) {
+            (Backend::Native, Some(native)) => native.run(&mut frame),
+            _ => Interpreter::new(&dae, &routine).run(&mut frame),
+        }
+        entries.into_iter().zip(values).collect()
+    }
+
+    fn conditions(&self, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]) {
+        assert!(
+            out.len() >= self.dae.reactions.len(),
+            "room for every truth"
+        );
+        self.run(&self.conditions, at, workspace, out);
+    }
+
+    fn tick(&self, clock: usize, at: Point<'_>, workspace: &mut Workspace, after: &mut [f64]) {
+        assert!(after.len() >= self.dae.n_memory, "room for the memory");
+        self.run(&self.ticks[clock], at, workspace, after);
+    }
+
+    fn measures(&self, p: &[f64], reductions: &[f64], out: &mut [f64]) {
+        for (measure, value) in self.dae.experiment.measures.iter().zip(out) {
+            let leaf = |expr: Expr| match expr {
+                Expr::Var(var, _) => match self.dae.variables[var].kind {
+                    VariableKind::Reduction(number) => reductions.get(number).copied().ok_or(()),
+                    _ => Err(()),
+                },
+                Expr::Param(param, index) => {
+                    let offset = usize::try_from(index.offset).unwrap_or(0);
+                    p.get(self.dae.parameter_places[param] + offset)
+                        .copied()
+                        .ok_or(())
+                }
+                _ => Err(()),
+            };
+            *value = self
+                .dae
+                .exprs
+                .evaluate(measure.value, leaf)
+                .unwrap_or(f64::NAN);
+        }
+    }
+}
+
+impl Compiled {
+    fn evaluate_parametric(&self, id: ExprId, p: &[f64]) -> Option<f64> {
+        let leaf = |expr: Expr| match expr {
+            Expr::Param(param, index) => {
+                let offset = usize::try_from(index.offset).unwrap_or(0);
+                p.get(self.dae.parameter_places[param] + offset)
+                    .copied()
+                    .ok_or(())
+            }
+            _ => Err(()),
+        };
+        self.dae.exprs.evaluate(id, leaf).ok()
+    }
+
+    fn parameter_at(&self, position: usize) -> Option<(ParamId, usize)> {
+        self.dae.parameters.enumerate().find_map(|(id, parameter)| {
+            let place = self.dae.parameter_places[id];
+            (place..place + parameter.size())
+                .contains(&position)
+                .then(|| (id, position - place))
+        })
+    }
+}
+
+/// Every routine of a DAE, for printing.
+pub(crate) fn routines(dae: &Dae) -> Vec<Routine> {
+    let mut list = Vec::new();
+    for function in dae::Function::ALL {
+        list.push(Routine::values(dae, function));
+        list.push(Routine::partials(dae, function, dae.partials(function)));
+    }
+    list.push(Routine::conditions(dae));
+    list.extend(dae.ticks.ids().map(|clock| Routine::tick(dae, clock)));
+    list.retain(|routine| !routine.steps.is_empty());
+    list
+}
+
+/// The places of a list of derivatives, value by value.
+pub(crate) fn entries(partials: &[dae::Partial]) -> Vec<PartialEntry> {
+    let mut found = Vec::new();
+    for partial in partials {
+        for counter in partial.range.iter() {
+            let at = |index: Index| usize::try_from(index.at(counter)).unwrap_or(usize::MAX);
+            let wrt = match partial.wrt {
+                dae::Wrt::Unknown(index) => Wrt::Unknown(at(index)),
+                dae::Wrt::Derivative(index) => Wrt::Derivative(at(index)),
+                dae::Wrt::Parameter(position) => Wrt::Parameter(position),
+                dae::Wrt::Time => Wrt::Time,
+            };
+            found.push(PartialEntry {
+                row: at(partial.row),
+                wrt,
+            });
+        }
+    }
+    found
+}
+
+pub(crate) fn in_dae(function: Function) -> dae::Function {
+    match function {
+        Function::Residual => dae::Function::Residual,
+        Function::Roots => dae::Function::Roots,
+        Function::Assignments => dae::Function::Assignments,
+        Function::Outputs => dae::Function::Outputs,
+        Function::Initial => dae::Function::Initial,
+    }
+}
+
+fn parameter_code(dae: &Dae, param: ParamId) -> Interpreter {
+    let place = i32::try_from(dae.parameter_places[param]).unwrap_or(0);
+    let parameter = &dae.parameters[param];
+    let size = i32::try_from(parameter.size()).unwrap_or(0);
+    let steps = match parameter.value.as_slice() {
+        [value] if size > 1 => vec![Step {
+            range: Range {
+                first: 0,
+                last: size - 1,
+            },
+            slot: Slot::Out,
+            target: Index {
+                stride: 1,
+                offset: place,
+            },
+            value: *value,
+        }],
+        values => values
+            .iter()
+            .zip(place..)
+            .map(|(&value, at)| Step {
+                range: Range::SCALAR,
+                slot: Slot::Out,
+                target: Index::fixed(at),
+                value,
+            })
+            .collect(),
+    };
+    Interpreter::new(dae, &Routine::plain(&parameter.name, steps))
+}
+
+/// Start values of the vector, then of the memory.
+fn start_routine(dae: &Dae) -> Routine {
+    let n = i32::try_from(dae.n_unknowns).unwrap_or(0);
+    let steps = dae.starts.iter().map(|start| {
+        let base = i32::try_from(start.place.base).unwrap_or(0)
+            + if start.place.space == Space::Memory {
+                n
+            } else {
+                0
+            };
+        let target = Index {
+            offset: start.index.offset + base,
+            ..start.index
+        };
+        Step {
+            range: start.range,
+            slot: Slot::Out,
+            target,
+            value: start.value,
+        }
+    });
+    let routine = Routine::plain("start", steps.collect());
+    debug_assert!(
+        routine.steps.iter().all(|step| dae.exprs.below(&[step.value]).into_iter().all(|id| {
+            !matches!(routine.leaf(dae, dae.exprs[id]), Some(Leaf::Load(slot, _)) if slot != Slot::Parameter)
+        })),
+        "start values are of parameters alone"
+    );
+    routine
+}

@@ -1,0 +1,32 @@
+//! From a [`hyde_ir::Dae`] to a [`hyde_program::Program`]: tables from the DAE, numbers from machine code or by
+//! interpretation.
+//!
+//! Every kernel is a [`routine::Routine`]: a list of steps, each an expression over a range of its counter with a place to
+//! write to. The interpreter ([`interpret`]) runs it node by node; [`lower`] turns it into a Cranelift function: scalars
+//! as straight-line code with common subexpressions shared, ranges as loops over two elements at a time. Both use the
+//! same functions for everything that is no single instruction ([`host`]), so they agree to the last bit.
+//!
+//! Machine code is made at the first use of a kernel and freed with the last program that holds it.
+
+mod compiled;
+mod emit;
+mod host;
+mod interpret;
+mod lower;
+mod native;
+mod routine;
+mod tables;
+mod vector;
+
+pub use compiled::Backend;
+pub use emit::{emit_assembly, emit_clif, instruction_count};
+
+use hyde_ir::Dae;
+use hyde_program::Program;
+
+/// Makes a DAE executable.
+#[must_use]
+pub fn compile(dae: Dae, backend: Backend) -> Program {
+    let kernels = compiled::Compiled::new(dae, backend);
+    tables::program(kernels)
+}

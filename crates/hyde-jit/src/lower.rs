@@ -1,0 +1,491 @@
+//! A routine as a Cranelift function.
+//!
+//! The function takes one pointer: to the frame, which holds the time and the addresses of the slots. Scalar steps become
+//! straight-line code; what two of them share is computed once. A step over a range becomes a loop ([`crate::vector`]),
+//! whose code does not depend on the number of elements; consecutive results over the same range share one loop, and
+//! what does not change with the counter is computed before it.
+
+use crate::host;
+use crate::routine::{Leaf, Routine, Slot, Step};
+use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
+use cranelift_codegen::ir::{self, InstBuilder, MemFlagsData, types};
+use cranelift_codegen::isa::TargetFrontendConfig;
+use cranelift_frontend::FunctionBuilder;
+use hyde_ir::{BinaryOp, Dae, Expr, ExprId, Index, Range, UnaryOp};
+use std::collections::HashMap;
+
+/// Ranges shorter than this are written out.
+const LOOP_FROM: usize = 8;
+
+/// Makes a function known to the code that calls it.
+pub(crate) type Import<'i> =
+    &'i mut dyn FnMut(&mut ir::Function, &'static str, usize) -> ir::FuncRef;
+
+/// The code of a function while it is written.
+pub(crate) struct Lowering<'a, 'f, 'i> {
+    pub(crate) dae: &'a Dae,
+    pub(crate) routine: &'a Routine,
+    pub(crate) builder: FunctionBuilder<'f>,
+    import: Import<'i>,
+    frame: ir::Value,
+    bases: [Option<ir::Value>; Slot::ALL.len()],
+    /// Values and truths known in the whole rest of the function.
+    known: Known,
+    /// Scalar explicit variables by their place in the workspace.
+    explicit: HashMap<i32, ir::Value>,
+    /// Whether each node changes with the counter.
+    pub(crate) moving: HashMap<ExprId, bool>,
+}
+
+/// Nodes that have been lowered: as a number, and as a truth.
+#[derive(Clone, Default)]
+pub(crate) struct Known {
+    numbers: HashMap<ExprId, ir::Value>,
+    truths: HashMap<ExprId, ir::Value>,
+}
+
+/// How the value of a node is wanted.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    Number,
+    Truth,
+}
+
+impl Known {
+    pub(crate) fn get(&self, id: ExprId, wanted: Wanted) -> Option<ir::Value> {
+        match wanted {
+            Wanted::Number => self.numbers.get(&id).copied(),
+            Wanted::Truth => self.truths.get(&id).copied(),
+        }
+    }
+
+    pub(crate) fn insert(&mut self, id: ExprId, wanted: Wanted, value: ir::Value) {
+        match wanted {
+            Wanted::Number => self.numbers.insert(id, value),
+            Wanted::Truth => self.truths.insert(id, value),
+        };
+    }
+}
+
+/// The counter where an expression is evaluated.
+#[derive(Clone, Copy)]
+pub(crate) enum At {
+    /// A number.
+    Fixed(i32),
+    /// In a loop: eight times the turns so far, and the counter's first value.
+    Loop { bytes: ir::Value, first: i32 },
+}
+
+/// Writes the code of a routine into a function whose only argument is the frame.
+pub(crate) fn lower(
+    dae: &Dae,
+    routine: &Routine,
+    mut builder: FunctionBuilder<'_>,
+    import: Import<'_>,
+    config: TargetFrontendConfig,
+) {
+    let entry = builder.create_block();
+    builder.append_block_params_for_function_params(entry);
+    builder.switch_to_block(entry);
+    builder.seal_block(entry);
+    let frame = builder.block_params(entry)[0];
+    let mut lowering = Lowering {
+        dae,
+        routine,
+        builder,
+        import,
+        frame,
+        bases: [None; Slot::ALL.len()],
+        known: Known::default(),
+        explicit: HashMap::new(),
+        moving: HashMap::new(),
+    };
+    lowering.prepare();
+    let mut at = 0;
+    while at < routine.steps.len() {
+        let step = routine.steps[at];
+        if step.range.len() < LOOP_FROM {
+            step.range
+                .iter()
+                .for_each(|counter| lowering.scalar(&step, counter));
+            at += 1;
+            continue;
+        }
+        let mut end = at + 1;
+        // Results over the same range do not depend on each other, except in a tick.
+        while step.slot == Slot::Out && routine.tick.is_none() && end < routine.steps.len() {
+            let next = routine.steps[end];
+            if next.slot != Slot::Out || next.range != step.range {
+                break;
+            }
+            end += 1;
+        }
+        crate::vector::lower_loop(&mut lowering, &routine.steps[at..end], step.range);
+        at = end;
+    }
+    lowering.builder.ins().return_(&[]);
+    lowering.builder.finalize(config);
+}
+
+impl Lowering<'_, '_, '_> {
+    /// Finds which nodes change with the counter, and loads the addresses of the slots that are used.
+    fn prepare(&mut self) {
+        let roots: Vec<ExprId> = self.routine.steps.iter().map(|step| step.value).collect();
+        let mut used = [false; Slot::ALL.len()];
+        for step in &self.routine.steps {
+            used[step.slot as usize] |= step.slot == Slot::Out || step.range.len() > 1;
+        }
+        for id in self.dae.exprs.below(&roots) {
+            let expr = self.dae.exprs[id];
+            let mut moving = match self.routine.leaf(self.dae, expr) {
+                Some(Leaf::Counter) => true,
+                Some(Leaf::Load(slot, index)) => {
+                    used[slot as usize] = true;
+                    index.stride != 0
+                }
+                Some(Leaf::IsMode(..)) => {
+                    used[Slot::Memory as usize] = true;
+                    false
+                }
+                Some(Leaf::Number(_) | Leaf::Time) | None => false,
+            };
+            expr.for_each_child(|child| moving |= self.moving[&child]);
+            self.moving.insert(id, moving);
+        }
+        for slot in Slot::ALL {
+            if used[slot as usize] {
+                let offset = 8 * (1 + slot as i32);
+                let flags = MemFlagsData::trusted().with_readonly().with_can_move();
+                let base = self
+                    .builder
+                    .ins()
+                    .load(types::I64, flags, self.frame, offset);
+                self.bases[slot as usize] = Some(base);
+            }
+        }
+    }
+
+    pub(crate) fn base(&self, slot: Slot) -> ir::Value {
+        // Every slot a leaf or target names was loaded by `prepare`.
+        self.bases[slot as usize].unwrap_or(self.frame)
+    }
+
+    /// A step at one value of its counter.
+    fn scalar(&mut self, step: &Step, counter: i32) {
+        let mut local = Known::default();
+        let value = self.emit(step.value, Wanted::Number, At::Fixed(counter), &mut local);
+        let element = step.target.at(counter);
+        if step.slot == Slot::Work && step.range == Range::SCALAR {
+            self.explicit.insert(element, value);
+            return;
+        }
+        self.store(step.slot, element, value);
+        if self.routine.tick.is_some() {
+            // Later assignments of the tick read what was just written.
+            self.forget_loads(step.slot);
+        }
+    }
+
+    fn forget_loads(&mut self, slot: Slot) {
+        let (dae, routine) = (self.dae, self.routine);
+        let reads = |id: &ExprId| {
+            dae.exprs.below(&[*id]).into_iter().any(|inner| {
+                matches!(routine.leaf(dae, dae.exprs[inner]), Some(Leaf::Load(s, _)) if s == slot)
+            })
+        };
+        self.known.numbers.retain(|id, _| !reads(id));
+        self.known.truths.retain(|id, _| !reads(id));
+    }
+
+    /// Stores a number at a fixed element of a slot.
+    fn store(&mut self, slot: Slot, element: i32, value: ir::Value) {
+        let base = self.base(slot);
+        self.builder
+            .ins()
+            .store(MemFlagsData::trusted(), value, base, 8 * element);
+    }
+
+    /// The code of a node and of all below it that is not known yet.
+    pub(crate) fn emit(
+        &mut self,
+        root: ExprId,
+        wanted: Wanted,
+        at: At,
+        local: &mut Known,
+    ) -> ir::Value {
+        let mut stack = vec![(root, wanted, false)];
+        while let Some((id, wanted, ready)) = stack.pop() {
+            if self.lookup(id, wanted, local).is_some() {
+                continue;
+            }
+            if !ready {
+                stack.push((id, wanted, true));
+                self.children(id, wanted, |child, wanted| {
+                    stack.push((child, wanted, false))
+                });
+                continue;
+            }
+            let value = self.node(id, wanted, at, local);
+            let known = if self.moving[&id] {
+                &mut *local
+            } else {
+                &mut self.known
+            };
+            known.insert(id, wanted, value);
+        }
+        match self.lookup(root, wanted, local) {
+            Some(value) => value,
+            None => self.builder.ins().f64const(f64::NAN),
+        }
+    }
+
+    fn lookup(&self, id: ExprId, wanted: Wanted, local: &Known) -> Option<ir::Value> {
+        local.get(id, wanted).or_else(|| self.known.get(id, wanted))
+    }
+
+    /// What a node needs of its children, or of itself in another form.
+    pub(crate) fn children(
+        &self,
+        id: ExprId,
+        wanted: Wanted,
+        mut need: impl FnMut(ExprId, Wanted),
+    ) {
+        let expr = self.dae.exprs[id];
+        match (expr, wanted) {
+            (Expr::NoEvent(a), wanted) => need(a, wanted),
+            (Expr::If(c, a, b), wanted) => {
+                need(b, wanted);
+                need(a, wanted);
+                need(c, Wanted::Truth);
+            }
+            _ if is_truth(expr) && wanted == Wanted::Number => need(id, Wanted::Truth),
+            _ if !is_truth(expr) && wanted == Wanted::Truth => need(id, Wanted::Number),
+            (Expr::Unary(UnaryOp::Not, a), _) => need(a, Wanted::Truth),
+            (Expr::Binary(BinaryOp::And | BinaryOp::Or, a, b), _) => {
+                need(b, Wanted::Truth);
+                need(a, Wanted::Truth);
+            }
+            (Expr::Unary(_, a), _) => need(a, Wanted::Number),
+            (Expr::Binary(_, a, b), _) => {
+                need(b, Wanted::Number);
+                need(a, Wanted::Number);
+            }
+            _ => {}
+        }
+    }
+
+    fn node(&mut self, id: ExprId, wanted: Wanted, at: At, local: &Known) -> ir::Value {
+        let expr = self.dae.exprs[id];
+        let get = |this: &Self, id: ExprId, wanted: Wanted| {
+            this.lookup(id, wanted, local).unwrap_or(this.frame)
+        };
+        match (expr, wanted) {
+            (Expr::NoEvent(a), _) => get(self, a, wanted),
+            (Expr::If(c, a, b), _) => {
+                let (c, a, b) = (
+                    get(self, c, Wanted::Truth),
+                    get(self, a, wanted),
+                    get(self, b, wanted),
+                );
+                self.builder.ins().select(c, a, b)
+            }
+            _ if is_truth(expr) && wanted == Wanted::Number => {
+                let truth = get(self, id, Wanted::Truth);
+                let (one, zero) = (
+                    self.builder.ins().f64const(1.0),
+                    self.builder.ins().f64const(0.0),
+                );
+                self.builder.ins().select(truth, one, zero)
+            }
+            _ if !is_truth(expr) && wanted == Wanted::Truth => {
+                let number = get(self, id, Wanted::Number);
+                let zero = self.builder.ins().f64const(0.0);
+                self.builder.ins().fcmp(FloatCC::NotEqual, number, zero)
+            }
+            (Expr::Unary(op, a), _) => {
+                let form = if op == UnaryOp::Not {
+                    Wanted::Truth
+                } else {
+                    Wanted::Number
+                };
+                let a = get(self, a, form);
+                self.unary(op, a)
+            }
+            (Expr::Binary(op, a, b), _) => {
+                let form = if matches!(op, BinaryOp::And | BinaryOp::Or) {
+                    Wanted::Truth
+                } else {
+                    Wanted::Number
+                };
+                let (a, b) = (get(self, a, form), get(self, b, form));
+                self.binary(op, a, b)
+            }
+            _ => self.leaf(expr, at),
+        }
+    }
+
+    fn unary(&mut self, op: UnaryOp, a: ir::Value) -> ir::Value {
+        match op {
+            UnaryOp::Neg => self.builder.ins().fneg(a),
+            UnaryOp::Abs => self.builder.ins().fabs(a),
+            UnaryOp::Sqrt => self.builder.ins().sqrt(a),
+            UnaryOp::Not => self.builder.ins().icmp_imm_u(IntCC::Equal, a, 0),
+            _ => match host::unary(op) {
+                Some((name, _)) => self.call(name, &[a]),
+                None => a,
+            },
+        }
+    }
+
+    fn binary(&mut self, op: BinaryOp, a: ir::Value, b: ir::Value) -> ir::Value {
+        if let Some(condition) = comparison(op) {
+            return self.builder.ins().fcmp(condition, a, b);
+        }
+        match op {
+            BinaryOp::Add => self.builder.ins().fadd(a, b),
+            BinaryOp::Sub => self.builder.ins().fsub(a, b),
+            BinaryOp::Mul => self.builder.ins().fmul(a, b),
+            BinaryOp::Div => self.builder.ins().fdiv(a, b),
+            BinaryOp::Min | BinaryOp::Max => {
+                let condition = if op == BinaryOp::Min {
+                    FloatCC::LessThan
+                } else {
+                    FloatCC::GreaterThan
+                };
+                let second = self.builder.ins().fcmp(condition, b, a);
+                self.builder.ins().select(second, b, a)
+            }
+            BinaryOp::And => self.builder.ins().band(a, b),
+            BinaryOp::Or => self.builder.ins().bor(a, b),
+            _ => match host::binary(op) {
+                Some((name, _)) => self.call(name, &[a, b]),
+                None => a,
+            },
+        }
+    }
+
+    fn call(&mut self, name: &'static str, args: &[ir::Value]) -> ir::Value {
+        let function = (self.import)(self.builder.func, name, args.len());
+        let call = self.builder.ins().call(function, args);
+        self.builder.inst_results(call)[0]
+    }
+
+    fn leaf(&mut self, expr: Expr, at: At) -> ir::Value {
+        match self.routine.leaf(self.dae, expr) {
+            Some(Leaf::Number(value)) => self.builder.ins().f64const(value),
+            Some(Leaf::Time) => {
+                let flags = MemFlagsData::trusted().with_readonly().with_can_move();
+                self.builder.ins().load(types::F64, flags, self.frame, 0)
+            }
+            Some(Leaf::Counter) => self.counter(at),
+            Some(Leaf::IsMode(place, mode)) => {
+                let value = self.load(
+                    Slot::Memory,
+                    Index::fixed(i32::try_from(place).unwrap_or(0)),
+                    at,
+                );
+                let number = self.builder.ins().f64const(f64::from(mode));
+                self.builder.ins().fcmp(FloatCC::Equal, value, number)
+            }
+            Some(Leaf::Load(slot, index)) => self.load(slot, index, at),
+            None => self.builder.ins().f64const(f64::NAN),
+        }
+    }
+
+    pub(crate) fn counter(&mut self, at: At) -> ir::Value {
+        match at {
+            At::Fixed(counter) => self.builder.ins().f64const(f64::from(counter)),
+            At::Loop { bytes, first } => {
+                let turns = self.builder.ins().ushr_imm_u(bytes, 3);
+                let counter = self.builder.ins().iadd_imm_s(turns, i64::from(first));
+                self.builder.ins().fcvt_from_sint(types::F64, counter)
+            }
+        }
+    }
+
+    fn load(&mut self, slot: Slot, index: Index, at: At) -> ir::Value {
+        let (base, offset) = match (at, index.stride) {
+            (At::Fixed(counter), _) => {
+                let element = index.at(counter);
+                if slot == Slot::Work {
+                    if let Some(&value) = self.explicit.get(&element) {
+                        return value;
+                    }
+                }
+                (self.base(slot), 8 * element)
+            }
+            (At::Loop { .. }, 0) => {
+                if slot == Slot::Work {
+                    if let Some(&value) = self.explicit.get(&index.offset) {
+                        return value;
+                    }
+                }
+                (self.base(slot), 8 * index.offset)
+            }
+            (At::Loop { bytes, first }, stride) => {
+                let along = match stride {
+                    1 => bytes,
+                    stride => self.builder.ins().imul_imm_s(bytes, i64::from(stride)),
+                };
+                let base = self.base(slot);
+                (self.builder.ins().iadd(base, along), 8 * index.at(first))
+            }
+        };
+        self.builder
+            .ins()
+            .load(types::F64, load_flags(slot), base, offset)
+    }
+}
+
+/// Whether a node is a truth by itself.
+pub(crate) fn is_truth(expr: Expr) -> bool {
+    match expr {
+        Expr::Binary(op, ..) => op.is_truth(),
+        Expr::Unary(op, _) => op == UnaryOp::Not,
+        Expr::InMode(..) => true,
+        Expr::Const(_)
+        | Expr::Time
+        | Expr::Counter
+        | Expr::Param(..)
+        | Expr::Var(..)
+        | Expr::Der(..)
+        | Expr::Pre(..)
+        | Expr::Relation(_)
+        | Expr::If(..)
+        | Expr::NoEvent(_) => false,
+    }
+}
+
+/// The condition of a comparison; unordered operands compare as in the table of operations.
+pub(crate) fn comparison(op: BinaryOp) -> Option<FloatCC> {
+    match op {
+        BinaryOp::Lt => Some(FloatCC::LessThan),
+        BinaryOp::Le => Some(FloatCC::LessThanOrEqual),
+        BinaryOp::Gt => Some(FloatCC::GreaterThan),
+        BinaryOp::Ge => Some(FloatCC::GreaterThanOrEqual),
+        BinaryOp::Eq => Some(FloatCC::Equal),
+        BinaryOp::Ne => Some(FloatCC::NotEqual),
+        BinaryOp::Add
+        | BinaryOp::Sub
+        | BinaryOp::Mul
+        | BinaryOp::Div
+        | BinaryOp::Pow
+        | BinaryOp::Min
+        | BinaryOp::Max
+        | BinaryOp::Atan2
+        | BinaryOp::FloorTo
+        | BinaryOp::RoundTo
+        | BinaryOp::And
+        | BinaryOp::Or => None,
+    }
+}
+
+/// What a kernel reads but never writes may be loaded anywhere.
+pub(crate) fn load_flags(slot: Slot) -> MemFlagsData {
+    match slot {
+        Slot::Unknown | Slot::Derivative | Slot::Memory | Slot::Input | Slot::Parameter => {
+            MemFlagsData::trusted().with_readonly().with_can_move()
+        }
+        Slot::Work | Slot::Out => MemFlagsData::trusted(),
+    }
+}

@@ -1,0 +1,160 @@
+//! Machine code in memory, and the one call into it.
+
+use crate::host;
+use crate::interpret::Frame;
+use crate::lower;
+use crate::routine::Routine;
+use cranelift_codegen::ir::{AbiParam, types};
+use cranelift_codegen::isa::{CallConv, OwnedTargetIsa};
+use cranelift_codegen::settings::{self, Configurable};
+use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
+use cranelift_jit::{JITBuilder, JITModule};
+use cranelift_module::{Linkage, Module, default_libcall_names};
+use hyde_ir::{BinaryOp, Dae, UnaryOp};
+use std::sync::Mutex;
+
+/// A compiled routine. Its memory is freed when it is dropped.
+pub(crate) struct Native {
+    function: extern "C" fn(*const RawFrame),
+    module: Mutex<Option<JITModule>>,
+}
+
+/// The frame as the code sees it: the time, then the addresses of the slots in the order of [`crate::routine::Slot`].
+#[repr(C)]
+struct RawFrame {
+    t: f64,
+    y: *const f64,
+    yp: *const f64,
+    z: *const f64,
+    u: *const f64,
+    p: *const f64,
+    work: *mut f64,
+    out: *mut f64,
+}
+
+impl Native {
+    /// Compiles a routine for this machine; `None` if it is none that Cranelift makes code for.
+    pub(crate) fn new(dae: &Dae, routine: &Routine) -> Option<Self> {
+        let isa = host_isa()?;
+        let mut builder = JITBuilder::with_isa(isa, default_libcall_names());
+        builder.symbols(symbols());
+        let mut module = JITModule::new(builder);
+        let mut context = module.make_context();
+        context
+            .func
+            .signature
+            .params
+            .push(AbiParam::new(types::I64));
+        context.func.signature.call_conv = module.target_config().default_call_conv;
+        let id = module
+            .declare_function(&routine.name, Linkage::Local, &context.func.signature)
+            .ok()?;
+        let mut builder_context = FunctionBuilderContext::new();
+        let config = module.target_config();
+        let function = FunctionBuilder::new(&mut context.func, &mut builder_context);
+        let mut failed = false;
+        lower::lower(
+            dae,
+            routine,
+            function,
+            &mut |function, name, arguments| {
+                let mut signature = module.make_signature();
+                signature.params = vec![AbiParam::new(types::F64); arguments];
+                signature.returns.push(AbiParam::new(types::F64));
+                match module.declare_function(name, Linkage::Import, &signature) {
+                    Ok(imported) => module.declare_func_in_func(imported, function),
+                    Err(_) => {
+                        failed = true;
+                        let signature = function.import_signature(signature);
+                        function.import_function(cranelift_codegen::ir::ExtFuncData {
+                            name: cranelift_codegen::ir::ExternalName::testcase(name),
+                            signature,
+                            colocated: false,
+                            patchable: false,
+                        })
+                    }
+                }
+            },
+            config,
+        );
+        if failed {
+            return None;
+        }
+        module.define_function(id, &mut context).ok()?;
+        module.clear_context(&mut context);
+        module.finalize_definitions().ok()?;
+        let code = module.get_finalized_function(id);
+        // SAFETY: `code` is the address of the function just defined, whose signature is one pointer and no result in
+        // the default calling convention of the host, which is that of `extern "C"`. It stays valid until the module's
+        // memory is freed, which only `drop` does.
+        #[allow(unsafe_code, reason = "the address of code just made")]
+        let function =
+            unsafe { std::mem::transmute::<*const u8, extern "C" fn(*const RawFrame)>(code) };
+        Some(Self {
+            function,
+            module: Mutex::new(Some(module)),
+        })
+    }
+
+    /// Runs the code on a frame.
+    pub(crate) fn run(&self, frame: &mut Frame<'_>) {
+        let raw = RawFrame {
+            t: frame.t,
+            y: frame.y.as_ptr(),
+            yp: frame.yp.as_ptr(),
+            z: frame.z.as_ptr(),
+            u: frame.u.as_ptr(),
+            p: frame.p.as_ptr(),
+            work: frame.work.as_mut_ptr(),
+            out: frame.out.as_mut_ptr(),
+        };
+        (self.function)(&raw const raw);
+    }
+}
+
+impl Drop for Native {
+    fn drop(&mut self) {
+        let module = self.module.get_mut().ok().and_then(Option::take);
+        if let Some(module) = module {
+            // SAFETY: the function pointer is private to `self`, which is being dropped: no call can follow or be under
+            // way, for a call borrows `self`.
+            #[allow(unsafe_code, reason = "the module leaks its memory unless told")]
+            unsafe {
+                module.free_memory();
+            }
+        }
+    }
+}
+
+/// The machine this runs on.
+pub(crate) fn host_isa() -> Option<OwnedTargetIsa> {
+    let builder = cranelift_native::builder().ok()?;
+    builder.finish(flags()?).ok()
+}
+
+fn flags() -> Option<settings::Flags> {
+    let mut flags = settings::builder();
+    flags.set("opt_level", "speed").ok()?;
+    flags.set("is_pic", "false").ok()?;
+    flags.set("use_colocated_libcalls", "false").ok()?;
+    flags
+        .set(
+            "enable_verifier",
+            if cfg!(debug_assertions) {
+                "true"
+            } else {
+                "false"
+            },
+        )
+        .ok()?;
+    Some(settings::Flags::new(flags))
+}
+
+/// The calling convention of printed code, whatever the host.
+pub(crate) const PRINTED: CallConv = CallConv::SystemV;
+
+fn symbols() -> Vec<(&'static str, *const u8)> {
+    let unary = UnaryOp::ALL.iter().filter_map(|&op| host::unary(op));
+    let binary = BinaryOp::ALL.iter().filter_map(|&op| host::binary(op));
+    unary.chain(binary).collect()
+}

@@ -1,0 +1,374 @@
+//! The tables of a [`Program`], from the DAE.
+
+use crate::compiled::{Compiled, entries};
+use hyde_ir::dae::{self, Dae};
+use hyde_ir::flat;
+use hyde_ir::{Id as _, VariableKind};
+use hyde_program::{
+    Assignment, Automaton, Bode, Clock, Column, Experiment, Function, Hold, InitialCondition,
+    Measure, Measured, Output, Parameter, Pin, Preparation, Prior, Program, Reaction, ReactionKind,
+    Reduction, ReductionKind, Relation, RelationUse, Stop, Target, UnknownBlock,
+};
+use std::sync::Arc;
+
+/// The program of compiled kernels.
+pub(crate) fn program(kernels: Compiled) -> Program {
+    let dae = &kernels.dae;
+    let partials: Vec<_> = Function::ALL
+        .into_iter()
+        .map(|function| {
+            (
+                function,
+                entries(dae.partials(crate::compiled::in_dae(function))),
+            )
+        })
+        .collect();
+    let jacobian = Program::jacobian_of(dae.n_unknowns, &partials[0].1);
+    Program {
+        name: dae.name.clone(),
+        unknowns: unknowns(dae),
+        n_unknowns: dae.n_unknowns,
+        n_memory: dae.n_memory,
+        n_work: dae.n_work,
+        n_parameters: dae.n_parameters.1,
+        parameters: parameters(dae),
+        first_values: first_values(dae),
+        columns: columns(dae),
+        outputs: outputs(dae),
+        relations: dae.relations.iter().map(relation).collect(),
+        automata: automata(dae),
+        reactions: dae.reactions.iter().map(reaction).collect(),
+        assignments: dae
+            .assignments
+            .iter()
+            .map(|assignment| Assignment {
+                target: match assignment.target {
+                    dae::Target::State(position) => Target::State(position),
+                    dae::Target::Memory(position) => Target::Memory(position),
+                },
+                origin: assignment.origin.clone(),
+            })
+            .collect(),
+        pins: dae
+            .pins
+            .iter()
+            .map(|pin| Pin {
+                automaton: pin.automaton.index(),
+                mode: pin.mode,
+                state: pin.state,
+                origin: pin.origin.clone(),
+            })
+            .collect(),
+        clocks: dae
+            .ticks
+            .iter()
+            .map(|tick| Clock {
+                name: tick.name.clone(),
+                origin: tick.origin.clone(),
+            })
+            .collect(),
+        clock_order: dae.tick_order.iter().map(|clock| clock.index()).collect(),
+        holds: dae
+            .holds
+            .iter()
+            .map(|hold| Hold {
+                clock: hold.clock.index(),
+                source: hold.source,
+                target: hold.target,
+                len: hold.len,
+                read: hold.read,
+            })
+            .collect(),
+        initial: dae.initial.iter().map(initial).collect(),
+        jacobian,
+        partials,
+        experiment: experiment(dae),
+        notes: dae.notes.clone(),
+        kernels: Arc::new(kernels),
+    }
+}
+
+fn unknowns(dae: &Dae) -> Vec<UnknownBlock> {
+    dae.unknowns
+        .enumerate()
+        .map(|(id, block)| {
+            let variable = &dae.variables[block.var];
+            let first = variable
+                .len
+                .map(|_| i64::from(variable.first) + i64::try_from(block.first).unwrap_or(0));
+            let residual = dae.residuals.iter().find(|residual| residual.unknown == id);
+            UnknownBlock {
+                name: variable.name.clone(),
+                first,
+                offset: block.offset,
+                len: block.len,
+                differential: block.differential,
+                origins: residual
+                    .map(|residual| residual.origins.clone())
+                    .unwrap_or_default(),
+            }
+        })
+        .collect()
+}
+
+fn parameters(dae: &Dae) -> Vec<Parameter> {
+    let plain = dae
+        .parameters
+        .enumerate()
+        .filter(|(_, parameter)| !parameter.derived);
+    plain
+        .map(|(id, parameter)| Parameter {
+            name: parameter.name.clone(),
+            place: dae.parameter_places[id],
+            len: parameter.size(),
+            dimension: parameter.quantity.dimension,
+            unit: parameter.quantity.unit.clone(),
+            structural: parameter.structural,
+            is_final: parameter.is_final,
+            prior: parameter.prior.map(|prior| match prior {
+                hyde_ir::Prior::Relative(part) => Prior::Relative(part),
+                hyde_ir::Prior::Absolute(spread) => Prior::Absolute(spread),
+            }),
+            source: parameter.source.clone(),
+            origin: parameter.origin.clone(),
+        })
+        .collect()
+}
+
+/// `file.x.first` parameters, whose numbers the record has.
+fn first_values(dae: &Dae) -> Vec<(usize, String, String)> {
+    let mut found = Vec::new();
+    for (id, parameter) in dae.parameters.enumerate() {
+        let Some(path) = parameter.name.strip_suffix(".first") else {
+            continue;
+        };
+        let Some((record, column)) = path.split_once('.') else {
+            continue;
+        };
+        if dae.experiment.records.iter().any(|known| known == record) {
+            found.push((
+                dae.parameter_places[id],
+                record.to_owned(),
+                column.to_owned(),
+            ));
+        }
+    }
+    found
+}
+
+fn columns(dae: &Dae) -> Vec<Column> {
+    let roots: Vec<_> = dae
+        .residuals
+        .iter()
+        .map(|residual| residual.value)
+        .chain(dae.definitions.iter().map(|definition| definition.value))
+        .chain(dae.relations.iter().map(|relation| relation.root))
+        .chain(dae.outputs.iter().map(|output| output.value))
+        .collect();
+    let mut read = vec![false; dae.columns.len()];
+    for id in dae.exprs.below(&roots) {
+        if let hyde_ir::Expr::Var(var, _) = dae.exprs[id] {
+            if let VariableKind::Column(column, _) = dae.variables[var].kind {
+                read[column.index()] = true;
+            }
+        }
+    }
+    dae.columns
+        .iter()
+        .zip(read)
+        .map(|(column, continuous)| Column {
+            record: column.record.clone(),
+            column: column.column.clone(),
+            next: column.next,
+            continuous,
+        })
+        .collect()
+}
+
+fn outputs(dae: &Dae) -> Vec<Output> {
+    let auxiliary_from = dae.outputs.len()
+        - dae.experiment.measured.len()
+        - dae.experiment.reductions.len()
+        - dae
+            .experiment
+            .bodes
+            .iter()
+            .map(|bode| bode.outputs.len())
+            .sum::<usize>();
+    let mut found = Vec::new();
+    for (number, output) in dae.outputs.iter().enumerate() {
+        for name in &output.names {
+            found.push(Output {
+                name: name.clone(),
+                dimension: output.quantity.dimension,
+                unit: output.quantity.unit.clone(),
+                discrete: output.discrete,
+                auxiliary: number >= auxiliary_from,
+            });
+        }
+    }
+    found
+}
+
+fn relation(relation: &dae::Relation) -> Relation {
+    Relation {
+        inclusive: relation.inclusive,
+        scheduled: relation.time_event.is_some(),
+        used: match relation.used {
+            dae::RelationUse::Equation => RelationUse::Equation,
+            dae::RelationUse::Exit(automaton, mode) => {
+                RelationUse::Exit(automaton.index(), mode as usize)
+            }
+            dae::RelationUse::When => RelationUse::When,
+            dae::RelationUse::Assert => RelationUse::Assert,
+        },
+        text: relation.text.clone(),
+        origin: relation.origin.clone(),
+    }
+}
+
+fn automata(dae: &Dae) -> Vec<Automaton> {
+    let list = dae.automata.iter();
+    list.map(|automaton| Automaton {
+        name: automaton.name.clone(),
+        modes: automaton.modes.clone(),
+        place: automaton.place,
+        origin: automaton.origin.clone(),
+    })
+    .collect()
+}
+
+fn reaction(reaction: &dae::Reaction) -> Reaction {
+    Reaction {
+        kind: match &reaction.kind {
+            dae::ReactionKind::Transition {
+                automaton,
+                from,
+                to,
+                impact,
+            } => ReactionKind::Transition {
+                automaton: automaton.index(),
+                from: *from,
+                to: *to,
+                impact: *impact,
+            },
+            dae::ReactionKind::When { clause } => ReactionKind::When { clause: *clause },
+            dae::ReactionKind::Assert(message) => ReactionKind::Assert(message.clone()),
+        },
+        assignments: reaction.assignments.clone(),
+        text: reaction.text.clone(),
+        origin: reaction.origin.clone(),
+    }
+}
+
+fn initial(condition: &dae::InitialCondition) -> InitialCondition {
+    match condition {
+        dae::InitialCondition::Fixed { state, len, reason } => InitialCondition::Fixed {
+            state: *state,
+            len: *len,
+            declared: *reason == dae::Reason::Declared,
+        },
+        dae::InitialCondition::Equation { range, origin, .. } => InitialCondition::Equation {
+            len: range.len(),
+            origin: origin.clone(),
+        },
+    }
+}
+
+fn experiment(dae: &Dae) -> Experiment {
+    let known = &dae.experiment;
+    let columns: usize = dae.outputs.iter().map(|output| output.names.len()).sum();
+    let responses: usize = known.bodes.iter().map(|bode| bode.outputs.len()).sum();
+    let first_measured = columns - known.measured.len() - known.reductions.len() - responses;
+    let first_reduction = first_measured + known.measured.len();
+    let mut next_response = first_reduction + known.reductions.len();
+    Experiment {
+        name: known.name.clone(),
+        records: known.records.clone(),
+        measured: known
+            .measured
+            .iter()
+            .zip(first_measured..)
+            .map(|(measured, output)| Measured {
+                name: measured.name.clone(),
+                source: {
+                    let column = &dae.columns[measured.column];
+                    (column.record.clone(), column.column.clone())
+                },
+                preparation: measured
+                    .preparation
+                    .iter()
+                    .map(|step| match step {
+                        flat::Preparation::Lowpass(corner) => Preparation::Lowpass(*corner),
+                        flat::Preparation::Slope => Preparation::Slope,
+                        flat::Preparation::Scale(factor) => Preparation::Scale(*factor),
+                    })
+                    .collect(),
+                output,
+                clocked: measured.clocked,
+                unit: measured.quantity.unit.clone(),
+                origin: measured.origin.clone(),
+            })
+            .collect(),
+        reductions: known
+            .reductions
+            .iter()
+            .zip(first_reduction..)
+            .map(|(reduction, output)| Reduction {
+                kind: match reduction.kind {
+                    flat::ReductionKind::Max => ReductionKind::Max,
+                    flat::ReductionKind::Min => ReductionKind::Min,
+                    flat::ReductionKind::Rms => ReductionKind::Rms,
+                    flat::ReductionKind::Mean => ReductionKind::Mean,
+                    flat::ReductionKind::First => ReductionKind::First,
+                    flat::ReductionKind::Last => ReductionKind::Last,
+                },
+                output,
+            })
+            .collect(),
+        measures: known
+            .measures
+            .iter()
+            .map(|measure| Measure {
+                name: measure.name.clone(),
+                expectation: measure.expectation,
+                unit: measure.quantity.unit.clone(),
+                origin: measure.origin.clone(),
+            })
+            .collect(),
+        bodes: known
+            .bodes
+            .iter()
+            .map(|bode| {
+                let name = dae.variables[bode.input].name.clone();
+                let outputs = bode
+                    .outputs
+                    .iter()
+                    .map(|(name, ..)| {
+                        next_response += 1;
+                        (name.clone(), next_response - 1)
+                    })
+                    .collect();
+                let mut at = 0;
+                let mut input_output = None;
+                for output in &dae.outputs {
+                    if output.names.len() == 1 && output.names[0] == name {
+                        input_output = Some(at);
+                        break;
+                    }
+                    at += output.names.len();
+                }
+                Bode {
+                    input: name,
+                    input_output,
+                    outputs,
+                    origin: bode.origin.clone(),
+                }
+            })
+            .collect(),
+        stop: known.stop.as_ref().map(|stop| match stop {
+            flat::Stop::At(_) => Stop::At,
+            flat::Stop::EndOf(record) => Stop::EndOf(record.clone()),
+        }),
+    }
+}

@@ -1,0 +1,46 @@
+//! The packages shipped with the language, as text: quantity types, mechanics in rotation and translation, drives.
+//!
+//! They are ordinary source files; nothing in them is known to the compiler. A model names what it uses:
+//! `import Rotational.*;`.
+
+/// A package: its name and its source text.
+#[derive(Clone, Copy, Debug)]
+pub struct Package {
+    /// What `import` names.
+    pub name: &'static str,
+    /// Its source text.
+    pub text: &'static str,
+}
+
+/// Every package of the library.
+pub const PACKAGES: &[Package] = &[
+    Package {
+        name: "SI",
+        text: include_str!("../models/SI.hyde"),
+    },
+    Package {
+        name: "Rotational",
+        text: include_str!("../models/Rotational.hyde"),
+    },
+    Package {
+        name: "Translational",
+        text: include_str!("../models/Translational.hyde"),
+    },
+    Package {
+        name: "Electrical",
+        text: include_str!("../models/Electrical.hyde"),
+    },
+    Package {
+        name: "Drives",
+        text: include_str!("../models/Drives.hyde"),
+    },
+];
+
+/// The package of that name.
+#[must_use]
+pub fn package(name: &str) -> Option<Package> {
+    PACKAGES
+        .iter()
+        .copied()
+        .find(|package| package.name == name)
+}

@@ -1,0 +1,114 @@
+//! What an experiment asks of a run, as plain data.
+
+use hyde_diag::Origin;
+use hyde_units::NamedUnit;
+
+/// A step of preparing a measured column.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Preparation {
+    /// Butterworth low-pass of order 4, forwards and backwards, corner in Hz.
+    Lowpass(f64),
+    /// Central differences over time.
+    Slope,
+    /// Multiplied by a number, SI.
+    Scale(f64),
+}
+
+/// A measured channel.
+#[derive(Clone, Debug)]
+pub struct Measured {
+    /// Its name.
+    pub name: String,
+    /// Record and column.
+    pub source: (String, String),
+    /// What is done to the column first.
+    pub preparation: Vec<Preparation>,
+    /// The output that the model has for it.
+    pub output: usize,
+    /// Compared after the tick rather than before.
+    pub clocked: bool,
+    /// Unit for printing.
+    pub unit: NamedUnit,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// How a signal over time becomes one number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ReductionKind {
+    /// Largest value.
+    Max,
+    /// Smallest value.
+    Min,
+    /// Root mean square over time.
+    Rms,
+    /// Mean over time.
+    Mean,
+    /// First value.
+    First,
+    /// Last value.
+    Last,
+}
+
+/// A reduction of an output.
+#[derive(Clone, Debug)]
+pub struct Reduction {
+    /// How.
+    pub kind: ReductionKind,
+    /// Of which output.
+    pub output: usize,
+}
+
+/// A measure or expectation; its value is of the same number in [`crate::Kernels::measures`].
+#[derive(Clone, Debug)]
+pub struct Measure {
+    /// Its name, or the expectation as written.
+    pub name: String,
+    /// Whether it must hold.
+    pub expectation: bool,
+    /// Unit for printing.
+    pub unit: NamedUnit,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// A frequency response; its band is a [`crate::Constant`].
+#[derive(Clone, Debug)]
+pub struct Bode {
+    /// Name of the driven input.
+    pub input: String,
+    /// The output that reports the input's value.
+    pub input_output: Option<usize>,
+    /// Printed name and output of each response.
+    pub outputs: Vec<(String, usize)>,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// When a run ends.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Stop {
+    /// At [`crate::Constant::Stop`].
+    At,
+    /// At the last row of a record.
+    EndOf(String),
+}
+
+/// What an experiment asks of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Experiment {
+    /// Its name; empty for a model run as it stands.
+    pub name: String,
+    /// The records it names.
+    pub records: Vec<String>,
+    /// Measured channels.
+    pub measured: Vec<Measured>,
+    /// Reductions.
+    pub reductions: Vec<Reduction>,
+    /// Measures and expectations.
+    pub measures: Vec<Measure>,
+    /// Frequency responses.
+    pub bodes: Vec<Bode>,
+    /// When it ends.
+    pub stop: Option<Stop>,
+}

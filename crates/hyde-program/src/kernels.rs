@@ -1,0 +1,141 @@
+//! [`Kernels`]: the numbers of a program.
+
+use crate::program::PartialEntry;
+
+/// Where functions are evaluated. Lengths are those of the [`crate::Program`].
+#[derive(Clone, Copy, Debug)]
+pub struct Point<'a> {
+    /// Time in s.
+    pub t: f64,
+    /// The solver's vector.
+    pub y: &'a [f64],
+    /// Its derivative.
+    pub yp: &'a [f64],
+    /// The memory.
+    pub z: &'a [f64],
+    /// Record columns at this time.
+    pub u: &'a [f64],
+    /// Parameters, complete.
+    pub p: &'a [f64],
+}
+
+/// Room for explicit variables; one a thread.
+#[derive(Clone, Debug, Default)]
+pub struct Workspace {
+    /// Values of explicit variables, overwritten by every call.
+    pub work: Vec<f64>,
+}
+
+impl Workspace {
+    /// Room for `n` values.
+    #[must_use]
+    pub fn new(n: usize) -> Self {
+        Self { work: vec![0.0; n] }
+    }
+}
+
+/// The functions of a program that have derivatives (S2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Function {
+    /// `F`, one value an unknown.
+    Residual,
+    /// Root functions, one a relation.
+    Roots,
+    /// What events assign, then the values of the pins.
+    Assignments,
+    /// Reported quantities.
+    Outputs,
+    /// Conditions at the start that are equations.
+    Initial,
+}
+
+impl Function {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Residual,
+        Self::Roots,
+        Self::Assignments,
+        Self::Outputs,
+        Self::Initial,
+    ];
+}
+
+/// A number that parameters alone determine.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Constant {
+    /// Period of a clock in s.
+    Period(usize),
+    /// From the tick of a clock to the change of what it holds, in s.
+    Delay(usize),
+    /// First tick of a clock in s.
+    Phase(usize),
+    /// Instant of a relation that is scheduled, in s.
+    TimeEvent(usize),
+    /// End of the run in s.
+    Stop,
+    /// Time between rows of the results in s.
+    Every,
+    /// Relative tolerance.
+    Rtol,
+    /// Absolute tolerance, SI.
+    Atol,
+    /// Largest step in s.
+    MaxStep,
+    /// Standard deviation of a measured channel's noise, SI.
+    Noise(usize),
+    /// Lower end of a frequency response in Hz.
+    BandFrom(usize),
+    /// Upper end of a frequency response in Hz.
+    BandTo(usize),
+}
+
+/// The numbers of a program.
+///
+/// `out` is always completely written. Explicit variables lie in the workspace during a call.
+pub trait Kernels: Send + Sync {
+    /// Fills the whole parameter vector: declared values, those in `set` (position, SI value) replaced, then everything
+    /// that is derived from them.
+    fn parameters(&self, set: &[(usize, f64)], p: &mut [f64]);
+
+    /// Start values of the solver's vector and the memory.
+    fn start(&self, p: &[f64], y: &mut [f64], z: &mut [f64]);
+
+    /// A number that parameters alone determine; `None` if the model does not say.
+    fn constant(&self, which: Constant, p: &[f64]) -> Option<f64>;
+
+    /// The values of a function.
+    fn evaluate(
+        &self,
+        function: Function,
+        at: Point<'_>,
+        workspace: &mut Workspace,
+        out: &mut [f64],
+    );
+
+    /// The derivatives of a function, in the order of [`crate::Program::partials`].
+    fn partials(
+        &self,
+        function: Function,
+        at: Point<'_>,
+        workspace: &mut Workspace,
+        out: &mut [f64],
+    );
+
+    /// The derivatives of a function by parameters (positions in `p`, plain ones), with their places.
+    fn parameter_partials(
+        &self,
+        function: Function,
+        parameters: &[usize],
+        at: Point<'_>,
+        workspace: &mut Workspace,
+    ) -> Vec<(PartialEntry, f64)>;
+
+    /// Truth (1 or 0) of the condition of every reaction, from the truths in the memory.
+    fn conditions(&self, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]);
+
+    /// The memory after a tick of a clock; `after` comes in as a copy of the memory before.
+    fn tick(&self, clock: usize, at: Point<'_>, workspace: &mut Workspace, after: &mut [f64]);
+
+    /// Values of the experiment's measures and expectations (1 or 0), from its reductions.
+    fn measures(&self, p: &[f64], reductions: &[f64], out: &mut [f64]);
+}

@@ -1,0 +1,34 @@
+//! The contract between the compiler and the runtime: a [`Program`] is a hybrid DAE that can be run.
+//!
+//! ```text
+//! 0 = F(t, y, y', z, u, p)      one residual an unknown; y' of states only
+//! g(t, y, y', z, u, p)          root functions of the relations
+//! ```
+//! The solver's vector `y` holds states and implicit algebraic variables. The memory `z` holds what changes at events
+//! only: truths of relations (1 or 0, first, in their order), modes of automata (a number each), discrete, clocked and
+//! held variables. `u` holds two values a record column at the current time: read linearly, and held. `p` holds the
+//! parameters, then what is derived from them alone.
+//!
+//! Numbers come from [`Kernels`], everything about them from the tables of the [`Program`]. There are three implementers
+//! of the trait: machine code, the interpreter of the IR, and problems written by hand for tests. A kernel has no state:
+//! equal arguments give equal results, from any thread.
+//!
+//! One layout and one sparsity serve all modes. Every unknown, relation and reaction has the [`hyde_diag::Origin`]s it
+//! comes from, so that whatever fails at run time can be named in the words of the model.
+
+mod event;
+mod experiment;
+mod jacobian;
+mod kernels;
+mod program;
+
+pub use event::{
+    Assignment, Automaton, Clock, Hold, InitialCondition, Pin, Reaction, ReactionKind, Relation,
+    RelationUse, Target,
+};
+pub use experiment::{
+    Bode, Experiment, Measure, Measured, Preparation, Reduction, ReductionKind, Stop,
+};
+pub use jacobian::{Jacobian, JacobianEntry};
+pub use kernels::{Constant, Function, Kernels, Point, Workspace};
+pub use program::{Column, Output, Parameter, PartialEntry, Prior, Program, UnknownBlock, Wrt};

@@ -1,0 +1,279 @@
+//! [`Program`]: the kernels and everything that is to be known of their numbers.
+
+use crate::event::{Assignment, Automaton, Clock, Hold, InitialCondition, Pin, Reaction, Relation};
+use crate::experiment::Experiment;
+use crate::jacobian::{Jacobian, JacobianEntry};
+use crate::kernels::{Function, Kernels};
+use hyde_diag::Origin;
+use hyde_units::{Dimension, NamedUnit};
+use std::sync::Arc;
+
+/// A block of the solver's vector.
+#[derive(Clone, Debug)]
+pub struct UnknownBlock {
+    /// Name of the variable.
+    pub name: String,
+    /// Whether its elements are called `name[i]`, and what the first one of the block is called.
+    pub first: Option<i64>,
+    /// Position of the first element.
+    pub offset: usize,
+    /// Number of elements.
+    pub len: usize,
+    /// States, whose derivative appears.
+    pub differential: bool,
+    /// The equations that determine it: its rows have the same numbers.
+    pub origins: Vec<Origin>,
+}
+
+/// A reported column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Output {
+    /// Its name.
+    pub name: String,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// Unit for printing; values are SI.
+    pub unit: NamedUnit,
+    /// Changes at events only.
+    pub discrete: bool,
+    /// Made for the experiment (measured, reduced, response), not a variable of the model.
+    pub auxiliary: bool,
+}
+
+/// The spread of an uncertain number.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Prior {
+    /// Value times (1 ± this).
+    Relative(f64),
+    /// Value ± this, SI.
+    Absolute(f64),
+}
+
+/// A parameter.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Its full name.
+    pub name: String,
+    /// Position of its first element in the parameter vector.
+    pub place: usize,
+    /// Number of elements.
+    pub len: usize,
+    /// Its dimension.
+    pub dimension: Dimension,
+    /// Unit for printing; values are SI.
+    pub unit: NamedUnit,
+    /// A change of it compiles anew.
+    pub structural: bool,
+    /// May not be set.
+    pub is_final: bool,
+    /// Its spread, if it is uncertain.
+    pub prior: Option<Prior>,
+    /// Where its number comes from.
+    pub source: Option<String>,
+    /// Where it is declared or modified.
+    pub origin: Origin,
+}
+
+/// A column of a record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Column {
+    /// The record as the experiment calls it.
+    pub record: String,
+    /// The name in the header.
+    pub column: String,
+    /// Read one row ahead.
+    pub next: bool,
+    /// Whether the continuous equations read it, linearly or held.
+    pub continuous: bool,
+}
+
+/// With respect to what a function is differentiated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Wrt {
+    /// An unknown.
+    Unknown(usize),
+    /// The derivative of an unknown.
+    Derivative(usize),
+    /// A parameter, by its position.
+    Parameter(usize),
+    /// Time.
+    Time,
+}
+
+/// A derivative of a function.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct PartialEntry {
+    /// Row of the function.
+    pub row: usize,
+    /// With respect to what.
+    pub wrt: Wrt,
+}
+
+/// An executable hybrid DAE.
+#[derive(Clone)]
+pub struct Program {
+    /// Name of the model.
+    pub name: String,
+    /// The solver's vector.
+    pub unknowns: Vec<UnknownBlock>,
+    /// Length of the solver's vector.
+    pub n_unknowns: usize,
+    /// Length of the memory.
+    pub n_memory: usize,
+    /// Length of the workspace.
+    pub n_work: usize,
+    /// Length of the parameter vector.
+    pub n_parameters: usize,
+    /// The parameters, derived ones apart.
+    pub parameters: Vec<Parameter>,
+    /// Parameters that the run fills from the first row of a record: position, record, column.
+    pub first_values: Vec<(usize, String, String)>,
+    /// The record columns.
+    pub columns: Vec<Column>,
+    /// The reported columns.
+    pub outputs: Vec<Output>,
+    /// The relations.
+    pub relations: Vec<Relation>,
+    /// The automata.
+    pub automata: Vec<Automaton>,
+    /// The reactions: exits and branches in their order of priority.
+    pub reactions: Vec<Reaction>,
+    /// What reactions set.
+    pub assignments: Vec<Assignment>,
+    /// Modes that fix states.
+    pub pins: Vec<Pin>,
+    /// The clocks.
+    pub clocks: Vec<Clock>,
+    /// The order in which clocks that tick together run.
+    pub clock_order: Vec<usize>,
+    /// The held values.
+    pub holds: Vec<Hold>,
+    /// Conditions at the start.
+    pub initial: Vec<InitialCondition>,
+    /// The sparsity of the Jacobian.
+    pub jacobian: Jacobian,
+    /// Derivatives of the functions in the order of [`Kernels::partials`].
+    pub partials: Vec<(Function, Vec<PartialEntry>)>,
+    /// What the experiment asks.
+    pub experiment: Experiment,
+    /// What the compiler decided and a user may want to know.
+    pub notes: Vec<String>,
+    /// The numbers.
+    pub kernels: Arc<dyn Kernels>,
+}
+
+impl Program {
+    /// The derivatives of a function, in the order its kernel writes them.
+    #[must_use]
+    pub fn partials(&self, function: Function) -> &[PartialEntry] {
+        self.partials
+            .iter()
+            .find(|(known, _)| *known == function)
+            .map_or(&[], |(_, list)| list)
+    }
+
+    /// Number of values of a function.
+    #[must_use]
+    pub fn rows(&self, function: Function) -> usize {
+        match function {
+            Function::Residual => self.n_unknowns,
+            Function::Roots => self.relations.len(),
+            Function::Assignments => self.assignments.len() + self.pins.len(),
+            Function::Outputs => self.outputs.len(),
+            Function::Initial => self
+                .initial
+                .iter()
+                .map(|condition| match condition {
+                    InitialCondition::Equation { len, .. } => *len,
+                    InitialCondition::Fixed { .. } => 0,
+                })
+                .sum(),
+        }
+    }
+
+    /// Whether each unknown is a state.
+    #[must_use]
+    pub fn differential(&self) -> Vec<bool> {
+        let mut found = vec![false; self.n_unknowns];
+        for block in self.unknowns.iter().filter(|block| block.differential) {
+            found[block.offset..block.offset + block.len]
+                .iter_mut()
+                .for_each(|flag| *flag = true);
+        }
+        found
+    }
+
+    /// The block of an element of the solver's vector.
+    #[must_use]
+    pub fn block(&self, position: usize) -> Option<&UnknownBlock> {
+        self.unknowns
+            .iter()
+            .find(|block| (block.offset..block.offset + block.len).contains(&position))
+    }
+
+    /// The name of an element of the solver's vector.
+    #[must_use]
+    pub fn unknown_name(&self, position: usize) -> String {
+        self.block(position).map_or_else(
+            || format!("unknown {position}"),
+            |block| match block.first {
+                None => block.name.clone(),
+                Some(first) => {
+                    let number = first + i64::try_from(position - block.offset).unwrap_or(0);
+                    format!("{}[{number}]", block.name)
+                }
+            },
+        )
+    }
+
+    /// The parameter of that name with the number of an element: `motor.R`, `k[2]`.
+    #[must_use]
+    pub fn parameter(&self, name: &str) -> Option<(&Parameter, usize)> {
+        if let Some(found) = self
+            .parameters
+            .iter()
+            .find(|parameter| parameter.name == name)
+        {
+            return Some((found, 0));
+        }
+        let (array, rest) = name.rsplit_once('[')?;
+        let number: usize = rest.strip_suffix(']')?.parse().ok()?;
+        let found = self
+            .parameters
+            .iter()
+            .find(|parameter| parameter.name == array)?;
+        (1..=found.len)
+            .contains(&number)
+            .then_some((found, number - 1))
+    }
+
+    /// The output of that name.
+    #[must_use]
+    pub fn output(&self, name: &str) -> Option<usize> {
+        self.outputs
+            .iter()
+            .position(|output| output.name == name && !output.auxiliary)
+    }
+
+    /// The Jacobian's pattern from the derivatives of the residual, which are by unknowns and their derivatives only.
+    #[must_use]
+    pub fn jacobian_of(n_unknowns: usize, partials: &[PartialEntry]) -> Jacobian {
+        let entries: Vec<JacobianEntry> = partials
+            .iter()
+            .filter_map(|entry| match entry.wrt {
+                Wrt::Unknown(column) => Some(JacobianEntry {
+                    row: entry.row,
+                    column,
+                    by_derivative: false,
+                }),
+                Wrt::Derivative(column) => Some(JacobianEntry {
+                    row: entry.row,
+                    column,
+                    by_derivative: true,
+                }),
+                Wrt::Parameter(_) | Wrt::Time => None,
+            })
+            .collect();
+        Jacobian::new(n_unknowns, &entries)
+    }
+}

@@ -1,0 +1,154 @@
+//! One column of a table: a name, a unit if it is known, and the values.
+
+use hyde_units::{Agreement, Dimension, NamedUnit};
+use std::fmt;
+
+/// A named sequence of samples.
+///
+/// While the unit is unknown the values are what the file holds; as soon as it is known they are SI, and the unit
+/// is kept to print them as the user wrote them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    name: String,
+    unit: Option<NamedUnit>,
+    values: Vec<f64>,
+}
+
+/// A column was given a unit of another dimension than it has.
+#[derive(Clone, Debug, PartialEq)]
+pub struct UnitConflict {
+    /// The column.
+    pub name: String,
+    /// The unit it has.
+    pub has: String,
+    /// The unit it was given.
+    pub given: String,
+}
+
+impl Column {
+    /// A column of SI values that are printed in `unit`.
+    #[must_use]
+    pub fn new(name: impl Into<String>, unit: NamedUnit, si_values: Vec<f64>) -> Self {
+        Self {
+            name: name.into(),
+            unit: Some(unit),
+            values: si_values,
+        }
+    }
+
+    /// A column whose unit is not known yet.
+    #[must_use]
+    pub fn raw(name: impl Into<String>, values: Vec<f64>) -> Self {
+        Self {
+            name: name.into(),
+            unit: None,
+            values,
+        }
+    }
+
+    /// The name, without the unit.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The unit it is read and written in, if known.
+    #[must_use]
+    pub fn unit(&self) -> Option<&NamedUnit> {
+        self.unit.as_ref()
+    }
+
+    /// The dimension, if the unit is known.
+    #[must_use]
+    pub fn dimension(&self) -> Option<Dimension> {
+        self.unit.as_ref().map(|unit| unit.unit().dimension)
+    }
+
+    /// The values: SI if the unit is known, else as they are in the file.
+    #[must_use]
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The same column with its unit: raw values become SI. A column that has a unit is only printed in another one.
+    ///
+    /// # Errors
+    /// If the column has a unit of another dimension.
+    pub fn with_unit(self, unit: NamedUnit) -> Result<Self, UnitConflict> {
+        let Some(has) = &self.unit else {
+            return Ok(self.converted(unit));
+        };
+        let agreement = has.unit().dimension.agreement(unit.unit().dimension);
+        if agreement == Agreement::Different {
+            let (has, given) = (has.text().to_owned(), unit.text().to_owned());
+            return Err(UnitConflict {
+                name: self.name,
+                has,
+                given,
+            });
+        }
+        Ok(Self {
+            unit: Some(unit),
+            ..self
+        })
+    }
+
+    /// The column with its raw values made SI.
+    pub(crate) fn converted(mut self, named: NamedUnit) -> Self {
+        let unit = named.unit();
+        if !unit.is_si() {
+            for value in &mut self.values {
+                *value = unit.to_si(*value);
+            }
+        }
+        Self {
+            unit: Some(named),
+            ..self
+        }
+    }
+}
+
+impl fmt::Display for UnitConflict {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { name, has, given } = self;
+        write!(f, "column `{name}` is in {has}, it cannot be in {given}")
+    }
+}
+
+impl std::error::Error for UnitConflict {}
+
+#[cfg(test)]
+#[allow(clippy::float_cmp, reason = "conversion is exact for these values")]
+mod tests {
+    use super::*;
+
+    fn unit(text: &str) -> NamedUnit {
+        NamedUnit::parse(text).unwrap()
+    }
+
+    #[test]
+    fn a_unit_given_later_makes_the_values_si() {
+        let column = Column::raw("qg_mm", vec![1.0, 350.0])
+            .with_unit(unit("mm"))
+            .unwrap();
+        assert_eq!(column.values(), [0.001, 0.35]);
+        assert_eq!(column.dimension(), Some(Dimension::LENGTH));
+    }
+
+    #[test]
+    fn a_unit_is_changed_for_printing_only() {
+        let column = Column::new("x", unit("m"), vec![0.35])
+            .with_unit(unit("mm"))
+            .unwrap();
+        assert_eq!(column.values(), [0.35]);
+        assert_eq!(column.unit().unwrap().text(), "mm");
+    }
+
+    #[test]
+    fn another_dimension_is_refused() {
+        let error = Column::new("x", unit("m"), vec![])
+            .with_unit(unit("N"))
+            .unwrap_err();
+        assert_eq!(error.to_string(), "column `x` is in m, it cannot be in N");
+    }
+}

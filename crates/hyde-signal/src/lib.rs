@@ -1,0 +1,31 @@
+//! Sampled signals with names and units: CSV, interpolation, filters, spectra.
+//!
+//! A record is a [`Table`]: columns of equal length over one time, read by [`csv::read`] and written by
+//! [`csv::write`] in the same form, so that a result can stand in for a measurement. Columns whose unit is known hold
+//! SI values. A [`Signal`] is one column over the time; it reads between the rows. [`filter`], [`spectrum`] and
+//! [`statistics`] work on plain slices of equally spaced samples, unless they say otherwise.
+//!
+//! ```
+//! use hyde_signal::{Cursor, csv};
+//!
+//! let table = csv::read(b"t [ms],x [mm]\n0,0\n1,350\n", None)?;
+//! let x = table.signal("x").expect("the header has x");
+//! let mut cursor = Cursor::default();
+//! assert_eq!(x.linear(0.0005, &mut cursor), 0.175);
+//! assert_eq!(x.held(0.0005, &mut cursor), 0.0);
+//! assert_eq!(x.next(0.0005, &mut cursor), 0.35);
+//! # Ok::<(), csv::ReadError>(())
+//! ```
+
+pub mod csv;
+pub mod filter;
+pub mod spectrum;
+pub mod statistics;
+
+mod column;
+mod signal;
+mod table;
+
+pub use column::{Column, UnitConflict};
+pub use signal::{Cursor, Signal};
+pub use table::{Table, TableError};

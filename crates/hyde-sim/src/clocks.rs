@@ -1,0 +1,181 @@
+//! Clocks: when they tick, and when what they hold changes (C1, C3).
+//!
+//! Tick k of a clock is at phase + k*period, computed by one multiplication: no drift. A held value changes with the
+//! tick, or after the clock's delay with the value of its tick.
+
+use crate::setup::same_instant;
+use crate::state::State;
+use hyde_program::{Constant, Program};
+
+/// The times of all clocks and the changes of held values that are still to come.
+pub(crate) struct Schedule {
+    clocks: Vec<Times>,
+    pending: Vec<Pending>,
+    /// Instants of scheduled relations: relation and time.
+    relations: Vec<(usize, f64)>,
+}
+
+#[derive(Clone, Copy)]
+struct Times {
+    period: f64,
+    delay: f64,
+    phase: f64,
+    next: u64,
+}
+
+/// A held value that changes later.
+struct Pending {
+    t: f64,
+    target: usize,
+    values: Vec<f64>,
+    read: bool,
+}
+
+impl Schedule {
+    /// The times, from the parameters. A clock must tick forwards: the number of the first that does not.
+    pub(crate) fn new(state: &State<'_>, start: f64) -> Result<Self, usize> {
+        let program = state.program;
+        let constant = |which| {
+            program
+                .kernels
+                .constant(which, &state.p)
+                .unwrap_or(f64::NAN)
+        };
+        let mut clocks = Vec::new();
+        for clock in 0..program.clocks.len() {
+            let (period, delay, phase) = (
+                constant(Constant::Period(clock)),
+                constant(Constant::Delay(clock)),
+                constant(Constant::Phase(clock)),
+            );
+            if !(period > 0.0 && period.is_finite() && delay >= 0.0 && phase.is_finite()) {
+                return Err(clock);
+            }
+            let mut times = Times {
+                period,
+                delay,
+                phase,
+                next: 0,
+            };
+            while times.at() < start && !same_instant(times.at(), start) {
+                times.next += 1;
+            }
+            clocks.push(times);
+        }
+        let mut schedule = Self {
+            clocks,
+            pending: Vec::new(),
+            relations: Vec::new(),
+        };
+        schedule.reschedule_relations(state);
+        Ok(schedule)
+    }
+
+    /// The next instant at which something is known to happen after `t`.
+    pub(crate) fn next(&self, t: f64) -> f64 {
+        let ticks = self.clocks.iter().map(Times::at);
+        let holds = self.pending.iter().map(|pending| pending.t);
+        let relations = self
+            .relations
+            .iter()
+            .map(|(_, at)| *at)
+            .filter(|&at| at > t && !same_instant(at, t));
+        ticks
+            .chain(holds)
+            .chain(relations)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// The scheduled relations whose instant this is.
+    pub(crate) fn relations_at(&self, t: f64) -> Vec<usize> {
+        self.relations
+            .iter()
+            .filter(|(_, at)| same_instant(*at, t))
+            .map(|(relation, _)| *relation)
+            .collect()
+    }
+
+    /// Whether a clock ticks or a held value changes now.
+    pub(crate) fn due(&self, t: f64) -> bool {
+        self.clocks.iter().any(|times| same_instant(times.at(), t))
+            || self.pending.iter().any(|p| same_instant(p.t, t))
+    }
+
+    /// Runs the clocks that tick now, in data-flow order, and changes what is held. Returns the number of ticks and
+    /// whether something that the equations read has changed.
+    pub(crate) fn run(
+        &mut self,
+        state: &mut State<'_>,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> (u64, bool) {
+        let program = state.program;
+        let mut ticks = 0;
+        for &clock in &program.clock_order {
+            if !same_instant(self.clocks[clock].at(), t) {
+                continue;
+            }
+            state.tick(clock, t, y, yp);
+            self.clocks[clock].next += 1;
+            ticks += 1;
+            self.hold(program, state, clock, t);
+        }
+        let mut changed = false;
+        for pending in std::mem::take(&mut self.pending) {
+            if pending.t > t && !same_instant(pending.t, t) {
+                self.pending.push(pending);
+                continue;
+            }
+            let target = &mut state.z[pending.target..pending.target + pending.values.len()];
+            let differs = target
+                .iter()
+                .zip(&pending.values)
+                .any(|(old, new)| old.to_bits() != new.to_bits());
+            target.copy_from_slice(&pending.values);
+            changed |= differs && pending.read;
+        }
+        (ticks, changed)
+    }
+
+    /// The instants of relations between the time and parameters.
+    fn reschedule_relations(&mut self, state: &State<'_>) {
+        let program = state.program;
+        for (number, relation) in program
+            .relations
+            .iter()
+            .enumerate()
+            .filter(|(_, relation)| relation.scheduled)
+        {
+            if let Some(at) = program
+                .kernels
+                .constant(Constant::TimeEvent(number), &state.p)
+            {
+                self.relations.push((number, at));
+            }
+            debug_assert!(relation.scheduled, "only those have an instant");
+        }
+    }
+
+    fn hold(&mut self, program: &Program, state: &State<'_>, clock: usize, t: f64) {
+        for hold in program.holds.iter().filter(|hold| hold.clock == clock) {
+            self.pending.push(Pending {
+                t: t + self.clocks[clock].delay,
+                target: hold.target,
+                values: state.z[hold.source..hold.source + hold.len].to_vec(),
+                read: hold.read,
+            });
+        }
+    }
+}
+
+impl Times {
+    fn at(&self) -> f64 {
+        #[allow(
+            clippy::cast_precision_loss,
+            reason = "tick numbers are far below 2^53"
+        )]
+        let number = self.next as f64;
+        self.phase + number * self.period
+    }
+}

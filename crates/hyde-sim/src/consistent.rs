@@ -1,0 +1,218 @@
+//! Consistent values at an instant: derivatives of states and algebraic variables from given states.
+//!
+//! Newton's method on F(t, y, y') = 0 for the unknowns v = (y' of states, y of the others). Its matrix takes its columns
+//! from dF/dy' and dF/dy, on the Jacobian's own sparsity. A linear system is solved by the first iteration. From the same
+//! factors come the derivatives of v along the flow, which tell in which direction a root function leaves zero (M2) and
+//! how large the first step may be.
+
+use crate::failure::{Failure, FailureKind};
+use crate::state::State;
+use hyde_ida::{LinearMethod, Pattern, SparseSolver};
+use hyde_program::Function;
+
+/// Newton iterations at most; halvings of a step at most.
+const MAX_ITERATIONS: usize = 50;
+const MAX_HALVINGS: usize = 12;
+
+/// The solver of consistent values; keeps its factors from call to call.
+pub(crate) struct Consistent {
+    solver: Option<SparseSolver>,
+    matrix: Vec<f64>,
+    residual: Vec<f64>,
+    correction: Vec<f64>,
+}
+
+impl Consistent {
+    pub(crate) fn new(state: &State<'_>) -> Self {
+        let jacobian = &state.program.jacobian;
+        let n = state.program.n_unknowns;
+        let pattern = Pattern::new(n, jacobian.column_starts.clone(), jacobian.rows.clone());
+        let solver = pattern
+            .ok()
+            .filter(|_| n > 0)
+            .and_then(|p| SparseSolver::new(p, LinearMethod::Auto).ok());
+        Self {
+            solver,
+            matrix: vec![0.0; jacobian.len()],
+            residual: vec![0.0; n],
+            correction: vec![0.0; n],
+        }
+    }
+
+    /// Solves for the derivatives of states and the algebraic variables, in place.
+    pub(crate) fn solve(
+        &mut self,
+        state: &mut State<'_>,
+        t: f64,
+        y: &mut [f64],
+        yp: &mut [f64],
+        at_start: bool,
+    ) -> Result<(), Box<Failure>> {
+        if self.solver.is_none() {
+            return Ok(());
+        }
+        state.apply_pins(y, yp);
+        self.evaluate(state, t, y, yp)?;
+        for _ in 0..MAX_ITERATIONS {
+            self.factor(state, t, y, yp, at_start)?;
+            self.correction.copy_from_slice(&self.residual);
+            if let Some(solver) = &mut self.solver {
+                solver.solve(&mut self.correction);
+            }
+            let small = self.take_step(state, t, y, yp)?;
+            if small {
+                // States' rows that a mode fixes hold to the last bit.
+                state.apply_pins(y, yp);
+                return Ok(());
+            }
+        }
+        let worst = largest(&self.residual);
+        let kind = FailureKind::Inconsistent {
+            singular: None,
+            at_start,
+        };
+        Err(Failure::new(kind, t).at_row(state.program, worst, y))
+    }
+
+    /// The derivatives along the flow of y (all of it) and of the states' y', after [`Consistent::solve`] at the point.
+    pub(crate) fn flow(
+        &mut self,
+        state: &mut State<'_>,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let n = y.len();
+        let mut dy = vec![0.0; n];
+        let mut dyp = vec![0.0; n];
+        if n == 0 {
+            return Some((dy, dyp));
+        }
+        for (index, rate) in dy.iter_mut().enumerate() {
+            if state.differential[index] {
+                *rate = yp[index];
+            }
+        }
+        let mut right = vec![0.0; n];
+        state.directional(t, y, yp, &dy, &dyp, &mut right);
+        // The explicit time derivative, by a difference: inputs and the time have no other.
+        let step = 1e-7 * (1e-3 + t.abs());
+        let (mut later, mut now) = (vec![0.0; n], vec![0.0; n]);
+        state.evaluate(Function::Residual, t + step, y, yp, &mut later);
+        state.evaluate(Function::Residual, t, y, yp, &mut now);
+        for index in 0..n {
+            right[index] = -(right[index] + (later[index] - now[index]) / step);
+        }
+        state.consistent_matrix(t, y, yp, &mut self.matrix);
+        let solver = self.solver.as_mut()?;
+        solver.factor(&self.matrix).ok()?;
+        solver.solve(&mut right);
+        for (index, value) in right.into_iter().enumerate() {
+            if state.differential[index] {
+                dyp[index] = value;
+            } else {
+                dy[index] = value;
+            }
+        }
+        Some((dy, dyp))
+    }
+
+    fn evaluate(
+        &mut self,
+        state: &mut State<'_>,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> Result<(), Box<Failure>> {
+        state.evaluate(Function::Residual, t, y, yp, &mut self.residual);
+        match self.residual.iter().position(|value| !value.is_finite()) {
+            Some(row) => Err(Failure::new(FailureKind::NotFinite, t).at_row(state.program, row, y)),
+            None => Ok(()),
+        }
+    }
+
+    fn factor(
+        &mut self,
+        state: &mut State<'_>,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        at_start: bool,
+    ) -> Result<(), Box<Failure>> {
+        state.consistent_matrix(t, y, yp, &mut self.matrix);
+        let Some(solver) = &mut self.solver else {
+            return Ok(());
+        };
+        solver.factor(&self.matrix).map_err(|singular| {
+            let name = state.program.unknown_name(singular.unknown);
+            let kind = FailureKind::Inconsistent {
+                singular: Some(name),
+                at_start,
+            };
+            Failure::new(kind, t).at_row(state.program, singular.unknown, y)
+        })
+    }
+
+    /// Takes the Newton step, halved until the residual does not grow; whether it was small.
+    fn take_step(
+        &mut self,
+        state: &mut State<'_>,
+        t: f64,
+        y: &mut [f64],
+        yp: &mut [f64],
+    ) -> Result<bool, Box<Failure>> {
+        let norm = |residual: &[f64]| residual.iter().map(|r| r * r).sum::<f64>().sqrt();
+        let before = norm(&self.residual);
+        let mut factor = 1.0;
+        let old: Vec<f64> = (0..y.len())
+            .map(|i| if state.differential[i] { yp[i] } else { y[i] })
+            .collect();
+        for halving in 0..=MAX_HALVINGS {
+            for (index, &value) in old.iter().enumerate() {
+                let new = value - factor * self.correction[index];
+                if state.differential[index] {
+                    yp[index] = new;
+                } else {
+                    y[index] = new;
+                }
+            }
+            let finite = self.evaluate(state, t, y, yp);
+            let after = norm(&self.residual);
+            // Near the solution the residual is rounding and may as well grow.
+            let rounding = 1e-13 * before.max(1e-300);
+            if finite.is_ok()
+                && (after <= before
+                    || after <= rounding
+                    || halving == MAX_HALVINGS
+                    || self.is_small(&old, 1e-9))
+            {
+                break;
+            }
+            if halving == MAX_HALVINGS {
+                finite?;
+            }
+            factor *= 0.5;
+        }
+        Ok(factor == 1.0 && self.is_small(&old, 1e-12))
+    }
+
+    fn is_small(&self, values: &[f64], tolerance: f64) -> bool {
+        let largest = values
+            .iter()
+            .fold(0.0_f64, |most, value| most.max(value.abs()));
+        values
+            .iter()
+            .zip(&self.correction)
+            .all(|(value, correction)| {
+                correction.abs() <= tolerance * (value.abs() + 1e-3 * largest) + 1e-14
+            })
+    }
+}
+
+fn largest(values: &[f64]) -> usize {
+    let by_size = values
+        .iter()
+        .enumerate()
+        .max_by(|a, b| a.1.abs().total_cmp(&b.1.abs()));
+    by_size.map_or(0, |(index, _)| index)
+}

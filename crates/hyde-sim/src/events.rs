@@ -1,0 +1,385 @@
+//! Event iteration: reactions fire together, values become consistent, until nothing fires (M7).
+//!
+//! One round:
+//! 1. the truth of every relation that matters now, with consistent values; one that is exactly zero, or whose scheduled
+//!    instant this is, counts by the sign of its derivative along the flow (M2);
+//! 2. the reactions whose conditions hold: of an automaton the first exit of its mode, of a `when` clause the first
+//!    branch that became true;
+//! 3. all their assignments, from the values before; states that the new modes fix take their values (M3);
+//! 4. consistent values.
+//!
+//! Fifty rounds, or modes that were met before at this instant, end the run: the conditions would fire for ever.
+
+use crate::consistent::Consistent;
+use crate::failure::{Failure, FailureKind};
+use crate::guards::{current_mode, is_active};
+use crate::results::{Event, EventKind};
+use crate::state::State;
+use hyde_program::{Function, Program, ReactionKind, RelationUse, Target, Wrt};
+
+const MAX_ROUNDS: usize = 50;
+
+/// What an instant is worked on with.
+pub(crate) struct Instant<'s, 'a> {
+    pub(crate) state: &'s mut State<'a>,
+    pub(crate) consistent: &'s mut Consistent,
+    pub(crate) t: f64,
+    pub(crate) y: &'s mut Vec<f64>,
+    pub(crate) yp: &'s mut Vec<f64>,
+    /// Conditions as they were, to tell which become true.
+    pub(crate) conditions: &'s mut Vec<bool>,
+    pub(crate) log: &'s mut Vec<Event>,
+}
+
+impl Instant<'_, '_> {
+    /// Iterates until nothing fires. `scheduled` are the relations whose instant this is. Returns whether anything
+    /// changed that the equations read. At the start `when` conditions that hold already do not fire.
+    pub(crate) fn iterate(
+        &mut self,
+        scheduled: &[usize],
+        at_start: bool,
+    ) -> Result<bool, Box<Failure>> {
+        let program = self.state.program;
+        if program.relations.is_empty() && program.reactions.is_empty() {
+            return Ok(false);
+        }
+        let mut changed = false;
+        let mut seen: Vec<Vec<u64>> = Vec::new();
+        let mut causes: Vec<String> = Vec::new();
+        for _ in 0..MAX_ROUNDS {
+            let truths = self.truths(scheduled)?;
+            let flipped = self.flip(&truths);
+            let conditions = self.state.conditions(self.t, self.y, self.yp);
+            let fired = self.fired(&conditions, at_start && seen.is_empty())?;
+            *self.conditions = conditions;
+            if fired.is_empty() && flipped.is_empty() {
+                return Ok(changed);
+            }
+            changed = true;
+            for relation in flipped {
+                let relation_info = &program.relations[relation];
+                causes.push(relation_info.text.clone());
+                let kind = EventKind::Relation(self.state.z[relation] != 0.0);
+                self.note(kind, &relation_info.text, &relation_info.origin, at_start);
+            }
+            self.apply(&fired, &mut causes)?;
+            let key: Vec<u64> = self.mode_key();
+            let repeats = seen.contains(&key) && fired.iter().all(|&r| self.is_transition(r));
+            if repeats && !fired.is_empty() {
+                return Err(self.chattering(&causes));
+            }
+            seen.push(key);
+            self.consistent
+                .solve(self.state, self.t, self.y, self.yp, at_start)?;
+        }
+        Err(self.chattering(&causes))
+    }
+
+    /// The truth of every relation that matters; of the others as they were.
+    fn truths(&mut self, scheduled: &[usize]) -> Result<Vec<bool>, Box<Failure>> {
+        let program = self.state.program;
+        let mut roots = vec![0.0; program.relations.len()];
+        self.state
+            .evaluate(Function::Roots, self.t, self.y, self.yp, &mut roots);
+        let mut rates: Option<Vec<f64>> = None;
+        let mut truths = Vec::with_capacity(roots.len());
+        for (number, &root) in roots.iter().enumerate() {
+            let before = self.state.z[number] != 0.0;
+            if !is_active(program, &self.state.z, number) {
+                truths.push(before);
+                continue;
+            }
+            if !root.is_finite() {
+                let relation = &program.relations[number];
+                return Err(
+                    Failure::new(FailureKind::NotFinite, self.t).at_origin(&relation.origin)
+                );
+            }
+            let zero = root == 0.0 || scheduled.contains(&number);
+            if !zero {
+                truths.push(root > 0.0);
+                continue;
+            }
+            let rate = rates.get_or_insert_with(|| {
+                root_rates(self.state, self.consistent, self.t, self.y, self.yp)
+            })[number];
+            let inclusive = program.relations[number].inclusive;
+            truths.push(if rate == 0.0 {
+                if root == 0.0 { inclusive } else { root > 0.0 }
+            } else {
+                rate > 0.0
+            });
+        }
+        Ok(truths)
+    }
+
+    /// Writes the truths to the memory; the relations of equations whose truth changed.
+    fn flip(&mut self, truths: &[bool]) -> Vec<usize> {
+        let program = self.state.program;
+        let mut flipped = Vec::new();
+        for (number, &truth) in truths.iter().enumerate() {
+            let value = f64::from(u8::from(truth));
+            if self.state.z[number].to_bits() != value.to_bits() {
+                self.state.z[number] = value;
+                if program.relations[number].used == RelationUse::Equation {
+                    flipped.push(number);
+                }
+            }
+        }
+        flipped
+    }
+
+    /// The reactions that fire: exits of current modes, branches that became true.
+    fn fired(&self, conditions: &[bool], at_start: bool) -> Result<Vec<usize>, Box<Failure>> {
+        let program = self.state.program;
+        let mut fired = Vec::new();
+        let mut left: Vec<usize> = Vec::new();
+        let mut clauses: Vec<usize> = Vec::new();
+        for (number, reaction) in program.reactions.iter().enumerate() {
+            let (now, before) = (conditions[number], self.conditions[number]);
+            match &reaction.kind {
+                ReactionKind::Transition {
+                    automaton, from, ..
+                } => {
+                    let here = current_mode(program, &self.state.z, *automaton) == *from;
+                    if now && here && !left.contains(automaton) {
+                        left.push(*automaton);
+                        fired.push(number);
+                    }
+                }
+                ReactionKind::When { clause } => {
+                    if now && !before && !at_start && !clauses.contains(clause) {
+                        clauses.push(*clause);
+                        fired.push(number);
+                    }
+                }
+                ReactionKind::Assert(message) => {
+                    if now {
+                        let failure = Failure::new(FailureKind::Assert(message.clone()), self.t);
+                        return Err(failure.at_origin(&reaction.origin));
+                    }
+                }
+            }
+        }
+        Ok(fired)
+    }
+
+    /// Carries out the assignments of reactions, all from the values before; then modes, then pins.
+    fn apply(&mut self, fired: &[usize], causes: &mut Vec<String>) -> Result<(), Box<Failure>> {
+        let program = self.state.program;
+        let mut values = vec![0.0; program.rows(Function::Assignments)];
+        self.state
+            .evaluate(Function::Assignments, self.t, self.y, self.yp, &mut values);
+        let mut entered: Vec<(usize, usize, bool)> = Vec::new();
+        for &number in fired {
+            let reaction = &program.reactions[number];
+            causes.push(reaction.text.clone());
+            match &reaction.kind {
+                ReactionKind::Transition {
+                    automaton,
+                    from,
+                    to,
+                    impact,
+                } => {
+                    entered.push((*automaton, *to, *impact));
+                    let kind = EventKind::Transition {
+                        automaton: *automaton,
+                        from: *from,
+                        to: *to,
+                    };
+                    self.note(kind, &reaction.text, &reaction.origin, false);
+                }
+                ReactionKind::When { .. } => {
+                    self.note(EventKind::When, &reaction.text, &reaction.origin, false)
+                }
+                ReactionKind::Assert(_) => {}
+            }
+            for index in reaction.assignments.clone() {
+                match program.assignments[index].target {
+                    Target::State(position) => self.y[position] = values[index],
+                    Target::Memory(position) => self.state.z[position] = values[index],
+                }
+            }
+        }
+        for &(automaton, to, _) in &entered {
+            #[allow(clippy::cast_precision_loss, reason = "a number of modes")]
+            let number = to as f64;
+            self.state.z[program.automata[automaton].place] = number;
+        }
+        self.pin(&entered)
+    }
+
+    /// Fixes the states of the modes entered, and frees those of the modes left.
+    fn pin(&mut self, entered: &[(usize, usize, bool)]) -> Result<(), Box<Failure>> {
+        let program = self.state.program;
+        if program.pins.is_empty() {
+            return Ok(());
+        }
+        let mut values = vec![0.0; program.rows(Function::Assignments)];
+        self.state
+            .evaluate(Function::Assignments, self.t, self.y, self.yp, &mut values);
+        let mut pinned = Vec::new();
+        for (number, pin) in program.pins.iter().enumerate() {
+            if current_mode(program, &self.state.z, pin.automaton) != pin.mode {
+                continue;
+            }
+            let value = values[program.assignments.len() + number];
+            let entry = entered
+                .iter()
+                .find(|(automaton, ..)| *automaton == pin.automaton);
+            if let Some((_, _, impact)) = entry {
+                let now = self.y[pin.state];
+                // The instant was located to rounding of the time: the state may be off by what it moves meanwhile.
+                let rounding = self.yp[pin.state].abs() * 1e-12 * (1.0 + self.t.abs());
+                let tolerance = 1e-6 * now.abs().max(value.abs()) + 1e-7 + rounding;
+                if !impact && (now - value).abs() > tolerance {
+                    let name = program.unknown_name(pin.state);
+                    let failure = Failure::new(FailureKind::Impact(name, now, value), self.t);
+                    return Err(failure.at_origin(&pin.origin));
+                }
+            }
+            pinned.push((pin.state, value));
+        }
+        self.state.pinned = pinned;
+        self.state.apply_pins(self.y, self.yp);
+        Ok(())
+    }
+
+    fn is_transition(&self, reaction: usize) -> bool {
+        matches!(
+            self.state.program.reactions[reaction].kind,
+            ReactionKind::Transition { .. }
+        )
+    }
+
+    fn mode_key(&self) -> Vec<u64> {
+        let program = self.state.program;
+        program
+            .automata
+            .iter()
+            .map(|automaton| self.state.z[automaton.place].to_bits())
+            .collect()
+    }
+
+    fn note(&mut self, kind: EventKind, cause: &str, origin: &hyde_diag::Origin, at_start: bool) {
+        if !at_start {
+            self.log.push(Event {
+                t: self.t,
+                kind,
+                cause: cause.to_owned(),
+                origin: origin.clone(),
+            });
+        }
+    }
+
+    fn chattering(&self, causes: &[String]) -> Box<Failure> {
+        let program = self.state.program;
+        let mut distinct: Vec<String> = Vec::new();
+        for cause in causes.iter().rev() {
+            if !distinct.contains(cause) {
+                distinct.push(cause.clone());
+            }
+        }
+        distinct.truncate(4);
+        let mut failure = Failure::new(FailureKind::Chattering(distinct.clone()), self.t);
+        for reaction in program
+            .reactions
+            .iter()
+            .filter(|reaction| distinct.contains(&reaction.text))
+        {
+            if !failure.origins.contains(&reaction.origin) {
+                failure = failure.at_origin(&reaction.origin);
+            }
+        }
+        failure
+    }
+}
+
+/// The states that the modes in the memory fix, with their values.
+pub(crate) fn initial_pins(
+    state: &mut State<'_>,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+) -> Vec<(usize, f64)> {
+    let program: &Program = state.program;
+    if program.pins.is_empty() {
+        return Vec::new();
+    }
+    let mut values = vec![0.0; program.rows(Function::Assignments)];
+    state.evaluate(Function::Assignments, t, y, yp, &mut values);
+    program
+        .pins
+        .iter()
+        .enumerate()
+        .filter(|(_, pin)| current_mode(program, &state.z, pin.automaton) == pin.mode)
+        .map(|(number, pin)| (pin.state, values[program.assignments.len() + number]))
+        .collect()
+}
+
+/// In which direction each root function leaves zero along the flow: the mean of its derivative now and a moment later.
+///
+/// A friction that breaks away does so where the acceleration is still zero, so the derivative alone would be rounding;
+/// a moment later it has its sign.
+fn root_rates(
+    state: &mut State<'_>,
+    consistent: &mut Consistent,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+) -> Vec<f64> {
+    let Some((now, dy)) = rates_at(state, consistent, t, y, yp) else {
+        return vec![0.0; state.program.relations.len()];
+    };
+    let moment = 1e-9 * (1.0 + t.abs());
+    let mut y_later: Vec<f64> = y
+        .iter()
+        .zip(&dy)
+        .map(|(value, rate)| value + moment * rate)
+        .collect();
+    let mut yp_later = yp.to_vec();
+    if consistent
+        .solve(state, t + moment, &mut y_later, &mut yp_later, false)
+        .is_err()
+    {
+        return now;
+    }
+    match rates_at(state, consistent, t + moment, &y_later, &yp_later) {
+        Some((later, _)) => now
+            .iter()
+            .zip(later)
+            .map(|(now, later)| 0.5 * (now + later))
+            .collect(),
+        None => now,
+    }
+}
+
+/// The derivatives of all root functions along the flow at a point, and that of y.
+fn rates_at(
+    state: &mut State<'_>,
+    consistent: &mut Consistent,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+) -> Option<(Vec<f64>, Vec<f64>)> {
+    let program = state.program;
+    let mut rates = vec![0.0; program.relations.len()];
+    let (dy, dyp) = consistent.flow(state, t, y, yp)?;
+    let partials = state.partials(Function::Roots, t, y, yp);
+    for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
+        rates[entry.row] += match entry.wrt {
+            Wrt::Unknown(column) => value * dy[column],
+            Wrt::Derivative(column) => value * dyp[column],
+            Wrt::Time | Wrt::Parameter(_) => 0.0,
+        };
+    }
+    // The time itself, and record columns that move with it.
+    let step = 1e-7 * (1e-3 + t.abs());
+    let (mut later, mut now) = (vec![0.0; rates.len()], vec![0.0; rates.len()]);
+    state.evaluate(Function::Roots, t + step, y, yp, &mut later);
+    state.evaluate(Function::Roots, t, y, yp, &mut now);
+    for (rate, (later, now)) in rates.iter_mut().zip(later.iter().zip(&now)) {
+        *rate += (later - now) / step;
+    }
+    Some((rates, dy))
+}

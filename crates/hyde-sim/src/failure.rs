@@ -1,0 +1,92 @@
+//! [`Failure`]: why a run could not go on, in the words of the model.
+
+use crate::results::Results;
+use hyde_diag::Origin;
+use hyde_program::Program;
+
+/// The kinds of failures.
+#[derive(Clone, Debug, PartialEq)]
+pub enum FailureKind {
+    /// No consistent initial conditions or values after an event: the equations, the unknown where the matrix is
+    /// singular, and whether this is the start.
+    Inconsistent {
+        /// The unknown that no equation determines here.
+        singular: Option<String>,
+        /// At the start of the run.
+        at_start: bool,
+    },
+    /// The solver gave up: its reason.
+    Solver(String),
+    /// An equation has no finite value.
+    NotFinite,
+    /// Events follow each other at one instant without end: the conditions involved.
+    Chattering(Vec<String>),
+    /// More and more events in less and less time.
+    TooManyEvents,
+    /// A state jumps as a mode fixes it: its name, its value, and the value it is fixed to.
+    Impact(String, f64, f64),
+    /// An `assert` does not hold: its message.
+    Assert(String),
+    /// A record is missing or lacks a column.
+    Input(String),
+}
+
+/// Why a run could not go on.
+#[derive(Clone, Debug)]
+pub struct Failure {
+    /// What went wrong.
+    pub kind: FailureKind,
+    /// Time in s.
+    pub t: f64,
+    /// The equations involved, the most likely first.
+    pub origins: Vec<Origin>,
+    /// The unknowns involved, by name, with their values.
+    pub unknowns: Vec<(String, f64)>,
+    /// Everything up to the failure.
+    pub results: Results,
+}
+
+impl Failure {
+    pub(crate) fn new(kind: FailureKind, t: f64) -> Box<Self> {
+        Box::new(Self {
+            kind,
+            t,
+            origins: Vec::new(),
+            unknowns: Vec::new(),
+            results: Results::default(),
+        })
+    }
+
+    /// Names the equation of a row and the unknown matched to it.
+    pub(crate) fn at_row(
+        mut self: Box<Self>,
+        program: &Program,
+        row: usize,
+        y: &[f64],
+    ) -> Box<Self> {
+        if let Some(block) = program.block(row) {
+            self.origins.extend(block.origins.iter().cloned());
+        }
+        self.at_unknown(program, row, y)
+    }
+
+    /// Names an unknown.
+    pub(crate) fn at_unknown(
+        mut self: Box<Self>,
+        program: &Program,
+        position: usize,
+        y: &[f64],
+    ) -> Box<Self> {
+        let name = program.unknown_name(position);
+        if !self.unknowns.iter().any(|(known, _)| *known == name) {
+            self.unknowns
+                .push((name, y.get(position).copied().unwrap_or(f64::NAN)));
+        }
+        self
+    }
+
+    pub(crate) fn at_origin(mut self: Box<Self>, origin: &Origin) -> Box<Self> {
+        self.origins.push(origin.clone());
+        self
+    }
+}

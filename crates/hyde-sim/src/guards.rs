@@ -1,0 +1,174 @@
+//! Watches the relations over a step and locates the first change (M8).
+//!
+//! After each step the root functions are evaluated at the end and at a few Chebyshev points of the step's interpolant;
+//! a change of sign between two of them brackets a crossing, which is located on the interpolant.
+
+use crate::integrator::Integrator;
+use hyde_program::{Function, Program, RelationUse};
+
+/// Chebyshev points inside a step.
+const INSIDE: [f64; 3] = [0.146_446_609_406_726_24, 0.5, 0.853_553_390_593_273_8];
+
+/// A located change: its time.
+pub(crate) struct Crossing {
+    pub(crate) t: f64,
+}
+
+/// The relations to watch: in equations, in `when` and `assert`, and in exits of current modes. Scheduled ones are not
+/// searched for.
+pub(crate) fn active(program: &Program, z: &[f64]) -> Vec<usize> {
+    let watched = |number: &usize| {
+        let relation = &program.relations[*number];
+        !relation.scheduled && is_active(program, z, *number)
+    };
+    (0..program.relations.len()).filter(watched).collect()
+}
+
+/// Whether a relation matters in the current modes.
+pub(crate) fn is_active(program: &Program, z: &[f64], relation: usize) -> bool {
+    match program.relations[relation].used {
+        RelationUse::Exit(automaton, mode) => current_mode(program, z, automaton) == mode,
+        RelationUse::Equation | RelationUse::When | RelationUse::Assert => true,
+    }
+}
+
+/// The number of an automaton's mode.
+pub(crate) fn current_mode(program: &Program, z: &[f64], automaton: usize) -> usize {
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the memory holds the number of a mode"
+    )]
+    let mode = z[program.automata[automaton].place] as usize;
+    mode
+}
+
+/// The first change of a watched relation within the last step, which began at `from`.
+pub(crate) fn first_change(
+    integrator: &mut Integrator<'_>,
+    watched: &[usize],
+    from: f64,
+) -> Option<Crossing> {
+    if watched.is_empty() {
+        return None;
+    }
+    let (start, end) = (from, integrator.t);
+    let truths: Vec<bool> = watched
+        .iter()
+        .map(|&relation| integrator.state().z[relation] != 0.0)
+        .collect();
+    let mut probe = Probe::new(integrator);
+    let mut last = start;
+    for part in INSIDE.into_iter().chain([1.0]) {
+        let at = if part < 1.0 {
+            start + part * (end - start)
+        } else {
+            end
+        };
+        let roots = probe.roots(integrator, at);
+        let changed: Vec<usize> = (0..watched.len())
+            .filter(|&k| is_true(roots[watched[k]], truths[k]) != truths[k])
+            .collect();
+        if changed.is_empty() {
+            last = at;
+            continue;
+        }
+        let relations: Vec<(usize, bool)> = changed
+            .into_iter()
+            .map(|k| (watched[k], truths[k]))
+            .collect();
+        return Some(locate(integrator, &mut probe, &relations, last, at));
+    }
+    None
+}
+
+/// Truth by the sign of the root function; exactly zero keeps the truth it had.
+fn is_true(root: f64, before: bool) -> bool {
+    if root == 0.0 { before } else { root > 0.0 }
+}
+
+/// The first of several changes between `low`, where none has happened, and `high`, where all have.
+fn locate(
+    integrator: &mut Integrator<'_>,
+    probe: &mut Probe,
+    relations: &[(usize, bool)],
+    low: f64,
+    high: f64,
+) -> Crossing {
+    let (mut a, mut b) = (low, high);
+    let mut remaining: Vec<(usize, bool)> = relations.to_vec();
+    // Values of the one whose secant guides the search.
+    let mut at_a: Option<f64> = None;
+    let mut at_b = probe.roots(integrator, b)[remaining[0].0];
+    let mut side = 0_i32;
+    for round in 0..200 {
+        let tolerance = 4.0 * f64::EPSILON * b.abs().max(a.abs()) + 1e-15 * (high - low);
+        if b - a <= tolerance {
+            break;
+        }
+        let secant = at_a
+            .map(|at_a| b - at_b * (b - a) / (at_b - at_a))
+            .filter(|t| *t > a && *t < b);
+        let middle = 0.5 * (a + b);
+        let mut t = match secant {
+            Some(t) if round % 3 != 2 => t,
+            _ => middle,
+        };
+        // A secant that lands on an end moves by the tolerance, so that the bracket closes from that side.
+        t = t.clamp(a + 0.5 * tolerance, b - 0.5 * tolerance);
+        let roots = probe.roots(integrator, t);
+        let changed: Vec<(usize, bool)> = remaining
+            .iter()
+            .copied()
+            .filter(|&(relation, truth)| is_true(roots[relation], truth) != truth)
+            .collect();
+        if changed.is_empty() {
+            a = t;
+            at_a = Some(roots[remaining[0].0]);
+            if side == -1 {
+                // Illinois: the end that stays twice counts half.
+                at_b *= 0.5;
+            }
+            side = -1;
+        } else {
+            let same = changed[0].0 == remaining[0].0;
+            b = t;
+            at_b = roots[changed[0].0];
+            if side == 1 {
+                at_a = at_a.map(|value| 0.5 * value);
+            }
+            if !same {
+                at_a = None;
+            }
+            side = 1;
+            remaining = changed;
+        }
+    }
+    Crossing { t: b }
+}
+
+/// Evaluates root functions on the interpolant.
+struct Probe {
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    roots: Vec<f64>,
+}
+
+impl Probe {
+    fn new(integrator: &Integrator<'_>) -> Self {
+        let program = integrator.state().program;
+        Self {
+            y: vec![0.0; program.n_unknowns],
+            yp: vec![0.0; program.n_unknowns],
+            roots: vec![0.0; program.relations.len()],
+        }
+    }
+
+    fn roots(&mut self, integrator: &mut Integrator<'_>, t: f64) -> &[f64] {
+        integrator.interpolate(t, &mut self.y, &mut self.yp);
+        integrator
+            .state_mut()
+            .evaluate(Function::Roots, t, &self.y, &self.yp, &mut self.roots);
+        &self.roots
+    }
+}

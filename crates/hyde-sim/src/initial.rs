@@ -1,0 +1,227 @@
+//! The initial system: start values, initial equations, first consistent values (I1 to I3).
+//!
+//! Where every state starts at its start value only consistent values are left to solve. With initial equations, y and
+//! the states' y' are unknown together: F = 0, each fixed start value, each initial equation, by a damped Newton method.
+
+use crate::consistent::Consistent;
+use crate::failure::{Failure, FailureKind};
+use crate::state::State;
+use hyde_ida::{LinearMethod, Pattern, SparseSolver};
+use hyde_program::{Function, InitialCondition, Wrt};
+
+const MAX_ITERATIONS: usize = 100;
+const MAX_HALVINGS: usize = 20;
+
+/// Start values of y and the memory, before anything is solved.
+pub(crate) fn start(state: &mut State<'_>) -> (Vec<f64>, Vec<f64>) {
+    let n = state.program.n_unknowns;
+    let (mut y, yp) = (vec![0.0; n], vec![0.0; n]);
+    let p = state.p.clone();
+    state.program.kernels.start(&p, &mut y, &mut state.z);
+    (y, yp)
+}
+
+/// Solves the initial equations, if there are any; the states then have their values.
+pub(crate) fn solve(
+    state: &mut State<'_>,
+    consistent: &mut Consistent,
+    t: f64,
+    y: &mut Vec<f64>,
+    yp: &mut Vec<f64>,
+) -> Result<(), Box<Failure>> {
+    let program = state.program;
+    let count = program.rows(Function::Initial);
+    if count == 0 {
+        return consistent.solve(state, t, y, yp, true);
+    }
+    // A first guess for the rest from the states' start values; it need not exist.
+    let (mut guess_y, mut guess_yp) = (y.clone(), yp.clone());
+    if consistent
+        .solve(state, t, &mut guess_y, &mut guess_yp, true)
+        .is_ok()
+    {
+        y.copy_from_slice(&guess_y);
+        yp.copy_from_slice(&guess_yp);
+    }
+    let n = program.n_unknowns;
+    let states: Vec<usize> = (0..n).filter(|&i| state.differential[i]).collect();
+    let column_of_rate: Vec<Option<usize>> = {
+        let mut columns = vec![None; n];
+        states
+            .iter()
+            .enumerate()
+            .for_each(|(number, &i)| columns[i] = Some(n + number));
+        columns
+    };
+    let size = n + states.len();
+    let mut fixed: Vec<usize> = state.pinned.iter().map(|(position, _)| *position).collect();
+    for condition in &program.initial {
+        if let InitialCondition::Fixed {
+            state: first, len, ..
+        } = condition
+        {
+            fixed.extend(*first..*first + *len);
+        }
+    }
+    let targets: Vec<f64> = fixed.iter().map(|&i| y[i]).collect();
+    if n + count + fixed.len() != size {
+        let kind = FailureKind::Inconsistent {
+            singular: None,
+            at_start: true,
+        };
+        return Err(Failure::new(kind, t));
+    }
+    let (pattern, positions) = pattern(state, size, n, count, &fixed, &column_of_rate);
+    let failed = |singular: Option<String>| {
+        let mut failure = Failure::new(
+            FailureKind::Inconsistent {
+                singular,
+                at_start: true,
+            },
+            t,
+        );
+        for condition in &program.initial {
+            if let InitialCondition::Equation { origin, .. } = condition {
+                failure = failure.at_origin(origin);
+            }
+        }
+        failure
+    };
+    let mut solver = SparseSolver::new(pattern, LinearMethod::Auto).map_err(|_| failed(None))?;
+    let residual = |state: &mut State<'_>, y: &[f64], yp: &[f64]| {
+        let mut out = vec![0.0; size];
+        state.evaluate(Function::Residual, t, y, yp, &mut out[..n]);
+        let mut equations = vec![0.0; count];
+        state.evaluate(Function::Initial, t, y, yp, &mut equations);
+        out[n..n + count].copy_from_slice(&equations);
+        for (number, (&i, target)) in fixed.iter().zip(&targets).enumerate() {
+            out[n + count + number] = y[i] - target;
+        }
+        out
+    };
+    let norm = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>().sqrt();
+    let mut r = residual(state, y, yp);
+    for _ in 0..MAX_ITERATIONS {
+        let values = values(state, t, y, yp, &positions);
+        if let Err(singular) = solver.factor(&values) {
+            let column = singular.unknown;
+            let position = if column < n {
+                column
+            } else {
+                states[column - n]
+            };
+            return Err(failed(Some(program.unknown_name(position))));
+        }
+        let mut step = r.clone();
+        solver.solve(&mut step);
+        let (old_y, old_yp, before) = (y.clone(), yp.clone(), norm(&r));
+        let mut factor = 1.0;
+        for halving in 0..=MAX_HALVINGS {
+            for i in 0..n {
+                y[i] = old_y[i] - factor * step[i];
+                if let Some(column) = column_of_rate[i] {
+                    yp[i] = old_yp[i] - factor * step[column];
+                }
+            }
+            r = residual(state, y, yp);
+            let after = norm(&r);
+            if after.is_finite() && (after <= before || halving == MAX_HALVINGS || after < 1e-12) {
+                break;
+            }
+            factor *= 0.5;
+        }
+        let size_of = |v: &[f64]| v.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        if factor == 1.0 && size_of(&step) <= 1e-11 * (1.0 + size_of(&old_y).max(size_of(&old_yp)))
+        {
+            return consistent.solve(state, t, y, yp, true);
+        }
+    }
+    Err(failed(None))
+}
+
+/// Sparsity of the initial system, and where each value of the kernels goes: residual, initial equations, then ones.
+fn pattern(
+    state: &State<'_>,
+    size: usize,
+    n: usize,
+    count: usize,
+    fixed: &[usize],
+    column_of_rate: &[Option<usize>],
+) -> (Pattern, Vec<Vec<Option<usize>>>) {
+    let program = state.program;
+    let column = |wrt: Wrt| match wrt {
+        Wrt::Unknown(column) => Some(column),
+        Wrt::Derivative(column) => column_of_rate[column],
+        Wrt::Parameter(_) | Wrt::Time => None,
+    };
+    let lists: Vec<Vec<Option<(usize, usize)>>> = vec![
+        program
+            .partials(Function::Residual)
+            .iter()
+            .map(|e| Some((column(e.wrt)?, e.row)))
+            .collect(),
+        program
+            .partials(Function::Initial)
+            .iter()
+            .map(|e| Some((column(e.wrt)?, n + e.row)))
+            .collect(),
+        fixed
+            .iter()
+            .zip(n + count..)
+            .map(|(&i, row)| Some((i, row)))
+            .collect(),
+    ];
+    let mut cells: Vec<(usize, usize)> = lists.iter().flatten().flatten().copied().collect();
+    cells.sort_unstable();
+    cells.dedup();
+    let mut starts = vec![0_i64; size + 1];
+    cells
+        .iter()
+        .for_each(|&(column, _)| starts[column + 1] += 1);
+    (0..size).for_each(|column| starts[column + 1] += starts[column]);
+    let rows = cells
+        .iter()
+        .map(|&(_, row)| i64::try_from(row).unwrap_or(i64::MAX))
+        .collect();
+    let find = |cell: &Option<(usize, usize)>| {
+        cell.as_ref()
+            .and_then(|cell| cells.binary_search(cell).ok())
+    };
+    let positions = lists
+        .iter()
+        .map(|list| list.iter().map(find).collect())
+        .collect();
+    let empty = Pattern::dense(size);
+    match (Pattern::new(size, starts, rows), empty) {
+        (Ok(pattern), _) | (Err(_), Ok(pattern)) => (pattern, positions),
+        // The cells above are in order and inside; a pattern of them always exists.
+        (Err(error), Err(_)) => unreachable!("{error}"),
+    }
+}
+
+fn values(
+    state: &mut State<'_>,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+    positions: &[Vec<Option<usize>>],
+) -> Vec<f64> {
+    let size = positions
+        .iter()
+        .flatten()
+        .flatten()
+        .max()
+        .map_or(0, |last| last + 1);
+    let mut values = vec![0.0; size];
+    let residual = state.partials(Function::Residual, t, y, yp);
+    let initial = state.partials(Function::Initial, t, y, yp);
+    let ones = vec![1.0; positions[2].len()];
+    for (list, numbers) in positions.iter().zip([residual, initial, ones]) {
+        for (position, number) in list.iter().zip(numbers) {
+            if let Some(position) = position {
+                values[*position] += number;
+            }
+        }
+    }
+    values
+}

@@ -1,0 +1,109 @@
+//! Record columns over time: read linearly by continuous equations, held by clocks (C4).
+
+use crate::failure::{Failure, FailureKind};
+use crate::setup::Setup;
+use hyde_program::Program;
+use hyde_signal::{Cursor, Signal};
+
+/// A column that a program reads and the records do not have.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InputError {
+    /// The record.
+    pub record: String,
+    /// The column.
+    pub column: String,
+}
+
+/// The columns of a run.
+pub(crate) struct Inputs<'a> {
+    columns: Vec<Input<'a>>,
+    /// Numbers of those the continuous equations read.
+    continuous: Vec<usize>,
+}
+
+struct Input<'a> {
+    signal: Signal<'a>,
+    mean_step_s: f64,
+    next: bool,
+    cursor: Cursor,
+}
+
+impl<'a> Inputs<'a> {
+    pub(crate) fn new(program: &Program, setup: &Setup<'a>) -> Result<Self, Box<Failure>> {
+        let mut columns = Vec::new();
+        for column in &program.columns {
+            let table = setup.records.get(&column.record);
+            let Some(signal) = table.and_then(|table| table.signal(&column.column)) else {
+                let message = format!(
+                    "the record `{}` has no column `{}`",
+                    column.record, column.column
+                );
+                return Err(Failure::new(FailureKind::Input(message), setup.start_s));
+            };
+            let mean_step_s = table
+                .and_then(hyde_signal::Table::mean_step)
+                .unwrap_or(f64::INFINITY);
+            columns.push(Input {
+                signal,
+                mean_step_s,
+                next: column.next,
+                cursor: Cursor::default(),
+            });
+        }
+        let continuous = (0..columns.len())
+            .filter(|&number| program.columns[number].continuous)
+            .collect();
+        Ok(Self {
+            columns,
+            continuous,
+        })
+    }
+
+    /// Reads the columns that the continuous equations use: the linear value at 2k, the held one at 2k + 1.
+    pub(crate) fn read_continuous(&mut self, t: f64, u: &mut [f64]) {
+        for &number in &self.continuous {
+            self.columns[number].read(t, &mut u[2 * number..2 * number + 2]);
+        }
+    }
+
+    /// Reads all columns.
+    pub(crate) fn read(&mut self, t: f64, u: &mut [f64]) {
+        for (number, column) in self.columns.iter_mut().enumerate() {
+            column.read(t, &mut u[2 * number..2 * number + 2]);
+        }
+    }
+
+    /// The next instant after `t` at which a column that the equations read jumps.
+    pub(crate) fn next_jump(&self, t: f64) -> f64 {
+        let later = |&number: &usize| self.columns[number].signal.jumps().find(|&jump| jump > t);
+        self.continuous
+            .iter()
+            .filter_map(later)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// A step that does not skip rows of the columns that the equations read.
+    pub(crate) fn max_step_s(&self) -> f64 {
+        let spacing = |&number: &usize| self.columns[number].mean_step_s;
+        2.0 * self
+            .continuous
+            .iter()
+            .map(spacing)
+            .fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl Input<'_> {
+    fn read(&mut self, t: f64, out: &mut [f64]) {
+        // A tick at k times the period and a row at the same decimal number may differ by rounding.
+        let now = t + 1e-12 + 1e-13 * t.abs();
+        if self.next {
+            let value = self.signal.next(now, &mut self.cursor);
+            out[0] = value;
+            out[1] = value;
+        } else {
+            out[0] = self.signal.linear(t, &mut self.cursor);
+            out[1] = self.signal.held(now, &mut self.cursor);
+        }
+    }
+}

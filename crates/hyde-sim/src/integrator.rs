@@ -1,0 +1,187 @@
+//! [`Integrator`]: the state, with a solver if there is anything to solve.
+//!
+//! The places left open for speed (own Newton iteration with the model's own linear solver, time events without restart)
+//! are here and in hyde-ida, behind this type.
+
+use crate::failure::{Failure, FailureKind};
+use crate::setup::Setup;
+use crate::state::State;
+use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern};
+
+/// The state of a run and the solver that advances it.
+pub(crate) struct Integrator<'a> {
+    solver: Solver<'a>,
+    pub(crate) t: f64,
+    pub(crate) y: Vec<f64>,
+    pub(crate) yp: Vec<f64>,
+}
+
+enum Solver<'a> {
+    /// No continuous unknowns: time passes, nothing moves.
+    Nothing(Box<State<'a>>),
+    Ida(Box<Ida<State<'a>>>),
+}
+
+impl<'a> Integrator<'a> {
+    /// Starts a solver from consistent values.
+    pub(crate) fn new(
+        state: State<'a>,
+        setup: &Setup<'_>,
+        t: f64,
+        y: Vec<f64>,
+        yp: Vec<f64>,
+        first_step_s: f64,
+    ) -> Result<Self, Box<Failure>> {
+        let program = state.program;
+        if program.n_unknowns == 0 {
+            return Ok(Self {
+                solver: Solver::Nothing(Box::new(state)),
+                t,
+                y,
+                yp,
+            });
+        }
+        let mut options = Options::new(
+            setup.rtol,
+            vec![setup.atol; program.n_unknowns],
+            state.differential.clone(),
+        );
+        options.max_step_s = setup.max_step_s.min(state.inputs.max_step_s());
+        options.first_step_s = Some(first_step_s);
+        options.linear_method = LinearMethod::Auto;
+        let failed = |error: Error| Failure::new(FailureKind::Solver(error.to_string()), t);
+        let jacobian = &program.jacobian;
+        let pattern = Pattern::new(
+            program.n_unknowns,
+            jacobian.column_starts.clone(),
+            jacobian.rows.clone(),
+        );
+        let pattern = pattern.map_err(|error| failed(Error::from(error)))?;
+        let ida = Ida::new(state, pattern, options, t, &y, &yp).map_err(failed)?;
+        Ok(Self {
+            solver: Solver::Ida(Box::new(ida)),
+            t,
+            y,
+            yp,
+        })
+    }
+
+    pub(crate) fn state(&self) -> &State<'a> {
+        match &self.solver {
+            Solver::Nothing(state) => state,
+            Solver::Ida(ida) => ida.system(),
+        }
+    }
+
+    pub(crate) fn state_mut(&mut self) -> &mut State<'a> {
+        match &mut self.solver {
+            Solver::Nothing(state) => state,
+            Solver::Ida(ida) => ida.system_mut(),
+        }
+    }
+
+    /// One step, never past `stop`. Returns where the step began.
+    pub(crate) fn step(&mut self, stop: f64) -> Result<f64, Box<Failure>> {
+        let before = self.t;
+        match &mut self.solver {
+            Solver::Nothing(_) => self.t = stop,
+            Solver::Ida(ida) => {
+                if let Err(error) = ida.step(stop) {
+                    return Err(self.failure(&error));
+                }
+                self.t = ida.t();
+                self.y.copy_from_slice(ida.y());
+                self.yp.copy_from_slice(ida.yp());
+            }
+        }
+        self.apply_pins();
+        Ok(before)
+    }
+
+    /// The solution at a time within the last step.
+    pub(crate) fn interpolate(&self, t: f64, y: &mut [f64], yp: &mut [f64]) {
+        match &self.solver {
+            Solver::Ida(ida) if t.to_bits() != self.t.to_bits() => {
+                let inside = ida
+                    .interpolate(t, 0, y)
+                    .and_then(|()| ida.interpolate(t, 1, yp));
+                if inside.is_err() {
+                    y.copy_from_slice(&self.y);
+                    yp.copy_from_slice(&self.yp);
+                }
+            }
+            Solver::Ida(_) | Solver::Nothing(_) => {
+                y.copy_from_slice(&self.y);
+                yp.copy_from_slice(&self.yp);
+            }
+        }
+        self.state().apply_pins(y, yp);
+    }
+
+    /// Starts anew after an event.
+    pub(crate) fn restart(&mut self, first_step_s: f64) -> Result<(), Box<Failure>> {
+        self.apply_pins();
+        if let Solver::Ida(ida) = &mut self.solver {
+            if let Err(error) = ida.reinit(self.t, &self.y, &self.yp, Some(first_step_s)) {
+                return Err(self.failure(&error));
+            }
+        }
+        Ok(())
+    }
+
+    pub(crate) fn statistics(&self) -> hyde_ida::Statistics {
+        match &self.solver {
+            Solver::Ida(ida) => ida.statistics(),
+            Solver::Nothing(_) => hyde_ida::Statistics::default(),
+        }
+    }
+
+    fn apply_pins(&mut self) {
+        let Self { solver, y, yp, .. } = self;
+        let state: &State<'_> = match solver {
+            Solver::Nothing(state) => state,
+            Solver::Ida(ida) => ida.system(),
+        };
+        state.apply_pins(y, yp);
+    }
+
+    /// What the solver says, with the equation and the unknown it stumbled over.
+    fn failure(&self, error: &Error) -> Box<Failure> {
+        let program = self.state().program;
+        let Error::Failed(failed) = error else {
+            return Failure::new(FailureKind::Solver(error.to_string()), self.t);
+        };
+        let kind = match failed.kind {
+            hyde_ida::FailureKind::Residual | hyde_ida::FailureKind::Jacobian => {
+                FailureKind::NotFinite
+            }
+            hyde_ida::FailureKind::ErrorTest => FailureKind::Solver(format!(
+                "the error of a step stays too large, down to a step of {:.1e} s",
+                failed.step_s
+            )),
+            hyde_ida::FailureKind::Convergence => FailureKind::Solver(format!(
+                "Newton's method does not converge, down to a step of {:.1e} s",
+                failed.step_s
+            )),
+            hyde_ida::FailureKind::SingularJacobian => {
+                FailureKind::Solver("the Jacobian is singular".to_owned())
+            }
+            hyde_ida::FailureKind::TooMuchWork
+            | hyde_ida::FailureKind::TooMuchAccuracy
+            | hyde_ida::FailureKind::RootFunction
+            | hyde_ida::FailureKind::InitialConditions
+            | hyde_ida::FailureKind::Refused
+            | hyde_ida::FailureKind::Other => {
+                FailureKind::Solver(format!("{} ({})", failed.message, failed.flag))
+            }
+        };
+        let mut failure = Failure::new(kind, failed.t);
+        if let Some(row) = failed.equation {
+            failure = failure.at_row(program, row, &self.y);
+        }
+        if let Some(unknown) = failed.unknown {
+            failure = failure.at_unknown(program, unknown, &self.y);
+        }
+        failure
+    }
+}

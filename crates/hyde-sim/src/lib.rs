@@ -1,0 +1,39 @@
+//! [`simulate`]: runs a [`hyde_program::Program`] to [`Results`].
+//!
+//! ```text
+//! initial      start values, initial equations, first modes                         initial.rs
+//! loop         one step of IDA, never past the next instant known beforehand        integrator.rs
+//!              guards checked on the step's interpolant; the first crossing located guards.rs
+//!              events: reactions, ticks, held values, until nothing fires           events.rs, clocks.rs
+//!              consistent values again, then on                                     consistent.rs
+//! ```
+//! The language is unknown here: a program could as well be written by hand, and the tests of this crate do that. What
+//! fails is a [`Failure`] with the time and the origin of the equation.
+
+mod clocks;
+mod consistent;
+mod events;
+mod failure;
+mod guards;
+mod initial;
+mod inputs;
+mod integrator;
+mod results;
+mod setup;
+mod simulation;
+mod state;
+
+pub use failure::{Failure, FailureKind};
+pub use inputs::InputError;
+pub use results::{Event, EventKind, Results, Statistics};
+pub use setup::Setup;
+
+use hyde_program::Program;
+
+/// Runs a program.
+///
+/// # Errors
+/// A [`Failure`] with the results up to it.
+pub fn simulate(program: &Program, setup: &Setup<'_>) -> Result<Results, Box<Failure>> {
+    simulation::Simulation::new(program, setup)?.run()
+}

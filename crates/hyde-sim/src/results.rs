@@ -1,0 +1,97 @@
+//! [`Results`]: rows over time, the event log, and what the solver did.
+
+use hyde_diag::Origin;
+
+/// What happened.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EventKind {
+    /// A mode was left for another.
+    Transition {
+        /// The automaton.
+        automaton: usize,
+        /// The mode before.
+        from: usize,
+        /// The mode after.
+        to: usize,
+    },
+    /// A `when` condition became true.
+    When,
+    /// A relation in the equations changed its truth to this.
+    Relation(bool),
+}
+
+/// An entry of the event log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// Time in s.
+    pub t: f64,
+    /// What happened.
+    pub kind: EventKind,
+    /// The condition, as written.
+    pub cause: String,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// What the solver did.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Statistics {
+    /// Accepted steps.
+    pub steps: u64,
+    /// Evaluations of the residual by the solver.
+    pub residual_evaluations: u64,
+    /// Evaluations of the Jacobian by the solver.
+    pub jacobian_evaluations: u64,
+    /// Newton iterations.
+    pub nonlinear_iterations: u64,
+    /// Steps repeated for their error.
+    pub error_test_failures: u64,
+    /// Steps repeated for Newton's method.
+    pub nonlinear_failures: u64,
+    /// Restarts at events.
+    pub restarts: u64,
+    /// Instants at which something other than a tick happened.
+    pub events: u64,
+    /// Ticks of clocks.
+    pub ticks: u64,
+}
+
+/// What a run leaves.
+#[derive(Clone, Debug, Default)]
+pub struct Results {
+    /// Numbers of the outputs kept, ascending.
+    pub outputs: Vec<usize>,
+    /// Times of the rows in s; an instant with an event has two rows, the left and the right limit.
+    pub time: Vec<f64>,
+    /// One column an output kept, SI.
+    pub columns: Vec<Vec<f64>>,
+    /// The event log.
+    pub events: Vec<Event>,
+    /// What the solver did.
+    pub statistics: Statistics,
+    /// Time each automaton spent in each mode, in s.
+    pub mode_times: Vec<Vec<f64>>,
+    /// Final solver's vector and memory.
+    pub last: (Vec<f64>, Vec<f64>),
+}
+
+impl Results {
+    /// The column of an output; `None` if it was not kept.
+    #[must_use]
+    pub fn column(&self, output: usize) -> Option<&[f64]> {
+        let at = self.outputs.binary_search(&output).ok()?;
+        Some(&self.columns[at])
+    }
+
+    /// The rows of an instant: the left limit and the right one (the same row where nothing happened).
+    #[must_use]
+    pub fn rows_at(&self, t: f64) -> Option<(usize, usize)> {
+        let near = |other: f64| crate::setup::same_instant(t, other);
+        let first = self.time.partition_point(|&time| time < t && !near(time));
+        let last = self
+            .time
+            .partition_point(|&time| time <= t || near(time))
+            .checked_sub(1)?;
+        (first <= last && near(self.time[first])).then_some((first, last))
+    }
+}

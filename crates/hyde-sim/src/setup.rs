@@ -1,0 +1,74 @@
+//! [`Setup`]: what a run is told beside its program.
+
+use hyde_signal::Table;
+use std::collections::BTreeMap;
+
+/// Parameters, records, times and tolerances of a run.
+#[derive(Clone, Debug)]
+pub struct Setup<'a> {
+    /// The whole parameter vector.
+    pub parameters: Vec<f64>,
+    /// The records by the name the experiment gives them; columns in SI.
+    pub records: &'a BTreeMap<String, Table>,
+    /// Start in s.
+    pub start_s: f64,
+    /// Stop in s.
+    pub stop_s: f64,
+    /// Relative tolerance.
+    pub rtol: f64,
+    /// Absolute tolerance, SI.
+    pub atol: f64,
+    /// Largest step in s.
+    pub max_step_s: f64,
+    /// Times of the results' rows in s, ascending; rows at events come in addition.
+    pub rows_s: Vec<f64>,
+    /// The outputs to keep, by number, ascending; `None` for all.
+    pub keep: Option<Vec<usize>>,
+}
+
+impl<'a> Setup<'a> {
+    /// A run from 0 to `stop_s` with 1000 rows, a relative tolerance of 1e-6 and an absolute one of 1e-8.
+    #[must_use]
+    pub fn new(parameters: Vec<f64>, records: &'a BTreeMap<String, Table>, stop_s: f64) -> Self {
+        Self {
+            parameters,
+            records,
+            start_s: 0.0,
+            stop_s,
+            rtol: 1e-6,
+            atol: 1e-8,
+            max_step_s: f64::INFINITY,
+            rows_s: Self::rows_every(0.0, stop_s, stop_s / 1000.0),
+            keep: None,
+        }
+    }
+
+    /// Times from `start_s` to `stop_s`, `step_s` apart, the stop included.
+    #[must_use]
+    pub fn rows_every(start_s: f64, stop_s: f64, step_s: f64) -> Vec<f64> {
+        if !(step_s > 0.0 && stop_s > start_s) {
+            return vec![start_s];
+        }
+        #[allow(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "positive, and rows must fit in memory"
+        )]
+        let count = ((stop_s - start_s) / step_s * (1.0 + 1e-12)).floor() as usize;
+        #[allow(clippy::cast_precision_loss, reason = "row numbers are far below 2^53")]
+        let mut rows: Vec<f64> = (0..=count).map(|k| start_s + k as f64 * step_s).collect();
+        if let Some(last) = rows.last_mut() {
+            if (stop_s - *last).abs() <= 1e-9 * step_s {
+                *last = stop_s;
+            } else {
+                rows.push(stop_s);
+            }
+        }
+        rows
+    }
+}
+
+/// Whether two instants are one: closer than rounding of times computed in different ways.
+pub(crate) fn same_instant(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-12 + 1e-13 * a.abs().max(b.abs())
+}

@@ -1,0 +1,390 @@
+//! The run itself: start, steps, events, rows.
+
+use crate::clocks::Schedule;
+use crate::consistent::Consistent;
+use crate::events::{Instant, initial_pins};
+use crate::failure::{Failure, FailureKind};
+use crate::guards;
+use crate::initial;
+use crate::integrator::Integrator;
+use crate::results::{Event, Results};
+use crate::setup::{Setup, same_instant};
+use crate::state::State;
+use hyde_program::{Function, Program};
+
+/// So many events within a billionth of the run are no solution any more.
+const MAX_EVENTS_AT_ONCE: u64 = 2000;
+
+/// A run under way.
+pub(crate) struct Simulation<'a> {
+    setup: &'a Setup<'a>,
+    program: &'a Program,
+    integrator: Integrator<'a>,
+    consistent: Consistent,
+    schedule: Schedule,
+    conditions: Vec<bool>,
+    results: Results,
+    next_row: usize,
+    outputs: Vec<f64>,
+    /// Start of the window in which events are counted, and their number.
+    crowd: (f64, u64),
+}
+
+impl<'a> Simulation<'a> {
+    /// Finds the start: initial values, first modes, first ticks.
+    pub(crate) fn new(program: &'a Program, setup: &'a Setup<'a>) -> Result<Self, Box<Failure>> {
+        let t = setup.start_s;
+        let mut state = State::new(program, setup)?;
+        let mut consistent = Consistent::new(&state);
+        let (mut y, mut yp) = initial::start(&mut state);
+        let schedule = Schedule::new(&state, t).map_err(|clock| {
+            let message = format!(
+                "the clock `{}` has no positive period",
+                program.clocks[clock].name
+            );
+            Failure::new(FailureKind::Solver(message), t).at_origin(&program.clocks[clock].origin)
+        })?;
+        state.pinned = initial_pins(&mut state, t, &y, &yp);
+        initial::solve(&mut state, &mut consistent, t, &mut y, &mut yp)?;
+        let keep = setup
+            .keep
+            .clone()
+            .unwrap_or_else(|| (0..program.outputs.len()).collect());
+        let results = Results {
+            columns: vec![Vec::with_capacity(setup.rows_s.len() + 16); keep.len()],
+            outputs: keep,
+            mode_times: program
+                .automata
+                .iter()
+                .map(|automaton| vec![0.0; automaton.modes.len()])
+                .collect(),
+            ..Results::default()
+        };
+        let integrator = Integrator::new(state, setup, t, y, yp, 1e-6)?;
+        Ok(Self {
+            setup,
+            program,
+            integrator,
+            consistent,
+            schedule,
+            conditions: vec![false; program.reactions.len()],
+            results,
+            next_row: 0,
+            outputs: vec![0.0; program.outputs.len()],
+            crowd: (t, 0),
+        })
+    }
+
+    /// Runs to the stop.
+    pub(crate) fn run(mut self) -> Result<Results, Box<Failure>> {
+        match self.advance_to_stop() {
+            Ok(()) => {
+                self.close();
+                Ok(self.results)
+            }
+            Err(mut failure) => {
+                self.close();
+                failure.results = self.results;
+                Err(failure)
+            }
+        }
+    }
+
+    fn advance_to_stop(&mut self) -> Result<(), Box<Failure>> {
+        self.begin()?;
+        let stop = self.setup.stop_s;
+        while self.integrator.t < stop && !same_instant(self.integrator.t, stop) {
+            let t = self.integrator.t;
+            let jump = self.integrator.state().inputs.next_jump(t);
+            let target = self.schedule.next(t).min(jump).min(stop);
+            // The solver is past a located crossing: it starts anew from there whatever happens.
+            let behind = self.advance(target)?;
+            let t = self.integrator.t;
+            let at_target = t >= target || same_instant(t, target);
+            let scheduled = if at_target {
+                self.schedule.relations_at(t)
+            } else {
+                Vec::new()
+            };
+            let due = at_target && (self.schedule.due(t) || same_instant(t, jump));
+            if behind || !scheduled.is_empty() || due {
+                self.instant(&scheduled, behind || same_instant(t, jump))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The start itself: events before the first step, first ticks, first rows.
+    fn begin(&mut self) -> Result<(), Box<Failure>> {
+        let t = self.integrator.t;
+        let scheduled = self.schedule.relations_at(t);
+        self.iterate(&scheduled, true)?;
+        self.row();
+        if self.schedule.due(t) {
+            self.tick()?;
+            self.iterate(&[], false)?;
+            self.row();
+        }
+        while self
+            .setup
+            .rows_s
+            .get(self.next_row)
+            .is_some_and(|&row| row <= t || same_instant(row, t))
+        {
+            self.next_row += 1;
+        }
+        self.restart()
+    }
+
+    /// Steps until `target` or the first crossing; rows on the way are taken. Returns whether there was a crossing; the
+    /// values there are consistent.
+    fn advance(&mut self, target: f64) -> Result<bool, Box<Failure>> {
+        let watched = guards::active(self.program, &self.integrator.state().z);
+        loop {
+            let from = self.integrator.step(target)?;
+            let crossing = guards::first_change(&mut self.integrator, &watched, from);
+            let end = crossing
+                .as_ref()
+                .map_or(self.integrator.t, |crossing| crossing.t);
+            self.rows_until(end);
+            self.count_modes(from, end);
+            if let Some(crossing) = crossing {
+                let n = self.program.n_unknowns;
+                let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
+                self.integrator.interpolate(crossing.t, &mut y, &mut yp);
+                // The interpolant of forces and derivatives is not exact; guards decide on exact ones.
+                self.consistent.solve(
+                    self.integrator.state_mut(),
+                    crossing.t,
+                    &mut y,
+                    &mut yp,
+                    false,
+                )?;
+                self.integrator.t = crossing.t;
+                self.integrator.y = y;
+                self.integrator.yp = yp;
+                return Ok(true);
+            }
+            if self.integrator.t >= target || same_instant(self.integrator.t, target) {
+                return Ok(false);
+            }
+        }
+    }
+
+    /// Everything that happens at an instant: left limit, events, ticks, events, right limit (C1).
+    fn instant(&mut self, scheduled: &[usize], restart: bool) -> Result<(), Box<Failure>> {
+        let before = self.integrator.state().z.clone();
+        let left = self.row_values();
+        let events = self.results.events.len();
+        let mut changed = self.iterate(scheduled, false)?;
+        let mut ticked = false;
+        if self.schedule.due(self.integrator.t) {
+            ticked = true;
+            changed |= self.tick()?;
+            changed |= self.iterate(&[], false)?;
+        }
+        let happened = self.results.events.len() > events;
+        if happened {
+            self.results.statistics.events += 1;
+            self.not_too_many()?;
+        }
+        let on_grid = self.row_is_due();
+        let moved = before
+            .iter()
+            .zip(&self.integrator.state().z)
+            .any(|(a, b)| a.to_bits() != b.to_bits());
+        if happened || (on_grid && ticked && moved) {
+            self.push_row(left);
+            self.row();
+        } else if on_grid {
+            self.row();
+        }
+        if on_grid {
+            self.next_row += 1;
+        }
+        if changed || restart {
+            self.restart()?;
+        }
+        Ok(())
+    }
+
+    fn iterate(&mut self, scheduled: &[usize], at_start: bool) -> Result<bool, Box<Failure>> {
+        let (t, mut y, mut yp) = (
+            self.integrator.t,
+            std::mem::take(&mut self.integrator.y),
+            std::mem::take(&mut self.integrator.yp),
+        );
+        let outcome = Instant {
+            state: self.integrator.state_mut(),
+            consistent: &mut self.consistent,
+            t,
+            y: &mut y,
+            yp: &mut yp,
+            conditions: &mut self.conditions,
+            log: &mut self.results.events,
+        }
+        .iterate(scheduled, at_start);
+        self.integrator.y = y;
+        self.integrator.yp = yp;
+        outcome
+    }
+
+    /// Runs the clocks that tick; consistent values follow if something that the equations read has changed.
+    fn tick(&mut self) -> Result<bool, Box<Failure>> {
+        let (t, mut y, mut yp) = (
+            self.integrator.t,
+            self.integrator.y.clone(),
+            self.integrator.yp.clone(),
+        );
+        let (ticks, changed) = self.schedule.run(self.integrator.state_mut(), t, &y, &yp);
+        self.results.statistics.ticks += ticks;
+        if changed {
+            self.consistent
+                .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
+            self.integrator.y = y;
+            self.integrator.yp = yp;
+        }
+        Ok(changed)
+    }
+
+    /// Starts the solver anew, with a first step that the curvature of the solution allows.
+    fn restart(&mut self) -> Result<(), Box<Failure>> {
+        let t = self.integrator.t;
+        let span = (self.setup.stop_s - t).max(1e-12);
+        let (y, yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
+        let flow = self
+            .consistent
+            .flow(self.integrator.state_mut(), t, &y, &yp);
+        let mut step = 1e-2 * span;
+        if let Some((_, dyp)) = flow {
+            // The first step is of order 1: its error is half the square of the step times the second derivative.
+            let mut square = 0.0;
+            for (value, rate) in y.iter().zip(&dyp) {
+                let weighted = rate / (self.setup.rtol * value.abs() + self.setup.atol);
+                square += weighted * weighted;
+            }
+            #[allow(clippy::cast_precision_loss, reason = "a number of unknowns")]
+            let norm = (square / y.len().max(1) as f64).sqrt();
+            if norm.is_finite() && norm > 0.0 {
+                step = step.min((0.5 / norm).sqrt());
+            }
+        }
+        let least = 64.0 * f64::EPSILON * (1e-3 + t.abs());
+        self.integrator.restart(step.max(least))
+    }
+
+    /// Rows of the results up to and including `end`, from the interpolant; one at the end itself waits for its events.
+    fn rows_until(&mut self, end: f64) {
+        while let Some(&t) = self.setup.rows_s.get(self.next_row) {
+            if t > end || same_instant(t, end) && self.waits(end) {
+                return;
+            }
+            let t = t.min(end);
+            let n = self.program.n_unknowns;
+            let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
+            self.integrator.interpolate(t, &mut y, &mut yp);
+            let values = self.values_at(t, &y, &yp);
+            self.push_row((t, values));
+            self.next_row += 1;
+        }
+    }
+
+    /// Whether something happens at this instant that a row must show from both sides.
+    fn waits(&self, t: f64) -> bool {
+        self.schedule.due(t)
+            || !self.schedule.relations_at(t).is_empty()
+            || same_instant(
+                self.integrator
+                    .state()
+                    .inputs
+                    .next_jump(t - 1e-9 * (1.0 + t.abs())),
+                t,
+            )
+            || t < self.integrator.t
+    }
+
+    fn row_is_due(&self) -> bool {
+        self.setup
+            .rows_s
+            .get(self.next_row)
+            .is_some_and(|&row| same_instant(row, self.integrator.t))
+    }
+
+    fn row(&mut self) {
+        let values = self.row_values();
+        self.push_row(values);
+    }
+
+    fn row_values(&mut self) -> (f64, Vec<f64>) {
+        let (t, y, yp) = (
+            self.integrator.t,
+            self.integrator.y.clone(),
+            self.integrator.yp.clone(),
+        );
+        let values = self.values_at(t, &y, &yp);
+        (t, values)
+    }
+
+    fn values_at(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
+        let mut outputs = std::mem::take(&mut self.outputs);
+        self.integrator
+            .state_mut()
+            .evaluate(Function::Outputs, t, y, yp, &mut outputs);
+        let values = self
+            .results
+            .outputs
+            .iter()
+            .map(|&output| outputs[output])
+            .collect();
+        self.outputs = outputs;
+        values
+    }
+
+    fn push_row(&mut self, (t, values): (f64, Vec<f64>)) {
+        self.results.time.push(t);
+        for (column, value) in self.results.columns.iter_mut().zip(values) {
+            column.push(value);
+        }
+    }
+
+    fn count_modes(&mut self, from: f64, to: f64) {
+        for automaton in 0..self.program.automata.len() {
+            let mode = guards::current_mode(self.program, &self.integrator.state().z, automaton);
+            self.results.mode_times[automaton][mode] += to - from;
+        }
+    }
+
+    /// Events that come ever faster end the run with what they are (Zeno).
+    fn not_too_many(&mut self) -> Result<(), Box<Failure>> {
+        let window = 1e-9 * (self.setup.stop_s - self.setup.start_s);
+        let t = self.integrator.t;
+        if t - self.crowd.0 > window {
+            self.crowd = (t, 0);
+        }
+        self.crowd.1 += 1;
+        if self.crowd.1 <= MAX_EVENTS_AT_ONCE {
+            return Ok(());
+        }
+        let mut failure = Failure::new(FailureKind::TooManyEvents, t);
+        let recent: Vec<&Event> = self.results.events.iter().rev().take(4).collect();
+        for event in recent {
+            if !failure.origins.contains(&event.origin) {
+                failure = failure.at_origin(&event.origin);
+            }
+        }
+        Err(failure)
+    }
+
+    fn close(&mut self) {
+        let solver = self.integrator.statistics();
+        let statistics = &mut self.results.statistics;
+        statistics.steps = solver.steps;
+        statistics.residual_evaluations = solver.residual_evaluations;
+        statistics.jacobian_evaluations = solver.jacobian_evaluations;
+        statistics.nonlinear_iterations = solver.nonlinear_iterations;
+        statistics.error_test_failures = solver.error_test_failures;
+        statistics.nonlinear_failures = solver.nonlinear_failures;
+        statistics.restarts = solver.restarts;
+        self.results.last = (self.integrator.y.clone(), self.integrator.state().z.clone());
+    }
+}

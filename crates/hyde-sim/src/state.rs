@@ -1,0 +1,211 @@
+//! [`State`]: the model where the run is, with everything a kernel needs. It is the system that IDA solves.
+
+use crate::failure::Failure;
+use crate::inputs::Inputs;
+use crate::setup::Setup;
+use hyde_ida::{Recoverable, System};
+use hyde_program::{Function, Point, Program, Workspace};
+
+/// The model between and during calls of the solver.
+pub(crate) struct State<'a> {
+    pub(crate) program: &'a Program,
+    pub(crate) p: Vec<f64>,
+    /// The memory.
+    pub(crate) z: Vec<f64>,
+    pub(crate) inputs: Inputs<'a>,
+    u: Vec<f64>,
+    workspace: Workspace,
+    /// Values of the residual's derivatives, before they are put in their places.
+    partials: Vec<f64>,
+    /// States that the current modes fix, with their values.
+    pub(crate) pinned: Vec<(usize, f64)>,
+    pub(crate) differential: Vec<bool>,
+}
+
+impl<'a> State<'a> {
+    pub(crate) fn new(program: &'a Program, setup: &Setup<'a>) -> Result<Self, Box<Failure>> {
+        let mut state = Self {
+            program,
+            p: setup.parameters.clone(),
+            z: vec![0.0; program.n_memory],
+            inputs: Inputs::new(program, setup)?,
+            u: vec![0.0; 2 * program.columns.len()],
+            workspace: Workspace::new(program.n_work),
+            partials: vec![0.0; program.jacobian.n_values()],
+            pinned: Vec::new(),
+            differential: program.differential(),
+        };
+        state.inputs.read(setup.start_s, &mut state.u);
+        Ok(state)
+    }
+
+    /// The values of a function. `everything` reads all columns, not only those that the equations use.
+    pub(crate) fn evaluate(
+        &mut self,
+        function: Function,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        out: &mut [f64],
+    ) {
+        self.inputs.read_continuous(t, &mut self.u);
+        let at = Point {
+            t,
+            y,
+            yp,
+            z: &self.z,
+            u: &self.u,
+            p: &self.p,
+        };
+        self.program
+            .kernels
+            .evaluate(function, at, &mut self.workspace, out);
+    }
+
+    /// The derivatives of a function, in the program's order.
+    pub(crate) fn partials(
+        &mut self,
+        function: Function,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> Vec<f64> {
+        self.inputs.read_continuous(t, &mut self.u);
+        let mut out = vec![0.0; self.program.partials(function).len()];
+        let at = Point {
+            t,
+            y,
+            yp,
+            z: &self.z,
+            u: &self.u,
+            p: &self.p,
+        };
+        self.program
+            .kernels
+            .partials(function, at, &mut self.workspace, &mut out);
+        out
+    }
+
+    /// Truth of every reaction's condition with the memory as it is.
+    pub(crate) fn conditions(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<bool> {
+        let mut out = vec![0.0; self.program.reactions.len()];
+        let at = Point {
+            t,
+            y,
+            yp,
+            z: &self.z,
+            u: &self.u,
+            p: &self.p,
+        };
+        self.program
+            .kernels
+            .conditions(at, &mut self.workspace, &mut out);
+        out.into_iter().map(|truth| truth != 0.0).collect()
+    }
+
+    /// The memory after a tick, with every column read at `t`.
+    pub(crate) fn tick(&mut self, clock: usize, t: f64, y: &[f64], yp: &[f64]) {
+        self.inputs.read(t, &mut self.u);
+        let mut after = self.z.clone();
+        let at = Point {
+            t,
+            y,
+            yp,
+            z: &self.z,
+            u: &self.u,
+            p: &self.p,
+        };
+        self.program
+            .kernels
+            .tick(clock, at, &mut self.workspace, &mut after);
+        self.z = after;
+    }
+
+    /// The matrix that consistent values are solved with.
+    pub(crate) fn consistent_matrix(&mut self, t: f64, y: &[f64], yp: &[f64], matrix: &mut [f64]) {
+        self.residual_partials(t, y, yp);
+        self.program
+            .jacobian
+            .assemble_consistent(&self.partials, &self.differential, matrix);
+    }
+
+    /// `dF/dy` times a vector and `dF/dy'` times another, summed into `out`.
+    pub(crate) fn directional(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        dy: &[f64],
+        dyp: &[f64],
+        out: &mut [f64],
+    ) {
+        self.residual_partials(t, y, yp);
+        out.iter_mut().for_each(|value| *value = 0.0);
+        for (entry, &value) in self
+            .program
+            .partials(Function::Residual)
+            .iter()
+            .zip(&self.partials)
+        {
+            match entry.wrt {
+                hyde_program::Wrt::Unknown(column) => out[entry.row] += value * dy[column],
+                hyde_program::Wrt::Derivative(column) => out[entry.row] += value * dyp[column],
+                hyde_program::Wrt::Parameter(_) | hyde_program::Wrt::Time => {}
+            }
+        }
+    }
+
+    /// Puts exact values where modes fix states.
+    pub(crate) fn apply_pins(&self, y: &mut [f64], yp: &mut [f64]) {
+        for &(state, value) in &self.pinned {
+            y[state] = value;
+            yp[state] = 0.0;
+        }
+    }
+
+    fn residual_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        self.inputs.read_continuous(t, &mut self.u);
+        let at = Point {
+            t,
+            y,
+            yp,
+            z: &self.z,
+            u: &self.u,
+            p: &self.p,
+        };
+        self.program.kernels.partials(
+            Function::Residual,
+            at,
+            &mut self.workspace,
+            &mut self.partials,
+        );
+    }
+}
+
+impl System for State<'_> {
+    fn residual(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        out: &mut [f64],
+    ) -> Result<(), Recoverable> {
+        self.evaluate(Function::Residual, t, y, yp, out);
+        Ok(())
+    }
+
+    fn jacobian(
+        &mut self,
+        t: f64,
+        cj: f64,
+        y: &[f64],
+        yp: &[f64],
+        values: &mut [f64],
+    ) -> Result<(), Recoverable> {
+        self.residual_partials(t, y, yp);
+        self.program
+            .jacobian
+            .assemble(&self.partials, 1.0, cj, values);
+        Ok(())
+    }
+}

@@ -1,0 +1,16 @@
+//! Text to [`ast::File`]: the first stage. Names are still text here; every node knows its [`hyde_diag::Span`].
+//!
+//! [`parse`] reads a file element by element, so that one error does not hide the next, and refuses what is nested
+//! too deeply before the parser's stack would. [`format`] prints a tree as source text again.
+
+pub mod ast;
+
+mod format;
+mod grammar;
+mod nesting;
+mod parse;
+mod recover;
+mod words;
+
+pub use format::{expression as format_expression, file as format};
+pub use parse::parse;

@@ -1,0 +1,193 @@
+//! Parses a file: package and imports, then item after item, each element by element.
+//!
+//! A broken element is reported and skipped ([`crate::recover`]); what follows is parsed as if it were not there.
+
+mod build;
+mod declaration;
+mod equation;
+mod experiment;
+mod expression;
+mod item;
+
+use crate::ast;
+use crate::grammar::{HydeParser, Rule};
+use crate::{nesting, recover, words};
+use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+use pest::Parser as _;
+use pest::error::{ErrorVariant, InputLocation};
+use pest::iterators::Pairs;
+
+/// Parses one source file. What cannot be parsed is missing in the tree and told in `diagnostics`.
+pub fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> ast::File {
+    let text = &sources.get(file).text;
+    let too_deep = nesting::too_deep(text);
+    Parser {
+        text,
+        file,
+        at: 0,
+        too_deep,
+        diagnostics,
+    }
+    .file()
+}
+
+/// The state of parsing one file: how far it got.
+struct Parser<'a> {
+    text: &'a str,
+    file: FileId,
+    at: usize,
+    too_deep: Vec<usize>,
+    diagnostics: &'a mut Diagnostics,
+}
+
+impl<'a> Parser<'a> {
+    /// Moves past white space and comments; whether something is left.
+    fn more(&mut self) -> bool {
+        self.at = recover::skip_blank(self.text, self.at);
+        self.at < self.text.len()
+    }
+
+    /// Whether the next word is the one given.
+    fn looking_at(&self, word: &str) -> bool {
+        recover::Scanner::new(self.text, self.at)
+            .next()
+            .is_some_and(|(_, token)| token == word)
+    }
+
+    /// Parses `rule` here; on success moves past it.
+    fn accept(&mut self, rule: Rule) -> Option<Pairs<'a, Rule>> {
+        self.attempt(rule).ok()
+    }
+
+    /// Parses `rule` here or reports why not.
+    fn expect(&mut self, rule: Rule) -> Option<Pairs<'a, Rule>> {
+        let start = self.at;
+        match self.attempt(rule) {
+            Ok(pairs) => Some(pairs),
+            Err(error) => {
+                let diagnostic = self.syntax_error(start, &error);
+                self.diagnostics.push(diagnostic);
+                None
+            }
+        }
+    }
+
+    fn attempt(&mut self, rule: Rule) -> Result<Pairs<'a, Rule>, Box<pest::error::Error<Rule>>> {
+        let pairs = HydeParser::parse(rule, &self.text[self.at..]).map_err(Box::new)?;
+        let len = pairs
+            .clone()
+            .map(|pair| pair.as_span().end())
+            .max()
+            .unwrap_or(0);
+        self.at += len;
+        Ok(pairs)
+    }
+
+    /// Reports and skips a statement that is nested too deeply; whether it was.
+    fn refuse_too_deep(&mut self) -> bool {
+        let Some(&place) = self.too_deep.iter().find(|&&place| place >= self.at) else {
+            return false;
+        };
+        let end = recover::skip_statement(self.text, self.at);
+        if place >= end {
+            return false;
+        }
+        let span = Span::new(self.file, place, place + 1);
+        self.diagnostics.push(
+            Diagnostic::error(
+                Code::TooDeep,
+                "this statement is nested too deeply or too long",
+            )
+            .label(
+                span,
+                "the limit of 60 brackets or 500 operators is passed here",
+            )
+            .help("give parts of it names of their own: `Real part = …;`"),
+        );
+        self.at = end;
+        true
+    }
+
+    /// A node builder for pairs that were parsed from `base` on.
+    fn build(&mut self, base: usize) -> build::Builder<'_> {
+        build::Builder {
+            file: self.file,
+            base,
+            diagnostics: self.diagnostics,
+        }
+    }
+
+    fn syntax_error(&self, start: usize, error: &pest::error::Error<Rule>) -> Diagnostic {
+        let offset = match error.location {
+            InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
+        };
+        let at = start + offset;
+        let found = recover::Scanner::new(self.text, at).next();
+        let (begin, end) = found.map_or((at, at), |(begin, token)| (begin, begin + token.len()));
+        let span = Span::new(
+            self.file,
+            begin.min(self.text.len()),
+            end.min(self.text.len()),
+        );
+        let expected = match &error.variant {
+            ErrorVariant::ParsingError { positives, .. } => words::expected(positives),
+            ErrorVariant::CustomError { message } => message.clone(),
+        };
+        let found = found.map_or("the end of the file".to_owned(), |(_, token)| {
+            format!("`{token}`")
+        });
+        let hint = self.hint(start, begin);
+        let expected = hint
+            .as_ref()
+            .and_then(|hint| hint.expected)
+            .unwrap_or(&expected);
+        let diagnostic =
+            Diagnostic::error(Code::Syntax, format!("expected {expected}, found {found}"))
+                .label(span, "not understood from here on");
+        match hint {
+            Some(hint) => diagnostic.help(hint.help),
+            None => diagnostic,
+        }
+    }
+
+    /// A repair for the slips that are met most.
+    fn hint(&self, start: usize, at: usize) -> Option<Hint> {
+        let before = self.text[start..at].trim_end();
+        let here = &self.text[at..];
+        let other_line = self.text[start + before.len()..at].contains('\n');
+        let open = before.matches('(').count() > before.matches(')').count();
+        let help = |help| {
+            Some(Hint {
+                expected: None,
+                help,
+            })
+        };
+        if here.starts_with(":=") {
+            help("equations and bindings are written with `=`")
+        } else if open && here.starts_with(';') {
+            Some(Hint {
+                expected: Some("`)`"),
+                help: "a parenthesis is open: close it before the `;`",
+            })
+        } else if other_line && !before.is_empty() && !before.ends_with([';', '{', '}']) {
+            Some(Hint {
+                expected: Some("`;`"),
+                help: "end the line before with `;`",
+            })
+        } else if here.starts_with("==") {
+            help("an equation is written with one `=`; `==` compares")
+        } else if here.starts_with("!=") {
+            help("not equal is written `<>`")
+        } else if here.starts_with("&&") || here.starts_with("||") {
+            help("write `and`, `or`")
+        } else {
+            None
+        }
+    }
+}
+
+/// What a slip looks like it needs.
+struct Hint {
+    expected: Option<&'static str>,
+    help: &'static str,
+}

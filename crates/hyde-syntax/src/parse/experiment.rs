@@ -1,0 +1,271 @@
+//! Experiments and studies, element by element.
+
+use super::Parser;
+use super::build::{Builder, Node, has, parts, significant};
+use crate::ast::{
+    Channel, Drive, Experiment, ExperimentItem, RecordItem, SettingValue, Study, StudyItem,
+    StudyKind, Variation,
+};
+use crate::grammar::Rule;
+use crate::recover;
+use hyde_diag::Span;
+
+impl Parser<'_> {
+    pub(super) fn experiment(&mut self) -> Option<Experiment> {
+        let start = self.at;
+        let pairs = self.expect(Rule::experiment_header)?;
+        let node = significant(pairs).next()?;
+        let mut build = self.build(start);
+        let (mut name, mut model, mut doc) = (None, None, None);
+        let (mut records, mut changes) = (Vec::new(), Vec::new());
+        for part in parts(node) {
+            match part.as_rule() {
+                Rule::ident => name = Some(build.name(&part)),
+                Rule::records => {
+                    records = parts(part)
+                        .filter_map(|record| build.record(record))
+                        .collect()
+                }
+                Rule::path => model = Some(build.reference(part)),
+                Rule::modification => changes = build.changes(part),
+                _ => doc = Some(Builder::text(part)),
+            }
+        }
+        let (name, model) = (name?, model?);
+        let mut items = Vec::new();
+        self.body(&name, Rule::experiment_item, |build, node| {
+            build.experiment_item(node, &mut items)
+        });
+        Some(Experiment {
+            name,
+            records,
+            model,
+            changes,
+            doc,
+            items,
+            span: Span::new(self.file, start, self.at),
+        })
+    }
+
+    pub(super) fn study(&mut self) -> Option<Study> {
+        let start = self.at;
+        let pairs = self.expect(Rule::study_header)?;
+        let node = significant(pairs).next()?;
+        let mut build = self.build(start);
+        let (mut kind, mut name, mut of, mut doc) = (StudyKind::Sweep, None, None, None);
+        // `of calibrate bench` names a calibration: the keyword is a child of the header, not of its kind.
+        for part in parts(node) {
+            match part.as_rule() {
+                Rule::study_kind => kind = study_kind(&part),
+                Rule::ident => name = Some(build.name(&part)),
+                Rule::path => of = Some(build.reference(part)),
+                Rule::doc => doc = Some(Builder::text(part)),
+                _ => {}
+            }
+        }
+        let (name, of) = (name?, of?);
+        let mut items = Vec::new();
+        self.body(&name, Rule::study_item, |build, node| {
+            build.study_item(node, &mut items)
+        });
+        Some(Study {
+            kind,
+            name,
+            of,
+            doc,
+            items,
+            span: Span::new(self.file, start, self.at),
+        })
+    }
+
+    /// Elements by `rule` up to `end NAME;`.
+    fn body(
+        &mut self,
+        name: &crate::ast::Name,
+        rule: Rule,
+        mut add: impl FnMut(&mut Builder<'_>, Node<'_>),
+    ) {
+        while self.more() {
+            let start = self.at;
+            if self.looking_at("end") {
+                self.end(name);
+                return;
+            }
+            if self.refuse_too_deep() {
+                continue;
+            }
+            let Some(pairs) = self.expect(rule) else {
+                self.at = recover::skip_statement(self.text, start).max(start + 1);
+                if self.at_item() {
+                    break;
+                }
+                continue;
+            };
+            for node in significant(pairs) {
+                add(&mut self.build(start), node);
+            }
+        }
+        self.missing_end(name);
+    }
+}
+
+impl Builder<'_> {
+    fn record(&mut self, node: Node<'_>) -> Option<RecordItem> {
+        let mut inner = parts(node);
+        let mut record = RecordItem {
+            name: self.name(&inner.next()?),
+            every: None,
+            default: None,
+        };
+        for part in inner {
+            if part.as_rule() == Rule::string {
+                let mut name = self.name(&part);
+                name.text = Self::string(&part);
+                record.default = Some(name);
+            } else {
+                record.every = Some(self.expression(part));
+            }
+        }
+        Some(record)
+    }
+
+    fn experiment_item(&mut self, node: Node<'_>, items: &mut Vec<ExperimentItem>) {
+        match node.as_rule() {
+            Rule::stimulus => items.push(ExperimentItem::Stimulus(self.drives(node))),
+            Rule::replay => items.push(ExperimentItem::Replay(self.drives(node))),
+            Rule::measured => {
+                let channels = parts(node)
+                    .filter_map(|channel| self.channel(channel))
+                    .collect();
+                items.push(ExperimentItem::Measured(channels));
+            }
+            Rule::expect => {
+                let mut inner = parts(node);
+                if let Some(condition) = inner.next() {
+                    let condition = self.expression(condition);
+                    items.push(ExperimentItem::Expect(
+                        condition,
+                        inner.next().map(Self::text),
+                    ));
+                }
+            }
+            Rule::measure => items.extend(self.measure(node).map(ExperimentItem::Measure)),
+            Rule::bode => items.extend(self.bode(node)),
+            _ => {
+                for part in parts(node) {
+                    items.extend(self.run_part(part));
+                }
+            }
+        }
+    }
+
+    /// `solve …`, `stop …`, `every …`: any of them in one statement.
+    fn run_part(&mut self, node: Node<'_>) -> Option<ExperimentItem> {
+        match node.as_rule() {
+            Rule::solve => {
+                let mut inner = parts(node);
+                let method = self.name(&inner.next()?);
+                let arguments = inner
+                    .next()
+                    .map_or_else(Vec::new, |part| self.arguments(part));
+                Some(ExperimentItem::Solve(method, arguments))
+            }
+            Rule::stop => self.first_expression(node).map(ExperimentItem::Stop),
+            _ => self.first_expression(node).map(ExperimentItem::Every),
+        }
+    }
+
+    fn drives(&mut self, node: Node<'_>) -> Vec<Drive> {
+        parts(node)
+            .filter_map(|drive| {
+                let mut inner = parts(drive);
+                let target = self.reference(inner.next()?);
+                Some(Drive {
+                    target,
+                    value: self.expression(inner.next()?),
+                })
+            })
+            .collect()
+    }
+
+    fn channel(&mut self, node: Node<'_>) -> Option<Channel> {
+        let mut inner = parts(node);
+        let signal = self.expression(inner.next()?);
+        let value = self.expression(inner.next()?);
+        Some(Channel {
+            signal,
+            value,
+            noise: inner.next().and_then(|noise| self.first_expression(noise)),
+        })
+    }
+
+    fn bode(&mut self, node: Node<'_>) -> Option<ExperimentItem> {
+        let mut inner = parts(node);
+        let input = self.reference(inner.next()?);
+        let mut outputs = Vec::new();
+        let mut band = None;
+        for part in inner {
+            if part.as_rule() == Rule::range {
+                band = self.range(part);
+            } else {
+                outputs.push(self.expression(part));
+            }
+        }
+        Some(ExperimentItem::Bode(input, outputs, band?))
+    }
+
+    fn study_item(&mut self, node: Node<'_>, items: &mut Vec<StudyItem>) {
+        if node.as_rule() == Rule::vary {
+            let variations = parts(node)
+                .filter_map(|variation| self.variation(variation))
+                .collect();
+            items.push(StudyItem::Vary(variations));
+            return;
+        }
+        let mut inner = parts(node);
+        let Some(name) = inner.next() else { return };
+        let name = self.name(&name);
+        let mut values = Vec::new();
+        for value in inner {
+            for part in parts(value) {
+                if part.as_rule() == Rule::wildcard {
+                    values.extend(
+                        parts(part)
+                            .next()
+                            .map(|path| SettingValue::Everything(self.reference(path))),
+                    );
+                } else {
+                    values.push(SettingValue::Expr(self.expression(part)));
+                }
+            }
+        }
+        items.push(StudyItem::Setting(name, values));
+    }
+
+    fn variation(&mut self, node: Node<'_>) -> Option<Variation> {
+        let mut inner = parts(node);
+        let mut variation = Variation {
+            target: self.reference(inner.next()?),
+            within: None,
+            values: None,
+        };
+        for part in inner {
+            if part.as_rule() == Rule::within {
+                variation.within = parts(part).next().and_then(|range| self.range(range));
+            } else {
+                variation.values = self.first_expression(part);
+            }
+        }
+        Some(variation)
+    }
+}
+
+fn study_kind(node: &Node<'_>) -> StudyKind {
+    if has(node, Rule::kw_calibrate) {
+        StudyKind::Calibrate
+    } else if has(node, Rule::kw_diagnose) {
+        StudyKind::Diagnose
+    } else {
+        StudyKind::Sweep
+    }
+}

@@ -1,0 +1,229 @@
+//! Expressions, by precedence climbing.
+
+use super::build::{Builder, Node, parts};
+use crate::ast::{Argument, Binary, Expr, ExprKind, Part, Range, Reference, Unary};
+use crate::grammar::Rule;
+use hyde_diag::Span;
+use pest::pratt_parser::{Assoc, Op, PrattParser};
+use std::cell::RefCell;
+use std::sync::OnceLock;
+
+/// Precedence from the loosest to the tightest, as in Modelica.
+fn pratt() -> &'static PrattParser<Rule> {
+    static PRATT: OnceLock<PrattParser<Rule>> = OnceLock::new();
+    PRATT.get_or_init(|| {
+        let left = |rule| Op::infix(rule, Assoc::Left);
+        PrattParser::new()
+            .op(left(Rule::or))
+            .op(left(Rule::and))
+            .op(Op::prefix(Rule::not))
+            .op(left(Rule::lt)
+                | left(Rule::le)
+                | left(Rule::gt)
+                | left(Rule::ge)
+                | left(Rule::eq)
+                | left(Rule::ne))
+            .op(left(Rule::plus) | left(Rule::minus))
+            .op(Op::prefix(Rule::negative) | Op::prefix(Rule::positive))
+            .op(left(Rule::times) | left(Rule::over))
+            .op(Op::infix(Rule::power, Assoc::Right))
+    })
+}
+
+impl Builder<'_> {
+    /// From an `expression` node.
+    pub(super) fn expression(&mut self, node: Node<'_>) -> Expr {
+        let whole = self.span(&node);
+        let this = RefCell::new(self);
+        pratt()
+            .map_primary(|primary| this.borrow_mut().primary(primary))
+            .map_prefix(|op, operand| {
+                let start = this.borrow().span(&op);
+                let kind = match op.as_rule() {
+                    Rule::negative => Unary::Negative,
+                    Rule::not => Unary::Not,
+                    _ => Unary::Positive,
+                };
+                let span = start.to(operand.span);
+                Expr {
+                    kind: ExprKind::Unary(kind, Box::new(operand)),
+                    span,
+                }
+            })
+            .map_infix(|left, op, right| {
+                let span = left.span.to(right.span);
+                Expr {
+                    kind: ExprKind::Binary(binary(op.as_rule()), Box::new(left), Box::new(right)),
+                    span,
+                }
+            })
+            .parse(node.into_inner())
+            .with_outer_span(whole)
+    }
+
+    /// From the first expression among the children of a node.
+    pub(super) fn first_expression(&mut self, node: Node<'_>) -> Option<Expr> {
+        let inner = parts(node).find(|part| part.as_rule() == Rule::expression)?;
+        Some(self.expression(inner))
+    }
+
+    /// From a `reference` or `path` node.
+    pub(super) fn reference(&mut self, node: Node<'_>) -> Reference {
+        let span = self.span(&node);
+        let mut list = Vec::new();
+        for part in parts(node) {
+            if part.as_rule() == Rule::ident {
+                list.push(Part {
+                    name: self.name(&part),
+                    subscripts: Vec::new(),
+                });
+                continue;
+            }
+            let mut inner = parts(part);
+            if let Some(name) = inner.next() {
+                let name = self.name(&name);
+                let subscripts = inner
+                    .flat_map(|subscript| self.expressions(subscript))
+                    .collect();
+                list.push(Part { name, subscripts });
+            }
+        }
+        Reference { parts: list, span }
+    }
+
+    /// Every expression among the children of a node.
+    pub(super) fn expressions(&mut self, node: Node<'_>) -> Vec<Expr> {
+        let inner: Vec<_> = parts(node)
+            .filter(|part| part.as_rule() == Rule::expression)
+            .collect();
+        inner
+            .into_iter()
+            .map(|part| self.expression(part))
+            .collect()
+    }
+
+    /// From an `arguments` node.
+    pub(super) fn arguments(&mut self, node: Node<'_>) -> Vec<Argument> {
+        let mut list = Vec::new();
+        for argument in parts(node) {
+            let mut name = None;
+            for part in parts(argument) {
+                if part.as_rule() == Rule::ident {
+                    name = Some(self.name(&part));
+                } else {
+                    list.push(Argument {
+                        name: name.take(),
+                        value: self.expression(part),
+                    });
+                }
+            }
+        }
+        list
+    }
+
+    /// From a `range` node; a unit written at the upper bound belongs to both (U2).
+    pub(super) fn range(&mut self, node: Node<'_>) -> Option<Range> {
+        let mut bounds = self.expressions(node).into_iter();
+        let (mut from, to) = (bounds.next()?, bounds.next()?);
+        if let Some(unit) = unit_of(&to) {
+            if let Some(slot) = missing_unit(&mut from) {
+                *slot = Some(unit);
+            }
+        }
+        Some(Range { from, to })
+    }
+
+    fn primary(&mut self, node: Node<'_>) -> Expr {
+        let span = self.span(&node);
+        let kind = match node.as_rule() {
+            Rule::quantity => {
+                let mut inner = parts(node);
+                let value = inner.next().map_or(0.0, |number| self.number(&number));
+                ExprKind::Number(value, inner.next().map(|unit| self.unit(unit)))
+            }
+            Rule::string => ExprKind::String(Self::string(&node)),
+            Rule::boolean => ExprKind::Boolean(node.as_str().trim() == "true"),
+            Rule::conditional => {
+                let mut list = self.expressions(node).into_iter();
+                let mut branches = Vec::new();
+                let otherwise = loop {
+                    match (list.next(), list.next()) {
+                        (Some(condition), Some(value)) => branches.push((condition, value)),
+                        (Some(otherwise), None) => break otherwise,
+                        (None, _) => {
+                            break Expr {
+                                kind: ExprKind::Number(0.0, None),
+                                span,
+                            };
+                        }
+                    }
+                };
+                ExprKind::If(branches, Box::new(otherwise))
+            }
+            Rule::array => {
+                let unit = parts(node.clone()).find(|part| part.as_rule() == Rule::unit);
+                let unit = unit.map(|unit| self.unit(unit));
+                ExprKind::Array(self.expressions(node), unit)
+            }
+            Rule::call => {
+                let mut inner = parts(node);
+                let function = inner.next().map(|part| self.reference(part));
+                let arguments = inner
+                    .next()
+                    .map_or_else(Vec::new, |part| self.arguments(part));
+                let function = function.unwrap_or(Reference {
+                    parts: Vec::new(),
+                    span,
+                });
+                ExprKind::Call(function, arguments)
+            }
+            Rule::reference => ExprKind::Reference(self.reference(node)),
+            // A group is its expression; the span keeps the parentheses.
+            _ => match parts(node).next() {
+                Some(inner) => self.expression(inner).kind,
+                None => ExprKind::Number(0.0, None),
+            },
+        };
+        Expr { kind, span }
+    }
+}
+
+impl Expr {
+    fn with_outer_span(self, span: Span) -> Self {
+        Self { span, ..self }
+    }
+}
+
+fn unit_of(expr: &Expr) -> Option<crate::ast::UnitText> {
+    match &expr.kind {
+        ExprKind::Number(_, unit) => unit.clone(),
+        ExprKind::Unary(_, inner) => unit_of(inner),
+        _ => None,
+    }
+}
+
+fn missing_unit(expr: &mut Expr) -> Option<&mut Option<crate::ast::UnitText>> {
+    match &mut expr.kind {
+        ExprKind::Number(_, unit) if unit.is_none() => Some(unit),
+        ExprKind::Unary(_, inner) => missing_unit(inner),
+        _ => None,
+    }
+}
+
+fn binary(rule: Rule) -> Binary {
+    match rule {
+        Rule::or => Binary::Or,
+        Rule::and => Binary::And,
+        Rule::lt => Binary::Lt,
+        Rule::le => Binary::Le,
+        Rule::gt => Binary::Gt,
+        Rule::ge => Binary::Ge,
+        Rule::eq => Binary::Eq,
+        Rule::ne => Binary::Ne,
+        Rule::plus => Binary::Add,
+        Rule::minus => Binary::Sub,
+        Rule::times => Binary::Mul,
+        Rule::over => Binary::Div,
+        _ => Binary::Pow,
+    }
+}

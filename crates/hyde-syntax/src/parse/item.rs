@@ -1,0 +1,329 @@
+//! Items: the file itself, and classes element by element.
+
+use super::Parser;
+use super::build::{Builder, Node, has, parts, significant};
+use crate::ast::{
+    Class, ClassBody, ClassKind, Clocked, EffectUse, Element, File, Import, Item, Name, TypeItem,
+};
+use crate::grammar::Rule;
+use crate::recover;
+use hyde_diag::{Code, Diagnostic, Span};
+
+/// Which section the elements of a class are in.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Section {
+    Declarations,
+    Equations,
+    InitialEquations,
+}
+
+impl Parser<'_> {
+    pub(super) fn file(mut self) -> File {
+        let mut file = File {
+            package: None,
+            imports: Vec::new(),
+            items: Vec::new(),
+        };
+        while self.more() {
+            let start = self.at;
+            if self.refuse_too_deep() {
+                continue;
+            }
+            if self.looking_at("package") {
+                if let Some(pairs) = self.expect(Rule::package_clause) {
+                    let mut inner = significant(pairs).flat_map(parts);
+                    let mut build = self.build(start);
+                    if let Some(path) = inner.next() {
+                        file.package =
+                            Some((build.reference(path), inner.next().map(Builder::text)));
+                    }
+                }
+            } else if self.looking_at("import") {
+                if let Some(pairs) = self.expect(Rule::import_clause) {
+                    let mut inner = significant(pairs).flat_map(parts);
+                    let mut build = self.build(start);
+                    if let Some(path) = inner.next() {
+                        file.imports.push(Import {
+                            path: build.reference(path),
+                            everything: inner.next().is_some(),
+                        });
+                    }
+                }
+            } else if let Some(item) = self.item() {
+                file.items.push(item);
+                continue;
+            }
+            if self.at == start {
+                self.at = recover::skip_item(self.text, start);
+            }
+        }
+        file
+    }
+
+    fn item(&mut self) -> Option<Item> {
+        let start = self.at;
+        if self.looking_at("type") {
+            let pairs = self.expect(Rule::type_item)?;
+            let node = significant(pairs).next()?;
+            return self.build(start).type_item(node).map(Item::Type);
+        }
+        if self.looking_at("experiment") {
+            return self.experiment().map(Item::Experiment);
+        }
+        if ["calibrate", "diagnose", "sweep"]
+            .iter()
+            .any(|word| self.looking_at(word))
+        {
+            return self.study().map(Item::Study);
+        }
+        if self.looking_at("model") {
+            if let Some(pairs) = self.accept(Rule::short_item) {
+                let node = significant(pairs).next()?;
+                return self.build(start).short_class(node).map(Item::Class);
+            }
+        }
+        self.class().map(Item::Class)
+    }
+
+    fn class(&mut self) -> Option<Class> {
+        let start = self.at;
+        let pairs = self.expect(Rule::class_header)?;
+        let node = significant(pairs).next()?;
+        let mut build = self.build(start);
+        let mut kind = ClassKind::Model;
+        let (mut name, mut host, mut doc) = (None, None, None);
+        for part in parts(node) {
+            match part.as_rule() {
+                Rule::class_kind => kind = class_kind(&part),
+                Rule::ident => name = Some(build.name(&part)),
+                Rule::host => host = parts(part).next().map(|path| build.reference(path)),
+                _ => doc = Some(Builder::text(part)),
+            }
+        }
+        let name = name?;
+        let elements = self.elements(&name, Section::Declarations);
+        let body = ClassBody::Long { host, elements };
+        Some(Class {
+            kind,
+            name,
+            doc,
+            body,
+            span: Span::new(self.file, start, self.at),
+        })
+    }
+
+    /// Elements up to `end NAME;`. Equations in `first` section `Equations` need no `equation` before them.
+    fn elements(&mut self, name: &Name, first: Section) -> Vec<Element> {
+        let mut elements = Vec::new();
+        let mut section = first;
+        while self.more() {
+            let start = self.at;
+            if self.looking_at("end") {
+                self.end(name);
+                return elements;
+            }
+            if let Some(pairs) = self.accept(Rule::section) {
+                let initial = pairs
+                    .into_iter()
+                    .any(|node| has(&node, Rule::initial_section));
+                section = if initial {
+                    Section::InitialEquations
+                } else {
+                    Section::Equations
+                };
+                continue;
+            }
+            if self.refuse_too_deep() {
+                continue;
+            }
+            let Some(pairs) = self.expect(Rule::element) else {
+                self.at = recover::skip_statement(self.text, start).max(start + 1);
+                if self.at_item() {
+                    break;
+                }
+                continue;
+            };
+            for node in significant(pairs) {
+                match node.as_rule() {
+                    Rule::clocked_header => {
+                        if let Some(clocked) = self.clocked(start, node) {
+                            elements.push(Element::Clocked(clocked));
+                        }
+                    }
+                    rule => {
+                        if rule == Rule::added {
+                            section = Section::Equations;
+                        }
+                        let span = self.build(start).span(&node);
+                        let Some(element) = self.build(start).element(node) else {
+                            continue;
+                        };
+                        elements.push(self.placed(element, section, span));
+                    }
+                }
+            }
+        }
+        self.missing_end(name);
+        elements
+    }
+
+    /// An equation in its section; one outside of any is reported.
+    fn placed(&mut self, element: Element, section: Section, span: Span) -> Element {
+        match (element, section) {
+            (Element::Equation(equation), Section::InitialEquations) => {
+                Element::InitialEquation(equation)
+            }
+            (element @ Element::Equation(_), Section::Declarations) => {
+                self.diagnostics.push(
+                    Diagnostic::error(Code::Misplaced, "an equation stands among the declarations")
+                        .label(span, "this is an equation")
+                        .help("write `equation` before the first equation"),
+                );
+                element
+            }
+            (element, _) => element,
+        }
+    }
+
+    fn clocked(&mut self, start: usize, node: Node<'_>) -> Option<Clocked> {
+        let mut inner = parts(node);
+        let mut build = self.build(start);
+        let name = build.name(&inner.next()?);
+        let arguments = build.arguments(inner.next()?);
+        let elements = self.elements(&name, Section::Equations);
+        Some(Clocked {
+            name,
+            arguments,
+            elements,
+            span: Span::new(self.file, start, self.at),
+        })
+    }
+
+    /// `end NAME;`, with the name that was opened.
+    pub(super) fn end(&mut self, opened: &Name) {
+        let start = self.at;
+        let Some(pairs) = self.expect(Rule::end_clause) else {
+            self.at = recover::skip_statement(self.text, start + 3);
+            return;
+        };
+        let Some(node) = significant(pairs).flat_map(parts).next() else {
+            return;
+        };
+        let closed = self.build(start).name(&node);
+        if closed.text != opened.text {
+            self.diagnostics.push(
+                Diagnostic::error(
+                    Code::EndName,
+                    format!("`{}` ends with `end {}`", opened.text, closed.text),
+                )
+                .label(closed.span, format!("expected `end {};`", opened.text))
+                .label(opened.span, "opened here")
+                .help(format!("write `end {};`", opened.text)),
+            );
+        }
+    }
+
+    pub(super) fn missing_end(&mut self, opened: &Name) {
+        self.diagnostics.push(
+            Diagnostic::error(Code::EndName, format!("`{}` has no end", opened.text))
+                .label(opened.span, "opened here")
+                .help(format!("write `end {};`", opened.text)),
+        );
+    }
+
+    /// Whether a new item begins here, at the start of a line.
+    pub(super) fn at_item(&self) -> bool {
+        let words = [
+            "model",
+            "connector",
+            "effect",
+            "type",
+            "experiment",
+            "calibrate",
+            "diagnose",
+            "sweep",
+        ];
+        self.text[..self.at].ends_with('\n') && words.iter().any(|word| self.looking_at(word))
+    }
+}
+
+impl Builder<'_> {
+    fn type_item(&mut self, node: Node<'_>) -> Option<TypeItem> {
+        let mut inner = parts(node);
+        let name = self.name(&inner.next()?);
+        let base = self.reference(inner.next()?);
+        let mut item = TypeItem {
+            name,
+            base,
+            unit: None,
+            doc: None,
+        };
+        for part in inner {
+            if part.as_rule() == Rule::unit {
+                item.unit = Some(self.unit(part));
+            } else {
+                item.doc = Some(Self::text(part));
+            }
+        }
+        Some(item)
+    }
+
+    fn short_class(&mut self, node: Node<'_>) -> Option<Class> {
+        let span = self.span(&node);
+        let mut inner = parts(node).filter(|part| part.as_rule() != Rule::kw_model);
+        let name = self.name(&inner.next()?);
+        let base = self.reference(inner.next()?);
+        let (mut changes, mut effects, mut doc) = (Vec::new(), Vec::new(), None);
+        for part in inner {
+            match part.as_rule() {
+                Rule::modification => changes = self.changes(part),
+                Rule::effects => {
+                    effects = parts(part)
+                        .filter_map(|part| self.effect_use(part))
+                        .collect()
+                }
+                _ => doc = Some(Self::text(part)),
+            }
+        }
+        let body = ClassBody::Short {
+            base,
+            changes,
+            effects,
+        };
+        Some(Class {
+            kind: ClassKind::Model,
+            name,
+            doc,
+            body,
+            span,
+        })
+    }
+
+    fn effect_use(&mut self, node: Node<'_>) -> Option<EffectUse> {
+        let mut inner = parts(node);
+        let effect = self.reference(inner.next()?);
+        let mut used = EffectUse {
+            effect,
+            changes: Vec::new(),
+            sites: Vec::new(),
+        };
+        for part in inner {
+            if part.as_rule() == Rule::modification {
+                used.changes = self.changes(part);
+            } else {
+                used.sites.push(self.reference(part));
+            }
+        }
+        Some(used)
+    }
+}
+
+fn class_kind(node: &Node<'_>) -> ClassKind {
+    if has(node, Rule::kw_connector) {
+        ClassKind::Connector
+    } else if has(node, Rule::kw_effect) {
+        ClassKind::Effect
+    } else {
+        ClassKind::Model
+    }
+}

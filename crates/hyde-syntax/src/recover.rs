@@ -1,0 +1,118 @@
+//! Where to go on after an error: past the statement or block that holds it.
+
+/// Words, single characters and nothing of comments, strings or white space, each with its place.
+pub(crate) struct Scanner<'a> {
+    text: &'a str,
+    at: usize,
+}
+
+impl<'a> Scanner<'a> {
+    pub(crate) fn new(text: &'a str, at: usize) -> Self {
+        Self { text, at }
+    }
+}
+
+impl<'a> Iterator for Scanner<'a> {
+    type Item = (usize, &'a str);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            let rest = &self.text[self.at..];
+            let first = rest.chars().next()?;
+            let start = self.at;
+            if rest.starts_with("//") {
+                self.at += rest.find('\n').unwrap_or(rest.len());
+            } else if rest.starts_with("/*") {
+                self.at += rest.find("*/").map_or(rest.len(), |end| end + 2);
+            } else if first == '"' {
+                self.at += string_len(rest);
+            } else if first.is_whitespace() {
+                self.at += first.len_utf8();
+            } else if first.is_alphabetic() || first == '_' {
+                let len = rest
+                    .find(|c: char| !c.is_alphanumeric() && c != '_')
+                    .unwrap_or(rest.len());
+                self.at += len;
+                return Some((start, &rest[..len]));
+            } else {
+                self.at += first.len_utf8();
+                return Some((start, &rest[..first.len_utf8()]));
+            }
+        }
+    }
+}
+
+/// The first byte that is neither white space nor comment, from `at` on.
+pub(crate) fn skip_blank(text: &str, at: usize) -> usize {
+    let mut at = at;
+    loop {
+        let rest = &text[at..];
+        let trimmed = rest.trim_start();
+        at += rest.len() - trimmed.len();
+        if trimmed.starts_with("//") {
+            at += trimmed.find('\n').unwrap_or(trimmed.len());
+        } else if trimmed.starts_with("/*") {
+            at += trimmed.find("*/").map_or(trimmed.len(), |end| end + 2);
+        } else {
+            return at;
+        }
+    }
+}
+
+/// The end of the broken statement or block that starts at `start`: past its `;` outside braces, or past the `end
+/// for;` of a loop. Stops before `end NAME;` and before the keyword of a new item at the start of a line.
+pub(crate) fn skip_statement(text: &str, start: usize) -> usize {
+    let mut depth = 0_usize;
+    let mut blocks = 0_usize;
+    let mut previous = "";
+    for (at, token) in Scanner::new(text, start) {
+        let line_start = text[..at].ends_with('\n') || at == 0;
+        if at > start && line_start && ITEMS.contains(&token) {
+            return at;
+        }
+        match token {
+            "{" => depth += 1,
+            "}" if depth <= 1 && blocks == 0 => return at + 1,
+            "}" => depth = depth.saturating_sub(1),
+            "for" | "when" if previous != "end" && (at == start || blocks > 0) => blocks += 1,
+            "if" if at == start => blocks += 1,
+            "for" | "when" | "if" if previous == "end" => blocks = blocks.saturating_sub(1),
+            ";" if depth == 0 && blocks == 0 => return at + 1,
+            "end" if at > start && blocks == 0 && depth == 0 => return at,
+            _ => {}
+        }
+        previous = token;
+    }
+    text.len()
+}
+
+/// The start of the next item after the broken one that starts at `start`.
+pub(crate) fn skip_item(text: &str, start: usize) -> usize {
+    Scanner::new(text, start)
+        .find(|&(at, token)| at > start && ITEMS.contains(&token) && text[..at].ends_with('\n'))
+        .map_or(text.len(), |(at, _)| at)
+}
+
+const ITEMS: [&str; 8] = [
+    "model",
+    "connector",
+    "effect",
+    "type",
+    "experiment",
+    "calibrate",
+    "diagnose",
+    "sweep",
+];
+
+fn string_len(rest: &str) -> usize {
+    let mut escaped = false;
+    for (at, c) in rest.char_indices().skip(1) {
+        match c {
+            _ if escaped => escaped = false,
+            '\\' => escaped = true,
+            '"' => return at + 1,
+            _ => {}
+        }
+    }
+    rest.len()
+}

@@ -1,0 +1,152 @@
+//! Prints values for people: a few digits, a fitting prefix, the unit.
+
+use crate::symbol::{PREFIXES, look_up};
+use crate::{Dimension, NamedUnit};
+
+/// Prints an SI value with the prefix that fits and the usual unit: `12.3 um`, `0.62 N.m/A`, `1.6e-3 kg.m2`.
+///
+/// Four significant digits. The prefix goes to the first symbol of the unit, if that takes one, and only where the
+/// number would otherwise be below 0.1 or from 1000 on.
+#[must_use]
+pub fn engineering(si: f64, dimension: Dimension) -> String {
+    let fraction = dimension.usual_fraction();
+    let unit = fraction.to_string();
+    let size = round_to(si.abs(), DIGITS);
+    if size != 0.0 && size.is_finite() && !(0.1..1000.0).contains(&size) {
+        let prefixes = fraction
+            .over
+            .first()
+            .map_or("", |symbol| prefixes_of(symbol));
+        if let Some((prefix, value)) = fitting_prefix(size, prefixes) {
+            return format!("{} {prefix}{unit}", significant(value.copysign(si), DIGITS));
+        }
+    }
+    let number = significant(si, DIGITS);
+    if unit == "1" {
+        number
+    } else {
+        format!("{number} {unit}")
+    }
+}
+
+/// Prints an SI value in a unit the user chose: `350 mm`. Ten significant digits, so that conversion leaves no dust.
+#[must_use]
+pub fn format_value(si: f64, unit: &NamedUnit) -> String {
+    let number = significant(unit.unit().from_si(si), 10);
+    if unit.text() == "1" {
+        number
+    } else {
+        format!("{number} {unit}")
+    }
+}
+
+/// Prints a number with up to `digits` significant digits and no trailing zeros: `0.0123`, `1.6e-7`, `12000`.
+#[must_use]
+pub fn significant(value: f64, digits: usize) -> String {
+    let rounded = round_to(value, digits);
+    let plain = rounded == 0.0 || (1e-3..1e7).contains(&rounded.abs()) || !rounded.is_finite();
+    // Adding zero turns a negative zero into a plain one.
+    if plain {
+        format!("{}", rounded + 0.0)
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+const DIGITS: usize = 4;
+
+/// The nearest double with so many significant decimal digits.
+fn round_to(value: f64, digits: usize) -> f64 {
+    format!("{value:.*e}", digits.saturating_sub(1))
+        .parse()
+        .unwrap_or(value)
+}
+
+/// The prefixes of thousands that go on a symbol when printing. Not on powers, nor on what has a prefix already (kg).
+fn prefixes_of(symbol: &str) -> &'static str {
+    match look_up(symbol) {
+        Some((_, row)) if row.text == symbol => row.prefixes,
+        Some(_) | None => "",
+    }
+}
+
+/// The largest prefix that leaves the number at 1 or above, and the number it leaves; none if no prefix helps.
+fn fitting_prefix(size: f64, allowed: &str) -> Option<(char, f64)> {
+    let candidates = PREFIXES
+        .iter()
+        .rev()
+        .filter(|(prefix, _)| allowed.contains(*prefix));
+    candidates
+        .filter(|(prefix, _)| !"cdh".contains(*prefix))
+        .map(|&(prefix, scale)| (prefix, round_to(scale.remove(size), DIGITS)))
+        .find(|(_, value)| (1.0..1000.0).contains(value))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::parse_unit;
+
+    fn shown(si: f64, unit: &str) -> String {
+        engineering(si, parse_unit(unit).unwrap().dimension)
+    }
+
+    #[test]
+    fn numbers_get_the_prefix_that_fits() {
+        for (si, unit, text) in [
+            (1.23e-5, "m", "12.3 um"),
+            (0.62, "N.m/A", "0.62 N.m/A"),
+            (0.35, "m", "0.35 m"),
+            (0.01, "m", "10 mm"),
+            (-4e-6, "m", "-4 um"),
+            (1.6e8, "N/m", "160 MN/m"),
+            (6.0e3, "N.m/rad", "6 kN.m"),
+            (79.3e9, "Pa", "79.3 GPa"),
+            (3.2e-3, "H", "3.2 mH"),
+            (0.004, "V", "4 mV"),
+            (1e-3, "s", "1 ms"),
+            (1.9e-4, "rad", "190 urad"),
+            (0.005, "m/s", "5 mm/s"),
+            (104.719_755, "rad/s", "104.7 rad/s"),
+            (5000.0, "rad/s", "5000 rad/s"),
+            (310.0, "kg", "310 kg"),
+            (1250.0, "kg", "1250 kg"),
+            (8.2e-3, "kg.m2", "0.0082 kg.m2"),
+            (1.2e-5, "kg.m2", "1.2e-5 kg.m2"),
+            (2.5e-3, "m2", "0.0025 m2"),
+            (35.0, "1/s", "35 1/s"),
+            (0.02, "1", "0.02"),
+            (0.0, "N", "0 N"),
+            (-0.0, "N", "0 N"),
+            (999.96, "N", "1 kN"),
+            (9.99996e-4, "m", "1 mm"),
+            (1e-30, "m", "1e-30 m"),
+            (f64::NAN, "m", "NaN m"),
+            (f64::INFINITY, "m", "inf m"),
+        ] {
+            assert_eq!(shown(si, unit), text);
+        }
+    }
+
+    #[test]
+    fn values_print_in_the_unit_they_were_written_in() {
+        let show = |si, unit| format_value(si, &NamedUnit::parse(unit).unwrap());
+        assert_eq!(show(0.35, "mm"), "350 mm");
+        assert_eq!(
+            show(0.01 / (2.0 * std::f64::consts::PI), "mm/rev"),
+            "10 mm/rev"
+        );
+        assert_eq!(show(50.0 * std::f64::consts::PI, "rpm"), "1500 rpm");
+        assert_eq!(show(293.15, "degC"), "20 degC");
+        assert_eq!(show(0.5, "1"), "0.5");
+    }
+
+    #[test]
+    fn significant_digits_drop_trailing_zeros() {
+        assert_eq!(significant(0.012_300_4, 4), "0.0123");
+        assert_eq!(significant(1.0 / 3.0, 3), "0.333");
+        assert_eq!(significant(123_456.0, 3), "123000");
+        assert_eq!(significant(-1.6e-7, 3), "-1.6e-7");
+        assert_eq!(significant(2e9, 3), "2e9");
+    }
+}

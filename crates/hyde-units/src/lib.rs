@@ -1,0 +1,40 @@
+//! Dimensions, units and their conversion to SI.
+//!
+//! A [`Unit`] is read from text by [`parse_unit`]; it turns a value into SI where a number is read, and back where
+//! one is printed. In between there is only SI. What remains of the unit is its [`Dimension`], which is multiplied
+//! along with the quantities and compared by [`Dimension::agreement`] wherever two of them should be the same.
+//!
+//! Angles have no dimension in SI, and every drive has both `rad/s` and `Hz`, lengths and lengths per revolution. So
+//! a dimension carries the exponent of the angle beside the base units; where two sides differ in nothing else the
+//! answer is [`Agreement::AngleDiffers`], worth a warning. Torque, inertia and motor constants do not tell how often
+//! the angle is in them (a stiffness in N.m/rad times rad is N.m), so they are [`AngleExponent::Neutral`] and match any.
+//!
+//! ```
+//! use hyde_units::{Agreement, parse_unit};
+//!
+//! let lead = parse_unit("mm/rev")?;
+//! assert_eq!(lead.to_si(10.0), 0.01 / std::f64::consts::TAU);
+//! let advance = lead.dimension.multiply(parse_unit("deg")?.dimension);
+//! assert_eq!(advance.agreement(parse_unit("um")?.dimension), Agreement::Same);
+//! assert_eq!(parse_unit("Nm").unwrap_err().to_string(), "unknown unit `Nm`: write `N.m`");
+//! # Ok::<(), hyde_units::UnitError>(())
+//! ```
+
+mod dimension;
+mod error;
+mod exponent;
+mod format;
+mod name;
+mod parse;
+mod scale;
+mod suggest;
+mod symbol;
+mod unit;
+
+pub use dimension::{Agreement, AngleExponent, Dimension};
+pub use error::{UnitError, UnitErrorKind};
+pub use exponent::Exponent;
+pub use format::{engineering, format_value, significant};
+pub use parse::parse_unit;
+pub use scale::Scale;
+pub use unit::{NamedUnit, Unit};

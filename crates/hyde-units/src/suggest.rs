@@ -1,0 +1,194 @@
+//! What an unknown unit symbol may have meant: `ohms`, `Nm`, `KG`, `hz`, `krad`.
+
+use crate::UnitErrorKind;
+use crate::symbol::{SYMBOLS, look_up, prefixed};
+
+/// The kind of mistake that an unknown symbol is.
+///
+/// The likeliest reading is tried first: a well-known product, a word, the wrong case, a prefix that is not usual,
+/// two symbols without a dot, a slip of one letter.
+pub(crate) fn explain(symbol: &str) -> UnitErrorKind {
+    let symbol_text = symbol.to_owned();
+    if let Some((_, product)) = WELL_KNOWN.iter().find(|(joined, _)| *joined == symbol) {
+        return UnitErrorKind::Joined {
+            symbol: symbol_text,
+            product: (*product).to_owned(),
+        };
+    }
+    let meant = meant_by_word(symbol).unwrap_or_else(|| other_case(symbol));
+    if !meant.is_empty() {
+        return UnitErrorKind::Unknown {
+            symbol: symbol_text,
+            candidates: meant,
+        };
+    }
+    if let Some((prefix, _, bare)) = prefixed(symbol) {
+        return UnitErrorKind::Prefix {
+            prefix,
+            symbol: bare.text.to_owned(),
+        };
+    }
+    if let Some(product) = split(symbol) {
+        return UnitErrorKind::Joined {
+            symbol: symbol_text,
+            product,
+        };
+    }
+    UnitErrorKind::Unknown {
+        symbol: symbol_text,
+        candidates: one_slip(symbol),
+    }
+}
+
+/// Products whose letters would also match something less likely: `nm`, `N.ms`.
+const WELL_KNOWN: [(&str, &str); 3] = [("Nm", "N.m"), ("NM", "N.m"), ("Nms", "N.m.s")];
+
+/// `ohms`, `Meter`, `kilonewtons` are words for symbols.
+fn meant_by_word(symbol: &str) -> Option<Vec<String>> {
+    let lower = symbol.to_lowercase();
+    let singular = lower.strip_suffix('s').unwrap_or(&lower);
+    for (word, prefix) in [
+        ("", ""),
+        ("micro", "u"),
+        ("milli", "m"),
+        ("kilo", "k"),
+        ("mega", "M"),
+    ] {
+        let matching = |text: &str| {
+            [&*lower, singular]
+                .iter()
+                .any(|whole| whole.strip_prefix(word) == Some(text))
+        };
+        let found = SYMBOLS.iter().find(|row| {
+            let is_word = row.words.iter().any(|word| matching(word));
+            let is_plural = row.text.len() >= 3 && matching(row.text) && symbol != row.text;
+            (is_word || is_plural) && row.prefixes.contains(prefix)
+        });
+        if let Some(row) = found {
+            return Some(vec![format!("{prefix}{}", row.text)]);
+        }
+    }
+    (lower == "micron" || lower == "microns").then(|| vec!["um".to_owned()])
+}
+
+/// Symbols that differ in nothing but the case of letters, the one with the fewest changes first.
+fn other_case(symbol: &str) -> Vec<String> {
+    let mut found: Vec<String> = spellings()
+        .filter(|text| text.to_lowercase() == symbol.to_lowercase())
+        .collect();
+    let changes = |text: &String| {
+        text.chars()
+            .zip(symbol.chars())
+            .filter(|(a, b)| a != b)
+            .count()
+    };
+    found.sort_by_key(changes);
+    found
+}
+
+/// Two known symbols in one: `kgm` is `kg.m`.
+fn split(symbol: &str) -> Option<String> {
+    symbol.char_indices().skip(1).find_map(|(at, _)| {
+        let (left, right) = symbol.split_at(at);
+        (look_up(left).is_some() && look_up(right).is_some()).then(|| format!("{left}.{right}"))
+    })
+}
+
+/// Symbols of three letters or more that one letter too many, too few, or wrong makes.
+fn one_slip(symbol: &str) -> Vec<String> {
+    let candidates = spellings().filter(|text| text.chars().count() >= 3);
+    candidates
+        .filter(|text| is_one_slip(text, symbol))
+        .take(3)
+        .collect()
+}
+
+fn is_one_slip(a: &str, b: &str) -> bool {
+    let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
+    let same_start = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
+    let (a, b) = (&a[same_start..], &b[same_start..]);
+    let same_end = a
+        .iter()
+        .rev()
+        .zip(b.iter().rev())
+        .take_while(|(x, y)| x == y)
+        .count();
+    let (a, b) = (&a[..a.len() - same_end], &b[..b.len() - same_end]);
+    let swapped = a.len() == 2 && b.len() == 2 && a[0] == b[1] && a[1] == b[0];
+    swapped || a.len().max(b.len()) == 1
+}
+
+/// Every symbol with every prefix it takes, the bare symbols first.
+fn spellings() -> impl Iterator<Item = String> {
+    let bare = SYMBOLS.iter().map(|row| row.text.to_owned());
+    let with_prefix = SYMBOLS.iter().flat_map(|row| {
+        row.prefixes
+            .chars()
+            .map(move |prefix| format!("{prefix}{}", row.text))
+    });
+    bare.chain(with_prefix)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::parse_unit;
+
+    fn message(text: &str) -> String {
+        parse_unit(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn near_misses_are_named() {
+        let cases = [
+            ("ohms", "did you mean `ohm`?"),
+            ("Ohm", "did you mean `ohm`?"),
+            ("Newton", "did you mean `N`?"),
+            ("kilonewtons", "did you mean `kN`?"),
+            ("meters", "did you mean `m`?"),
+            ("millimetre", "did you mean `mm`?"),
+            ("microns", "did you mean `um`?"),
+            ("sec", "did you mean `s`?"),
+            ("seconds", "did you mean `s`?"),
+            ("degrees", "did you mean `deg`?"),
+            ("radians", "did you mean `rad`?"),
+            ("rads", "did you mean `rad`?"),
+            ("revs", "did you mean `rev`?"),
+            ("inches", "did you mean `in`?"),
+            ("Celsius", "did you mean `degC`?"),
+            ("turns", "did you mean `rev`?"),
+            ("KG", "did you mean `kg`?"),
+            ("Kg", "did you mean `kg`?"),
+            ("hz", "did you mean `Hz`?"),
+            ("HZ", "did you mean `Hz`?"),
+            ("RPM", "did you mean `rpm`?"),
+            ("khz", "did you mean `kHz`?"),
+            ("mpa", "did you mean `mPa` or `MPa`?"),
+            ("rda", "did you mean `rad`?"),
+            ("arcsc", "did you mean `arcsec`?"),
+            ("Nm", "write `N.m`"),
+            ("NM", "write `N.m`"),
+            ("Nms", "write `N.m.s`"),
+            ("kNm", "write `kN.m`"),
+            ("Nmm", "write `N.mm`"),
+            ("Vs", "write `V.s`"),
+            ("As", "write `A.s`"),
+            ("kgm", "write `kg.m`"),
+        ];
+        for (text, help) in cases {
+            assert_eq!(message(text), format!("unknown unit `{text}`: {help}"));
+        }
+        assert_eq!(message("kgm2"), "unknown unit `kgm`: write `kg.m`");
+    }
+
+    #[test]
+    fn an_unusual_prefix_is_said_to_be_one() {
+        assert_eq!(message("krad/s"), "`rad` does not take the prefix `k`");
+        assert_eq!(message("kmin"), "`min` does not take the prefix `k`");
+    }
+
+    #[test]
+    fn what_is_like_nothing_gets_no_help() {
+        assert_eq!(message("furlong"), "unknown unit `furlong`");
+        assert_eq!(message("m/x"), "unknown unit `x`");
+    }
+}
