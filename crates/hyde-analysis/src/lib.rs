@@ -35,7 +35,7 @@ mod solve;
 mod system;
 mod unroll;
 
-pub use partials::{parameter_partials, rows};
+pub use partials::{TickWrt, parameter_partials, rows, tick_partials};
 
 use hyde_diag::Diagnostics;
 use hyde_ir::{Dae, FlatModel};

@@ -4,7 +4,7 @@
 //! result is the total derivative. One reverse pass a row gives all its entries; an array row gives array entries.
 
 use hyde_ir::dae::{Dae, Definition, Function, InitialCondition, Partial, Space, Wrt};
-use hyde_ir::{Expr, ExprArena, ExprId, Id as _, Index, ParamId, Range, VarId};
+use hyde_ir::{ClockId, Expr, ExprArena, ExprId, Id as _, Index, ParamId, Range, VarId};
 use std::collections::HashMap;
 
 /// Fills in the derivatives of the DAE's functions.
@@ -61,6 +61,66 @@ pub fn parameter_partials(
             }
         }
         found.push((function, list));
+    }
+    found
+}
+
+/// By what an assignment of a tick is differentiated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TickWrt {
+    /// The memory before the tick, by position.
+    Memory(usize),
+    /// An unknown.
+    Unknown(usize),
+    /// The derivative of an unknown.
+    Derivative(usize),
+}
+
+/// Derivatives of what a tick writes (by position in the memory), through the assignments before it and through explicit
+/// variables. Quantisers count as the identity (S3).
+pub fn tick_partials(dae: &mut Dae, clock: ClockId) -> Vec<(usize, TickWrt, ExprId)> {
+    let definitions = expanded_definitions(dae);
+    let mut assigned: HashMap<(VarId, i32), ExprId> = HashMap::new();
+    let mut found = Vec::new();
+    for assignment in dae.ticks[clock].assignments.clone() {
+        for counter in assignment.range.iter() {
+            let at = Index {
+                stride: 0,
+                offset: counter,
+            };
+            let value = expand(&mut dae.exprs, assignment.value, &definitions);
+            let value = shift(&mut dae.exprs, value, at);
+            let value = dae
+                .exprs
+                .rewrite(value, &mut HashMap::new(), |_, _, expr| match expr {
+                    Expr::Var(var, index) => assigned.get(&(var, index.offset)).copied(),
+                    _ => None,
+                });
+            let element = assignment.index.at(counter);
+            assigned.insert((assignment.var, element), value);
+            let Some(target) = dae.place(assignment.var) else {
+                continue;
+            };
+            let row = target.base + usize::try_from(element).unwrap_or(0);
+            let leaves = |expr| matches!(expr, Expr::Var(..) | Expr::Der(..) | Expr::Pre(..));
+            for (leaf, derivative) in dae.exprs.gradient(value, leaves) {
+                let (Expr::Var(var, index) | Expr::Der(var, index) | Expr::Pre(var, index)) = leaf
+                else {
+                    continue;
+                };
+                let Some(place) = dae.place(var) else {
+                    continue;
+                };
+                let position = place.base + usize::try_from(index.offset).unwrap_or(0);
+                let wrt = match (place.space, leaf) {
+                    (Space::Unknown, Expr::Der(..)) => TickWrt::Derivative(position),
+                    (Space::Unknown, _) => TickWrt::Unknown(position),
+                    (Space::Memory, _) => TickWrt::Memory(position),
+                    (Space::Input | Space::Work | Space::Parameter, _) => continue,
+                };
+                found.push((row, wrt, derivative));
+            }
+        }
     }
     found
 }

@@ -33,6 +33,7 @@ fn main() {
         experiment: exp,
         settings: &settings,
         records: &records,
+        free_inputs: false,
         backend: Default::default(),
     };
     if let Some(stage) = args.get(4) {

@@ -23,6 +23,8 @@ pub struct Request<'a> {
     pub settings: &'a BTreeMap<String, f64>,
     /// The headers of the experiment's records.
     pub records: &'a BTreeMap<String, Header>,
+    /// Free inputs become parameters and stimuli are left out: for linearisation.
+    pub free_inputs: bool,
     /// How numbers are made.
     pub backend: Backend,
 }
@@ -68,6 +70,7 @@ pub(crate) fn flatten(request: &Request<'_>, diagnostics: &mut Diagnostics) -> O
         experiment: request.experiment,
         settings: request.settings,
         records: request.records,
+        free_inputs: request.free_inputs,
     };
     let flat = hyde_flatten::flatten(&input, diagnostics)?;
     if cfg!(debug_assertions) {

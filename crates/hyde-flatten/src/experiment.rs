@@ -46,6 +46,8 @@ impl<'a> Model<'a, '_> {
         };
         for item in &experiment.items {
             match item {
+                // A linearised model is driven through its inputs themselves.
+                ExperimentItem::Stimulus(_) if self.input.free_inputs => {}
                 ExperimentItem::Stimulus(drives) => {
                     drives.iter().for_each(|drive| self.stimulus(drive, root))
                 }
@@ -81,7 +83,12 @@ impl<'a> Model<'a, '_> {
                     self.agree_time(&step, "rows follow each other in time, this relates", root);
                     self.flat.experiment.every = Some(step.id);
                 }
-                ExperimentItem::Bode(input, outputs, band) => self.bode(input, outputs, band, root),
+                ExperimentItem::Skip(expr) => {
+                    let time = self.value(expr, &at(Setting::Parameter));
+                    self.agree_time(&time, "what is skipped is a time, this relates", root);
+                    self.flat.experiment.skip = Some(time.id);
+                }
+                ExperimentItem::Bode(bode) => self.bode(bode, root),
             }
         }
     }
@@ -550,31 +557,25 @@ impl<'a> Model<'a, '_> {
         self.flat.experiment.stop = Some(Stop::At(time.id));
     }
 
-    fn bode(
-        &mut self,
-        input: &'a Reference,
-        outputs: &'a [Expr],
-        band: &'a ast::Range,
-        root: InstanceId,
-    ) {
+    fn bode(&mut self, bode: &'a ast::Bode, root: InstanceId) {
+        let (input, outputs, band) = (&bode.input, &bode.outputs, &bode.band);
         let scope = Scope::new(root, Setting::Report);
-        let Some(Resolved::Variable(input_var, None)) = self.resolve(input, &scope) else {
-            self.report(
-                Diagnostic::error(Code::NotAnInput, "a frequency response starts at an input")
-                    .label(input.span, "no variable"),
-            );
-            return;
+        let driven = match self.resolve(input, &scope) {
+            Some(Resolved::Variable(var, None)) if self.flat.variables[var].input => var,
+            _ => {
+                self.report(
+                    Diagnostic::error(
+                        Code::NotAnInput,
+                        format!("`{}` is no input", input.dotted()),
+                    )
+                    .label(
+                        input.span,
+                        "a frequency response starts at an input of the model",
+                    ),
+                );
+                return;
+            }
         };
-        if !self.flat.variables[input_var].input {
-            self.report(
-                Diagnostic::error(
-                    Code::NotAnInput,
-                    format!("`{}` is no input", input.dotted()),
-                )
-                .label(input.span, "cannot be driven"),
-            );
-            return;
-        }
         let mut list = Vec::new();
         for output in outputs {
             let typed = self.value(output, &scope);
@@ -600,13 +601,70 @@ impl<'a> Model<'a, '_> {
         };
         self.agree(&from, &rate, "a band of frequencies relates", root);
         self.agree(&to, &rate, "a band of frequencies relates", root);
+        let modes = bode
+            .modes
+            .iter()
+            .filter_map(|(name, mode)| self.mode_of(name, mode))
+            .collect();
         let origin = self.origin(root, input.span).made_by(MadeBy::Experiment);
+        let band = (from.id, to.id);
         self.flat.experiment.bodes.push(Bode {
-            input: input_var,
+            input: driven,
             outputs: list,
-            band: (from.id, to.id),
+            band,
+            modes,
             origin,
         });
+    }
+
+    /// An automaton by the name of its instance, and one of its modes.
+    fn mode_of(
+        &mut self,
+        name: &Reference,
+        mode: &ast::Name,
+    ) -> Option<(hyde_ir::AutomatonId, usize)> {
+        let path = name.dotted();
+        let found = self
+            .flat
+            .automata
+            .enumerate()
+            .find(|(_, automaton)| automaton.name == path);
+        let Some((id, automaton)) = found else {
+            let known: Vec<&str> = self
+                .flat
+                .automata
+                .iter()
+                .map(|automaton| automaton.name.as_str())
+                .collect();
+            let help = format!("modes are in {}", listed(&known));
+            self.report(
+                Diagnostic::error(Code::UnknownName, format!("`{path}` has no modes"))
+                    .label(name.span, "no `modes` block")
+                    .help(help),
+            );
+            return None;
+        };
+        let number = automaton
+            .modes
+            .iter()
+            .position(|known| known.name == mode.text);
+        if number.is_none() {
+            let known: Vec<&str> = automaton
+                .modes
+                .iter()
+                .map(|mode| mode.name.as_str())
+                .collect();
+            let help = format!("its modes are {}", listed(&known));
+            self.report(
+                Diagnostic::error(
+                    Code::UnknownName,
+                    format!("`{path}` has no mode `{}`", mode.text),
+                )
+                .label(mode.span, "not known")
+                .help(help),
+            );
+        }
+        Some((id, number?))
     }
 
     fn agree_time(&mut self, value: &Typed, what: &'static str, instance: InstanceId) {
@@ -615,6 +673,62 @@ impl<'a> Model<'a, '_> {
             ..value.clone()
         };
         self.agree(value, &time, what, instance);
+    }
+
+    /// Makes every free input a parameter of its name with the value zero: what a linearised model is driven by.
+    pub(crate) fn free_inputs(&mut self, root: InstanceId) {
+        if !self.input.free_inputs {
+            return;
+        }
+        let members: Vec<VarId> = self.instances[root]
+            .members
+            .values()
+            .filter_map(|member| {
+                if let Member::Variable(var) = member {
+                    Some(*var)
+                } else {
+                    None
+                }
+            })
+            .filter(|&var| self.flat.variables[var].input && self.notes(var).binding.is_none())
+            .collect();
+        for var in members {
+            let (dim, quantity) = (self.dim(var), self.flat.variables[var].quantity.clone());
+            let zero = self.flat.exprs.constant(0.0);
+            self.parameters.push(ParameterNotes {
+                dim,
+                binding: None,
+                state: Lowering::Done,
+                boolean: false,
+            });
+            let origin = self.flat.variables[var]
+                .origin
+                .clone()
+                .made_by(MadeBy::Experiment);
+            let param = self.flat.parameters.push(Parameter {
+                name: self.flat.variables[var].name.clone(),
+                len: None,
+                value: vec![zero],
+                quantity,
+                structural: false,
+                is_final: false,
+                derived: false,
+                prior: None,
+                source: None,
+                origin: origin.clone(),
+            });
+            let lhs = self.flat.exprs.var(var);
+            let rhs = self
+                .flat
+                .exprs
+                .add(Ir::Param(param, hyde_ir::Index::SCALAR));
+            self.flat.equations.push(Equation {
+                range: Range::SCALAR,
+                lhs,
+                rhs,
+                origin,
+            });
+        }
     }
 
     /// The free inputs of the model that nothing drives.

@@ -55,6 +55,8 @@ pub struct Input<'a> {
     pub settings: &'a BTreeMap<String, f64>,
     /// The headers of the experiment's records by their name there.
     pub records: &'a BTreeMap<String, Header>,
+    /// Free inputs become parameters and stimuli are left out: for linearisation.
+    pub free_inputs: bool,
 }
 
 /// Flattens a model with its experiment.
@@ -67,6 +69,7 @@ pub fn flatten(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<FlatM
     model.lower_bindings();
     model.lower_equations();
     model.connect();
+    model.free_inputs(root);
     model.experiment(root);
     model.finish();
     let flat = model.flat;

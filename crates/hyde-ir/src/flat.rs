@@ -206,6 +206,8 @@ pub struct Bode {
     pub outputs: Vec<(String, ExprId, Quantity)>,
     /// From and to in Hz, of parameters alone.
     pub band: (ExprId, ExprId),
+    /// Modes of the linearised system: automaton and mode.
+    pub modes: Vec<(AutomatonId, usize)>,
     /// Where it is written.
     pub origin: Origin,
 }
@@ -229,6 +231,8 @@ pub struct Experiment {
     pub stop: Option<Stop>,
     /// Time between rows of the results in s, of parameters alone.
     pub every: Option<ExprId>,
+    /// Time in s before which measured channels are not compared, of parameters alone.
+    pub skip: Option<ExprId>,
     /// Options of the solver by name (`rtol`), of parameters alone.
     pub solve: Vec<(String, ExprId)>,
 }

@@ -5,7 +5,7 @@ use crate::native::Native;
 use crate::routine::{Leaf, Routine, Slot, Step};
 use hyde_ir::dae::{self, Dae, Space};
 use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, Range, VariableKind};
-use hyde_program::{Constant, Function, Kernels, PartialEntry, Point, Workspace, Wrt};
+use hyde_program::{Constant, Function, Kernels, PartialEntry, Point, TickWrt, Workspace, Wrt};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
@@ -89,7 +89,7 @@ impl Compiled {
             },
             Backend::Interpreter => Code::Interpreter(Interpreter::new(&self.dae, &kernel.routine)),
         });
-        self.check(at, workspace, out);
+        self.check(at, workspace);
         let Point { t, y, yp, z, u, p } = at;
         let mut frame = Frame {
             t,
@@ -108,7 +108,7 @@ impl Compiled {
     }
 
     /// Machine code does not check bounds: the lengths are checked here, at every call.
-    fn check(&self, at: Point<'_>, workspace: &Workspace, out: &[f64]) {
+    fn check(&self, at: Point<'_>, workspace: &Workspace) {
         let dae = &self.dae;
         let enough = at.y.len() >= dae.n_unknowns
             && at.yp.len() >= dae.n_unknowns
@@ -120,7 +120,6 @@ impl Compiled {
             enough,
             "a kernel is called with vectors of its program's lengths"
         );
-        let _ = out;
     }
 }
 
@@ -191,6 +190,7 @@ impl Kernels for Compiled {
                 Some(hyde_ir::flat::Stop::EndOf(_)) | None => return None,
             },
             Constant::Every => experiment.every?,
+            Constant::Skip => experiment.skip?,
             Constant::Rtol => option("rtol")?,
             Constant::Atol => option("atol")?,
             Constant::MaxStep => option("max_step")?,
@@ -252,7 +252,7 @@ impl Kernels for Compiled {
         let routine = Routine::partials(&dae, in_dae(function), &list);
         let entries = entries(&list);
         let mut values = vec![0.0; entries.len()];
-        self.check(at, workspace, &values);
+        self.check(at, workspace);
         let Point { t, y, yp, z, u, p } = at;
         let mut frame = Frame {
             t,
@@ -282,6 +282,47 @@ impl Kernels for Compiled {
     fn tick(&self, clock: usize, at: Point<'_>, workspace: &mut Workspace, after: &mut [f64]) {
         assert!(after.len() >= self.dae.n_memory, "room for the memory");
         self.run(&self.ticks[clock], at, workspace, after);
+    }
+
+    fn tick_partials(
+        &self,
+        clock: usize,
+        at: Point<'_>,
+        workspace: &mut Workspace,
+    ) -> Vec<(usize, TickWrt, f64)> {
+        let mut dae = self.dae.clone();
+        let list = hyde_analysis::tick_partials(&mut dae, ClockId::from_index(clock));
+        let steps = list.iter().zip(0..).map(|(&(_, _, value), row)| Step {
+            range: Range::SCALAR,
+            slot: Slot::Out,
+            target: Index::fixed(row),
+            value,
+        });
+        let interpreter = Interpreter::new(&dae, &Routine::plain("tick_partials", steps.collect()));
+        let mut values = vec![0.0; list.len()];
+        self.check(at, workspace);
+        let Point { t, y, yp, z, u, p } = at;
+        interpreter.run(&mut Frame {
+            t,
+            y,
+            yp,
+            z,
+            u,
+            p,
+            work: &mut workspace.work,
+            out: &mut values,
+        });
+        list.into_iter()
+            .zip(values)
+            .map(|((row, wrt, _), value)| {
+                let wrt = match wrt {
+                    hyde_analysis::TickWrt::Memory(position) => TickWrt::Memory(position),
+                    hyde_analysis::TickWrt::Unknown(position) => TickWrt::Unknown(position),
+                    hyde_analysis::TickWrt::Derivative(position) => TickWrt::Derivative(position),
+                };
+                (row, wrt, value)
+            })
+            .collect()
     }
 
     fn measures(&self, p: &[f64], reductions: &[f64], out: &mut [f64]) {

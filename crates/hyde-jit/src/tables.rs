@@ -362,6 +362,11 @@ fn experiment(dae: &Dae) -> Experiment {
                     input: name,
                     input_output,
                     outputs,
+                    modes: bode
+                        .modes
+                        .iter()
+                        .map(|(automaton, mode)| (automaton.index(), *mode))
+                        .collect(),
                     origin: bode.origin.clone(),
                 }
             })

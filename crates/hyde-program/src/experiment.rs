@@ -81,6 +81,8 @@ pub struct Bode {
     pub input_output: Option<usize>,
     /// Printed name and output of each response.
     pub outputs: Vec<(String, usize)>,
+    /// Modes of the linearised system: automaton and mode.
+    pub modes: Vec<(usize, usize)>,
     /// Where it is written.
     pub origin: Origin,
 }

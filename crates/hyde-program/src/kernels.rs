@@ -60,6 +60,17 @@ impl Function {
     ];
 }
 
+/// By what a tick is differentiated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TickWrt {
+    /// The memory before the tick, by position.
+    Memory(usize),
+    /// An unknown.
+    Unknown(usize),
+    /// The derivative of an unknown.
+    Derivative(usize),
+}
+
 /// A number that parameters alone determine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Constant {
@@ -75,6 +86,8 @@ pub enum Constant {
     Stop,
     /// Time between rows of the results in s.
     Every,
+    /// Time before which measured channels are not compared, in s.
+    Skip,
     /// Relative tolerance.
     Rtol,
     /// Absolute tolerance, SI.
@@ -135,6 +148,15 @@ pub trait Kernels: Send + Sync {
 
     /// The memory after a tick of a clock; `after` comes in as a copy of the memory before.
     fn tick(&self, clock: usize, at: Point<'_>, workspace: &mut Workspace, after: &mut [f64]);
+
+    /// Derivatives of what a tick of a clock writes to the memory: position, with respect to what, value. Quantisers count
+    /// as the identity (S3).
+    fn tick_partials(
+        &self,
+        clock: usize,
+        at: Point<'_>,
+        workspace: &mut Workspace,
+    ) -> Vec<(usize, TickWrt, f64)>;
 
     /// Values of the experiment's measures and expectations (1 or 0), from its reductions.
     fn measures(&self, p: &[f64], reductions: &[f64], out: &mut [f64]);

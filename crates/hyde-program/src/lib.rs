@@ -30,5 +30,5 @@ pub use experiment::{
     Bode, Experiment, Measure, Measured, Preparation, Reduction, ReductionKind, Stop,
 };
 pub use jacobian::{Jacobian, JacobianEntry};
-pub use kernels::{Constant, Function, Kernels, Point, Workspace};
+pub use kernels::{Constant, Function, Kernels, Point, TickWrt, Workspace};
 pub use program::{Column, Output, Parameter, PartialEntry, Prior, Program, UnknownBlock, Wrt};

@@ -18,6 +18,7 @@ mod guards;
 mod initial;
 mod inputs;
 mod integrator;
+mod operating_point;
 mod results;
 mod setup;
 mod simulation;
@@ -25,6 +26,7 @@ mod state;
 
 pub use failure::{Failure, FailureKind};
 pub use inputs::InputError;
+pub use operating_point::{OperatingPoint, operating_point};
 pub use results::{Event, EventKind, Results, Statistics};
 pub use setup::Setup;
 

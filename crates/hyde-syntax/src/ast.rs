@@ -588,8 +588,23 @@ pub enum ExperimentItem {
     Stop(Expr),
     /// `every 1 [ms]`
     Every(Expr),
-    /// `bode from u to y over 1 .. 50 [Hz];`
-    Bode(Reference, Vec<Expr>, Range),
+    /// `skip 50 [ms]`
+    Skip(Expr),
+    /// `bode from u to y over 1 .. 50 [Hz] in guide = slip;`
+    Bode(Bode),
+}
+
+/// `bode from u to y over 1 .. 50 [Hz] in guide = slip;`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bode {
+    /// The driven input.
+    pub input: Reference,
+    /// The responses.
+    pub outputs: Vec<Expr>,
+    /// The band of frequencies.
+    pub band: Range,
+    /// The modes in which the linearised system is taken: instance and mode.
+    pub modes: Vec<(Reference, Name)>,
 }
 
 /// What kind of study.

@@ -500,13 +500,23 @@ impl Printer {
             }
             ExperimentItem::Stop(at) => format!("stop {};", expression(at)),
             ExperimentItem::Every(step) => format!("every {};", expression(step)),
-            ExperimentItem::Bode(input, outputs, band) => {
-                let outputs: Vec<String> = outputs.iter().map(expression).collect();
+            ExperimentItem::Skip(time) => format!("skip {};", expression(time)),
+            ExperimentItem::Bode(bode) => {
+                let outputs: Vec<String> = bode.outputs.iter().map(expression).collect();
+                let modes: Vec<String> = bode
+                    .modes
+                    .iter()
+                    .map(|(name, mode)| format!("{} = {}", reference(name), mode.text))
+                    .collect();
+                let modes = if modes.is_empty() {
+                    String::new()
+                } else {
+                    format!(" in {}", modes.join(", "))
+                };
+                let (input, band) = (reference(&bode.input), range(&bode.band));
                 format!(
-                    "bode from {} to {} over {};",
-                    reference(input),
-                    outputs.join(", "),
-                    range(band)
+                    "bode from {input} to {} over {band}{modes};",
+                    outputs.join(", ")
                 )
             }
         };

@@ -72,8 +72,8 @@ experiment bench(record file every 1 [ms] = "records/strokes.csv") of Guide(F = 
   replay motor.i_ref = file.i_ref;
   expect max(abs(v)) < 1 [m/s] "slow";
   measure Length worst = max(abs(file.x - s));
-  bode from u to motor.w, der(v) over 1 .. 50 [Hz];
-  solve ida(rtol = 1e-6) stop file.end every 1 [ms];
+  bode from u to motor.w, der(v) over 1 .. 50 [Hz] in guide = slip, nut.contact = positive;
+  solve ida(rtol = 1e-6) stop file.end every 1 [ms] skip 50 [ms];
 end bench;
 calibrate bench of Guide fit bench("fit-*.csv"); holdout bench("validate-*.csv"); vary uncertain; end bench;
 diagnose bench of calibrate bench candidates Effects.*, demo.*; max_effects 3; seed 1; end bench;

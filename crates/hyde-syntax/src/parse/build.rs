@@ -155,5 +155,6 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_stop
             | R::kw_bode
             | R::kw_vary
+            | R::kw_skip
     )
 }

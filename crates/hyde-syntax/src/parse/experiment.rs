@@ -3,7 +3,7 @@
 use super::Parser;
 use super::build::{Builder, Node, has, parts, significant};
 use crate::ast::{
-    Channel, Drive, Experiment, ExperimentItem, RecordItem, SettingValue, Study, StudyItem,
+    Bode, Channel, Drive, Experiment, ExperimentItem, RecordItem, SettingValue, Study, StudyItem,
     StudyKind, Variation,
 };
 use crate::grammar::Rule;
@@ -171,6 +171,7 @@ impl Builder<'_> {
                 Some(ExperimentItem::Solve(method, arguments))
             }
             Rule::stop => self.first_expression(node).map(ExperimentItem::Stop),
+            Rule::skip => self.first_expression(node).map(ExperimentItem::Skip),
             _ => self.first_expression(node).map(ExperimentItem::Every),
         }
     }
@@ -202,16 +203,26 @@ impl Builder<'_> {
     fn bode(&mut self, node: Node<'_>) -> Option<ExperimentItem> {
         let mut inner = parts(node);
         let input = self.reference(inner.next()?);
-        let mut outputs = Vec::new();
-        let mut band = None;
+        let (mut outputs, mut band, mut modes) = (Vec::new(), None, Vec::new());
         for part in inner {
-            if part.as_rule() == Rule::range {
-                band = self.range(part);
-            } else {
-                outputs.push(self.expression(part));
+            match part.as_rule() {
+                Rule::range => band = self.range(part),
+                Rule::in_modes => {
+                    for mode in parts(part) {
+                        let mut words = parts(mode);
+                        let instance = self.reference(words.next()?);
+                        modes.push((instance, self.name(&words.next()?)));
+                    }
+                }
+                _ => outputs.push(self.expression(part)),
             }
         }
-        Some(ExperimentItem::Bode(input, outputs, band?))
+        Some(ExperimentItem::Bode(Bode {
+            input,
+            outputs,
+            band: band?,
+            modes,
+        }))
     }
 
     fn study_item(&mut self, node: Node<'_>, items: &mut Vec<StudyItem>) {

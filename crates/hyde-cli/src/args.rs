@@ -1,0 +1,181 @@
+//! The command line.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+/// Hyde: feed drives as equations.
+#[derive(Debug, Parser)]
+#[command(name = "hyde", version, about, max_term_width = 100, after_help = AFTER)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+const AFTER: &str = "Exit status: 0 done; 1 the model or its data are at fault; 2 the command line is; 3 the solver \
+                     could not go on; 4 an `expect` did not hold; 130 interrupted.";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Check a file: every experiment in it, or its last model, without running it
+    Check(CheckArgs),
+    /// Run an experiment, compare it with its records, and test its expectations
+    Run(RunArgs),
+    /// Print what a stage of the compiler makes of a model
+    Emit(EmitArgs),
+    /// Plot columns of results or of a record
+    Plot(PlotArgs),
+    /// Frequency response: linearised, and as swept by the experiment on the full model
+    Bode(BodeArgs),
+    /// Natural frequencies and dampings of the linearised model
+    Modes(ModesArgs),
+    /// Explain a diagnostic code
+    Explain(ExplainArgs),
+}
+
+/// A model in a file, with what is set from outside.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct ModelArgs {
+    /// The model's file
+    pub(crate) file: PathBuf,
+    /// The experiment; the file's only one if left out
+    pub(crate) experiment: Option<String>,
+    /// The model; that of the experiment, or the last of the file, if left out
+    #[arg(long, value_name = "NAME")]
+    pub(crate) model: Option<String>,
+    /// Set a parameter: `--set saddle.M='320 [kg]'` (repeatable)
+    #[arg(long = "set", value_name = "PATH=VALUE [UNIT]")]
+    pub(crate) settings: Vec<String>,
+    /// Give a record of the experiment its file: `--record file=strokes.csv` (repeatable)
+    #[arg(long = "record", value_name = "NAME=PATH")]
+    pub(crate) records: Vec<String>,
+    /// Look for the experiment's records below this folder instead of beside the model
+    #[arg(long, value_name = "DIR")]
+    pub(crate) data: Option<PathBuf>,
+    /// Print one JSON object on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RunArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Stop at this time in s instead of the experiment's
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) stop: Option<f64>,
+    /// Relative tolerance instead of the experiment's
+    #[arg(long)]
+    pub(crate) rtol: Option<f64>,
+    /// Absolute tolerance in SI instead of the experiment's
+    #[arg(long)]
+    pub(crate) atol: Option<f64>,
+    /// Leave results, events.csv, summary.json and report.html in this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Form of the results
+    #[arg(long, value_enum, default_value_t = Format::Csv)]
+    pub(crate) format: Format,
+}
+
+/// Form of results.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// `results.csv`, a header of `name [unit]` columns
+    Csv,
+    /// `results.json`, one list a column
+    Json,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EmitArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// The stage
+    #[arg(long, value_enum)]
+    pub(crate) stage: StageName,
+}
+
+/// A stage of the compiler.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum StageName {
+    /// The tree, as source text
+    Ast,
+    /// Every variable and equation of every instance
+    Flat,
+    /// What became of every variable, and the order of solution
+    Structure,
+    /// The system in full
+    Dae,
+    /// Cranelift IR, the same on every machine
+    Clif,
+    /// Assembly of this machine
+    Asm,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlotArgs {
+    /// A CSV file, or a folder that `run --out` left
+    pub(crate) results: PathBuf,
+    /// The columns of each panel, separated by commas: `motor.w,screw.w[0]`; a choice if left out
+    pub(crate) panels: Vec<String>,
+    /// The first column of each panel over the second instead of over time
+    #[arg(long)]
+    pub(crate) xy: bool,
+    /// The figure's file, `.svg` or `.png`
+    #[arg(long, value_name = "PATH", default_value = "plot.svg")]
+    pub(crate) out: PathBuf,
+    /// Title of the figure
+    #[arg(long)]
+    pub(crate) title: Option<String>,
+    /// Only from this time in s
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) from: Option<f64>,
+    /// Only to this time in s
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) to: Option<f64>,
+    /// The records have no time column: time between their rows in s
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) every: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BodeArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Leave bode.svg, bode.png and bode.csv in this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// The linearised response only: do not run the experiment
+    #[arg(long)]
+    pub(crate) linear: bool,
+    /// Number of frequencies
+    #[arg(long, default_value_t = 400)]
+    pub(crate) points: usize,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ModesArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Take an automaton in a mode: `--in guide=slip` (repeatable)
+    #[arg(long = "in", value_name = "NAME=MODE")]
+    pub(crate) in_modes: Vec<String>,
+    /// Only below this frequency in Hz
+    #[arg(long, value_name = "HZ")]
+    pub(crate) below: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExplainArgs {
+    /// The code, `E0503`; all codes if left out
+    pub(crate) code: Option<String>,
+}

@@ -1,0 +1,9 @@
+//! One file a command.
+
+pub(crate) mod bode;
+pub(crate) mod check;
+pub(crate) mod emit;
+pub(crate) mod explain;
+pub(crate) mod modes;
+pub(crate) mod plot;
+pub(crate) mod run;

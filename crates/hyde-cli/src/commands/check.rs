@@ -1,0 +1,71 @@
+//! `hyde check`: compiles everything in a file, runs nothing.
+
+use crate::args::{CheckArgs, ModelArgs};
+use crate::exit::Exit;
+use crate::project::{self, print_output};
+use serde_json::json;
+
+/// Checks every experiment of a file (its records included), or its last model if it has none.
+pub(crate) fn check(args: &CheckArgs) -> Exit {
+    match checked(args) {
+        Ok(names) => {
+            if args.model.json {
+                print_output(&format!("{:#}", json!({ "ok": true, "checked": names })));
+            } else if !args.model.quiet {
+                print_output(&format!(
+                    "{}: {} in order",
+                    args.model.file.display(),
+                    names.join(", ")
+                ));
+            }
+            Exit::Done
+        }
+        Err(exit) => exit,
+    }
+}
+
+fn checked(args: &CheckArgs) -> Result<Vec<String>, Exit> {
+    let mut names = Vec::new();
+    for args in each(&args.model)? {
+        let mut project = project::load(&args)?;
+        let compiled = project.compile(&args, false)?;
+        project.print_warnings(&args);
+        let what = project.experiment.as_ref().map_or_else(
+            || format!("model {}", project.model),
+            |experiment| format!("experiment {experiment}"),
+        );
+        names.push(format!("{what} ({} unknowns)", compiled.program.n_unknowns));
+    }
+    Ok(names)
+}
+
+/// The arguments for each experiment of the file, if none is named.
+fn each(args: &ModelArgs) -> Result<Vec<ModelArgs>, Exit> {
+    if args.experiment.is_some() || args.model.is_some() {
+        return Ok(vec![args.clone()]);
+    }
+    let text = crate::files::read_text(&args.file)
+        .map_err(|reason| project::complain(args, Exit::CommandLine, &reason))?;
+    let mut sources = hyde_diag::Sources::new();
+    let mut diagnostics = hyde_diag::Diagnostics::new();
+    let file = hyde_compiler::load(
+        &mut sources,
+        &args.file.to_string_lossy(),
+        &text,
+        &mut diagnostics,
+    );
+    let names: Vec<String> = file
+        .experiments()
+        .map(|experiment| experiment.name.text.clone())
+        .collect();
+    if names.is_empty() {
+        return Ok(vec![args.clone()]);
+    }
+    Ok(names
+        .into_iter()
+        .map(|name| ModelArgs {
+            experiment: Some(name),
+            ..args.clone()
+        })
+        .collect())
+}

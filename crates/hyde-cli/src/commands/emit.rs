@@ -1,0 +1,49 @@
+//! `hyde emit`: a stage of the compiler as text.
+
+use crate::args::{EmitArgs, StageName};
+use crate::exit::Exit;
+use crate::project::{self, print_output};
+use crate::records;
+use hyde_compiler::{Backend, Request, Stage};
+
+/// Prints the result of a stage.
+pub(crate) fn emit(args: &EmitArgs) -> Exit {
+    let mut project = match project::load(&args.model) {
+        Ok(project) => project,
+        Err(exit) => return exit,
+    };
+    let settings = project.set().into_iter().collect();
+    let headers = records::headers(&project.records);
+    let request = Request {
+        sources: &project.sources,
+        file: &project.file,
+        model: &project.model,
+        experiment: project.experiment.as_deref(),
+        settings: &settings,
+        records: &headers,
+        free_inputs: false,
+        backend: Backend::Native,
+    };
+    let stage = match args.stage {
+        StageName::Ast => Stage::Ast,
+        StageName::Flat => Stage::Flat,
+        StageName::Structure => Stage::Structure,
+        StageName::Dae => Stage::Dae,
+        StageName::Clif => Stage::Clif,
+        StageName::Asm => Stage::Asm,
+    };
+    match hyde_compiler::emit(&request, stage, &mut project.diagnostics) {
+        Some(text) => {
+            if args.model.json {
+                print_output(&format!(
+                    "{:#}",
+                    serde_json::json!({ "ok": true, "text": text })
+                ));
+            } else {
+                print_output(&text);
+            }
+            Exit::Done
+        }
+        None => project.finish_with_errors(&args.model),
+    }
+}

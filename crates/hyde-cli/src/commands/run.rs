@@ -1,0 +1,184 @@
+//! `hyde run`: solves an experiment and compares it with its records.
+
+use crate::args::{Format, RunArgs};
+use crate::exit::Exit;
+use crate::files;
+use crate::project::{self, Project, complain, print_error, print_output};
+use crate::records;
+use crate::{render, report, run_failure, summary};
+use hyde_compiler::Compiled;
+use hyde_experiment::{Options, Run, RunError};
+use hyde_program::Program;
+use hyde_signal::{Column, csv};
+use hyde_sim::Results;
+use serde_json::{Map, Value, json};
+use std::io::IsTerminal as _;
+use std::path::Path;
+
+/// Runs an experiment, prints what happened, and leaves its files.
+pub(crate) fn run(args: &RunArgs) -> Exit {
+    match solved(args) {
+        Ok((project, compiled, run, took)) => finish(args, &project, &compiled, &run, took),
+        Err(exit) => exit,
+    }
+}
+
+/// Loads, compiles and solves.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the command line tells how long a run took"
+)]
+pub(crate) fn solved(
+    args: &RunArgs,
+) -> Result<(Project, Compiled, Run, std::time::Duration), Exit> {
+    let mut project = project::load(&args.model)?;
+    let compiled = project.compile(&args.model, false)?;
+    project.print_warnings(&args.model);
+    let options = Options {
+        set: project.set(),
+        stop_s: args.stop,
+        rtol: args.rtol,
+        atol: args.atol,
+        every_s: None,
+    };
+    let tables = records::tables(&project.records);
+    let start = std::time::Instant::now();
+    match hyde_experiment::run(&compiled.program, &tables, &options) {
+        Ok(run) => {
+            let took = start.elapsed();
+            Ok((project, compiled, run, took))
+        }
+        Err(error) => Err(failed(args, project, &compiled, &error)),
+    }
+}
+
+fn finish(
+    args: &RunArgs,
+    project: &Project,
+    compiled: &Compiled,
+    run: &Run,
+    took: std::time::Duration,
+) -> Exit {
+    if let Some(folder) = &args.out {
+        if let Err(reason) = leave(folder, args.format, project, compiled, run) {
+            return complain(&args.model, Exit::CommandLine, &reason);
+        }
+    }
+    if args.model.json {
+        print_output(&format!("{:#}", summary::json(project, compiled, run)));
+    } else if !args.model.quiet {
+        print_output(&summary::text(project, compiled, run, took));
+        if let Some(folder) = &args.out {
+            print_output(&format!(
+                "\n  results, events.csv, summary.json and report.html are in {}",
+                folder.display()
+            ));
+        }
+    }
+    if run.measures.iter().all(|measure| measure.holds) {
+        return Exit::Done;
+    }
+    if args.model.quiet {
+        for measure in run.measures.iter().filter(|measure| !measure.holds) {
+            print_error(&format!("expect {}: does not hold", measure.name));
+        }
+    }
+    Exit::Expectation
+}
+
+/// Writes the files of a run, each whole or not at all.
+fn leave(
+    folder: &Path,
+    format: Format,
+    project: &Project,
+    compiled: &Compiled,
+    run: &Run,
+) -> Result<(), String> {
+    files::make_folder(folder)?;
+    let results = match format {
+        Format::Csv => ("results.csv", results_csv(&compiled.program, &run.results)),
+        Format::Json => (
+            "results.json",
+            format!("{}\n", results_json(&compiled.program, &run.results)),
+        ),
+    };
+    files::write(&folder.join(results.0), results.1.as_bytes())?;
+    let events = summary::events_csv(project, compiled, &run.results.events);
+    files::write(&folder.join("events.csv"), events.as_bytes())?;
+    let summary = format!("{:#}\n", summary::json(project, compiled, run));
+    files::write(&folder.join("summary.json"), summary.as_bytes())?;
+    files::write(
+        &folder.join("report.html"),
+        report::html(project, compiled, run).as_bytes(),
+    )
+}
+
+/// Results in the form of a record: time first, every column with its unit.
+fn results_csv(program: &Program, results: &Results) -> String {
+    let time = hyde_units::NamedUnit::usual(hyde_units::Dimension::TIME);
+    let mut columns = vec![Column::new("t", time, results.time.clone())];
+    for (&number, values) in results.outputs.iter().zip(&results.columns) {
+        let output = &program.outputs[number];
+        if !output.auxiliary {
+            columns.push(Column::new(
+                output.name.clone(),
+                output.unit.clone(),
+                values.clone(),
+            ));
+        }
+    }
+    csv::write(&columns)
+}
+
+fn results_json(program: &Program, results: &Results) -> Value {
+    let mut columns = Map::new();
+    columns.insert(
+        "t".to_owned(),
+        json!({ "unit": "s", "values": results.time }),
+    );
+    for (&number, values) in results.outputs.iter().zip(&results.columns) {
+        let output = &program.outputs[number];
+        if !output.auxiliary {
+            let entry = json!({ "unit": output.dimension.usual_unit(), "values": values });
+            columns.insert(output.name.clone(), entry);
+        }
+    }
+    Value::Object(columns)
+}
+
+fn failed(args: &RunArgs, mut project: Project, compiled: &Compiled, error: &RunError) -> Exit {
+    let diagnostic = match run_failure::diagnostic(error) {
+        Ok(diagnostic) => diagnostic,
+        Err(reason) => return complain(&args.model, Exit::CommandLine, &reason),
+    };
+    project.diagnostics.push(diagnostic);
+    if args.model.json {
+        let diagnostics = render::to_json(&project.diagnostics, &project.sources);
+        print_output(&format!(
+            "{:#}",
+            json!({ "ok": false, "diagnostics": diagnostics })
+        ));
+    } else {
+        print_error(&render::render(
+            &project.diagnostics,
+            &project.sources,
+            std::io::stderr().is_terminal(),
+        ));
+    }
+    // What was finished is kept.
+    if let (Some(folder), RunError::Failed(failure)) = (&args.out, error) {
+        let kept = files::make_folder(folder)
+            .and_then(|()| {
+                let results = results_csv(&compiled.program, &failure.results);
+                files::write(&folder.join("results.csv"), results.as_bytes())
+            })
+            .and_then(|()| {
+                let events = summary::events_csv(&project, compiled, &failure.results.events);
+                files::write(&folder.join("events.csv"), events.as_bytes())
+            });
+        if let Err(reason) = kept {
+            print_error(&format!("error: {reason}"));
+        }
+    }
+    Exit::Solver
+}

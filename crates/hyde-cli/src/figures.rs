@@ -1,0 +1,146 @@
+//! The figures of a run: measured over simulated, or a choice of states, with the modes below.
+
+use hyde_experiment::{Channel, Run};
+use hyde_program::Program;
+use hyde_report::{
+    EventRow, EventStrip, Figure, Line, LineStyle, Panel, Span, time_panel, time_plot,
+};
+use hyde_sim::{EventKind, Results};
+
+/// Panels in one figure.
+const MAX_PANELS: usize = 4;
+
+/// The figures of a run, the most telling first.
+pub(crate) fn of_run(title: &str, program: &Program, run: &Run) -> Vec<Figure> {
+    let strip = strip(program, &run.results, run.stop_s);
+    if run.channels.is_empty() {
+        return vec![time_plot(title, states(program, &run.results), strip)];
+    }
+    let both: Vec<Panel> = run
+        .channels
+        .iter()
+        .take(MAX_PANELS)
+        .map(measured_and_simulated)
+        .collect();
+    let errors: Vec<Panel> = run.channels.iter().take(MAX_PANELS).map(error).collect();
+    let figure = time_plot(title, both, strip.clone())
+        .with_caption("Measured and simulated; the modes of the frictions below.");
+    let rest = time_plot(format!("{title}: measured minus simulated"), errors, strip);
+    vec![figure, rest]
+}
+
+/// The modes of every automaton over time.
+pub(crate) fn strip(program: &Program, results: &Results, stop_s: f64) -> Option<EventStrip> {
+    if program.automata.is_empty() {
+        return None;
+    }
+    let end = results.time.last().copied().unwrap_or(stop_s);
+    let rows = program
+        .automata
+        .iter()
+        .enumerate()
+        .map(|(number, automaton)| {
+            let mut row = EventRow {
+                label: automaton.name.clone(),
+                ..EventRow::default()
+            };
+            let (mut from, mut mode) = (results.time.first().copied().unwrap_or(0.0), None);
+            for event in &results.events {
+                let EventKind::Transition {
+                    automaton: of,
+                    from: before,
+                    to,
+                } = event.kind
+                else {
+                    continue;
+                };
+                if of == number {
+                    row.spans.push(Span {
+                        from,
+                        to: event.t,
+                        label: automaton.modes[before].clone(),
+                    });
+                    (from, mode) = (event.t, Some(to));
+                }
+            }
+            // Without an event it stayed where it spent its time.
+            let last = mode.or_else(|| {
+                let times = results.mode_times.get(number)?;
+                times.iter().position(|time| *time > 0.0)
+            });
+            if let Some(last) = last {
+                row.spans.push(Span {
+                    from,
+                    to: end,
+                    label: automaton.modes[last].clone(),
+                });
+            }
+            row
+        })
+        .collect();
+    Some(EventStrip { rows })
+}
+
+fn measured_and_simulated(channel: &Channel) -> Panel {
+    let unit = channel.unit.unit().dimension.usual_unit();
+    let lines = vec![
+        Line::new("measured", channel.time.clone(), channel.measured.clone()),
+        Line::new("simulated", channel.time.clone(), channel.simulated.clone())
+            .with_style(LineStyle::Dashed),
+    ];
+    time_panel(channel.name.clone(), shown(&unit), lines)
+}
+
+fn error(channel: &Channel) -> Panel {
+    let unit = channel.unit.unit().dimension.usual_unit();
+    let difference = channel
+        .measured
+        .iter()
+        .zip(&channel.simulated)
+        .map(|(a, b)| a - b)
+        .collect();
+    time_panel(
+        channel.name.clone(),
+        shown(&unit),
+        vec![Line::new("", channel.time.clone(), difference)],
+    )
+}
+
+/// The states of the model, those of one unit in one panel.
+fn states(program: &Program, results: &Results) -> Vec<Panel> {
+    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
+    let is_state = |name: &str| {
+        program
+            .unknowns
+            .iter()
+            .any(|block| block.differential && block.first.is_none() && block.name == name)
+    };
+    for (number, output) in program.outputs.iter().enumerate() {
+        if output.auxiliary || !is_state(&output.name) {
+            continue;
+        }
+        let unit = output.dimension.usual_unit();
+        match groups.iter_mut().find(|(known, _)| *known == unit) {
+            Some((_, list)) => list.push(number),
+            None => groups.push((unit, vec![number])),
+        }
+    }
+    let line = |number: &usize| {
+        let values = results.column(*number).unwrap_or_default().to_vec();
+        Line::new(
+            program.outputs[*number].name.clone(),
+            results.time.clone(),
+            values,
+        )
+    };
+    groups
+        .iter()
+        .take(MAX_PANELS)
+        .map(|(unit, list)| time_panel("", shown(unit), list.iter().take(6).map(line).collect()))
+        .collect()
+}
+
+/// A pure number has no unit on its axis.
+pub(crate) fn shown(unit: &str) -> &str {
+    if unit == "1" { "" } else { unit }
+}

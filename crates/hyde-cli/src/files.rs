@@ -1,0 +1,69 @@
+//! Files: read whole, written whole or not at all.
+
+use std::io::Write as _;
+use std::path::Path;
+
+/// Reads a file; the error says which and why.
+#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
+pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
+    std::fs::read(path).map_err(|error| format!("`{}`: {}", path.display(), reason(&error)))
+}
+
+/// Reads a text file.
+pub(crate) fn read_text(path: &Path) -> Result<String, String> {
+    let bytes = read(path)?;
+    String::from_utf8(bytes).map_err(|_| format!("`{}` is no UTF-8 text", path.display()))
+}
+
+/// Makes a folder with all above it.
+pub(crate) fn make_folder(path: &Path) -> Result<(), String> {
+    std::fs::create_dir_all(path).map_err(|error| {
+        format!(
+            "cannot make the folder `{}`: {}",
+            path.display(),
+            reason(&error)
+        )
+    })
+}
+
+/// Writes a file beside its place and moves it there once it is complete.
+pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), String> {
+    let folder = path
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty())
+        .unwrap_or(Path::new("."));
+    let failed =
+        |error: std::io::Error| format!("cannot write `{}`: {}", path.display(), reason(&error));
+    let mut file = tempfile::Builder::new()
+        .prefix(".hyde-")
+        .tempfile_in(folder)
+        .map_err(failed)?;
+    file.write_all(content)
+        .and_then(|()| file.as_file().sync_all())
+        .map_err(failed)?;
+    make_readable(&file).map_err(failed)?;
+    file.persist(path).map_err(|error| failed(error.error))?;
+    Ok(())
+}
+
+/// A temporary file is private; a result is as readable as the folder's other files.
+#[cfg(unix)]
+fn make_readable(file: &tempfile::NamedTempFile) -> std::io::Result<()> {
+    use std::os::unix::fs::PermissionsExt as _;
+    file.as_file()
+        .set_permissions(std::fs::Permissions::from_mode(0o644))
+}
+
+#[cfg(not(unix))]
+fn make_readable(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
+    Ok(())
+}
+
+fn reason(error: &std::io::Error) -> String {
+    match error.kind() {
+        std::io::ErrorKind::NotFound => "no such file or folder".to_owned(),
+        std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
+        std::io::ErrorKind::StorageFull => "the disk is full".to_owned(),
+        _ => error.to_string(),
+    }
+}

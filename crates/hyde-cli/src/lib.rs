@@ -1,0 +1,50 @@
+//! The `hyde` command. This crate alone opens files, reads the arguments, and prints.
+//!
+//! Each command is a file in `commands/`; what they share is loading a model with its records ([`project`]), rendering
+//! diagnostics ([`render`]), and writing files whole or not at all ([`files`]).
+
+mod args;
+mod commands;
+mod exit;
+mod figures;
+mod files;
+mod project;
+mod records;
+pub mod render;
+mod report;
+mod run_failure;
+mod settings;
+mod summary;
+
+use args::{Arguments, Command};
+use clap::Parser as _;
+use exit::Exit;
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Runs a command line.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments = match Arguments::try_parse_from(arguments) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // `--help` and `--version` come this way too, and are no error.
+            let code = if error.use_stderr() {
+                Exit::CommandLine
+            } else {
+                Exit::Done
+            };
+            drop(error.print());
+            return code.into();
+        }
+    };
+    let code = match &arguments.command {
+        Command::Check(args) => commands::check::check(args),
+        Command::Run(args) => commands::run::run(args),
+        Command::Emit(args) => commands::emit::emit(args),
+        Command::Plot(args) => commands::plot::plot(args),
+        Command::Bode(args) => commands::bode::bode(args),
+        Command::Modes(args) => commands::modes::modes(args),
+        Command::Explain(args) => commands::explain::explain(args),
+    };
+    code.into()
+}

@@ -1,0 +1,247 @@
+//! A model on its way to a program: file, experiment, records, settings.
+
+use crate::args::ModelArgs;
+use crate::exit::Exit;
+use crate::files;
+use crate::records::{self, Record};
+use crate::render;
+use crate::settings::{self, Setting};
+use hyde_compiler::{Backend, Compiled, File, Request};
+use hyde_diag::{Diagnostics, Sources};
+use hyde_syntax::ast::Experiment;
+use serde_json::json;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::io::IsTerminal as _;
+
+/// A loaded file with what was chosen of it.
+pub(crate) struct Project {
+    pub(crate) sources: Sources,
+    pub(crate) file: File,
+    pub(crate) hash: String,
+    pub(crate) model: String,
+    pub(crate) experiment: Option<String>,
+    pub(crate) records: BTreeMap<String, Record>,
+    pub(crate) settings: Vec<Setting>,
+    pub(crate) diagnostics: Diagnostics,
+}
+
+/// Loads what the arguments name.
+pub(crate) fn load(args: &ModelArgs) -> Result<Project, Exit> {
+    let text = files::read_text(&args.file)
+        .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
+    let settings: Result<Vec<Setting>, String> = args
+        .settings
+        .iter()
+        .map(|text| settings::parse(text))
+        .collect();
+    let settings = settings.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
+    let mut sources = Sources::new();
+    let mut diagnostics = Diagnostics::new();
+    let file = hyde_compiler::load(
+        &mut sources,
+        &args.file.to_string_lossy(),
+        &text,
+        &mut diagnostics,
+    );
+    let mut project = Project {
+        sources,
+        hash: format!("{:x}", Sha256::digest(text.as_bytes())),
+        model: String::new(),
+        experiment: None,
+        records: BTreeMap::new(),
+        settings,
+        diagnostics,
+        file,
+    };
+    if project.diagnostics.has_errors() {
+        return Err(project.finish_with_errors(args));
+    }
+    let experiment = choose(&project, args)
+        .map_err(|reason| complain(args, Exit::CommandLine, &reason))?
+        .cloned();
+    project.model = match (&args.model, &experiment) {
+        (Some(model), _) => model.clone(),
+        (None, Some(experiment)) => experiment.model.dotted(),
+        (None, None) => match project.file.models().last() {
+            Some(model) => model.to_owned(),
+            None => return Err(complain(args, Exit::CommandLine, "the file has no model")),
+        },
+    };
+    if let Some(experiment) = &experiment {
+        project.experiment = Some(experiment.name.text.clone());
+        let read = records::read(experiment, args, &mut project.diagnostics);
+        project.records = read.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
+        if project.diagnostics.has_errors() {
+            return Err(project.finish_with_errors(args));
+        }
+    }
+    Ok(project)
+}
+
+impl Project {
+    /// Compiles; reports and ends with the errors otherwise. Warnings are printed.
+    pub(crate) fn compile(
+        &mut self,
+        args: &ModelArgs,
+        free_inputs: bool,
+    ) -> Result<Compiled, Exit> {
+        let settings = self
+            .settings
+            .iter()
+            .map(|setting| (setting.path.clone(), setting.value))
+            .collect();
+        let headers = records::headers(&self.records);
+        let request = Request {
+            sources: &self.sources,
+            file: &self.file,
+            model: &self.model,
+            experiment: self.experiment.as_deref(),
+            settings: &settings,
+            records: &headers,
+            free_inputs,
+            backend: Backend::Native,
+        };
+        let compiled = hyde_compiler::compile(&request, &mut self.diagnostics);
+        let Some(compiled) = compiled else {
+            return Err(self.finish_with_errors(args));
+        };
+        for setting in &self.settings {
+            let checked = match compiled.program.parameter(&setting.path) {
+                Some((parameter, _)) => {
+                    settings::check(setting, &setting.path, parameter.dimension, &parameter.unit)
+                }
+                None => Err(unknown_parameter(&compiled, &setting.path)),
+            };
+            checked.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
+        }
+        Ok(compiled)
+    }
+
+    /// The plain values set from outside, as the run takes them.
+    pub(crate) fn set(&self) -> Vec<(String, f64)> {
+        self.settings
+            .iter()
+            .map(|setting| (setting.path.clone(), setting.value))
+            .collect()
+    }
+
+    /// Prints warnings, if any.
+    pub(crate) fn print_warnings(&self, args: &ModelArgs) {
+        if !self.diagnostics.is_empty() && !args.json && !args.quiet {
+            print_error(&render::render(
+                &self.diagnostics,
+                &self.sources,
+                std::io::stderr().is_terminal(),
+            ));
+        }
+    }
+
+    /// Prints the diagnostics of a model that is at fault.
+    pub(crate) fn finish_with_errors(&self, args: &ModelArgs) -> Exit {
+        if args.json {
+            let diagnostics = render::to_json(&self.diagnostics, &self.sources);
+            print_output(&format!(
+                "{:#}",
+                json!({ "ok": false, "diagnostics": diagnostics })
+            ));
+        } else {
+            let text = render::render(
+                &self.diagnostics,
+                &self.sources,
+                std::io::stderr().is_terminal(),
+            );
+            let count = self.diagnostics.error_count();
+            let errors = if count == 1 {
+                "1 error".to_owned()
+            } else {
+                format!("{count} errors")
+            };
+            print_error(&format!(
+                "{text}{}: {errors}; `hyde explain CODE` tells more",
+                args.file.display()
+            ));
+        }
+        Exit::Model
+    }
+}
+
+/// The experiment meant: the one named, or the file's only one.
+fn choose<'p>(project: &'p Project, args: &ModelArgs) -> Result<Option<&'p Experiment>, String> {
+    let all: Vec<&Experiment> = project.file.experiments().collect();
+    if let Some(name) = &args.experiment {
+        let found = all
+            .iter()
+            .copied()
+            .find(|experiment| experiment.name.text == *name);
+        return found.map(Some).ok_or_else(|| {
+            let known: Vec<String> = all
+                .iter()
+                .map(|experiment| format!("`{}`", experiment.name.text))
+                .collect();
+            match known.as_slice() {
+                [] => format!("the file has no experiment `{name}`; it has none"),
+                _ => format!(
+                    "the file has no experiment `{name}`; it has {}",
+                    known.join(", ")
+                ),
+            }
+        });
+    }
+    match all.as_slice() {
+        _ if args.model.is_some() => Ok(None),
+        [] => Ok(None),
+        [only] => Ok(Some(only)),
+        several => {
+            let known: Vec<String> = several
+                .iter()
+                .map(|experiment| format!("`{}`", experiment.name.text))
+                .collect();
+            Err(format!(
+                "which experiment? the file has {}",
+                known.join(", ")
+            ))
+        }
+    }
+}
+
+fn unknown_parameter(compiled: &Compiled, path: &str) -> String {
+    let last = path.rsplit('.').next().unwrap_or(path);
+    let near: Vec<&str> = compiled
+        .program
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name.as_str())
+        .filter(|name| name.rsplit('.').next() == Some(last))
+        .take(3)
+        .collect();
+    if near.is_empty() {
+        return format!("the model has no parameter `{path}`");
+    }
+    format!(
+        "the model has no parameter `{path}`; did you mean `{}`?",
+        near.join("`, `")
+    )
+}
+
+/// Tells what is wrong with the command line, and gives back the exit status.
+pub(crate) fn complain(args: &ModelArgs, exit: Exit, reason: &str) -> Exit {
+    if args.json {
+        print_output(&format!("{:#}", json!({ "ok": false, "error": reason })));
+    } else {
+        print_error(&format!("error: {reason}"));
+    }
+    exit
+}
+
+/// A line on standard output.
+#[allow(clippy::print_stdout, reason = "the command line prints")]
+pub(crate) fn print_output(text: &str) {
+    println!("{}", text.trim_end());
+}
+
+/// A line on standard error.
+#[allow(clippy::print_stderr, reason = "the command line prints")]
+pub(crate) fn print_error(text: &str) {
+    eprintln!("{}", text.trim_end());
+}

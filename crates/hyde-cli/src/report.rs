@@ -1,0 +1,146 @@
+//! The report of a run as one HTML page.
+
+use crate::figures;
+use crate::project::Project;
+use crate::summary;
+use hyde_compiler::Compiled;
+use hyde_experiment::Run;
+use hyde_report::{ChannelError, Event, EventTable, Outcome, Parameter, RunReport, Verdict};
+use hyde_units::{format_value, significant};
+
+/// The page.
+pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String {
+    let program = &compiled.program;
+    let title = project.experiment.as_ref().map_or_else(
+        || program.name.clone(),
+        |e| format!("{e} of {}", program.name),
+    );
+    let statistics = &run.results.statistics;
+    let verdicts = run
+        .measures
+        .iter()
+        .filter(|measure| measure.expectation)
+        .map(|measure| Verdict {
+            outcome: if measure.holds {
+                Outcome::Passed
+            } else {
+                Outcome::Failed
+            },
+            text: measure.name.clone(),
+        })
+        .collect();
+    let key_figures = run
+        .measures
+        .iter()
+        .zip(&program.experiment.measures)
+        .filter(|(measure, _)| !measure.expectation)
+        .map(|(measure, known)| hyde_report::KeyFigure {
+            name: measure.name.clone(),
+            value: significant(known.unit.unit().from_si(measure.value), 5),
+            unit: figures::shown(known.unit.text()).to_owned(),
+            note: String::new(),
+        })
+        .collect();
+    let channels = run
+        .channels
+        .iter()
+        .map(|channel| ChannelError {
+            channel: channel.name.clone(),
+            unit: figures::shown(&channel.unit.unit().dimension.usual_unit()).to_owned(),
+            rms: channel.rms,
+            relative: channel.relative_percent / 100.0,
+            noise: channel.noise,
+        })
+        .collect();
+    let rows = run
+        .results
+        .events
+        .iter()
+        .take(100)
+        .map(|event| {
+            let (what, before, after) = summary::described(compiled, event);
+            Event {
+                time: event.t,
+                what: format!("{what}: {}", event.cause),
+                before,
+                after,
+                source: project.sources.place(event.origin.span),
+            }
+        })
+        .collect();
+    let parameters = program
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let values = &run.parameters[parameter.place..parameter.place + parameter.len];
+            let set = project
+                .settings
+                .iter()
+                .any(|setting| setting.path == parameter.name);
+            let value: Vec<String> = values
+                .iter()
+                .map(|value| significant(parameter.unit.unit().from_si(*value), 6))
+                .collect();
+            Parameter {
+                name: parameter.name.clone(),
+                value: value.join(", "),
+                unit: figures::shown(parameter.unit.text()).to_owned(),
+                source: if set {
+                    "command line".to_owned()
+                } else {
+                    parameter.source.clone().unwrap_or_default()
+                },
+            }
+        })
+        .collect();
+    let counted = |name: &str, value: u64| (name.to_owned(), value.to_string());
+    let solver = vec![
+        (
+            "method".to_owned(),
+            format!("IDA, SUNDIALS {}", hyde_ida::sundials_version()),
+        ),
+        (
+            "relative tolerance".to_owned(),
+            format!("{:e}", run.tolerances.0),
+        ),
+        (
+            "absolute tolerance".to_owned(),
+            format!("{:e}", run.tolerances.1),
+        ),
+        ("unknowns".to_owned(), program.n_unknowns.to_string()),
+        counted("steps", statistics.steps),
+        counted("residual evaluations", statistics.residual_evaluations),
+        counted("Jacobian evaluations", statistics.jacobian_evaluations),
+        counted("error test failures", statistics.error_test_failures),
+        counted("restarts", statistics.restarts),
+        counted("events", statistics.events),
+        counted("ticks", statistics.ticks),
+    ];
+    let stop = hyde_units::NamedUnit::usual(hyde_units::Dimension::TIME);
+    RunReport {
+        title: title.clone(),
+        model: program.name.clone(),
+        experiment: project.experiment.clone().unwrap_or_default(),
+        verdicts,
+        key_figures,
+        channels,
+        figures: figures::of_run(&title, program, run),
+        events: EventTable {
+            rows,
+            total: run.results.events.len(),
+        },
+        solver,
+        parameters,
+        footer: format!(
+            "Hyde {}, {} of {}",
+            env!("CARGO_PKG_VERSION"),
+            format_value(run.stop_s, &stop),
+            project
+                .sources
+                .iter()
+                .next()
+                .map_or("", |(_, source)| source.name.as_str())
+        ),
+    }
+    .to_html()
+}

@@ -1,0 +1,211 @@
+//! What a run was, in a few lines for people and as JSON for programs.
+
+use crate::project::Project;
+use hyde_compiler::Compiled;
+use hyde_experiment::Run;
+use hyde_sim::{Event, EventKind};
+use hyde_units::{engineering, significant};
+use serde_json::{Map, Value, json};
+use std::fmt::Write as _;
+use std::time::Duration;
+
+/// The run in a few lines of at most 80 columns.
+pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Duration) -> String {
+    let program = &compiled.program;
+    let mut out = String::new();
+    let name = project.experiment.as_ref().map_or_else(
+        || program.name.clone(),
+        |e| format!("{e} of {}", program.name),
+    );
+    let statistics = &run.results.statistics;
+    let factor = run.stop_s / took.as_secs_f64().max(1e-9);
+    let _ = writeln!(
+        out,
+        "{name}: {} s in {} s, {} times real time",
+        significant(run.stop_s, 4),
+        significant(took.as_secs_f64(), 2),
+        significant(factor, 2)
+    );
+    let _ = writeln!(
+        out,
+        "  {} unknowns, {} steps, {} events, {} ticks, {} restarts",
+        program.n_unknowns,
+        statistics.steps,
+        statistics.events,
+        statistics.ticks,
+        statistics.restarts
+    );
+    for (automaton, times) in program.automata.iter().zip(&run.results.mode_times) {
+        let parts: Vec<String> = automaton
+            .modes
+            .iter()
+            .zip(times)
+            .map(|(mode, time)| format!("{mode} {} s", significant(*time, 3)))
+            .collect();
+        let _ = writeln!(out, "  {:<24} {}", automaton.name, parts.join(", "));
+    }
+    if !run.channels.is_empty() {
+        let _ = writeln!(
+            out,
+            "\n  {:<28} {:>12} {:>11} {:>12}",
+            "measured - simulated", "rms", "relative", "noise"
+        );
+        for channel in &run.channels {
+            let dimension = channel.unit.unit().dimension;
+            let noise = channel
+                .noise
+                .map_or(String::new(), |noise| engineering(noise, dimension));
+            let _ = writeln!(
+                out,
+                "  {:<28} {:>12} {:>9} % {:>12}",
+                channel.name,
+                engineering(channel.rms, dimension),
+                significant(channel.relative_percent, 3),
+                noise
+            );
+        }
+    }
+    if !run.measures.is_empty() {
+        out.push('\n');
+    }
+    for (measure, known) in run.measures.iter().zip(&program.experiment.measures) {
+        if measure.expectation {
+            let verdict = if measure.holds {
+                "holds"
+            } else {
+                "DOES NOT HOLD"
+            };
+            let _ = writeln!(out, "  expect {}: {verdict}", measure.name);
+        } else {
+            let value = engineering(measure.value, known.unit.unit().dimension);
+            let _ = writeln!(out, "  {} = {value}", measure.name);
+        }
+    }
+    out
+}
+
+/// The run as JSON: versions, inputs by hash, parameters, statistics, errors, measures.
+pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
+    let program = &compiled.program;
+    let statistics = &run.results.statistics;
+    let parameters: Map<String, Value> = program
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let values = &run.parameters[parameter.place..parameter.place + parameter.len];
+            let value = if parameter.len == 1 { json!(values[0]) } else { json!(values) };
+            let entry = json!({ "value": value, "unit": parameter.dimension.usual_unit(), "source": parameter.source });
+            (parameter.name.clone(), entry)
+        })
+        .collect();
+    let records: Map<String, Value> = project
+        .records
+        .iter()
+        .map(|(name, record)| {
+            (name.clone(), json!({ "path": record.path.to_string_lossy(), "sha256": record.hash, "rows": record.table.rows() }))
+        })
+        .collect();
+    let channels: Vec<Value> = run
+        .channels
+        .iter()
+        .map(|channel| {
+            json!({
+                "name": channel.name, "unit": channel.unit.unit().dimension.usual_unit(), "rows": channel.time.len(),
+                "rms": channel.rms, "relative_percent": channel.relative_percent, "noise": channel.noise,
+            })
+        })
+        .collect();
+    let measures: Vec<Value> = run
+        .measures
+        .iter()
+        .filter(|measure| !measure.expectation)
+        .zip(program.experiment.measures.iter().filter(|measure| !measure.expectation))
+        .map(|(measure, known)| json!({ "name": measure.name, "value": measure.value, "unit": known.unit.unit().dimension.usual_unit() }))
+        .collect();
+    let expectations: Vec<Value> = run
+        .measures
+        .iter()
+        .filter(|measure| measure.expectation)
+        .map(|measure| json!({ "text": measure.name, "holds": measure.holds }))
+        .collect();
+    let modes: Map<String, Value> = program
+        .automata
+        .iter()
+        .zip(&run.results.mode_times)
+        .map(|(automaton, times)| {
+            let times: Map<String, Value> = automaton
+                .modes
+                .iter()
+                .cloned()
+                .zip(times.iter().map(|time| json!(time)))
+                .collect();
+            (automaton.name.clone(), Value::Object(times))
+        })
+        .collect();
+    json!({
+        "ok": true,
+        "hyde": env!("CARGO_PKG_VERSION"),
+        "sundials": hyde_ida::sundials_version(),
+        "model": program.name,
+        "experiment": project.experiment,
+        "source_sha256": project.hash,
+        "records": records,
+        "stop_s": run.stop_s,
+        "rtol": run.tolerances.0,
+        "atol": run.tolerances.1,
+        "unknowns": program.n_unknowns,
+        "statistics": {
+            "steps": statistics.steps,
+            "residual_evaluations": statistics.residual_evaluations,
+            "jacobian_evaluations": statistics.jacobian_evaluations,
+            "nonlinear_iterations": statistics.nonlinear_iterations,
+            "error_test_failures": statistics.error_test_failures,
+            "nonlinear_failures": statistics.nonlinear_failures,
+            "restarts": statistics.restarts,
+            "events": statistics.events,
+            "ticks": statistics.ticks,
+        },
+        "mode_seconds": modes,
+        "channels": channels,
+        "measures": measures,
+        "expectations": expectations,
+        "parameters": parameters,
+        "notes": program.notes,
+    })
+}
+
+/// The event log as CSV.
+pub(crate) fn events_csv(project: &Project, compiled: &Compiled, events: &[Event]) -> String {
+    let mut out = String::from("t [s],what,before,after,cause,source\n");
+    for event in events {
+        let (what, before, after) = described(compiled, event);
+        let cause = event.cause.replace('"', "\"\"");
+        let place = project.sources.place(event.origin.span);
+        let _ = writeln!(
+            out,
+            "{},{what},{before},{after},\"{cause}\",{place}",
+            event.t
+        );
+    }
+    out
+}
+
+/// Of an event: whose, and the modes before and after.
+pub(crate) fn described(compiled: &Compiled, event: &Event) -> (String, String, String) {
+    match event.kind {
+        EventKind::Transition {
+            automaton,
+            from,
+            to,
+        } => {
+            let automaton = &compiled.program.automata[automaton];
+            (
+                automaton.name.clone(),
+                automaton.modes[from].clone(),
+                automaton.modes[to].clone(),
+            )
+        }
+        EventKind::When => ("when".to_owned(), String::new(), String::new()),
+        EventKind::Relation(truth) => ("if".to_owned(), (!truth).to_string(), truth.to_string()),
+    }
+}

@@ -1,0 +1,124 @@
+//! Measured channels against the model: the record prepared as the experiment says, the model at the record's rows.
+//!
+//! A continuous quantity is compared as it is before a tick at that instant, a clocked one as it is after (C4).
+
+use hyde_program::{Constant, Measured, Preparation, Program};
+use hyde_signal::filter::{LowPass, central_difference};
+use hyde_signal::{Table, statistics};
+use hyde_sim::Results;
+use hyde_units::NamedUnit;
+use std::collections::BTreeMap;
+
+/// A measured channel with its error.
+#[derive(Clone, Debug)]
+pub struct Channel {
+    /// Its name.
+    pub name: String,
+    /// Unit for printing; everything here is SI.
+    pub unit: NamedUnit,
+    /// Times of the rows compared in s.
+    pub time: Vec<f64>,
+    /// What was measured, prepared.
+    pub measured: Vec<f64>,
+    /// What the model has.
+    pub simulated: Vec<f64>,
+    /// Root mean square of the difference.
+    pub rms: f64,
+    /// 100 times the norm of the difference over that of the measured signal.
+    pub relative_percent: f64,
+    /// Standard deviation of the channel's noise, if it is declared.
+    pub noise: Option<f64>,
+}
+
+/// Why a channel cannot be compared.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CompareError {
+    /// The channel.
+    pub channel: String,
+    /// What is wrong.
+    pub cause: String,
+}
+
+/// Compares every measured channel, rows before `skip_s` apart.
+pub(crate) fn channels(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    parameters: &[f64],
+    results: &Results,
+    skip_s: f64,
+) -> Result<Vec<Channel>, CompareError> {
+    let mut found = Vec::new();
+    for (number, measured) in program.experiment.measured.iter().enumerate() {
+        let error = |cause: &str| CompareError {
+            channel: measured.name.clone(),
+            cause: cause.to_owned(),
+        };
+        let (record, column) = &measured.source;
+        let table = records
+            .get(record)
+            .ok_or_else(|| error("its record is missing"))?;
+        let column = table
+            .column(column)
+            .ok_or_else(|| error("its record has no such column"))?;
+        let signal = prepared(measured, table, column.values()).map_err(|cause| error(&cause))?;
+        let simulated = results
+            .column(measured.output)
+            .ok_or_else(|| error("the run did not keep it"))?;
+        let (mut time, mut of_record, mut of_model) = (Vec::new(), Vec::new(), Vec::new());
+        for (&t, &value) in table.time().iter().zip(&signal) {
+            if t < skip_s - 1e-12 {
+                continue;
+            }
+            let Some((left, right)) = results.rows_at(t) else {
+                continue;
+            };
+            time.push(t);
+            of_record.push(value);
+            of_model.push(simulated[if measured.clocked { right } else { left }]);
+        }
+        if time.is_empty() {
+            return Err(error("no row of the record lies within the run"));
+        }
+        let difference: Vec<f64> = of_record
+            .iter()
+            .zip(&of_model)
+            .map(|(a, b)| a - b)
+            .collect();
+        found.push(Channel {
+            name: measured.name.clone(),
+            unit: measured.unit.clone(),
+            rms: statistics::rms(&difference),
+            relative_percent: statistics::relative_error_percent(&of_record, &of_model),
+            noise: program
+                .kernels
+                .constant(Constant::Noise(number), parameters),
+            time,
+            measured: of_record,
+            simulated: of_model,
+        });
+    }
+    Ok(found)
+}
+
+/// A column low-passed, differentiated and scaled as the experiment says.
+fn prepared(measured: &Measured, table: &Table, values: &[f64]) -> Result<Vec<f64>, String> {
+    let mut signal = values.to_vec();
+    for step in &measured.preparation {
+        let step_s = table
+            .period()
+            .or_else(|| table.mean_step())
+            .ok_or("its record has a single row")?;
+        match *step {
+            Preparation::Lowpass(corner) => {
+                let filter = LowPass::butterworth(4, corner, 1.0 / step_s)
+                    .map_err(|error| error.to_string())?;
+                signal = filter
+                    .zero_phase(&signal)
+                    .map_err(|error| error.to_string())?;
+            }
+            Preparation::Slope => signal = central_difference(&signal, step_s),
+            Preparation::Scale(factor) => signal.iter_mut().for_each(|value| *value *= factor),
+        }
+    }
+    Ok(signal)
+}

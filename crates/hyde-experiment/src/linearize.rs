@@ -1,0 +1,328 @@
+//! The system linearised about its start, in chosen modes: `x' = A x + B_u u + B_h h`, outputs and samples beside it.
+//!
+//! The states x are those of the solver's vector; its algebraic variables are solved for. Inputs u are the free inputs of
+//! the model, h the values that clocks hold. The clocked parts are linearised as they are: what a tick writes depends on
+//! the memory before it and on the samples, with quantisers as the identity (S3).
+
+use hyde_program::{Function, Point, Program, TickWrt, Workspace, Wrt};
+use hyde_signal::Table;
+use hyde_sim::Failure;
+use nalgebra::DMatrix;
+use std::collections::BTreeMap;
+
+/// More unknowns than this are refused: the matrices are dense.
+const MAX_UNKNOWNS: usize = 2000;
+
+/// A linearised system. Rows of `c` and `d` matrices are the program's outputs.
+#[derive(Clone, Debug)]
+pub struct Linear {
+    /// Positions of the states in the solver's vector.
+    pub states: Vec<usize>,
+    /// States by states.
+    pub a: DMatrix<f64>,
+    /// States by inputs.
+    pub b_input: DMatrix<f64>,
+    /// States by held values.
+    pub b_held: DMatrix<f64>,
+    /// Outputs by states, inputs, held values.
+    pub c: DMatrix<f64>,
+    /// Outputs by inputs.
+    pub d_input: DMatrix<f64>,
+    /// Outputs by held values.
+    pub d_held: DMatrix<f64>,
+    /// The clocked part, if there is one.
+    pub sampled: Option<Sampled>,
+}
+
+/// The linearised clocked part: memory m after a tick is `memory*m_before + (by_state*x + by_input*u + by_held*h)`.
+#[derive(Clone, Debug)]
+pub struct Sampled {
+    /// Period in s.
+    pub period: f64,
+    /// From the tick to the change of held values, in s.
+    pub delay: f64,
+    /// Memory by memory before.
+    pub memory: DMatrix<f64>,
+    /// Memory by states just before the tick.
+    pub by_state: DMatrix<f64>,
+    /// Memory by inputs.
+    pub by_input: DMatrix<f64>,
+    /// Memory by held values before the tick.
+    pub by_held: DMatrix<f64>,
+    /// Held values by memory: selects what each holds.
+    pub select: DMatrix<f64>,
+}
+
+/// Why there is no linearised system.
+#[derive(Clone, Debug)]
+pub enum LinearizeError {
+    /// An input that is not a free input of the model.
+    NoInput(String),
+    /// Too many unknowns for dense matrices.
+    TooLarge(usize),
+    /// Clocks of different periods.
+    SeveralClocks,
+    /// The algebraic variables are not determined at the operating point.
+    Singular,
+    /// No operating point was found.
+    Failed(Box<Failure>),
+}
+
+/// Linearises a program that was compiled with free inputs, in the modes given (automaton and mode); of automata not
+/// given, one in a mode that fixes a state leaves it for the mode of its first exit: the linearised drive slides.
+///
+/// # Errors
+/// See [`LinearizeError`].
+pub fn linearize(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    parameters: &[f64],
+    inputs: &[String],
+    modes: &[(usize, usize)],
+) -> Result<Linear, LinearizeError> {
+    let n = program.n_unknowns;
+    if n > MAX_UNKNOWNS {
+        return Err(LinearizeError::TooLarge(n));
+    }
+    let mut places = Vec::new();
+    for name in inputs {
+        let (parameter, _) = program
+            .parameter(name)
+            .ok_or_else(|| LinearizeError::NoInput(name.clone()))?;
+        places.push(parameter.place);
+    }
+    let point = hyde_sim::operating_point(program, records, parameters, modes)
+        .map_err(LinearizeError::Failed)?;
+    let mut work = Workspace::new(program.n_work);
+    let u = vec![0.0; 2 * program.columns.len()];
+    let at = Point {
+        t: 0.0,
+        y: &point.y,
+        yp: &point.yp,
+        z: &point.z,
+        u: &u,
+        p: parameters,
+    };
+    let differential = program.differential();
+    let states: Vec<usize> = (0..n).filter(|&i| differential[i]).collect();
+    let algebraic: Vec<usize> = (0..n).filter(|&i| !differential[i]).collect();
+    let held: Vec<usize> = program
+        .holds
+        .iter()
+        .flat_map(|hold| hold.target..hold.target + hold.len)
+        .collect();
+
+    let residual = Dense::of(program, Function::Residual, at, &mut work, &places, &held);
+    // [dF/dx' | dF/dy_a] (x', y_a) = -(dF/dx x + dF/du u + dF/dh h)
+    let mut left = DMatrix::zeros(n, n);
+    for (column, &state) in states.iter().enumerate() {
+        left.set_column(column, &residual.by_derivative.column(state));
+    }
+    for (column, &unknown) in algebraic.iter().enumerate() {
+        left.set_column(states.len() + column, &residual.by_unknown.column(unknown));
+    }
+    let mut right = DMatrix::zeros(n, states.len() + places.len() + held.len());
+    for (column, &state) in states.iter().enumerate() {
+        right.set_column(column, &(-residual.by_unknown.column(state)));
+    }
+    for column in 0..places.len() {
+        right.set_column(states.len() + column, &(-residual.by_input.column(column)));
+    }
+    for column in 0..held.len() {
+        right.set_column(
+            states.len() + places.len() + column,
+            &(-residual.by_held.column(column)),
+        );
+    }
+    let solved = left.lu().solve(&right).ok_or(LinearizeError::Singular)?;
+    let (nx, nu, nh) = (states.len(), places.len(), held.len());
+    let parts = Parts {
+        solved: &solved,
+        states: &states,
+        algebraic: &algebraic,
+        nu,
+        nh,
+    };
+
+    let outputs = Dense::of(program, Function::Outputs, at, &mut work, &places, &held);
+    let (c, d_input, d_held) = parts.through(&outputs);
+    let sampled = sampled(program, at, &mut work, &parts, parameters, &held)?;
+    Ok(Linear {
+        a: solved.view((0, 0), (nx, nx)).into_owned(),
+        b_input: solved.view((0, nx), (nx, nu)).into_owned(),
+        b_held: solved.view((0, nx + nu), (nx, nh)).into_owned(),
+        c,
+        d_input,
+        d_held,
+        states,
+        sampled,
+    })
+}
+
+/// How the unknowns depend on states, inputs and held values.
+struct Parts<'a> {
+    solved: &'a DMatrix<f64>,
+    states: &'a [usize],
+    algebraic: &'a [usize],
+    nu: usize,
+    nh: usize,
+}
+
+impl Parts<'_> {
+    /// A function of unknowns and their derivatives, by states, inputs and held values.
+    fn through(&self, dense: &Dense) -> (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>) {
+        let (nx, rows) = (self.states.len(), dense.by_unknown.nrows());
+        let mut total = DMatrix::zeros(rows, nx + self.nu + self.nh);
+        for (number, &state) in self.states.iter().enumerate() {
+            let mut column = total.column_mut(number);
+            column += dense.by_unknown.column(state);
+            total += dense.by_derivative.column(state) * self.solved.row(number);
+        }
+        for (number, &unknown) in self.algebraic.iter().enumerate() {
+            total += dense.by_unknown.column(unknown) * self.solved.row(nx + number);
+        }
+        let mut by_input = total.columns(nx, self.nu).into_owned();
+        by_input += &dense.by_input;
+        let mut by_held = total.columns(nx + self.nu, self.nh).into_owned();
+        by_held += &dense.by_held;
+        (total.columns(0, nx).into_owned(), by_input, by_held)
+    }
+}
+
+/// The derivatives of a function as dense matrices.
+struct Dense {
+    by_unknown: DMatrix<f64>,
+    by_derivative: DMatrix<f64>,
+    by_input: DMatrix<f64>,
+    by_held: DMatrix<f64>,
+}
+
+impl Dense {
+    fn zeros(rows: usize, n: usize, inputs: usize, held: usize) -> Self {
+        Self {
+            by_unknown: DMatrix::zeros(rows, n),
+            by_derivative: DMatrix::zeros(rows, n),
+            by_input: DMatrix::zeros(rows, inputs),
+            by_held: DMatrix::zeros(rows, held),
+        }
+    }
+
+    fn of(
+        program: &Program,
+        function: Function,
+        at: Point<'_>,
+        work: &mut Workspace,
+        inputs: &[usize],
+        held: &[usize],
+    ) -> Self {
+        let rows = program.rows(function);
+        let mut dense = Self::zeros(rows, program.n_unknowns, inputs.len(), held.len());
+        let entries = program.partials(function);
+        let mut values = vec![0.0; entries.len()];
+        program.kernels.partials(function, at, work, &mut values);
+        for (entry, value) in entries.iter().zip(values) {
+            match entry.wrt {
+                Wrt::Unknown(column) => dense.by_unknown[(entry.row, column)] += value,
+                Wrt::Derivative(column) => dense.by_derivative[(entry.row, column)] += value,
+                Wrt::Parameter(_) | Wrt::Time => {}
+            }
+        }
+        for (entry, value) in program
+            .kernels
+            .parameter_partials(function, inputs, at, work)
+        {
+            if let Wrt::Parameter(place) = entry.wrt {
+                if let Some(column) = inputs.iter().position(|&input| input == place) {
+                    dense.by_input[(entry.row, column)] += value;
+                }
+            }
+        }
+        // Held values stand in the memory, by which the kernels do not differentiate: a central difference is exact for
+        // equations linear in them, and a drive's are.
+        for (column, &position) in held.iter().enumerate() {
+            let step = 1e-3 * (1.0 + at.z[position].abs());
+            let mut moved = |by: f64| {
+                let mut z = at.z.to_vec();
+                z[position] += by;
+                let mut out = vec![0.0; rows];
+                program
+                    .kernels
+                    .evaluate(function, Point { z: &z, ..at }, work, &mut out);
+                out
+            };
+            let (up, down) = (moved(step), moved(-step));
+            for row in 0..rows {
+                dense.by_held[(row, column)] = (up[row] - down[row]) / (2.0 * step);
+            }
+        }
+        dense
+    }
+}
+
+fn sampled(
+    program: &Program,
+    at: Point<'_>,
+    work: &mut Workspace,
+    parts: &Parts<'_>,
+    parameters: &[f64],
+    held: &[usize],
+) -> Result<Option<Sampled>, LinearizeError> {
+    if program.clocks.is_empty() || held.is_empty() {
+        return Ok(None);
+    }
+    let constant = |which| {
+        program
+            .kernels
+            .constant(which, parameters)
+            .unwrap_or(f64::NAN)
+    };
+    let period = constant(hyde_program::Constant::Period(0));
+    let delay = constant(hyde_program::Constant::Delay(0));
+    let same = (1..program.clocks.len()).all(|clock| {
+        constant(hyde_program::Constant::Period(clock)).to_bits() == period.to_bits()
+            && constant(hyde_program::Constant::Delay(clock)).to_bits() == delay.to_bits()
+    });
+    if !same {
+        return Err(LinearizeError::SeveralClocks);
+    }
+    let size = program.n_memory;
+    let mut memory = DMatrix::<f64>::identity(size, size);
+    let mut samples = Dense::zeros(size, program.n_unknowns, parts.nu, held.len());
+    for &clock in &program.clock_order {
+        let mut step = DMatrix::<f64>::identity(size, size);
+        let mut own = Dense::zeros(size, program.n_unknowns, parts.nu, held.len());
+        let partials = program.kernels.tick_partials(clock, at, work);
+        for &(row, _, _) in &partials {
+            step[(row, row)] = 0.0;
+        }
+        for (row, wrt, value) in partials {
+            match wrt {
+                TickWrt::Memory(column) => step[(row, column)] += value,
+                TickWrt::Unknown(column) => own.by_unknown[(row, column)] += value,
+                TickWrt::Derivative(column) => own.by_derivative[(row, column)] += value,
+            }
+        }
+        memory = &step * memory;
+        samples.by_unknown = &step * samples.by_unknown + own.by_unknown;
+        samples.by_derivative = &step * samples.by_derivative + own.by_derivative;
+    }
+    let (by_state, by_input, by_held) = parts.through(&samples);
+    // What a tick reads of a held value is its own past.
+    let mut select = DMatrix::zeros(held.len(), size);
+    let sources = program
+        .holds
+        .iter()
+        .flat_map(|hold| hold.source..hold.source + hold.len);
+    for (row, source) in sources.enumerate() {
+        select[(row, source)] = 1.0;
+    }
+    Ok(Some(Sampled {
+        period,
+        delay,
+        memory,
+        by_state,
+        by_input,
+        by_held,
+        select,
+    }))
+}

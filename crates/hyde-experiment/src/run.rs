@@ -1,0 +1,255 @@
+//! A run of an experiment: settings, tolerances and rows from the experiment and the command line, then the solution, then
+//! what it is compared with.
+
+use crate::compare::{self, Channel, CompareError};
+use hyde_program::{Constant, Parameter, Program, Reduction, ReductionKind, Stop};
+use hyde_signal::Table;
+use hyde_sim::{Failure, Results, Setup};
+use std::collections::BTreeMap;
+
+/// What the caller sets beside the experiment.
+#[derive(Clone, Debug, Default)]
+pub struct Options {
+    /// Values of parameters by name, SI.
+    pub set: Vec<(String, f64)>,
+    /// End of the run in s.
+    pub stop_s: Option<f64>,
+    /// Relative tolerance.
+    pub rtol: Option<f64>,
+    /// Absolute tolerance, SI.
+    pub atol: Option<f64>,
+    /// Time between rows of the results in s.
+    pub every_s: Option<f64>,
+}
+
+/// A measure or an expectation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasureValue {
+    /// Its name, or the expectation as written.
+    pub name: String,
+    /// Its value, SI; of an expectation 1 where it holds, else 0.
+    pub value: f64,
+    /// Whether it must hold.
+    pub expectation: bool,
+    /// Whether it does; true of a mere measure.
+    pub holds: bool,
+}
+
+/// A finished run.
+#[derive(Clone, Debug)]
+pub struct Run {
+    /// The parameter vector used.
+    pub parameters: Vec<f64>,
+    /// Stop in s.
+    pub stop_s: f64,
+    /// Relative and absolute tolerance.
+    pub tolerances: (f64, f64),
+    /// The solution.
+    pub results: Results,
+    /// Measured channels against the model.
+    pub channels: Vec<Channel>,
+    /// Measures and expectations.
+    pub measures: Vec<MeasureValue>,
+}
+
+/// Why there is no run.
+#[derive(Clone, Debug)]
+pub enum RunError {
+    /// No parameter of that name.
+    NoParameter(String),
+    /// The parameter shapes the equations or may not be set: its name and why.
+    CannotSet(String, &'static str),
+    /// Neither the experiment nor the caller says when to stop.
+    NoStop,
+    /// A number that must be positive is not: which, and its value.
+    NotPositive(&'static str, f64),
+    /// A measured channel cannot be compared.
+    Compare(CompareError),
+    /// The solver could not go on.
+    Failed(Box<Failure>),
+}
+
+/// Runs a program as its experiment says.
+///
+/// # Errors
+/// See [`RunError`]; a failure carries the results up to it.
+pub fn run(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    options: &Options,
+) -> Result<Run, RunError> {
+    let parameters = parameters(program, records, &options.set)?;
+    let constant = |which| program.kernels.constant(which, &parameters);
+    let stop_s = match (options.stop_s, &program.experiment.stop) {
+        (Some(stop), _) => stop,
+        (None, Some(Stop::At)) => constant(Constant::Stop).unwrap_or(f64::NAN),
+        (None, Some(Stop::EndOf(record))) => records
+            .get(record)
+            .and_then(|table| table.time().last().copied())
+            .unwrap_or(f64::NAN),
+        (None, None) => return Err(RunError::NoStop),
+    };
+    let rtol = options
+        .rtol
+        .or_else(|| constant(Constant::Rtol))
+        .unwrap_or(1e-6);
+    let atol = options
+        .atol
+        .or_else(|| constant(Constant::Atol))
+        .unwrap_or(1e-2 * rtol);
+    let every = options
+        .every_s
+        .or_else(|| constant(Constant::Every))
+        .unwrap_or(stop_s / 1000.0);
+    let max_step = constant(Constant::MaxStep).unwrap_or(f64::INFINITY);
+    for (what, value) in [
+        ("stop", stop_s),
+        ("rtol", rtol),
+        ("atol", atol),
+        ("the time between rows", every),
+        ("max_step", max_step),
+    ] {
+        if value.is_nan() || value <= 0.0 {
+            return Err(RunError::NotPositive(what, value));
+        }
+    }
+    let mut setup = Setup::new(parameters, records, stop_s);
+    setup.rtol = rtol;
+    setup.atol = atol;
+    setup.max_step_s = max_step;
+    setup.rows_s = rows(program, records, stop_s, every);
+    let results = hyde_sim::simulate(program, &setup).map_err(RunError::Failed)?;
+    let skip_s = program
+        .kernels
+        .constant(Constant::Skip, &setup.parameters)
+        .unwrap_or(0.0);
+    let channels = compare::channels(program, records, &setup.parameters, &results, skip_s)
+        .map_err(RunError::Compare)?;
+    let measures = measures(program, &setup.parameters, &results);
+    Ok(Run {
+        parameters: setup.parameters,
+        stop_s,
+        tolerances: (rtol, atol),
+        results,
+        channels,
+        measures,
+    })
+}
+
+/// The parameter vector with some values set and those that a record gives.
+///
+/// # Errors
+/// A name that is no parameter, or one that may not be set here.
+pub fn parameters(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    set: &[(String, f64)],
+) -> Result<Vec<f64>, RunError> {
+    let mut values = Vec::new();
+    for (place, record, column) in &program.first_values {
+        let first = records
+            .get(record)
+            .and_then(|table| table.column(column))
+            .and_then(|c| c.values().first());
+        if let Some(&first) = first {
+            values.push((*place, first));
+        }
+    }
+    for (name, value) in set {
+        let Some((parameter, element)) = program.parameter(name) else {
+            return Err(RunError::NoParameter(name.clone()));
+        };
+        let Parameter {
+            is_final,
+            structural,
+            place,
+            ..
+        } = *parameter;
+        if is_final {
+            return Err(RunError::CannotSet(name.clone(), "it is final"));
+        }
+        // Structural values are in the equations already: setting them here would change one half of the model.
+        if !structural {
+            values.push((place + element, *value));
+        }
+    }
+    let mut parameters = vec![0.0; program.n_parameters];
+    program.kernels.parameters(&values, &mut parameters);
+    Ok(parameters)
+}
+
+/// Rows every so often, and at every row of a record that something is measured in.
+fn rows(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    stop_s: f64,
+    every_s: f64,
+) -> Vec<f64> {
+    let mut rows = Setup::rows_every(0.0, stop_s, every_s);
+    for measured in &program.experiment.measured {
+        if let Some(table) = records.get(&measured.source.0) {
+            rows.extend(
+                table
+                    .time()
+                    .iter()
+                    .copied()
+                    .filter(|t| (0.0..=stop_s).contains(t)),
+            );
+        }
+    }
+    rows.sort_by(f64::total_cmp);
+    rows.dedup_by(|later, earlier| (*later - *earlier).abs() <= 1e-12 + 1e-13 * later.abs());
+    rows
+}
+
+fn measures(program: &Program, parameters: &[f64], results: &Results) -> Vec<MeasureValue> {
+    let experiment = &program.experiment;
+    let reductions: Vec<f64> = experiment
+        .reductions
+        .iter()
+        .map(|reduction| reduce(reduction, results))
+        .collect();
+    let mut values = vec![0.0; experiment.measures.len()];
+    program
+        .kernels
+        .measures(parameters, &reductions, &mut values);
+    experiment
+        .measures
+        .iter()
+        .zip(values)
+        .map(|(measure, value)| MeasureValue {
+            name: measure.name.clone(),
+            value,
+            expectation: measure.expectation,
+            holds: !measure.expectation || value == 1.0,
+        })
+        .collect()
+}
+
+/// One number of a signal over time; means by the trapezoidal rule.
+fn reduce(reduction: &Reduction, results: &Results) -> f64 {
+    let Some(values) = results.column(reduction.output) else {
+        return f64::NAN;
+    };
+    let span = || {
+        results
+            .time
+            .last()
+            .zip(results.time.first())
+            .map_or(0.0, |(last, first)| last - first)
+    };
+    let integral = |of: &dyn Fn(f64) -> f64| -> f64 {
+        let pairs = results.time.windows(2).zip(values.windows(2));
+        pairs
+            .map(|(t, v)| 0.5 * (t[1] - t[0]) * (of(v[0]) + of(v[1])))
+            .sum()
+    };
+    match reduction.kind {
+        ReductionKind::Max => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        ReductionKind::Min => values.iter().copied().fold(f64::INFINITY, f64::min),
+        ReductionKind::Mean => integral(&|v| v) / span(),
+        ReductionKind::Rms => (integral(&|v| v * v) / span()).sqrt(),
+        ReductionKind::First => values.first().copied().unwrap_or(f64::NAN),
+        ReductionKind::Last => values.last().copied().unwrap_or(f64::NAN),
+    }
+}

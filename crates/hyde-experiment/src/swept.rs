@@ -1,0 +1,74 @@
+//! The response measured as on the machine: a sine swept through the full hybrid model, friction, backlash and sampling
+//! included, and the spectra of what came out over what went in.
+
+use hyde_program::Bode;
+use hyde_signal::spectrum::{FrequencyResponse, swept_response as response};
+use hyde_sim::Results;
+
+/// A swept response of one output.
+#[derive(Clone, Debug)]
+pub struct Swept {
+    /// Name of the output.
+    pub output: String,
+    /// Response and coherence over frequency.
+    pub response: FrequencyResponse,
+}
+
+/// The swept responses of a run that an experiment asks for, between two frequencies in Hz; empty where the input was not
+/// reported or the run is too short.
+#[must_use]
+pub fn swept_response(bode: &Bode, results: &Results, band_hz: (f64, f64)) -> Vec<Swept> {
+    let Some(input) = bode.input_output.and_then(|output| results.column(output)) else {
+        return Vec::new();
+    };
+    let Some((time, rows)) = evenly(results) else {
+        return Vec::new();
+    };
+    let step_s = (time[time.len() - 1] - time[0]) / {
+        #[allow(clippy::cast_precision_loss, reason = "a number of rows")]
+        let steps = (time.len() - 1) as f64;
+        steps
+    };
+    let pick = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
+    let driven = pick(input);
+    let mut found = Vec::new();
+    for (name, output) in &bode.outputs {
+        let Some(values) = results.column(*output) else {
+            continue;
+        };
+        // Neighbouring lines are averaged over about half a percent of the record's lines.
+        let neighbours = (time.len() / 2000).max(2);
+        if let Ok(all) = response(&driven, &pick(values), step_s, neighbours) {
+            found.push(Swept {
+                output: name.clone(),
+                response: all.between(band_hz.0, band_hz.1),
+            });
+        }
+    }
+    found
+}
+
+/// The rows that are evenly spaced: the last of each instant, those at events between them left out.
+fn evenly(results: &Results) -> Option<(Vec<f64>, Vec<usize>)> {
+    let step = results
+        .time
+        .windows(2)
+        .map(|t| t[1] - t[0])
+        .filter(|step| *step > 1e-9)
+        .fold(0.0_f64, f64::max);
+    let first = *results.time.first()?;
+    let (mut time, mut rows) = (Vec::new(), Vec::new());
+    for (row, &t) in results.time.iter().enumerate() {
+        let number = (t - first) / step;
+        if (number - number.round()).abs() > 1e-6 {
+            continue;
+        }
+        if time.last().is_some_and(|&last: &f64| t - last < 0.5 * step) {
+            *rows.last_mut()? = row;
+        } else {
+            time.push(t);
+            rows.push(row);
+        }
+    }
+    (time.len() > 64).then_some((time, rows))
+}
