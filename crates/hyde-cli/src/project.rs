@@ -26,8 +26,17 @@ pub(crate) struct Project {
     pub(crate) diagnostics: Diagnostics,
 }
 
+/// What becomes of an experiment whose records are not there.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Records {
+    /// It cannot be run: an error.
+    Needed,
+    /// Its model is checked alone, with a warning.
+    IfThere,
+}
+
 /// Loads what the arguments name.
-pub(crate) fn load(args: &ModelArgs) -> Result<Project, Exit> {
+pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
     let text = files::read_text(&args.file)
         .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
     let settings: Result<Vec<Setting>, String> = args
@@ -70,10 +79,13 @@ pub(crate) fn load(args: &ModelArgs) -> Result<Project, Exit> {
     };
     if let Some(experiment) = &experiment {
         project.experiment = Some(experiment.name.text.clone());
-        let read = records::read(experiment, args, &mut project.diagnostics);
+        let read = records::read(experiment, args, needed, &mut project.diagnostics);
         project.records = read.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
         if project.diagnostics.has_errors() {
             return Err(project.finish_with_errors(args));
+        }
+        if project.records.len() < experiment.records.len() {
+            project.experiment = None;
         }
     }
     Ok(project)

@@ -2,6 +2,7 @@
 
 use crate::args::ModelArgs;
 use crate::files;
+use crate::project::Records;
 use hyde_compiler::Header;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_signal::{Table, csv};
@@ -21,12 +22,13 @@ pub(crate) struct Record {
 pub(crate) fn read(
     experiment: &Experiment,
     args: &ModelArgs,
+    needed: Records,
     diagnostics: &mut Diagnostics,
 ) -> Result<BTreeMap<String, Record>, String> {
     let given = given(args, experiment)?;
     let mut found = BTreeMap::new();
     for item in &experiment.records {
-        let Some(path) = path_of(item, &given, args, diagnostics) else {
+        let Some(path) = path_of(item, &given, args, needed, diagnostics) else {
             continue;
         };
         let Some(every) = every(item, diagnostics) else {
@@ -35,7 +37,7 @@ pub(crate) fn read(
         let content = match files::read(&path) {
             Ok(content) => content,
             Err(reason) => {
-                diagnostics.push(missing(item, &reason));
+                diagnostics.push(missing(item, needed, &reason));
                 continue;
             }
         };
@@ -113,13 +115,14 @@ fn path_of(
     item: &RecordItem,
     given: &BTreeMap<String, PathBuf>,
     args: &ModelArgs,
+    needed: Records,
     diagnostics: &mut Diagnostics,
 ) -> Option<PathBuf> {
     if let Some(path) = given.get(&item.name.text) {
         return Some(path.clone());
     }
     let Some(default) = &item.default else {
-        diagnostics.push(missing(item, "no file is given"));
+        diagnostics.push(missing(item, needed, "no file is given"));
         return None;
     };
     let relative = Path::new(&default.text);
@@ -181,14 +184,19 @@ fn literal_time(expr: &Expr) -> Option<f64> {
     (unit.dimension == hyde_units::Dimension::TIME).then(|| unit.to_si(*value))
 }
 
-fn missing(item: &RecordItem, reason: &str) -> Diagnostic {
+fn missing(item: &RecordItem, needed: Records, reason: &str) -> Diagnostic {
     let name = &item.name.text;
-    Diagnostic::error(
-        Code::NoRecord,
-        format!("the record `{name}` is missing: {reason}"),
-    )
-    .label(item.name.span, "declared here")
-    .help(format!(
-        "give its file: `--record {name}=PATH`, or the folder it is below: `--data DIR`"
-    ))
+    let message = format!("the record `{name}` is missing: {reason}");
+    let diagnostic = match needed {
+        Records::Needed => Diagnostic::error(Code::NoRecord, message),
+        Records::IfThere => Diagnostic::warning(
+            Code::NoRecord,
+            format!("{message}; the model is checked without its experiment"),
+        ),
+    };
+    diagnostic
+        .label(item.name.span, "declared here")
+        .help(format!(
+            "give its file: `--record {name}=PATH`, or the folder it is below: `--data DIR`"
+        ))
 }

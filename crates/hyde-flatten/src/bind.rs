@@ -80,7 +80,7 @@ impl<'a> Model<'a, '_> {
         dim: &Dim,
         truth: bool,
     ) -> Vec<ExprId> {
-        let scope = Scope::new(binding.scope, Setting::Parameter);
+        let scope = binding.scope_for(Setting::Parameter);
         let expr = self.element_expr(binding);
         let items: Vec<Typed> = match (&expr.kind, len) {
             (ExprKind::Array(items, unit), Some(len)) => {
@@ -229,7 +229,7 @@ impl<'a> Model<'a, '_> {
             };
             let scope = Scope {
                 place,
-                ..Scope::new(start.scope, Setting::Parameter)
+                ..start.scope_for(Setting::Parameter)
             };
             let value = self.value(start.expr, &scope);
             let declared = self.typed(value.id, dim, start.span);
@@ -259,7 +259,7 @@ impl<'a> Model<'a, '_> {
             | VariableKind::Column(..)
             | VariableKind::Reduction(_) => Setting::Equation,
         };
-        let scope = Scope::new(binding.scope, setting);
+        let scope = binding.scope_for(setting);
         if let Some(field) = field {
             self.field_binding(var, field, binding.expr, &scope, binding.span);
             return;

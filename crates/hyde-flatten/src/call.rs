@@ -767,7 +767,7 @@ impl<'a> Model<'a, '_> {
             if var == keep || depth > 40 || self.flat.variables[var].len.is_some() {
                 continue;
             }
-            let scope = Scope::new(binding.scope, Setting::Equation);
+            let scope = binding.scope_for(Setting::Equation);
             let value = self.value(binding.expr, &scope);
             let value = self.expand_bindings(value.id, keep, depth + 1);
             memo.insert(inner, value);

@@ -35,11 +35,6 @@ impl<'a> Model<'a, '_> {
             return;
         };
         self.flat.experiment.name = experiment.name.text.clone();
-        self.flat.experiment.records = experiment
-            .records
-            .iter()
-            .map(|record| record.name.text.clone())
-            .collect();
         let at = |setting| Scope {
             records: true,
             ..Scope::new(root, setting)
@@ -347,18 +342,17 @@ impl<'a> Model<'a, '_> {
             Quantity::usual(dimension)
         };
         let clocked = !self.clocks_of(value.id).is_empty();
-        let name = hyde_syntax::format_expression(&channel.signal);
+        let signal = hyde_syntax::format_expression(&channel.signal);
+        let name = match (&channel.doc, signal.split_once('.')) {
+            (Some(doc), _) => doc.clone(),
+            (None, Some((_, column))) if preparation.is_empty() => column.to_owned(),
+            (None, _) => signal,
+        };
         let origin = self
             .origin(root, channel.signal.span)
             .made_by(MadeBy::Experiment);
         self.flat.experiment.measured.push(Measured {
-            name: name.split_once('.').map_or(name.clone(), |(_, rest)| {
-                if preparation.is_empty() {
-                    rest.to_owned()
-                } else {
-                    name.clone()
-                }
-            }),
+            name,
             column,
             preparation,
             value: value.id,

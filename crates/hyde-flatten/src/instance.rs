@@ -43,9 +43,21 @@ pub(crate) enum Member {
 pub(crate) struct Binding<'a> {
     pub(crate) expr: &'a Expr,
     pub(crate) scope: InstanceId,
+    /// It stands in the experiment, so that the records' columns can be read.
+    pub(crate) records: bool,
     /// The element meant, where an array is given to the elements of an array of components.
     pub(crate) element: Option<usize>,
     pub(crate) span: Span,
+}
+
+impl<'a> Binding<'a> {
+    /// The scope in which the expression is read.
+    pub(crate) fn scope_for(&self, setting: Setting) -> Scope<'a> {
+        Scope {
+            records: self.records,
+            ..Scope::new(self.scope, setting)
+        }
+    }
 }
 
 /// What flatten knows of a variable beside what the flat model holds.

@@ -25,6 +25,8 @@ pub(crate) struct Modifier<'a> {
     target: Vec<&'a str>,
     change: &'a Change,
     scope: InstanceId,
+    /// Given by the experiment, so that it can read the records' columns.
+    records: bool,
     element: Option<usize>,
     /// Index into the model's list of modifications, to tell which were used.
     number: usize,
@@ -59,7 +61,15 @@ impl<'a> Model<'a, '_> {
             .experiment
             .and_then(|name| self.names.own_experiment(name))
         {
+            self.flat.experiment.records = experiment
+                .records
+                .iter()
+                .map(|record| record.name.text.clone())
+                .collect();
             self.modifiers_of(&experiment.changes, 0, &mut modifiers);
+            modifiers
+                .iter_mut()
+                .for_each(|modifier| modifier.records = true);
         }
         let root = self.instantiate(
             0,
@@ -762,6 +772,7 @@ impl<'a> Model<'a, '_> {
                 Some(Binding {
                     expr,
                     scope: modifier.scope,
+                    records: modifier.records,
                     element: modifier.element,
                     span: modifier.change.target.span,
                 })
@@ -771,6 +782,7 @@ impl<'a> Model<'a, '_> {
                 Some(Binding {
                     expr,
                     scope: id,
+                    records: false,
                     element: None,
                     span: declarator.name.span,
                 })
@@ -795,6 +807,7 @@ impl<'a> Model<'a, '_> {
             return Some(Binding {
                 expr,
                 scope: modifier.scope,
+                records: modifier.records,
                 element: modifier.element,
                 span: expr.span,
             });
@@ -807,6 +820,7 @@ impl<'a> Model<'a, '_> {
         Some(Binding {
             expr,
             scope: id,
+            records: false,
             element: None,
             span: expr.span,
         })
@@ -890,6 +904,7 @@ impl<'a> Model<'a, '_> {
                     target,
                     change,
                     scope,
+                    records: false,
                     element: None,
                     number,
                 });

@@ -567,6 +567,8 @@ pub struct Channel {
     pub value: Expr,
     /// Standard deviation of its noise.
     pub noise: Option<Expr>,
+    /// What it is called in reports.
+    pub doc: Option<String>,
 }
 
 /// An element of an experiment.

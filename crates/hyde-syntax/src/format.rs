@@ -478,9 +478,10 @@ impl Printer {
                             .as_ref()
                             .map_or_else(String::new, |noise| format!(" ~ {}", expression(noise)));
                         format!(
-                            "{} = {}{noise}",
+                            "{} = {}{noise}{}",
                             expression(&channel.signal),
-                            expression(&channel.value)
+                            expression(&channel.value),
+                            doc(channel.doc.as_deref())
                         )
                     })
                     .collect();

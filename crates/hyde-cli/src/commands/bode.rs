@@ -5,7 +5,7 @@ use crate::commands::run;
 use crate::exit::Exit;
 use crate::figures::shown;
 use crate::files;
-use crate::project::{self, complain, print_output};
+use crate::project::{self, Records, complain, print_output};
 use crate::records;
 use hyde_experiment::{
     BodeError, LinearizeError, Swept, frequency_response, linearize, parameters, swept_response,
@@ -36,7 +36,7 @@ pub(crate) fn bode(args: &BodeArgs) -> Exit {
 }
 
 fn responses(args: &BodeArgs) -> Result<String, Exit> {
-    let mut project = project::load(&args.model)?;
+    let mut project = project::load(&args.model, Records::Needed)?;
     let compiled = project.compile(&args.model, true)?;
     project.print_warnings(&args.model);
     let program = &compiled.program;

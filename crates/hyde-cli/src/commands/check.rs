@@ -2,7 +2,7 @@
 
 use crate::args::{CheckArgs, ModelArgs};
 use crate::exit::Exit;
-use crate::project::{self, print_output};
+use crate::project::{self, Records, print_output};
 use serde_json::json;
 
 /// Checks every experiment of a file (its records included), or its last model if it has none.
@@ -27,8 +27,9 @@ pub(crate) fn check(args: &CheckArgs) -> Exit {
 fn checked(args: &CheckArgs) -> Result<Vec<String>, Exit> {
     let mut names = Vec::new();
     for args in each(&args.model)? {
-        let mut project = project::load(&args)?;
-        let compiled = project.compile(&args, false)?;
+        let mut project = project::load(&args, Records::IfThere)?;
+        let alone = project.experiment.is_none();
+        let compiled = project.compile(&args, alone)?;
         project.print_warnings(&args);
         let what = project.experiment.as_ref().map_or_else(
             || format!("model {}", project.model),

@@ -2,13 +2,13 @@
 
 use crate::args::{EmitArgs, StageName};
 use crate::exit::Exit;
-use crate::project::{self, print_output};
+use crate::project::{self, Records, print_output};
 use crate::records;
 use hyde_compiler::{Backend, Request, Stage};
 
 /// Prints the result of a stage.
 pub(crate) fn emit(args: &EmitArgs) -> Exit {
-    let mut project = match project::load(&args.model) {
+    let mut project = match project::load(&args.model, Records::Needed) {
         Ok(project) => project,
         Err(exit) => return exit,
     };

@@ -2,7 +2,7 @@
 
 use crate::args::ModesArgs;
 use crate::exit::Exit;
-use crate::project::{self, complain, print_output};
+use crate::project::{self, Records, complain, print_output};
 use crate::records;
 use hyde_experiment::{linearize, modes as natural_modes, parameters};
 use hyde_program::Program;
@@ -22,7 +22,7 @@ pub(crate) fn modes(args: &ModesArgs) -> Exit {
 }
 
 fn table(args: &ModesArgs) -> Result<String, Exit> {
-    let mut project = project::load(&args.model)?;
+    let mut project = project::load(&args.model, Records::Needed)?;
     let compiled = project.compile(&args.model, true)?;
     project.print_warnings(&args.model);
     let program = &compiled.program;

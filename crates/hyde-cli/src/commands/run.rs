@@ -3,7 +3,7 @@
 use crate::args::{Format, RunArgs};
 use crate::exit::Exit;
 use crate::files;
-use crate::project::{self, Project, complain, print_error, print_output};
+use crate::project::{self, Project, Records, complain, print_error, print_output};
 use crate::records;
 use crate::{render, report, run_failure, summary};
 use hyde_compiler::Compiled;
@@ -31,7 +31,7 @@ pub(crate) fn run(args: &RunArgs) -> Exit {
 pub(crate) fn solved(
     args: &RunArgs,
 ) -> Result<(Project, Compiled, Run, std::time::Duration), Exit> {
-    let mut project = project::load(&args.model)?;
+    let mut project = project::load(&args.model, Records::Needed)?;
     let compiled = project.compile(&args.model, false)?;
     project.print_warnings(&args.model);
     let options = Options {

@@ -193,11 +193,20 @@ impl Builder<'_> {
         let mut inner = parts(node);
         let signal = self.expression(inner.next()?);
         let value = self.expression(inner.next()?);
-        Some(Channel {
+        let mut channel = Channel {
             signal,
             value,
-            noise: inner.next().and_then(|noise| self.first_expression(noise)),
-        })
+            noise: None,
+            doc: None,
+        };
+        for part in inner {
+            if part.as_rule() == Rule::doc {
+                channel.doc = Some(Self::text(part));
+            } else {
+                channel.noise = self.first_expression(part);
+            }
+        }
+        Some(channel)
     }
 
     fn bode(&mut self, node: Node<'_>) -> Option<ExperimentItem> {
