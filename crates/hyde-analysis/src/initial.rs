@@ -135,8 +135,8 @@ fn too_many(
     let mut diagnostic = Diagnostic::error(
         Code::TooManyConditions,
         format!(
-            "{} initial equations for {free} states that are not fixed",
-            equations.len()
+            "{} for {free} states that are not fixed",
+            crate::matching::plural(equations.len(), "initial equation")
         ),
     );
     for (_, _, origin) in equations {
@@ -189,6 +189,10 @@ fn refuse_conflicts(dae: &Dae, system: &mut System, diagnostics: &mut Diagnostic
             let show = |value: Option<f64>| {
                 value.map_or("another value".to_owned(), |value| value.to_string())
             };
+            let place = |variable: &hyde_ir::Variable| {
+                let component = system.component(&variable.origin);
+                component.map_or(variable.origin.span, |(_, span)| span)
+            };
             diagnostics.push(
                 Diagnostic::error(
                     Code::ConflictingStarts,
@@ -197,8 +201,8 @@ fn refuse_conflicts(dae: &Dae, system: &mut System, diagnostics: &mut Diagnostic
                         a.name, b.name
                     ),
                 )
-                .label(a.origin.span, format!("starts at {}", show(value)))
-                .label(b.origin.span, format!("starts at {}", show(second)))
+                .label(place(a), format!("`{}` starts at {}", a.name, show(value)))
+                .label(place(b), format!("`{}` starts at {}", b.name, show(second)))
                 .note(format!(
                     "both are `{}`",
                     dae.variables[cell.0].element_name(cell.1)

@@ -6,9 +6,10 @@
 
 use crate::graph::{Bipartite, Matching};
 use crate::segments::{self, Segment};
-use crate::system::{Equation, Slot, System};
+use crate::system::{Cell, Equation, Slot, System};
 use crate::{pins, unroll};
 use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
+use hyde_ir::dae::Alias;
 use hyde_ir::{Expr, ExprId, Range};
 
 /// An equation node: a number of the list of equations, or of the slots.
@@ -159,8 +160,24 @@ fn report(
     let surplus: Vec<usize> = (0..nodes.len())
         .filter(|&left| matching.of_left[left].is_none())
         .collect();
+    let mut constraints = false;
+    for &left in &surplus {
+        let (lefts, rights) = graph.over_determined(matching, left);
+        let diagnostic = if rights.is_empty() {
+            constrained(system, nodes[left])
+        } else {
+            too_many(system, nodes, unknowns, &lefts, &rights)
+        };
+        constraints |= diagnostic.code == Code::Constrained;
+        diagnostics.push(diagnostic);
+    }
+    // Parts that are fixed to each other leave the force between them open: that is no second mistake.
+    let open = |right: usize| {
+        let flow = system.flat.variables[unknowns[right].var].flow;
+        surplus.len() >= unmatched.len() && (flow || constraints)
+    };
     // A missing boundary condition often shows at a neighbour: look for the flux in the whole part.
-    for &right in &unmatched {
+    for &right in unmatched.iter().filter(|&&right| !open(right)) {
         let (_, part) = graph.under_determined(matching, right);
         let trace = part
             .iter()
@@ -174,14 +191,6 @@ fn report(
             (None, None) => too_few(system, nodes, unknowns, graph, matching, right),
         };
         diagnostics.push(diagnostic);
-    }
-    for &left in &surplus {
-        let (lefts, rights) = graph.over_determined(matching, left);
-        diagnostics.push(if rights.is_empty() {
-            constrained(system, nodes[left])
-        } else {
-            too_many(system, nodes, unknowns, &lefts, &rights)
-        });
     }
 }
 
@@ -201,8 +210,8 @@ fn missing_boundary(system: &System, unknown: Segment) -> Diagnostic {
         variable.origin.span,
         format!("its flux at `{place}` is not determined"),
     )
-    .note(format!("in instance `{}`", variable.origin.instance))
-    .note("each end needs one condition, and one more for each connector variable set there (F2)")
+    .in_component(system, &variable.origin)
+    .note("each end needs one condition, and one more for each connector variable set there")
     .help(format!(
         "write `{flux} = 0 indomain {place};` for a free end, or give the value of the field there"
     ))
@@ -215,9 +224,10 @@ fn unbound_input(system: &System, unknown: Segment) -> Diagnostic {
         Code::UnboundInput,
         format!("the input `{name}` has nothing to read"),
     )
-    .label(variable.origin.span, "declared here")
+    .placed(system, &variable.origin, &format!("gives no `{}`", short(name)), "declared here")
     .help(format!(
-        "bind it where its component is declared, or write an equation: `{name} = …;`"
+        "bind it where its component is declared: `({} = …)`, or write an equation: `{name} = …;`",
+        short(name)
     ))
 }
 
@@ -237,7 +247,7 @@ fn too_few(
         Code::TooFewEquations,
         format!("no equation determines `{what}`"),
     )
-    .label(variable.origin.span, "declared here");
+    .placed(system, &variable.origin, "in this component", "declared here");
     if !lefts.is_empty() {
         let others: Vec<String> = rights
             .iter()
@@ -252,16 +262,18 @@ fn too_few(
             others.join(", ")
         ));
         for &left in lefts.iter().take(3) {
-            diagnostic = diagnostic.label(
-                origin(system, nodes[left]).span,
-                "this equation is among them",
-            );
+            let origin = origin(system, nodes[left]);
+            let text = match origin.instance.as_str() {
+                "" => "this equation is among them".to_owned(),
+                instance => format!("this equation of `{instance}` is among them"),
+            };
+            diagnostic = diagnostic.label(origin.span, text);
         }
     }
     let help = match variable.flow {
         true => "connect its connector, or give the force a law".to_owned(),
         false => format!(
-            "add an equation for it, or fix it: `{} = …;`",
+            "add an equation for it: `{} = …;`",
             short(&variable.name)
         ),
     };
@@ -286,18 +298,94 @@ fn constrained(system: &System, node: Node) -> Diagnostic {
     }
     let origin = origin(system, node);
     if names.is_empty() {
-        return Diagnostic::error(
-            Code::TooManyEquations,
-            "this equation says nothing of any unknown",
-        )
-        .label(origin.span, "all it names is known")
-        .help("remove it");
+        return nothing_new(system, &origin);
     }
     let list: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     Diagnostic::error(Code::Constrained, format!("{} are constrained to each other", list.join(" and ")))
         .label(origin.span, "this equation fixes one by the others")
         .note("each of them is a state with an equation for its derivative: the model needs index reduction")
         .help("put a stiffness between the parts, or describe the joined parts by one of the states")
+}
+
+/// An equation of which everything is known: those that determined it before are the conflict.
+fn nothing_new(system: &System, origin: &Origin) -> Diagnostic {
+    let mut known: Vec<(Cell, &Origin)> = Vec::new();
+    let of_it = system.written.iter().filter(|(.., at)| at == origin);
+    for (lhs, rhs, _) in of_it {
+        for id in system.flat.exprs.below(&[*lhs, *rhs]) {
+            let Expr::Var(var, index) = system.flat.exprs[id] else {
+                continue;
+            };
+            let Some(cell) = System::cell(var, index) else {
+                continue;
+            };
+            if let Some(by) = value_given_by(system, cell) {
+                if !known.iter().any(|(other, _)| *other == cell) {
+                    known.push((cell, by));
+                }
+            }
+        }
+    }
+    let names: Vec<String> = known
+        .iter()
+        .map(|(cell, _)| format!("`{}`", system.cell_name(*cell)))
+        .collect();
+    let message = match names.as_slice() {
+        [] => "this equation determines nothing new".to_owned(),
+        [only] => format!("{only} is determined twice"),
+        several => format!("{} are determined already", several.join(" and ")),
+    };
+    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message)
+        .label(origin.span, "all it names is known without it");
+    for ((_, by), name) in known.iter().zip(&names) {
+        let place = system.component(by).map_or(by.span, |(_, span)| span);
+        diagnostic = diagnostic.label(place, format!("{name} is determined here"));
+    }
+    let parts = known.iter().all(|(_, by)| system.component(by).is_some());
+    diagnostic.help(if parts && known.len() > 1 {
+        "take one of the parts away, or put something elastic between them"
+    } else {
+        "remove one of these"
+    })
+}
+
+/// The equation that gave an eliminated cell its value, through its aliases.
+fn value_given_by(system: &System, cell: Cell) -> Option<&Origin> {
+    let mut at = cell;
+    for _ in 0..=system.aliases.len() {
+        if let Some(origin) = system.valued.get(&at) {
+            return Some(origin);
+        }
+        match system.aliases.get(&at)? {
+            Alias::Of { var, element, .. } => at = (*var, *element),
+            Alias::Value(_) => return None,
+        }
+    }
+    None
+}
+
+/// Labels in the user's own file for what lies in a component of a library.
+trait Placed: Sized {
+    /// The declaration of the component first, then the place itself; at the top the place alone.
+    fn placed(self, system: &System, origin: &Origin, component: &str, here: &str) -> Self;
+    /// The declaration of the component after the other labels; nothing at the top.
+    fn in_component(self, system: &System, origin: &Origin) -> Self;
+}
+
+impl Placed for Diagnostic {
+    fn placed(self, system: &System, origin: &Origin, component: &str, here: &str) -> Self {
+        match system.component(origin) {
+            Some((_, span)) => self.label(span, component).label(origin.span, here),
+            None => self.label(origin.span, here),
+        }
+    }
+
+    fn in_component(self, system: &System, origin: &Origin) -> Self {
+        match system.component(origin) {
+            Some((_, span)) => self.label(span, format!("in `{}`", origin.instance)),
+            None => self,
+        }
+    }
 }
 
 fn too_many(
@@ -323,7 +411,11 @@ fn too_many(
     let mut instances: Vec<String> = Vec::new();
     for &left in lefts.iter().take(8) {
         let origin = origin(system, nodes[left]);
-        diagnostic = diagnostic.label(origin.span, "one of the equations");
+        let text = match origin.instance.as_str() {
+            "" => "one of the equations".to_owned(),
+            instance => format!("one of the equations, of `{instance}`"),
+        };
+        diagnostic = diagnostic.label(origin.span, text);
         let instance = origin.instance.as_str().to_owned();
         if !instance.is_empty() && !instances.contains(&instance) {
             instances.push(instance);
@@ -358,7 +450,7 @@ pub(crate) fn name(system: &System, unknown: Segment) -> String {
     }
 }
 
-fn plural(count: usize, word: &str) -> String {
+pub(crate) fn plural(count: usize, word: &str) -> String {
     if count == 1 {
         format!("1 {word}")
     } else {

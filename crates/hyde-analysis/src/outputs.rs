@@ -4,8 +4,8 @@ use crate::system::System;
 use hyde_ir::dae::{Alias, Dae, Output};
 use hyde_ir::{Expr, Index, Quantity, Range, VariableKind};
 
-/// Arrays longer than this are not reported element by element.
-const MAX_ELEMENTS: usize = 64;
+/// Arrays longer than this are not reported element by element: more columns than a person looks at.
+const MAX_ELEMENTS: usize = 32;
 
 /// Fills in the outputs of the DAE.
 pub(crate) fn report(dae: &mut Dae, system: &mut System) {

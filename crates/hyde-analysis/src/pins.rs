@@ -135,11 +135,16 @@ fn refuse_two_pins(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
                         &system.flat.automata[slot.automaton].name,
                     );
                     let state = dae.variables[cell.0].element_name(cell.1);
+                    let mut diagnostic =
+                        Diagnostic::error(Code::TwoPins, format!("`{a}` and `{b}` both fix `{state}`"));
+                    for (name, origin) in [(b, &branch.origin), (a, origin)] {
+                        let declared = system.component(origin).map_or(origin.span, |(_, span)| span);
+                        diagnostic = diagnostic.label(declared, format!("`{name}` fixes it"));
+                    }
                     diagnostics.push(
-                        Diagnostic::error(Code::TwoPins, format!("`{a}` and `{b}` both fix `{state}`"))
-                            .label(branch.origin.span, format!("`{b}` fixes it here"))
-                            .label(origin.span, format!("`{a}` fixes it here"))
-                            .note("two set-valued frictions on one body share its force in no definite way (M4)")
+                        diagnostic
+                            .label(branch.origin.span, "by this equation of its mode")
+                            .note("two set-valued frictions on one body share its force in no definite way")
                             .help("make one an effect of the other, or put a stiffness between them"),
                     );
                 }

@@ -1,6 +1,6 @@
 //! The model while it is analysed: its equations as one list, those of modes in slots.
 
-use hyde_diag::Origin;
+use hyde_diag::{InstancePath, Origin, Span};
 use hyde_ir::dae::Alias;
 use hyde_ir::flat::{Action, FlatModel};
 use hyde_ir::{AutomatonId, Expr, ExprArena, ExprId, Id as _, Index, Range, VarId, VariableKind};
@@ -46,12 +46,20 @@ pub(crate) struct System {
     pub(crate) starts: BTreeMap<Cell, Vec<(ExprId, bool, VarId)>>,
     pub(crate) relations: hyde_ir::IdVec<hyde_ir::RelationId, hyde_ir::dae::Relation>,
     pub(crate) notes: Vec<String>,
+    /// The equation that gave an eliminated cell its value.
+    pub(crate) valued: BTreeMap<Cell, Origin>,
+    /// The continuous equations as written, before anything was eliminated: left, right, origin.
+    pub(crate) written: Vec<(ExprId, ExprId, Origin)>,
 }
 
 impl System {
     /// Splits the equations of modes into slots; everything else as it is.
     pub(crate) fn new(mut flat: FlatModel) -> Self {
         let equations = std::mem::take(&mut flat.equations);
+        let written = equations
+            .iter()
+            .map(|e| (e.lhs, e.rhs, e.origin.clone()))
+            .collect();
         let equations = equations
             .into_iter()
             .map(|e| Equation {
@@ -100,11 +108,20 @@ impl System {
             starts,
             relations: hyde_ir::IdVec::new(),
             notes: Vec::new(),
+            valued: BTreeMap::new(),
+            written,
         }
     }
 
     pub(crate) fn exprs(&mut self) -> &mut ExprArena {
         &mut self.flat.exprs
+    }
+
+    /// Where the top of the model declares the component that an origin is in, with its name; `None` at the top.
+    pub(crate) fn component(&self, origin: &Origin) -> Option<(String, Span)> {
+        let name = origin.instance.as_str().split('.').next()?;
+        let span = self.flat.declared.get(&InstancePath::root().child(name))?;
+        (!name.is_empty()).then(|| (name.to_owned(), *span))
     }
 
     /// Whether a variable is determined by the continuous equations.

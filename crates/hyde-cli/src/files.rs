@@ -60,10 +60,11 @@ fn make_readable(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
 }
 
 fn reason(error: &std::io::Error) -> String {
-    match error.kind() {
-        std::io::ErrorKind::NotFound => "no such file or folder".to_owned(),
-        std::io::ErrorKind::PermissionDenied => "permission denied".to_owned(),
-        std::io::ErrorKind::StorageFull => "the disk is full".to_owned(),
-        _ => error.to_string(),
-    }
+    const WORDS: [(ErrorKind, &str); 3] = [
+        (ErrorKind::NotFound, "no such file or folder"),
+        (ErrorKind::PermissionDenied, "permission denied"),
+        (ErrorKind::StorageFull, "the disk is full"),
+    ];
+    let known = WORDS.iter().find(|(kind, _)| *kind == error.kind());
+    known.map_or_else(|| error.to_string(), |(_, words)| (*words).to_owned())
 }

@@ -5,6 +5,7 @@ use crate::exit::Exit;
 use crate::files;
 use crate::records::{self, Record};
 use crate::render;
+use crate::run_failure;
 use crate::settings::{self, Setting};
 use hyde_compiler::{Backend, Compiled, File, Request};
 use hyde_diag::{Diagnostics, Sources};
@@ -125,7 +126,13 @@ impl Project {
                 }
                 None => Err(unknown_parameter(&compiled, &setting.path)),
             };
-            checked.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
+            if let Err(reason) = checked {
+                let diagnostic =
+                    run_failure::cannot_set(&compiled.program, &setting.path, reason);
+                self.diagnostics.push(diagnostic);
+                self.finish_with_errors(args);
+                return Err(Exit::CommandLine);
+            }
         }
         Ok(compiled)
     }

@@ -5,8 +5,8 @@ use crate::files;
 use crate::project::Records;
 use hyde_compiler::Header;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
-use hyde_signal::{Table, csv};
-use hyde_syntax::ast::{Experiment, Expr, ExprKind, RecordItem};
+use hyde_signal::Table;
+use hyde_syntax::ast::{Experiment, RecordItem};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -31,9 +31,6 @@ pub(crate) fn read(
         let Some(path) = path_of(item, &given, args, needed, diagnostics) else {
             continue;
         };
-        let Some(every) = every(item, diagnostics) else {
-            continue;
-        };
         let content = match files::read(&path) {
             Ok(content) => content,
             Err(reason) => {
@@ -41,16 +38,12 @@ pub(crate) fn read(
                 continue;
             }
         };
-        match csv::read(&content, every) {
+        match hyde_experiment::read_record(item, &path.display().to_string(), &content) {
             Ok(table) => {
                 let hash = format!("{:x}", Sha256::digest(&content));
                 found.insert(item.name.text.clone(), Record { path, hash, table });
             }
-            Err(error) => diagnostics.push(
-                Diagnostic::error(Code::BadRecord, format!("`{}`: {error}", path.display()))
-                    .label(item.name.span, "the record is declared here")
-                    .help("a record is a CSV file with a header of `name [unit]` columns, time in the first"),
-            ),
+            Err(diagnostic) => diagnostics.push(diagnostic),
         }
     }
     Ok(found)
@@ -155,33 +148,6 @@ fn path_of(
         .or_else(|| args.file.parent().map(Path::to_path_buf))
         .unwrap_or_default();
     Some(root.join(relative))
-}
-
-/// `every 1 [ms]`: the outer `None` is a mistake.
-#[allow(clippy::option_option, reason = "no period is not a wrong period")]
-fn every(item: &RecordItem, diagnostics: &mut Diagnostics) -> Option<Option<f64>> {
-    let Some(expr) = &item.every else {
-        return Some(None);
-    };
-    match literal_time(expr) {
-        Some(period) if period > 0.0 => Some(Some(period)),
-        _ => {
-            diagnostics.push(
-                Diagnostic::error(Code::BadRecord, "the time between rows is no positive time")
-                    .label(expr.span, "a number with a unit of time is expected")
-                    .help("write `every 1 [ms]`"),
-            );
-            None
-        }
-    }
-}
-
-fn literal_time(expr: &Expr) -> Option<f64> {
-    let ExprKind::Number(value, Some(unit)) = &expr.kind else {
-        return None;
-    };
-    let unit = hyde_units::parse_unit(&unit.text).ok()?;
-    (unit.dimension == hyde_units::Dimension::TIME).then(|| unit.to_si(*value))
 }
 
 fn missing(item: &RecordItem, needed: Records, reason: &str) -> Diagnostic {

@@ -1,18 +1,78 @@
 //! A run that could not go on, as a diagnostic: component, equation, source line, time.
 
+use crate::exit::Exit;
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::RunError;
+use hyde_program::Program;
 use hyde_sim::{Failure, FailureKind};
+use hyde_syntax::ast::Experiment;
 
-/// The diagnostic of a run that did not start or did not end; `None` where only words can be given.
-pub(crate) fn diagnostic(error: &RunError) -> Result<Diagnostic, String> {
+/// The diagnostic of a run that did not start or did not end, and the exit status it leads to.
+pub(crate) fn diagnostic(
+    error: &RunError,
+    program: &Program,
+    experiment: Option<&Experiment>,
+) -> (Diagnostic, Exit) {
     match error {
-        RunError::NoParameter(name) => Err(format!("the model has no parameter `{name}`")),
-        RunError::CannotSet(name, why) => Err(format!("`{name}` cannot be set: {why}")),
-        RunError::NoStop => Err("it is not said when the run ends: write `stop 1 [s];` in the experiment, or `--stop 1`".to_owned()),
-        RunError::NotPositive(what, value) => Err(format!("{what} must be positive, not {value}")),
-        RunError::Compare(error) => Err(format!("the channel `{}` cannot be compared: {}", error.channel, error.cause)),
-        RunError::Failed(failure) => Ok(failed(failure)),
+        RunError::NoParameter(name) => (
+            Diagnostic::error(
+                Code::BadSet,
+                format!("the model has no parameter `{name}`"),
+            ),
+            Exit::CommandLine,
+        ),
+        RunError::CannotSet(name, why) => {
+            let message = format!("`{name}` cannot be set: {why}");
+            (cannot_set(program, name, message), Exit::CommandLine)
+        }
+        RunError::NoStop => no_stop(experiment),
+        RunError::NotPositive(what, value) => (
+            Diagnostic::error(
+                Code::BadSolve,
+                format!("{what} must be positive, not {value}"),
+            ),
+            Exit::Model,
+        ),
+        RunError::Compare(error) => {
+            let message = format!(
+                "the channel `{}` cannot be compared: {}",
+                error.channel, error.cause
+            );
+            let diagnostic = Diagnostic::error(Code::BadRecord, message);
+            let channels = &program.experiment.measured;
+            let channel = channels.iter().find(|known| known.name == error.channel);
+            let diagnostic = match channel {
+                Some(channel) => diagnostic.label(channel.origin.span, "measured here"),
+                None => diagnostic,
+            };
+            (diagnostic, Exit::Model)
+        }
+        RunError::Failed(failure) => (failed(failure), Exit::Solver),
+    }
+}
+
+/// A value that cannot be set, at the parameter it was meant for.
+pub(crate) fn cannot_set(program: &Program, name: &str, message: String) -> Diagnostic {
+    let diagnostic = Diagnostic::error(Code::BadSet, message);
+    match program.parameter(name) {
+        Some((parameter, _)) => diagnostic.label(parameter.origin.span, "its value is given here"),
+        None => diagnostic,
+    }
+}
+
+fn no_stop(experiment: Option<&Experiment>) -> (Diagnostic, Exit) {
+    let diagnostic = Diagnostic::error(Code::NoStop, "it is not said when the run ends");
+    match experiment {
+        Some(experiment) => (
+            diagnostic
+                .label(experiment.name.span, "this experiment has no `stop`")
+                .help("write `solve ida(rtol = 1e-6) stop 1 [s];`, or `stop file.end` for the end of a record"),
+            Exit::Model,
+        ),
+        None => (
+            diagnostic.help("a model without an experiment is run with `--stop 1`"),
+            Exit::CommandLine,
+        ),
     }
 }
 
@@ -89,10 +149,19 @@ fn failed(failure: &Failure) -> Diagnostic {
         }
         seen.push(origin.span);
         let instance = origin.instance.as_str();
+        let what = match failure.kind {
+            FailureKind::Chattering(_) | FailureKind::TooManyEvents => "this condition",
+            FailureKind::Assert(_) => "does not hold",
+            FailureKind::Inconsistent { .. }
+            | FailureKind::Solver(_)
+            | FailureKind::NotFinite
+            | FailureKind::Impact(..)
+            | FailureKind::Input(_) => "this equation",
+        };
         let text = if instance.is_empty() {
-            "this equation".to_owned()
+            what.to_owned()
         } else {
-            format!("this equation, in `{instance}`")
+            format!("{what}, in `{instance}`")
         };
         diagnostic = diagnostic.label(origin.span, text);
     }

@@ -67,10 +67,10 @@ impl File {
 fn packages_named(file: &ast::File) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
     let mut add = |reference: &Reference| {
-        if let Some(part) = reference.parts.first() {
-            if !found.contains(&part.name.text) {
-                found.push(part.name.text.clone());
-            }
+        if let Some(part) = reference.parts.first()
+            && !found.contains(&part.name.text)
+        {
+            found.push(part.name.text.clone());
         }
     };
     file.imports.iter().for_each(|import| add(&import.path));

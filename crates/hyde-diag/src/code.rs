@@ -83,7 +83,7 @@ codes! {
     NoExperiment "E0805" "no such model or experiment";
     NotAnInput "E0806" "a stimulus drives what is no free input";
     NoStop "E0807" "it is not said when a run ends";
-    BadSolve "E0808" "the solver has no such method or option";
+    BadSolve "E0808" "the solver has no such method, option or value";
     BadSet "E0809" "a value cannot be set";
 }
 

@@ -100,6 +100,19 @@ pub(crate) fn channels(
     Ok(found)
 }
 
+fn uneven(table: &Table) -> String {
+    let steps = table.time().windows(2).map(|pair| pair[1] - pair[0]);
+    let (least, most) = steps.fold((f64::INFINITY, 0.0_f64), |(least, most), step| {
+        (least.min(step), most.max(step))
+    });
+    let shown = |step| hyde_units::significant(step, 3);
+    format!(
+        "its rows are {} to {} s apart, and `lowpass` and `slope` need even ones: resample the record, or declare `every`",
+        shown(least),
+        shown(most)
+    )
+}
+
 /// A column low-passed, differentiated and scaled as the experiment says.
 fn prepared(measured: &Measured, table: &Table, values: &[f64]) -> Result<Vec<f64>, String> {
     let mut signal = values.to_vec();
@@ -108,7 +121,13 @@ fn prepared(measured: &Measured, table: &Table, values: &[f64]) -> Result<Vec<f6
             .period()
             .or_else(|| table.mean_step())
             .ok_or("its record has a single row")?;
+        // A drifting clock is no harm, a gap is.
+        let even = table
+            .time()
+            .windows(2)
+            .all(|pair| (pair[1] - pair[0] - step_s).abs() <= 0.1 * step_s);
         match *step {
+            Preparation::Lowpass(_) if !even => return Err(uneven(table)),
             Preparation::Lowpass(corner) => {
                 let filter = LowPass::butterworth(4, corner, 1.0 / step_s)
                     .map_err(|error| error.to_string())?;
@@ -116,6 +135,7 @@ fn prepared(measured: &Measured, table: &Table, values: &[f64]) -> Result<Vec<f6
                     .zero_phase(&signal)
                     .map_err(|error| error.to_string())?;
             }
+            Preparation::Slope if !even => return Err(uneven(table)),
             Preparation::Slope => signal = central_difference(&signal, step_s),
             Preparation::Scale(factor) => signal.iter_mut().for_each(|value| *value *= factor),
         }

@@ -1,4 +1,4 @@
-//! What is asked of a program beside one solution: a run with its record, measures and expectations ([`run`]); the
+//! What is asked of a program beside one solution: a run with its record ([`read_record`]), measures and expectations ([`run`]); the
 //! system linearised about an operating point ([`linearize`]), its frequency response with the sampled loop closed
 //! ([`frequency_response`]) and its modes ([`modes`]); the response swept on the full hybrid model ([`swept_response`]).
 
@@ -6,6 +6,7 @@ mod bode;
 mod compare;
 mod linearize;
 mod modes;
+mod record;
 mod run;
 mod swept;
 
@@ -13,5 +14,6 @@ pub use bode::{BodeError, frequency_response};
 pub use compare::{Channel, CompareError};
 pub use linearize::{Linear, LinearizeError, linearize};
 pub use modes::{NaturalMode, modes};
+pub use record::read_record;
 pub use run::{MeasureValue, Options, Run, RunError, parameters, run};
 pub use swept::{Swept, swept_response};

@@ -231,10 +231,10 @@ impl Dense {
             .kernels
             .parameter_partials(function, inputs, at, work)
         {
-            if let Wrt::Parameter(place) = entry.wrt {
-                if let Some(column) = inputs.iter().position(|&input| input == place) {
-                    dense.by_input[(entry.row, column)] += value;
-                }
+            if let Wrt::Parameter(place) = entry.wrt
+                && let Some(column) = inputs.iter().position(|&input| input == place)
+            {
+                dense.by_input[(entry.row, column)] += value;
             }
         }
         // Held values stand in the memory, by which the kernels do not differentiate: a central difference is exact for

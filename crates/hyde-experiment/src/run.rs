@@ -221,7 +221,8 @@ fn measures(program: &Program, parameters: &[f64], results: &Results) -> Vec<Mea
             name: measure.name.clone(),
             value,
             expectation: measure.expectation,
-            holds: !measure.expectation || value == 1.0,
+            // A truth is 0 or 1; one without a value does not hold.
+            holds: !measure.expectation || value > 0.5,
         })
         .collect()
 }

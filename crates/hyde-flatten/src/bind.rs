@@ -46,17 +46,8 @@ impl<'a> Model<'a, '_> {
             Lowering::Waiting => self.parameters[param.index()].state = Lowering::InProgress,
         }
         let Some(binding) = binding else {
-            self.report(
-                Diagnostic::error(
-                    Code::NoValue,
-                    format!("the parameter `{name}` has no value"),
-                )
-                .label(span, "declared without a value")
-                .help(format!(
-                    "give it one: `{} = …` where its component is declared",
-                    short(&name)
-                )),
-            );
+            let diagnostic = self.no_value(&name, param);
+            self.report(diagnostic);
             let zero = self.flat.exprs.constant(0.0);
             self.flat.parameters[param].value = vec![zero];
             self.parameters[param.index()].state = Lowering::Done;
@@ -70,6 +61,35 @@ impl<'a> Model<'a, '_> {
         let values = self.values(binding, len, &dim, truth);
         self.flat.parameters[param].value = values;
         self.parameters[param.index()].state = Lowering::Done;
+    }
+
+    fn no_value(&self, name: &str, param: ParamId) -> Diagnostic {
+        let (parameter, word) = (&self.flat.parameters[param], short(name));
+        let unit = match &self.parameters[param.index()].dim.as_known() {
+            Some(dimension) if !dimension.is_dimensionless() => {
+                format!(" [{}]", parameter.quantity.unit.text())
+            }
+            _ => String::new(),
+        };
+        let diagnostic = Diagnostic::error(
+            Code::NoValue,
+            format!("the parameter `{name}` has no value"),
+        );
+        let path = &parameter.origin.instance;
+        let instance = self.instances.iter().find(|known| known.path == *path);
+        match instance.filter(|instance| instance.parent.is_some()) {
+            Some(instance) => diagnostic
+                .label(instance.span, format!("gives no `{word}`"))
+                .label(parameter.origin.span, "declared without a value")
+                .help(format!(
+                    "write `{} {}({word} = …{unit});`",
+                    instance.class.name.text,
+                    short(path.as_str()),
+                )),
+            None => diagnostic
+                .label(parameter.origin.span, "declared without a value")
+                .help(format!("give it one: `{word} = …{unit}`")),
+        }
     }
 
     /// The values of a binding of parameters: one a list item, or one for all elements.
@@ -90,7 +110,8 @@ impl<'a> Model<'a, '_> {
                             Code::BadShape,
                             format!("{} values for {len} elements", items.len()),
                         )
-                        .label(expr.span, "the list"),
+                        .label(expr.span, format!("{} values", items.len()))
+                        .help("give a value for each element, or one value for all without braces"),
                     );
                 }
                 let scale =

@@ -41,6 +41,32 @@ const ALL: [&str; 43] = [
     "integer",
 ];
 
+/// How a function is called, for the repair of a call with the wrong arguments.
+fn usage(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "der" | "abs" | "sign" | "sqrt" | "exp" | "log" | "log10" | "sin" | "cos" | "tan"
+        | "asin" | "acos" | "atan" | "sinh" | "cosh" | "tanh" | "floor" | "ceil" | "integer"
+        | "noEvent" | "sum" => return None,
+        "pre" => "pre(x)",
+        "sample" => "sample(x)",
+        "hold" => "hold(u)",
+        "held" => "held(file.column)",
+        "interval" => "interval()",
+        "smooth" => "smooth(order, expression)",
+        "mod" => "mod(x, period)",
+        "floor_to" => "floor_to(x, step)",
+        "round_to" => "round_to(x, step)",
+        "min" => "min(a, b)",
+        "max" => "max(a, b)",
+        "clamp" => "clamp(x, low, high)",
+        "atan2" => "atan2(y, x)",
+        "chirp" => "chirp(time, from, to, duration)",
+        "pder" => "pder(field, x)",
+        "partial" => "partial(expression, variable)",
+        _ => return None,
+    })
+}
+
 impl<'a> Model<'a, '_> {
     /// Lowers `function(arguments)`.
     pub(crate) fn call(
@@ -59,7 +85,8 @@ impl<'a> Model<'a, '_> {
                     Code::BadArguments,
                     format!("`{name}` takes no named arguments"),
                 )
-                .label(argument.value.span, "named"),
+                .label(argument.value.span, "named")
+                .help("give the arguments in their order, without names"),
             );
             return self.poison(span);
         }
@@ -829,13 +856,15 @@ impl<'a> Model<'a, '_> {
         let found = <[&'a Expr; N]>::try_from(args).ok();
         if found.is_none() {
             let plural = if N == 1 { "" } else { "s" };
-            self.report(
-                Diagnostic::error(
-                    Code::BadArguments,
-                    format!("`{name}` takes {N} argument{plural}, not {}", args.len()),
-                )
-                .label(span, "called here"),
-            );
+            let diagnostic = Diagnostic::error(
+                Code::BadArguments,
+                format!("`{name}` takes {N} argument{plural}, not {}", args.len()),
+            )
+            .label(span, "called here");
+            self.report(match usage(name) {
+                Some(usage) => diagnostic.help(format!("write `{usage}`")),
+                None => diagnostic,
+            });
         }
         found
     }

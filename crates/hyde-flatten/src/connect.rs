@@ -112,7 +112,10 @@ impl<'a> Model<'a, '_> {
                         format!("connectors of different types are connected: `{a}` and `{b}`");
                     let diagnostic = Diagnostic::error(Code::BadConnection, message)
                         .label(side.span, format!("a `{b}`"))
-                        .label(connectors[0].2.span, format!("a `{a}`"));
+                        .label(connectors[0].2.span, format!("a `{a}`"))
+                        .help(format!(
+                            "connect like with like; from `{a}` to `{b}` leads a component that has both"
+                        ));
                     self.report(diagnostic);
                     return;
                 }

@@ -101,6 +101,8 @@ pub(crate) struct Demand {
     pub(crate) instance: InstanceId,
     /// The sides are bare numbers without a unit.
     pub(crate) bare: (bool, bool),
+    /// The bare numbers as written.
+    pub(crate) written: (String, String),
 }
 
 /// The path of an instance, and its parameters with their dimensions: what a repair may name.
@@ -228,9 +230,14 @@ fn verdict(
         ),
         Agreement::Different => {
             let diagnostic =
-                Diagnostic::error(Code::UnitMismatch, format!("{} {} and {}", demand.what, short(a), short(b)))
-                    .label(left, format!("this is {a}"))
-                    .label(right, format!("this is {b}"));
+                Diagnostic::error(Code::UnitMismatch, format!("{} {} and {}", demand.what, short(a), short(b)));
+            let diagnostic = if left == right {
+                diagnostic.label(right, format!("this is {}, not {}", named(b), named(a)))
+            } else {
+                diagnostic
+                    .label(left, format!("this is {}", named(a)))
+                    .label(right, format!("this is {}", named(b)))
+            };
             let (instance, names) = in_scope(demand.instance);
             let diagnostic = if instance.as_str().is_empty() {
                 diagnostic
@@ -242,6 +249,27 @@ fn verdict(
                 None => diagnostic,
             })
         }
+    }
+}
+
+/// A dimension as said of a place.
+fn named(dimension: Dimension) -> String {
+    if dimension.is_dimensionless() {
+        short(dimension)
+    } else {
+        dimension.to_string()
+    }
+}
+
+/// `310` with its unit.
+fn with_unit(number: &str, unit: &str) -> String {
+    let single = number
+        .chars()
+        .all(|c| c.is_ascii_alphanumeric() || c == '.');
+    if single {
+        format!("give the number a unit: `{number} [{unit}]`")
+    } else {
+        format!("give its numbers a unit: `… [{unit}]`")
     }
 }
 
@@ -273,10 +301,10 @@ fn repair(
     names: &[(String, Dimension)],
 ) -> Option<String> {
     if demand.bare.0 && a.is_dimensionless() {
-        return Some(format!("give the number a unit: `… [{}]`", b.usual_unit()));
+        return Some(with_unit(&demand.written.0, &b.usual_unit()));
     }
     if demand.bare.1 && b.is_dimensionless() {
-        return Some(format!("give the number a unit: `… [{}]`", a.usual_unit()));
+        return Some(with_unit(&demand.written.1, &a.usual_unit()));
     }
     let ratio = a.divide(b);
     let same = |x: Dimension, y: Dimension| x.agreement(y) != Agreement::Different;

@@ -125,9 +125,14 @@ impl<'a> Model<'a, '_> {
                 Code::NoColumn,
                 format!("the record `{record}` has no column `{column}`"),
             )
-            .label(reference.span, "not in its header");
+            .label(
+                reference.parts.get(1).map_or(reference.span, |part| part.name.span),
+                "not in its header",
+            );
             let diagnostic = match near {
-                Some(near) => diagnostic.help(format!("did you mean `{record}.{near}`?")),
+                Some(near) => diagnostic
+                    .note(format!("its columns are {}", listed(&names)))
+                    .help(format!("did you mean `{record}.{near}`?")),
                 None if names.is_empty() => {
                     diagnostic.help("the record was not given: `--record NAME=PATH`")
                 }
@@ -522,7 +527,13 @@ impl<'a> Model<'a, '_> {
             if !matches!(name, "rtol" | "atol" | "max_step") {
                 self.report(
                     Diagnostic::error(Code::BadSolve, format!("the solver has no option `{name}`"))
-                        .label(argument.value.span, "not known")
+                        .label(
+                            argument
+                                .name
+                                .as_ref()
+                                .map_or(argument.value.span, |name| name.span),
+                            "not known",
+                        )
                         .help("options are `rtol`, `atol` and `max_step`"),
                 );
                 continue;

@@ -147,7 +147,7 @@ impl<'a> Model<'a, '_> {
                 self.report(
                     Diagnostic::error(Code::FieldUse, "a space derivative outside a flux")
                         .label(span, "an equation of a field takes derivatives of fluxes")
-                        .help("give the flux a name: `field Torque q on bar = k*pder(th, x);` and write `pder(q, x)` (F1)"),
+                        .help("give the flux a name: `field Torque q on bar = k*pder(th, x);` and write `pder(q, x)`"),
                 );
                 return self.poison(span);
             }
@@ -272,6 +272,9 @@ impl<'a> Model<'a, '_> {
         let Some(crate::instance::Member::Domain(domain)) =
             self.instances[scope.instance].members.get(name)
         else {
+            if !self.undeclared.insert(name) {
+                return;
+            }
             self.report(
                 Diagnostic::error(
                     Code::UnknownName,

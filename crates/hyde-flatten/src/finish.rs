@@ -10,6 +10,11 @@ use hyde_units::Dimension;
 impl Model<'_, '_> {
     /// Completes the flat model.
     pub(crate) fn finish(&mut self) {
+        self.flat.declared = self
+            .instances
+            .iter()
+            .map(|instance| (instance.path.clone(), instance.span))
+            .collect();
         self.report_undriven();
         self.solve_dimensions();
         for id in self.flat.variables.ids().collect::<Vec<_>>() {
@@ -45,6 +50,24 @@ impl Model<'_, '_> {
         }
     }
 
+    fn circle(&self, circle: &[ParamId]) -> Diagnostic {
+        let names: Vec<String> = circle
+            .iter()
+            .map(|&id| format!("`{}`", self.flat.parameters[id].name))
+            .collect();
+        let message = match names.as_slice() {
+            [only] => format!("the value of {only} uses itself"),
+            several => format!("the values of {} use each other", several.join(", ")),
+        };
+        let mut diagnostic = Diagnostic::error(Code::Cycle, message);
+        for (number, &id) in circle.iter().enumerate() {
+            let next = &names[(number + 1) % names.len()];
+            let span = self.flat.parameters[id].origin.span;
+            diagnostic = diagnostic.label(span, format!("uses {next}"));
+        }
+        diagnostic.help("give one of them a number")
+    }
+
     fn visit(&mut self, root: ParamId, state: &mut [Lowering]) {
         let mut stack = vec![(root, false)];
         while let Some((id, left)) = stack.pop() {
@@ -56,12 +79,12 @@ impl Model<'_, '_> {
             match state[id.index()] {
                 Lowering::Done => continue,
                 Lowering::InProgress => {
-                    let parameter = &self.flat.parameters[id];
-                    let diagnostic = Diagnostic::error(
-                        Code::Cycle,
-                        format!("the value of `{}` uses itself", parameter.name),
-                    )
-                    .label(parameter.origin.span, "in a circle");
+                    let circle = stack
+                        .iter()
+                        .filter(|(_, entered)| *entered)
+                        .map(|(id, _)| *id)
+                        .skip_while(|&on_the_way| on_the_way != id);
+                    let diagnostic = self.circle(&circle.collect::<Vec<_>>());
                     self.report(diagnostic);
                     continue;
                 }

@@ -9,7 +9,7 @@ use crate::dimension::Dim;
 use crate::instance::{
     Binding, Domain, Field, Instance, InstanceId, Lowering, Member, ParameterNotes, VariableNotes,
 };
-use crate::model::Model;
+use crate::model::{Model, listed};
 use crate::names::{FileIndex, TypeName, nearest};
 use hyde_diag::{Code, Diagnostic, InstancePath, Span};
 use hyde_ir::{ClockId, Parameter, Quantity, Variable, VariableKind, flat};
@@ -45,13 +45,25 @@ impl<'a> Model<'a, '_> {
         let name = self.input.model;
         let Some(class) = self.names.own_class(name) else {
             let file = self.input.files.first()?.0;
-            self.report(
-                Diagnostic::error(
+            let diagnostic = Diagnostic::error(
                     Code::NoExperiment,
                     format!("the file has no model `{name}`"),
-                )
-                .label(Span::new(file, 0, 0), "searched in this file"),
-            );
+                );
+            let models: Vec<&str> = self.names.own_models().collect();
+            let written = self
+                .input
+                .experiment
+                .and_then(|experiment| self.names.own_experiment(experiment))
+                .filter(|experiment| experiment.model.dotted() == name);
+            let diagnostic = match written {
+                Some(experiment) => diagnostic.label(experiment.model.span, "not in this file"),
+                None => diagnostic.label(Span::new(file, 0, 0), "searched in this file"),
+            };
+            self.report(match nearest(name, models.iter().copied()) {
+                Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+                None if models.is_empty() => diagnostic.help("it has none"),
+                None => diagnostic.help(format!("it has {}", listed(&models))),
+            });
             return None;
         };
         self.flat.name = class.name.text.clone();
@@ -117,6 +129,9 @@ impl<'a> Model<'a, '_> {
             );
             return id;
         }
+        let last_words = modifiers.iter().filter(|modifier| modifier.target.len() == 1);
+        self.modified
+            .extend(last_words.map(|modifier| (modifier.number, id)));
         let mut collected = Vec::new();
         self.collect(id, file, class, modifiers, &mut collected, 0);
         self.members(id, &collected);
@@ -162,6 +177,9 @@ impl<'a> Model<'a, '_> {
                         Some(Member::Domain(_))
                     ) {
                         let word = &method.domain.text;
+                        if !self.undeclared.insert(word) {
+                            continue;
+                        }
                         self.report(
                             Diagnostic::error(
                                 Code::UnknownName,
@@ -268,6 +286,9 @@ impl<'a> Model<'a, '_> {
                 (None, None) => {
                     let diagnostic = self.names.unknown(item.file, &declaration.type_name);
                     self.report(diagnostic);
+                    let names = declaration.declarators.iter();
+                    self.undeclared
+                        .extend(names.map(|declarator| declarator.name.text.as_str()));
                     return;
                 }
             };
@@ -326,6 +347,11 @@ impl<'a> Model<'a, '_> {
         let name = declarator.name.text.as_str();
         let mut inner = self.modifiers_for(name, &item.modifiers);
         self.modifiers_of(&declarator.changes, id, &mut inner);
+        let Some((file, class)) = self.redeclared(declaration, declarator, &inner, (file, class))
+        else {
+            self.undeclared.insert(name);
+            return;
+        };
         let (path, clock) = (self.path(id), self.instances[id].clock);
         let span = declarator.name.span;
         match count {
@@ -355,6 +381,43 @@ impl<'a> Model<'a, '_> {
         }
     }
 
+    /// The class of a component: that of the outermost redeclaration, if there is one.
+    fn redeclared(
+        &mut self,
+        declaration: &Declaration,
+        declarator: &Declarator,
+        modifiers: &[Modifier<'a>],
+        declared: (FileIndex, &'a Class),
+    ) -> Option<(FileIndex, &'a Class)> {
+        let redeclaration = modifiers.iter().find_map(|modifier| {
+            let new = modifier.change.redeclare.as_ref()?;
+            modifier.target.is_empty().then_some((modifier, new))
+        });
+        let Some((modifier, new)) = redeclaration else {
+            return Some(declared);
+        };
+        if !declaration.prefixes.contains(&Prefix::Replaceable) {
+            let name = &declarator.name.text;
+            self.report(
+                Diagnostic::error(
+                    Code::FinalModified,
+                    format!("`{name}` is not replaceable"),
+                )
+                .label(modifier.change.target.span, "cannot be redeclared")
+                .label(declarator.name.span, "declared here, for good")
+                .help(format!("declare it `replaceable {} {name}`", declared.1.name.text)),
+            );
+            return None;
+        }
+        let file = self.names.file_of(new.span)?;
+        let class = self.names.class(file, new);
+        if class.is_none() {
+            let diagnostic = self.names.unknown(file, new);
+            self.report(diagnostic);
+        }
+        class
+    }
+
     fn declare_variable(
         &mut self,
         id: InstanceId,
@@ -382,7 +445,12 @@ impl<'a> Model<'a, '_> {
             None => VariableKind::Continuous,
         };
         let field = if has(Prefix::Field) {
-            self.field(id, declarator)
+            let field = self.field(id, declarator);
+            if field.is_none() {
+                self.undeclared.insert(name);
+                return;
+            }
+            field
         } else {
             None
         };
@@ -447,6 +515,9 @@ impl<'a> Model<'a, '_> {
                 None => self.names.unknown(item.file, &declaration.type_name),
             };
             self.report(diagnostic);
+            let names = declaration.declarators.iter();
+            self.undeclared
+                .extend(names.map(|declarator| declarator.name.text.as_str()));
             return;
         };
         let has = |prefix| declaration.prefixes.contains(&prefix);
@@ -462,7 +533,10 @@ impl<'a> Model<'a, '_> {
                 self.report(
                     Diagnostic::error(Code::FinalModified, format!("`{name}` is final"))
                         .label(modifier.change.target.span, "cannot be modified")
-                        .label(declarator.name.span, "declared final here"),
+                        .label(declarator.name.span, "declared final here")
+                        .help(format!(
+                            "leave `{name}` out: modify the parameters that its value is made of"
+                        )),
                 );
             }
             let declared = declarator
@@ -525,6 +599,7 @@ impl<'a> Model<'a, '_> {
                 .label(span, "how many cells?")
                 .help(format!("write `discretize {name} by fem(n = 24);`")),
             );
+            self.undeclared.insert(name);
             return;
         };
         let averaged = match method.method.text.as_str() {
@@ -539,6 +614,7 @@ impl<'a> Model<'a, '_> {
                     .label(method.method.span, "not known")
                     .help("write `fem(n = …)` or `fv(n = …)`"),
                 );
+                self.undeclared.insert(name);
                 return;
             }
         };
@@ -552,9 +628,11 @@ impl<'a> Model<'a, '_> {
                     .label(method.method.span, "no `n` given")
                     .help(format!("write `{}(n = 24)`", method.method.text)),
             );
+            self.undeclared.insert(name);
             return;
         };
         let Some(count) = self.structural_integer(id, &cells.value) else {
+            self.undeclared.insert(name);
             return;
         };
         let Some(cells) = usize::try_from(count)
@@ -568,6 +646,7 @@ impl<'a> Model<'a, '_> {
                 )
                 .label(cells.value.span, "at least 2"),
             );
+            self.undeclared.insert(name);
             return;
         };
         let domain = Domain {
@@ -614,6 +693,9 @@ impl<'a> Model<'a, '_> {
                 })
             }
             _ => {
+                if !self.undeclared.insert(&domain.text) {
+                    return None;
+                }
                 self.report(
                     Diagnostic::error(
                         Code::UnknownName,
@@ -883,10 +965,6 @@ impl<'a> Model<'a, '_> {
         out: &mut Vec<Modifier<'a>>,
     ) {
         for change in changes {
-            if change.redeclare.is_some() {
-                self.not_yet("redeclaration", change.target.span);
-                continue;
-            }
             let mut target = above.to_vec();
             target.extend(
                 change
@@ -896,7 +974,11 @@ impl<'a> Model<'a, '_> {
                     .map(|part| part.name.text.as_str()),
             );
             self.modifiers_below(&change.changes, scope, &target, out);
-            if change.value.is_some() || change.prior.is_some() || change.source.is_some() {
+            if change.redeclare.is_some()
+                || change.value.is_some()
+                || change.prior.is_some()
+                || change.source.is_some()
+            {
                 let number = self.modifications.len();
                 self.modifications
                     .push((change.target.span, target.join("."), false));
@@ -913,43 +995,57 @@ impl<'a> Model<'a, '_> {
     }
 
     fn report_unused_modifications(&mut self) {
-        let unused: Vec<(Span, String)> = self
-            .modifications
-            .iter()
-            .filter(|(.., used)| !used)
-            .map(|(span, name, _)| (*span, name.clone()))
+        let unused: Vec<(usize, Span, String)> = (0..)
+            .zip(&self.modifications)
+            .filter(|(_, (.., used))| !used)
+            .map(|(number, (span, name, _))| (number, *span, name.clone()))
             .collect();
-        for (span, name) in unused {
-            let known: Vec<&str> = self
-                .instances
-                .iter()
-                .flat_map(|instance| instance.members.keys().copied())
-                .collect();
+        for (number, span, name) in unused {
             let last = name.rsplit('.').next().unwrap_or(&name);
+            if name.split('.').any(|word| self.undeclared.contains(word)) {
+                continue;
+            }
             let diagnostic = Diagnostic::error(
                 Code::UnknownModification,
                 format!("there is no `{name}` to modify"),
-            )
-            .label(span, "changes nothing");
-            let near = nearest(last, known.into_iter()).filter(|near| *near != last);
+            );
+            let Some(instance) = self.modified.get(&number).map(|&id| &self.instances[id]) else {
+                self.report(diagnostic.label(span, "changes nothing"));
+                continue;
+            };
+            let known: Vec<&str> = instance.members.keys().copied().collect();
+            let diagnostic = diagnostic.label(
+                span,
+                format!("`{}` has nothing of that name", instance.class.name.text),
+            );
+            let near = nearest(last, known.iter().copied()).filter(|near| *near != last);
             self.report(match near {
                 Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-                None => diagnostic,
+                None => diagnostic.help(format!("it has {}", listed(&known))),
             });
         }
     }
 
     fn free_name(&mut self, id: InstanceId, declarator: &'a Declarator) -> bool {
         let name = declarator.name.text.as_str();
-        if self.instances[id].members.contains_key(name) {
-            self.report(
-                Diagnostic::error(Code::Duplicate, format!("`{name}` is declared twice"))
-                    .label(declarator.name.span, "declared again here")
-                    .help("rename one of the two; a base may have declared it"),
-            );
-            return false;
-        }
-        true
+        let Some(member) = self.instances[id].members.get(name) else {
+            return true;
+        };
+        let first = match member {
+            Member::Variable(var) => Some(self.flat.variables[*var].origin.span),
+            Member::Parameter(param) => Some(self.flat.parameters[*param].origin.span),
+            Member::Instance(part) => Some(self.instances[*part].span),
+            Member::Instances(parts) => parts.first().map(|part| self.instances[*part].span),
+            Member::Domain(domain) => Some(self.domains[*domain].span),
+        };
+        let diagnostic = Diagnostic::error(Code::Duplicate, format!("`{name}` is declared twice"))
+            .label(declarator.name.span, "declared again here");
+        let diagnostic = match first {
+            Some(first) => diagnostic.label(first, "declared first here"),
+            None => diagnostic,
+        };
+        self.report(diagnostic.help("rename one of the two, or take it out"));
+        false
     }
 
     /// The length that dimensions after the type or the name give.
@@ -963,7 +1059,9 @@ impl<'a> Model<'a, '_> {
         match dims.as_slice() {
             [] => None,
             [dim] => {
-                let length = self.structural_integer(id, dim)?;
+                let Some(length) = self.structural_integer(id, dim) else {
+                    return Some(0); // Reported; no element is looked for in it.
+                };
                 if !(0..=100_000_000).contains(&length) {
                     self.report(
                         Diagnostic::error(
@@ -972,7 +1070,7 @@ impl<'a> Model<'a, '_> {
                         )
                         .label(dim.span, "the number of elements"),
                     );
-                    return None;
+                    return Some(0);
                 }
                 usize::try_from(length).ok()
             }

@@ -82,7 +82,10 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(Code::WrongType, "a condition is expected, this is a number")
                     .label(expr.span, "a number")
-                    .help("compare it: `… > 0`"),
+                    .help(format!(
+                        "compare it: `{} > 0`",
+                        hyde_syntax::format_expression(expr)
+                    )),
             );
         }
         typed.id
@@ -666,6 +669,9 @@ impl<'a> Model<'a, '_> {
             self.not_an_array(reference);
             return None;
         };
+        if len == 0 && self.diagnostics.has_errors() {
+            return None; // Its length is the mistake.
+        }
         let written = self.affine(subscript, scope)?;
         let index = Index {
             stride: written.stride,
@@ -743,7 +749,7 @@ impl<'a> Model<'a, '_> {
                     ),
                 )
                 .label(reference.span, "which one?")
-                .help("name one: `m[1].a`"),
+                .help(format!("name one: `{}[1]`", reference.dotted())),
             );
             return None;
         };

@@ -12,7 +12,7 @@ use hyde_ir::{
 };
 use hyde_syntax::ast::Reference;
 use hyde_units::Dimension;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Everything flatten knows so far.
 pub(crate) struct Model<'a, 'd> {
@@ -28,6 +28,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) dimensions: Dimensions,
     /// Modifications with whether anything used them.
     pub(crate) modifications: Vec<(Span, String, bool)>,
+    /// The instance that a modification with one word left was given to, by its number.
+    pub(crate) modified: BTreeMap<usize, InstanceId>,
     /// Connected connectors and signals, in the order written.
     pub(crate) connections: Vec<crate::connect::Connection>,
     /// Held variables by clock and source.
@@ -36,6 +38,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) column_variables: BTreeMap<ColumnId, (VarId, VarId)>,
     /// Parameters that stand for the first value of a column.
     pub(crate) column_firsts: BTreeMap<(String, String), ParamId>,
+    /// Names whose declaration has an unknown type: their uses are no mistake of their own.
+    pub(crate) undeclared: BTreeSet<&'a str>,
     /// A subscript met that keeps its `for` equation from being one equation over a range.
     pub(crate) needs_unrolling: bool,
     pub(crate) diagnostics: &'d mut Diagnostics,
@@ -53,10 +57,12 @@ impl<'a, 'd> Model<'a, 'd> {
             domains: Vec::new(),
             dimensions: Dimensions::default(),
             modifications: Vec::new(),
+            modified: BTreeMap::new(),
             connections: Vec::new(),
             held: BTreeMap::new(),
             column_variables: BTreeMap::new(),
             column_firsts: BTreeMap::new(),
+            undeclared: BTreeSet::new(),
             needs_unrolling: false,
             diagnostics,
         }
@@ -89,6 +95,7 @@ impl<'a, 'd> Model<'a, 'd> {
             spans: (a.span, b.span),
             instance,
             bare: (a.bare, b.bare),
+            written: (self.bare_text(a), self.bare_text(b)),
         };
         let Self {
             dimensions,
@@ -103,6 +110,15 @@ impl<'a, 'd> Model<'a, 'd> {
         });
         if let Some(diagnostic) = found {
             diagnostics.push(diagnostic);
+        }
+    }
+
+    /// A bare number as written, for a repair that gives it a unit.
+    fn bare_text(&self, typed: &Typed) -> String {
+        if typed.bare {
+            self.input.sources.text(typed.span).to_owned()
+        } else {
+            String::new()
         }
     }
 
@@ -187,6 +203,10 @@ impl<'a, 'd> Model<'a, 'd> {
         word: &str,
         whole: &Reference,
     ) {
+        // A declaration whose type is unknown is reported there, not at every use.
+        if self.undeclared.contains(word) {
+            return;
+        }
         let mut known: Vec<&str> = self.instances[at].members.keys().copied().collect();
         let mut outer = self.instances[at].outer;
         while let Some(instance) = outer {
@@ -207,7 +227,15 @@ impl<'a, 'd> Model<'a, 'd> {
             Code::UnknownName,
             format!("nothing is called `{word}` in {place}"),
         )
-        .label(whole.span, "not known");
+        .label(
+            whole
+                .parts
+                .iter()
+                .rev()
+                .find(|part| part.name.text == word)
+                .map_or(whole.span, |part| part.name.span),
+            "not known",
+        );
         let diagnostic = match names::nearest(word, known.iter().copied()) {
             Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
             None if known.is_empty() => diagnostic,

@@ -1,7 +1,7 @@
 //! What the names of classes and types mean in each file: its own, its imports, and packages by their full name.
 
 use crate::Input;
-use hyde_diag::{Code, Diagnostic, FileId};
+use hyde_diag::{Code, Diagnostic, FileId, Span};
 use hyde_syntax::ast::{self, Class, Item, Reference, TypeItem};
 
 /// A file by its number in the input.
@@ -25,6 +25,11 @@ pub(crate) struct Names<'a> {
 impl<'a> Names<'a> {
     pub(crate) fn new(input: &Input<'a>) -> Self {
         Self { files: input.files }
+    }
+
+    /// The file a span lies in.
+    pub(crate) fn file_of(self, span: Span) -> Option<FileIndex> {
+        self.files.iter().position(|(id, _)| *id == span.file)
     }
 
     /// The class a name means in a file.
@@ -54,6 +59,16 @@ impl<'a> Names<'a> {
     pub(crate) fn own_class(self, name: &str) -> Option<&'a Class> {
         self.own_items().find_map(|item| match item {
             Item::Class(class) if class.name.text == name => Some(class),
+            Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
+        })
+    }
+
+    /// The names of the models of the first file.
+    pub(crate) fn own_models(self) -> impl Iterator<Item = &'a str> {
+        self.own_items().filter_map(|item| match item {
+            Item::Class(class) if class.kind == ast::ClassKind::Model => {
+                Some(class.name.text.as_str())
+            }
             Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
         })
     }
@@ -160,12 +175,13 @@ pub(crate) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> O
         .map(|candidate| {
             (
                 strsim::damerau_levenshtein(&word.to_lowercase(), &candidate.to_lowercase()),
+                candidate.len().abs_diff(word.len()),
                 candidate,
             )
         })
-        .filter(|(distance, candidate)| *distance <= candidate.len().max(word.len()).div_ceil(3))
+        .filter(|(distance, _, candidate)| *distance <= candidate.len().max(word.len()).div_ceil(3))
         .min()
-        .map(|(_, candidate)| candidate)
+        .map(|(.., candidate)| candidate)
 }
 
 fn dotted(parts: &[ast::Part]) -> String {

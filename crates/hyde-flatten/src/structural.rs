@@ -29,7 +29,8 @@ impl<'a> Model<'a, '_> {
         if value.fract() != 0.0 || value.abs() > 1e15 {
             self.report(
                 Diagnostic::error(Code::NotConstant, format!("{value} is no whole number"))
-                    .label(expr.span, "counts something"),
+                    .label(expr.span, "counts something")
+                    .help("write a whole number, or an `Integer` parameter"),
             );
             return None;
         }

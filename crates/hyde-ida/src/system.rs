@@ -41,8 +41,11 @@ pub trait System {
     ///
     /// # Errors
     /// [`Recoverable`] where a root function has no value; this ends the run, since IDA cannot step around it.
+    #[expect(
+        unused_variables,
+        reason = "named for those who write a system with root functions"
+    )]
     fn roots(&mut self, t: f64, y: &[f64], yp: &[f64], out: &mut [f64]) -> Result<(), Recoverable> {
-        let _ = (t, y, yp, out);
         Ok(())
     }
 }

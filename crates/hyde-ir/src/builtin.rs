@@ -68,8 +68,8 @@ operations! {
     Le "<=" "1 where a <= b, else 0." => |a, b| truth(a <= b);
     Gt ">" "1 where a > b, else 0." => |a, b| truth(a > b);
     Ge ">=" "1 where a >= b, else 0." => |a, b| truth(a >= b);
-    Eq "==" "1 where equal, else 0." => |a, b| truth(a == b);
-    Ne "<>" "1 where not equal, else 0." => |a, b| truth(a != b);
+    Eq "==" "1 where equal, else 0." => |a, b| truth(equal(a, b));
+    Ne "<>" "1 where not equal, else 0." => |a, b| truth(!equal(a, b));
     And "and" "1 where both are not 0, else 0." => |a, b| truth(a != 0.0 && b != 0.0);
     Or "or" "1 where one is not 0, else 0." => |a, b| truth(a != 0.0 || b != 0.0);
 }
@@ -93,4 +93,12 @@ impl BinaryOp {
 
 fn truth(condition: bool) -> f64 {
     f64::from(u8::from(condition))
+}
+
+#[expect(
+    clippy::float_cmp,
+    reason = "the language's `==` asks whether two values are the same, not whether they are near"
+)]
+fn equal(a: f64, b: f64) -> bool {
+    a == b
 }

@@ -234,7 +234,10 @@ impl ExprArena {
 
     /// An operation on two values.
     pub fn binary(&mut self, op: BinaryOp, a: ExprId, b: ExprId) -> ExprId {
-        use BinaryOp::{Add, And, Div, Mul, Or, Pow, Sub};
+        use BinaryOp::{
+            Add, And, Atan2, Div, Eq, FloorTo, Ge, Gt, Le, Lt, Max, Min, Mul, Ne, Or, Pow, RoundTo,
+            Sub,
+        };
         let (left, right) = (self.as_constant(a), self.as_constant(b));
         if let (Some(x), Some(y)) = (left, right) {
             return self.constant(op.apply(x, y));
@@ -259,7 +262,8 @@ impl ExprArena {
             Or if one(left) || one(right) => self.constant(1.0),
             Or if zero(left) => b,
             Or if zero(right) => a,
-            _ => self.intern(Expr::Binary(op, a, b)),
+            Add | Sub | Mul | Div | Min | Max | Atan2 | FloorTo | RoundTo | Lt | Le | Gt | Ge
+            | Eq | Ne | And | Or => self.intern(Expr::Binary(op, a, b)),
         }
     }
 
@@ -422,9 +426,8 @@ mod tests {
         let (x, y) = (arena.var(v), arena.var(w));
         let product = arena.times(x, y);
         let sum = arena.plus(product, x);
-        let new = arena.rewrite(sum, &mut HashMap::new(), |arena, _, e| match e {
-            Expr::Var(id, _) if id == w => Some(arena.constant(0.0)),
-            _ => None,
+        let new = arena.rewrite(sum, &mut HashMap::new(), |arena, _, e| {
+            matches!(e, Expr::Var(id, _) if id == w).then(|| arena.constant(0.0))
         });
         assert_eq!(new, x);
     }

@@ -2,7 +2,8 @@
 
 use crate::id::{AutomatonId, ClockId, ColumnId, ExprId, IdVec, ParamId, VarId};
 use crate::{Column, ExprArena, Index, Parameter, Quantity, Range, Variable};
-use hyde_diag::Origin;
+use hyde_diag::{InstancePath, Origin, Span};
+use std::collections::BTreeMap;
 
 /// `lhs = rhs`, for every value of the counter in the range.
 #[derive(Clone, Debug)]
@@ -268,4 +269,6 @@ pub struct FlatModel {
     pub asserts: Vec<Assert>,
     /// What the experiment adds.
     pub experiment: Experiment,
+    /// Where each instance is declared, for messages.
+    pub declared: BTreeMap<InstancePath, Span>,
 }

@@ -93,16 +93,15 @@ pub fn validate_dae(dae: &Dae) -> Result<(), String> {
     let mut defined = vec![false; dae.n_work];
     for definition in &dae.definitions {
         check.expr(definition.value, definition.range)?;
-        let uses = |e: Expr| match e {
-            Expr::Var(var, index) => dae.place(var).map(|place| (place, index)),
-            _ => None,
-        };
         for id in dae.exprs.below(&[definition.value]) {
-            let Some((place, index)) = uses(dae.exprs[id]) else {
+            let Expr::Var(var, index) = dae.exprs[id] else {
                 continue;
             };
             let first = usize::try_from(index.at(definition.range.first)).unwrap_or(0);
-            if place.space == Space::Work && !defined[place.base + first] {
+            if dae
+                .place(var)
+                .is_some_and(|place| place.space == Space::Work && !defined[place.base + first])
+            {
                 return Err(format!(
                     "`{}` uses what is defined later",
                     dae.variables[definition.var].name

@@ -39,8 +39,29 @@ struct Kernel {
 }
 
 enum Code {
-    Native(Native),
+    Native(Box<Native>),
     Interpreter(Interpreter),
+}
+
+impl Code {
+    /// Machine code, or the interpreter where it is asked for or Cranelift makes no code for this machine.
+    fn new(dae: &Dae, routine: &Routine, backend: Backend) -> Self {
+        let native = match backend {
+            Backend::Native => Native::new(dae, routine),
+            Backend::Interpreter => None,
+        };
+        match native {
+            Some(native) => Self::Native(Box::new(native)),
+            None => Self::Interpreter(Interpreter::new(dae, routine)),
+        }
+    }
+
+    fn run(&self, frame: &mut Frame<'_>) {
+        match self {
+            Self::Native(native) => native.run(frame),
+            Self::Interpreter(interpreter) => interpreter.run(frame),
+        }
+    }
 }
 
 impl Compiled {
@@ -82,29 +103,11 @@ impl Compiled {
     }
 
     fn run(&self, kernel: &Kernel, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]) {
-        let code = kernel.code.get_or_init(|| match self.backend {
-            Backend::Native => match Native::new(&self.dae, &kernel.routine) {
-                Some(native) => Code::Native(native),
-                None => Code::Interpreter(Interpreter::new(&self.dae, &kernel.routine)),
-            },
-            Backend::Interpreter => Code::Interpreter(Interpreter::new(&self.dae, &kernel.routine)),
-        });
+        let code = kernel
+            .code
+            .get_or_init(|| Code::new(&self.dae, &kernel.routine, self.backend));
         self.check(at, workspace);
-        let Point { t, y, yp, z, u, p } = at;
-        let mut frame = Frame {
-            t,
-            y,
-            yp,
-            z,
-            u,
-            p,
-            work: &mut workspace.work,
-            out,
-        };
-        match code {
-            Code::Native(native) => native.run(&mut frame),
-            Code::Interpreter(interpreter) => interpreter.run(&mut frame),
-        }
+        code.run(&mut Frame::at(at, &mut workspace.work, out));
     }
 
     /// Machine code does not check bounds: the lengths are checked here, at every call.
@@ -129,17 +132,7 @@ impl Kernels for Compiled {
             let place = self.dae.parameter_places[*param];
             let size = self.dae.parameters[*param].size();
             let before: Vec<f64> = p.to_vec();
-            let mut frame = Frame {
-                t: 0.0,
-                y: &[],
-                yp: &[],
-                z: &[],
-                u: &[],
-                p: &before,
-                work: &mut [],
-                out: p,
-            };
-            code.run(&mut frame);
+            code.run(&mut Frame::of_parameters(&before, p));
             for &(position, value) in set {
                 if (place..place + size).contains(&position) {
                     p[position] = value;
@@ -153,17 +146,7 @@ impl Kernels for Compiled {
             .chain(z.iter_mut())
             .for_each(|value| *value = 0.0);
         let mut out = vec![0.0; y.len() + z.len()];
-        let mut frame = Frame {
-            t: 0.0,
-            y: &[],
-            yp: &[],
-            z: &[],
-            u: &[],
-            p,
-            work: &mut [],
-            out: &mut out,
-        };
-        self.start.run(&mut frame);
+        self.start.run(&mut Frame::of_parameters(p, &mut out));
         y.copy_from_slice(&out[..y.len()]);
         z.copy_from_slice(&out[y.len()..]);
     }
@@ -198,7 +181,7 @@ impl Kernels for Compiled {
             Constant::BandFrom(bode) => experiment.bodes.get(bode)?.band.0,
             Constant::BandTo(bode) => experiment.bodes.get(bode)?.band.1,
         };
-        self.evaluate_parametric(id, p)
+        self.evaluate_known(id, p, &[])
     }
 
     fn evaluate(
@@ -253,21 +236,11 @@ impl Kernels for Compiled {
         let entries = entries(&list);
         let mut values = vec![0.0; entries.len()];
         self.check(at, workspace);
-        let Point { t, y, yp, z, u, p } = at;
-        let mut frame = Frame {
-            t,
-            y,
-            yp,
-            z,
-            u,
-            p,
-            work: &mut workspace.work,
-            out: &mut values,
-        };
-        match (self.backend, Native::new(&dae, &routine)) {
-            (Backend::Native, Some(native)) => native.run(&mut frame),
-            _ => Interpreter::new(&dae, &routine).run(&mut frame),
-        }
+        Code::new(&dae, &routine, self.backend).run(&mut Frame::at(
+            at,
+            &mut workspace.work,
+            &mut values,
+        ));
         entries.into_iter().zip(values).collect()
     }
 
@@ -301,17 +274,7 @@ impl Kernels for Compiled {
         let interpreter = Interpreter::new(&dae, &Routine::plain("tick_partials", steps.collect()));
         let mut values = vec![0.0; list.len()];
         self.check(at, workspace);
-        let Point { t, y, yp, z, u, p } = at;
-        interpreter.run(&mut Frame {
-            t,
-            y,
-            yp,
-            z,
-            u,
-            p,
-            work: &mut workspace.work,
-            out: &mut values,
-        });
+        interpreter.run(&mut Frame::at(at, &mut workspace.work, &mut values));
         list.into_iter()
             .zip(values)
             .map(|((row, wrt, _), value)| {
@@ -327,38 +290,28 @@ impl Kernels for Compiled {
 
     fn measures(&self, p: &[f64], reductions: &[f64], out: &mut [f64]) {
         for (measure, value) in self.dae.experiment.measures.iter().zip(out) {
-            let leaf = |expr: Expr| match expr {
-                Expr::Var(var, _) => match self.dae.variables[var].kind {
-                    VariableKind::Reduction(number) => reductions.get(number).copied().ok_or(()),
-                    _ => Err(()),
-                },
-                Expr::Param(param, index) => {
-                    let offset = usize::try_from(index.offset).unwrap_or(0);
-                    p.get(self.dae.parameter_places[param] + offset)
-                        .copied()
-                        .ok_or(())
-                }
-                _ => Err(()),
-            };
             *value = self
-                .dae
-                .exprs
-                .evaluate(measure.value, leaf)
+                .evaluate_known(measure.value, p, reductions)
                 .unwrap_or(f64::NAN);
         }
     }
 }
 
 impl Compiled {
-    fn evaluate_parametric(&self, id: ExprId, p: &[f64]) -> Option<f64> {
-        let leaf = |expr: Expr| match expr {
-            Expr::Param(param, index) => {
+    /// The value of an expression of parameters and reductions; `None` where it reads anything else.
+    fn evaluate_known(&self, id: ExprId, p: &[f64], reductions: &[f64]) -> Option<f64> {
+        let leaf = |expr: Expr| {
+            let value = if let Expr::Param(param, index) = expr {
                 let offset = usize::try_from(index.offset).unwrap_or(0);
                 p.get(self.dae.parameter_places[param] + offset)
-                    .copied()
-                    .ok_or(())
-            }
-            _ => Err(()),
+            } else if let Expr::Var(var, _) = expr
+                && let VariableKind::Reduction(number) = self.dae.variables[var].kind
+            {
+                reductions.get(number)
+            } else {
+                None
+            };
+            value.copied().ok_or(())
         };
         self.dae.exprs.evaluate(id, leaf).ok()
     }

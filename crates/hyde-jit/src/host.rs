@@ -1,16 +1,68 @@
-//! The functions that interpreter and machine code share: everything that is no single instruction everywhere.
+//! How each operation is made in machine code: by instructions, or by a call of the function that the interpreter uses.
 
+use cranelift_codegen::ir::condcodes::FloatCC;
 use hyde_ir::{BinaryOp, UnaryOp};
+
+/// How an operation on one value is made.
+#[derive(Clone, Copy)]
+pub(crate) enum Unary {
+    Neg,
+    Not,
+    Abs,
+    Sqrt,
+    Call(Function),
+}
+
+/// How an operation on two values is made.
+#[derive(Clone, Copy)]
+pub(crate) enum Binary {
+    Add,
+    Sub,
+    Mul,
+    Div,
+    And,
+    Or,
+    /// The second where it compares so with the first, else the first.
+    Pick(FloatCC),
+    Compare(FloatCC),
+    Call(Function),
+}
+
+/// A function that both interpreter and machine code call: its name and its address.
+pub(crate) type Function = (&'static str, *const u8);
+
+/// Every function that machine code may call.
+pub(crate) fn functions() -> Vec<Function> {
+    let unary = UnaryOp::ALL.iter().filter_map(|&op| match unary(op) {
+        Unary::Call(function) => Some(function),
+        Unary::Neg | Unary::Not | Unary::Abs | Unary::Sqrt => None,
+    });
+    let binary = BinaryOp::ALL.iter().filter_map(|&op| match binary(op) {
+        Binary::Call(function) => Some(function),
+        Binary::Add
+        | Binary::Sub
+        | Binary::Mul
+        | Binary::Div
+        | Binary::And
+        | Binary::Or
+        | Binary::Pick(_)
+        | Binary::Compare(_) => None,
+    });
+    unary.chain(binary).collect()
+}
 
 macro_rules! unary_functions {
     ($($function:ident $op:ident;)*) => {
         $(extern "C" fn $function(a: f64) -> f64 { UnaryOp::$op.apply(a) })*
 
-        /// Name and address of the function behind an operation on one value; `None` for those that are instructions.
-        pub(crate) fn unary(op: UnaryOp) -> Option<(&'static str, *const u8)> {
+        /// How an operation on one value is made.
+        pub(crate) fn unary(op: UnaryOp) -> Unary {
             match op {
-                $(UnaryOp::$op => Some((stringify!($function), $function as *const u8)),)*
-                UnaryOp::Neg | UnaryOp::Not | UnaryOp::Abs | UnaryOp::Sqrt => None,
+                UnaryOp::Neg => Unary::Neg,
+                UnaryOp::Not => Unary::Not,
+                UnaryOp::Abs => Unary::Abs,
+                UnaryOp::Sqrt => Unary::Sqrt,
+                $(UnaryOp::$op => Unary::Call((stringify!($function), $function as *const u8)),)*
             }
         }
     };
@@ -37,24 +89,25 @@ macro_rules! binary_functions {
     ($($function:ident $op:ident;)*) => {
         $(extern "C" fn $function(a: f64, b: f64) -> f64 { BinaryOp::$op.apply(a, b) })*
 
-        /// Name and address of the function behind an operation on two values; `None` for those that are instructions.
-        pub(crate) fn binary(op: BinaryOp) -> Option<(&'static str, *const u8)> {
+        /// How an operation on two values is made. Unordered operands compare as in the table of operations: unequal,
+        /// and nothing else.
+        pub(crate) fn binary(op: BinaryOp) -> Binary {
             match op {
-                $(BinaryOp::$op => Some((stringify!($function), $function as *const u8)),)*
-                BinaryOp::Add
-                | BinaryOp::Sub
-                | BinaryOp::Mul
-                | BinaryOp::Div
-                | BinaryOp::Min
-                | BinaryOp::Max
-                | BinaryOp::Lt
-                | BinaryOp::Le
-                | BinaryOp::Gt
-                | BinaryOp::Ge
-                | BinaryOp::Eq
-                | BinaryOp::Ne
-                | BinaryOp::And
-                | BinaryOp::Or => None,
+                BinaryOp::Add => Binary::Add,
+                BinaryOp::Sub => Binary::Sub,
+                BinaryOp::Mul => Binary::Mul,
+                BinaryOp::Div => Binary::Div,
+                BinaryOp::And => Binary::And,
+                BinaryOp::Or => Binary::Or,
+                BinaryOp::Min => Binary::Pick(FloatCC::LessThan),
+                BinaryOp::Max => Binary::Pick(FloatCC::GreaterThan),
+                BinaryOp::Lt => Binary::Compare(FloatCC::LessThan),
+                BinaryOp::Le => Binary::Compare(FloatCC::LessThanOrEqual),
+                BinaryOp::Gt => Binary::Compare(FloatCC::GreaterThan),
+                BinaryOp::Ge => Binary::Compare(FloatCC::GreaterThanOrEqual),
+                BinaryOp::Eq => Binary::Compare(FloatCC::Equal),
+                BinaryOp::Ne => Binary::Compare(FloatCC::NotEqual),
+                $(BinaryOp::$op => Binary::Call((stringify!($function), $function as *const u8)),)*
             }
         }
     };

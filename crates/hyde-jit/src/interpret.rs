@@ -2,6 +2,7 @@
 
 use crate::routine::{Leaf, Routine, Slot};
 use hyde_ir::{BinaryOp, Dae, Expr, Index, Range, UnaryOp};
+use hyde_program::Point;
 use std::collections::HashMap;
 
 /// The memory of a call.
@@ -60,7 +61,15 @@ impl Interpreter {
                             number.insert(id, same);
                             continue;
                         }
-                        leaf => Operation::Leaf(
+                        leaf @ (Expr::Const(_)
+                        | Expr::Time
+                        | Expr::Counter
+                        | Expr::Param(..)
+                        | Expr::Var(..)
+                        | Expr::Der(..)
+                        | Expr::Pre(..)
+                        | Expr::Relation(_)
+                        | Expr::InMode(..)) => Operation::Leaf(
                             routine.leaf(dae, leaf).unwrap_or(Leaf::Number(f64::NAN)),
                         ),
                     };
@@ -112,7 +121,35 @@ impl Interpreter {
     }
 }
 
-impl Frame<'_> {
+impl<'a> Frame<'a> {
+    /// The memory at a point.
+    pub(crate) fn at(point: Point<'a>, work: &'a mut [f64], out: &'a mut [f64]) -> Self {
+        let Point { t, y, yp, z, u, p } = point;
+        Self {
+            t,
+            y,
+            yp,
+            z,
+            u,
+            p,
+            work,
+            out,
+        }
+    }
+
+    /// The memory of what depends on parameters alone.
+    pub(crate) fn of_parameters(p: &'a [f64], out: &'a mut [f64]) -> Self {
+        let nowhere = Point {
+            t: 0.0,
+            y: &[],
+            yp: &[],
+            z: &[],
+            u: &[],
+            p,
+        };
+        Self::at(nowhere, &mut [], out)
+    }
+
     fn leaf(&self, leaf: Leaf, counter: i32) -> f64 {
         match leaf {
             Leaf::Number(value) => value,

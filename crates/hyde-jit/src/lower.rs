@@ -325,42 +325,29 @@ impl Lowering<'_, '_, '_> {
     }
 
     fn unary(&mut self, op: UnaryOp, a: ir::Value) -> ir::Value {
-        match op {
-            UnaryOp::Neg => self.builder.ins().fneg(a),
-            UnaryOp::Abs => self.builder.ins().fabs(a),
-            UnaryOp::Sqrt => self.builder.ins().sqrt(a),
-            UnaryOp::Not => self.builder.ins().icmp_imm_u(IntCC::Equal, a, 0),
-            _ => match host::unary(op) {
-                Some((name, _)) => self.call(name, &[a]),
-                None => a,
-            },
+        match host::unary(op) {
+            host::Unary::Neg => self.builder.ins().fneg(a),
+            host::Unary::Abs => self.builder.ins().fabs(a),
+            host::Unary::Sqrt => self.builder.ins().sqrt(a),
+            host::Unary::Not => self.builder.ins().icmp_imm_u(IntCC::Equal, a, 0),
+            host::Unary::Call((name, _)) => self.call(name, &[a]),
         }
     }
 
     fn binary(&mut self, op: BinaryOp, a: ir::Value, b: ir::Value) -> ir::Value {
-        if let Some(condition) = comparison(op) {
-            return self.builder.ins().fcmp(condition, a, b);
-        }
-        match op {
-            BinaryOp::Add => self.builder.ins().fadd(a, b),
-            BinaryOp::Sub => self.builder.ins().fsub(a, b),
-            BinaryOp::Mul => self.builder.ins().fmul(a, b),
-            BinaryOp::Div => self.builder.ins().fdiv(a, b),
-            BinaryOp::Min | BinaryOp::Max => {
-                let condition = if op == BinaryOp::Min {
-                    FloatCC::LessThan
-                } else {
-                    FloatCC::GreaterThan
-                };
+        match host::binary(op) {
+            host::Binary::Add => self.builder.ins().fadd(a, b),
+            host::Binary::Sub => self.builder.ins().fsub(a, b),
+            host::Binary::Mul => self.builder.ins().fmul(a, b),
+            host::Binary::Div => self.builder.ins().fdiv(a, b),
+            host::Binary::And => self.builder.ins().band(a, b),
+            host::Binary::Or => self.builder.ins().bor(a, b),
+            host::Binary::Pick(condition) => {
                 let second = self.builder.ins().fcmp(condition, b, a);
                 self.builder.ins().select(second, b, a)
             }
-            BinaryOp::And => self.builder.ins().band(a, b),
-            BinaryOp::Or => self.builder.ins().bor(a, b),
-            _ => match host::binary(op) {
-                Some((name, _)) => self.call(name, &[a, b]),
-                None => a,
-            },
+            host::Binary::Compare(condition) => self.builder.ins().fcmp(condition, a, b),
+            host::Binary::Call((name, _)) => self.call(name, &[a, b]),
         }
     }
 
@@ -407,18 +394,18 @@ impl Lowering<'_, '_, '_> {
         let (base, offset) = match (at, index.stride) {
             (At::Fixed(counter), _) => {
                 let element = index.at(counter);
-                if slot == Slot::Work {
-                    if let Some(&value) = self.explicit.get(&element) {
-                        return value;
-                    }
+                if slot == Slot::Work
+                    && let Some(&value) = self.explicit.get(&element)
+                {
+                    return value;
                 }
                 (self.base(slot), 8 * element)
             }
             (At::Loop { .. }, 0) => {
-                if slot == Slot::Work {
-                    if let Some(&value) = self.explicit.get(&index.offset) {
-                        return value;
-                    }
+                if slot == Slot::Work
+                    && let Some(&value) = self.explicit.get(&index.offset)
+                {
+                    return value;
                 }
                 (self.base(slot), 8 * index.offset)
             }
@@ -453,30 +440,6 @@ pub(crate) fn is_truth(expr: Expr) -> bool {
         | Expr::Relation(_)
         | Expr::If(..)
         | Expr::NoEvent(_) => false,
-    }
-}
-
-/// The condition of a comparison; unordered operands compare as in the table of operations.
-pub(crate) fn comparison(op: BinaryOp) -> Option<FloatCC> {
-    match op {
-        BinaryOp::Lt => Some(FloatCC::LessThan),
-        BinaryOp::Le => Some(FloatCC::LessThanOrEqual),
-        BinaryOp::Gt => Some(FloatCC::GreaterThan),
-        BinaryOp::Ge => Some(FloatCC::GreaterThanOrEqual),
-        BinaryOp::Eq => Some(FloatCC::Equal),
-        BinaryOp::Ne => Some(FloatCC::NotEqual),
-        BinaryOp::Add
-        | BinaryOp::Sub
-        | BinaryOp::Mul
-        | BinaryOp::Div
-        | BinaryOp::Pow
-        | BinaryOp::Min
-        | BinaryOp::Max
-        | BinaryOp::Atan2
-        | BinaryOp::FloorTo
-        | BinaryOp::RoundTo
-        | BinaryOp::And
-        | BinaryOp::Or => None,
     }
 }
 

@@ -10,7 +10,7 @@ use cranelift_codegen::settings::{self, Configurable};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Linkage, Module, default_libcall_names};
-use hyde_ir::{BinaryOp, Dae, UnaryOp};
+use hyde_ir::Dae;
 use std::sync::Mutex;
 
 /// A compiled routine. Its memory is freed when it is dropped.
@@ -37,7 +37,7 @@ impl Native {
     pub(crate) fn new(dae: &Dae, routine: &Routine) -> Option<Self> {
         let isa = host_isa()?;
         let mut builder = JITBuilder::with_isa(isa, default_libcall_names());
-        builder.symbols(symbols());
+        builder.symbols(host::functions());
         let mut module = JITModule::new(builder);
         let mut context = module.make_context();
         context
@@ -152,9 +152,3 @@ fn flags() -> Option<settings::Flags> {
 
 /// The calling convention of printed code, whatever the host.
 pub(crate) const PRINTED: CallConv = CallConv::SystemV;
-
-fn symbols() -> Vec<(&'static str, *const u8)> {
-    let unary = UnaryOp::ALL.iter().filter_map(|&op| host::unary(op));
-    let binary = BinaryOp::ALL.iter().filter_map(|&op| host::binary(op));
-    unary.chain(binary).collect()
-}

@@ -167,10 +167,10 @@ fn columns(dae: &Dae) -> Vec<Column> {
         .collect();
     let mut read = vec![false; dae.columns.len()];
     for id in dae.exprs.below(&roots) {
-        if let hyde_ir::Expr::Var(var, _) = dae.exprs[id] {
-            if let VariableKind::Column(column, _) = dae.variables[var].kind {
-                read[column.index()] = true;
-            }
+        if let hyde_ir::Expr::Var(var, _) = dae.exprs[id]
+            && let VariableKind::Column(column, _) = dae.variables[var].kind
+        {
+            read[column.index()] = true;
         }
     }
     dae.columns

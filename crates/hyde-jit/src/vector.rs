@@ -9,7 +9,7 @@
 //! run one element at a time instead.
 
 use crate::host;
-use crate::lower::{At, Known, Lowering, Wanted, comparison, is_truth, load_flags};
+use crate::lower::{At, Known, Lowering, Wanted, is_truth, load_flags};
 use crate::routine::{Leaf, Slot, Step};
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{self, InstBuilder, MemFlagsData, types};
@@ -25,47 +25,45 @@ pub(crate) fn lower_loop(lowering: &mut Lowering<'_, '_, '_>, steps: &[Step], ra
         lowering.emit(id, wanted, At::Fixed(range.first), &mut Known::default());
     }
     let len = i64::try_from(range.len()).unwrap_or(i64::MAX);
-    let zero = lowering.builder.ins().iconst(types::I64, 0);
-    let start = if in_pairs {
-        let splats = splats(lowering, &invariants);
-        let exit = looped(lowering, zero, 16, 8 * (len & !1), |lowering, bytes| {
-            let mut pairs = splats.clone();
-            for step in steps {
-                let value = emit_pair(lowering, step.value, bytes, range.first, &mut pairs);
-                let base = lowering.base(step.slot);
-                let address = lowering.builder.ins().iadd(base, bytes);
-                let offset = 8 * step.target.at(range.first);
-                lowering.builder.ins().store(
-                    MemFlagsData::trusted().with_aligned(),
-                    value,
-                    address,
-                    offset,
-                );
-            }
+    let start = lowering.builder.ins().iconst(types::I64, 0);
+    if !in_pairs {
+        looped(lowering, start, 8, 8 * len, |lowering, bytes| {
+            turn(lowering, steps, bytes, range.first)
         });
-        // The tail, if the number is odd.
-        let (tail, done) = (
-            lowering.builder.create_block(),
-            lowering.builder.create_block(),
-        );
-        let more = lowering
-            .builder
-            .ins()
-            .icmp_imm_u(IntCC::UnsignedLessThan, exit, 8 * len);
-        lowering.builder.ins().brif(more, tail, &[], done, &[]);
-        lowering.builder.switch_to_block(tail);
-        lowering.builder.seal_block(tail);
-        turn(lowering, steps, exit, range.first);
-        lowering.builder.ins().jump(done, &[]);
-        lowering.builder.switch_to_block(done);
-        lowering.builder.seal_block(done);
         return;
-    } else {
-        zero
-    };
-    looped(lowering, start, 8, 8 * len, |lowering, bytes| {
-        turn(lowering, steps, bytes, range.first)
+    }
+    let splats = splats(lowering, &invariants);
+    let exit = looped(lowering, start, 16, 8 * (len & !1), |lowering, bytes| {
+        let mut pairs = splats.clone();
+        for step in steps {
+            let value = emit_pair(lowering, step.value, bytes, range.first, &mut pairs);
+            let base = lowering.base(step.slot);
+            let address = lowering.builder.ins().iadd(base, bytes);
+            let offset = 8 * step.target.at(range.first);
+            lowering.builder.ins().store(
+                MemFlagsData::trusted().with_aligned(),
+                value,
+                address,
+                offset,
+            );
+        }
     });
+    // The tail, if the number is odd.
+    let (tail, done) = (
+        lowering.builder.create_block(),
+        lowering.builder.create_block(),
+    );
+    let more = lowering
+        .builder
+        .ins()
+        .icmp_imm_u(IntCC::UnsignedLessThan, exit, 8 * len);
+    lowering.builder.ins().brif(more, tail, &[], done, &[]);
+    lowering.builder.switch_to_block(tail);
+    lowering.builder.seal_block(tail);
+    turn(lowering, steps, exit, range.first);
+    lowering.builder.ins().jump(done, &[]);
+    lowering.builder.switch_to_block(done);
+    lowering.builder.seal_block(done);
 }
 
 /// A loop from `start` while the bytes are below `limit`; it runs at least once. Returns the bytes at its end.
@@ -136,9 +134,18 @@ fn may_pair(lowering: &Lowering<'_, '_, '_>, root: ExprId) -> bool {
         .all(|id| {
             let expr = lowering.dae.exprs[id];
             match expr {
-                Expr::Unary(op, _) => host::unary(op).is_none(),
-                Expr::Binary(op, ..) => host::binary(op).is_none(),
-                _ => match lowering.routine.leaf(lowering.dae, expr) {
+                Expr::Unary(op, _) => !matches!(host::unary(op), host::Unary::Call(_)),
+                Expr::Binary(op, ..) => !matches!(host::binary(op), host::Binary::Call(_)),
+                Expr::If(..) | Expr::NoEvent(_) => true,
+                Expr::Const(_)
+                | Expr::Time
+                | Expr::Counter
+                | Expr::Param(..)
+                | Expr::Var(..)
+                | Expr::Der(..)
+                | Expr::Pre(..)
+                | Expr::Relation(_)
+                | Expr::InMode(..) => match lowering.routine.leaf(lowering.dae, expr) {
                     Some(Leaf::Load(_, index)) => index.stride == 1,
                     _ => true,
                 },
@@ -250,12 +257,12 @@ fn pair_node(
                     Wanted::Number
                 },
             );
-            match op {
-                UnaryOp::Neg => lowering.builder.ins().fneg(a),
-                UnaryOp::Abs => lowering.builder.ins().fabs(a),
-                UnaryOp::Sqrt => lowering.builder.ins().sqrt(a),
-                // `may_pair` lets nothing else through.
-                _ => lowering.builder.ins().bnot(a),
+            match host::unary(op) {
+                host::Unary::Neg => lowering.builder.ins().fneg(a),
+                host::Unary::Abs => lowering.builder.ins().fabs(a),
+                host::Unary::Sqrt => lowering.builder.ins().sqrt(a),
+                host::Unary::Not => lowering.builder.ins().bnot(a),
+                host::Unary::Call((name, _)) => unreachable!("`may_pair` let {name} through"),
             }
         }
         (Expr::Binary(op, a, b), _) => {
@@ -265,25 +272,19 @@ fn pair_node(
                 Wanted::Number
             };
             let (a, b) = (get(a, form), get(b, form));
-            if let Some(condition) = comparison(op) {
-                return lowering.builder.ins().fcmp(condition, a, b);
-            }
-            match op {
-                BinaryOp::Add => lowering.builder.ins().fadd(a, b),
-                BinaryOp::Sub => lowering.builder.ins().fsub(a, b),
-                BinaryOp::Mul => lowering.builder.ins().fmul(a, b),
-                BinaryOp::Div => lowering.builder.ins().fdiv(a, b),
-                BinaryOp::And => lowering.builder.ins().band(a, b),
-                BinaryOp::Or => lowering.builder.ins().bor(a, b),
-                _ => {
-                    let condition = if op == BinaryOp::Min {
-                        FloatCC::LessThan
-                    } else {
-                        FloatCC::GreaterThan
-                    };
+            match host::binary(op) {
+                host::Binary::Add => lowering.builder.ins().fadd(a, b),
+                host::Binary::Sub => lowering.builder.ins().fsub(a, b),
+                host::Binary::Mul => lowering.builder.ins().fmul(a, b),
+                host::Binary::Div => lowering.builder.ins().fdiv(a, b),
+                host::Binary::And => lowering.builder.ins().band(a, b),
+                host::Binary::Or => lowering.builder.ins().bor(a, b),
+                host::Binary::Pick(condition) => {
                     let second = lowering.builder.ins().fcmp(condition, b, a);
                     choose(lowering, second, b, a, Wanted::Number)
                 }
+                host::Binary::Compare(condition) => lowering.builder.ins().fcmp(condition, a, b),
+                host::Binary::Call((name, _)) => unreachable!("`may_pair` let {name} through"),
             }
         }
         _ => pair_leaf(lowering, expr, bytes, first),

@@ -11,7 +11,7 @@ use hyde_program::{Constant, Program};
 pub(crate) struct Schedule {
     clocks: Vec<Times>,
     pending: Vec<Pending>,
-    /// Instants of scheduled relations: relation and time.
+    /// Relations between the time and parameters, with the instant at which each changes.
     relations: Vec<(usize, f64)>,
 }
 
@@ -62,13 +62,20 @@ impl Schedule {
             }
             clocks.push(times);
         }
-        let mut schedule = Self {
+        let relations = (0..program.relations.len())
+            .filter(|&number| program.relations[number].scheduled)
+            .filter_map(|number| {
+                let at = program
+                    .kernels
+                    .constant(Constant::TimeEvent(number), &state.p)?;
+                Some((number, at))
+            })
+            .collect();
+        Ok(Self {
             clocks,
             pending: Vec::new(),
-            relations: Vec::new(),
-        };
-        schedule.reschedule_relations(state);
-        Ok(schedule)
+            relations,
+        })
     }
 
     /// The next instant at which something is known to happen after `t`.
@@ -138,25 +145,6 @@ impl Schedule {
         (ticks, changed)
     }
 
-    /// The instants of relations between the time and parameters.
-    fn reschedule_relations(&mut self, state: &State<'_>) {
-        let program = state.program;
-        for (number, relation) in program
-            .relations
-            .iter()
-            .enumerate()
-            .filter(|(_, relation)| relation.scheduled)
-        {
-            if let Some(at) = program
-                .kernels
-                .constant(Constant::TimeEvent(number), &state.p)
-            {
-                self.relations.push((number, at));
-            }
-            debug_assert!(relation.scheduled, "only those have an instant");
-        }
-    }
-
     fn hold(&mut self, program: &Program, state: &State<'_>, clock: usize, t: f64) {
         for hold in program.holds.iter().filter(|hold| hold.clock == clock) {
             self.pending.push(Pending {
@@ -171,11 +159,7 @@ impl Schedule {
 
 impl Times {
     fn at(&self) -> f64 {
-        #[allow(
-            clippy::cast_precision_loss,
-            reason = "tick numbers are far below 2^53"
-        )]
-        let number = self.next as f64;
-        self.phase + number * self.period
+        // Tick numbers are far below 2^53.
+        self.phase + self.next as f64 * self.period
     }
 }

@@ -164,6 +164,7 @@ impl Consistent {
         let norm = |residual: &[f64]| residual.iter().map(|r| r * r).sum::<f64>().sqrt();
         let before = norm(&self.residual);
         let mut factor = 1.0;
+        let mut whole = false;
         let old: Vec<f64> = (0..y.len())
             .map(|i| if state.differential[i] { yp[i] } else { y[i] })
             .collect();
@@ -186,6 +187,7 @@ impl Consistent {
                     || halving == MAX_HALVINGS
                     || self.is_small(&old, 1e-9))
             {
+                whole = halving == 0;
                 break;
             }
             if halving == MAX_HALVINGS {
@@ -193,7 +195,7 @@ impl Consistent {
             }
             factor *= 0.5;
         }
-        Ok(factor == 1.0 && self.is_small(&old, 1e-12))
+        Ok(whole && self.is_small(&old, 1e-12))
     }
 
     fn is_small(&self, values: &[f64], tolerance: f64) -> bool {

@@ -202,9 +202,7 @@ impl Instant<'_, '_> {
             }
         }
         for &(automaton, to, _) in &entered {
-            #[allow(clippy::cast_precision_loss, reason = "a number of modes")]
-            let number = to as f64;
-            self.state.z[program.automata[automaton].place] = number;
+            self.state.z[program.automata[automaton].place] = to as f64;
         }
         self.pin(&entered)
     }

@@ -34,13 +34,7 @@ pub(crate) fn is_active(program: &Program, z: &[f64], relation: usize) -> bool {
 
 /// The number of an automaton's mode.
 pub(crate) fn current_mode(program: &Program, z: &[f64], automaton: usize) -> usize {
-    #[allow(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "the memory holds the number of a mode"
-    )]
-    let mode = z[program.automata[automaton].place] as usize;
-    mode
+    z[program.automata[automaton].place] as usize
 }
 
 /// The first change of a watched relation within the last step, which began at `from`.

@@ -26,8 +26,8 @@ pub(crate) fn solve(
     state: &mut State<'_>,
     consistent: &mut Consistent,
     t: f64,
-    y: &mut Vec<f64>,
-    yp: &mut Vec<f64>,
+    y: &mut [f64],
+    yp: &mut [f64],
 ) -> Result<(), Box<Failure>> {
     let program = state.program;
     let count = program.rows(Function::Initial);
@@ -35,7 +35,7 @@ pub(crate) fn solve(
         return consistent.solve(state, t, y, yp, true);
     }
     // A first guess for the rest from the states' start values; it need not exist.
-    let (mut guess_y, mut guess_yp) = (y.clone(), yp.clone());
+    let (mut guess_y, mut guess_yp) = (y.to_vec(), yp.to_vec());
     if consistent
         .solve(state, t, &mut guess_y, &mut guess_yp, true)
         .is_ok()
@@ -114,8 +114,9 @@ pub(crate) fn solve(
         }
         let mut step = r.clone();
         solver.solve(&mut step);
-        let (old_y, old_yp, before) = (y.clone(), yp.clone(), norm(&r));
+        let (old_y, old_yp, before) = (y.to_vec(), yp.to_vec(), norm(&r));
         let mut factor = 1.0;
+        let mut whole = false;
         for halving in 0..=MAX_HALVINGS {
             for i in 0..n {
                 y[i] = old_y[i] - factor * step[i];
@@ -126,12 +127,13 @@ pub(crate) fn solve(
             r = residual(state, y, yp);
             let after = norm(&r);
             if after.is_finite() && (after <= before || halving == MAX_HALVINGS || after < 1e-12) {
+                whole = halving == 0;
                 break;
             }
             factor *= 0.5;
         }
         let size_of = |v: &[f64]| v.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        if factor == 1.0 && size_of(&step) <= 1e-11 * (1.0 + size_of(&old_y).max(size_of(&old_yp)))
+        if whole && size_of(&step) <= 1e-11 * (1.0 + size_of(&old_y).max(size_of(&old_yp)))
         {
             return consistent.solve(state, t, y, yp, true);
         }
@@ -191,12 +193,8 @@ fn pattern(
         .iter()
         .map(|list| list.iter().map(find).collect())
         .collect();
-    let empty = Pattern::dense(size);
-    match (Pattern::new(size, starts, rows), empty) {
-        (Ok(pattern), _) | (Err(_), Ok(pattern)) => (pattern, positions),
-        // The cells above are in order and inside; a pattern of them always exists.
-        (Err(error), Err(_)) => unreachable!("{error}"),
-    }
+    let pattern = Pattern::new(size, starts, rows).expect("the cells ascend and lie inside");
+    (pattern, positions)
 }
 
 fn values(

@@ -121,10 +121,10 @@ impl<'a> Integrator<'a> {
     /// Starts anew after an event.
     pub(crate) fn restart(&mut self, first_step_s: f64) -> Result<(), Box<Failure>> {
         self.apply_pins();
-        if let Solver::Ida(ida) = &mut self.solver {
-            if let Err(error) = ida.reinit(self.t, &self.y, &self.yp, Some(first_step_s)) {
-                return Err(self.failure(&error));
-            }
+        if let Solver::Ida(ida) = &mut self.solver
+            && let Err(error) = ida.reinit(self.t, &self.y, &self.yp, Some(first_step_s))
+        {
+            return Err(self.failure(&error));
         }
         Ok(())
     }

@@ -58,12 +58,12 @@ pub fn operating_point(
                     to,
                     ..
                 } if automaton == number && from == current => Some(to),
-                _ => None,
+                ReactionKind::Transition { .. }
+                | ReactionKind::When { .. }
+                | ReactionKind::Assert(_) => None,
             });
         let mode = chosen.or(first_exit.filter(|_| pins)).unwrap_or(current);
-        #[allow(clippy::cast_precision_loss, reason = "a number of modes")]
-        let value = mode as f64;
-        state.z[automaton.place] = value;
+        state.z[automaton.place] = mode as f64;
     }
     state.pinned = initial_pins(&mut state, 0.0, &y, &yp);
     consistent.solve(&mut state, 0.0, &mut y, &mut yp, true)?;

@@ -49,13 +49,7 @@ impl<'a> Setup<'a> {
         if !(step_s > 0.0 && stop_s > start_s) {
             return vec![start_s];
         }
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "positive, and rows must fit in memory"
-        )]
         let count = ((stop_s - start_s) / step_s * (1.0 + 1e-12)).floor() as usize;
-        #[allow(clippy::cast_precision_loss, reason = "row numbers are far below 2^53")]
         let mut rows: Vec<f64> = (0..=count).map(|k| start_s + k as f64 * step_s).collect();
         if let Some(last) = rows.last_mut() {
             if (stop_s - *last).abs() <= 1e-9 * step_s {

@@ -263,7 +263,6 @@ impl<'a> Simulation<'a> {
                 let weighted = rate / (self.setup.rtol * value.abs() + self.setup.atol);
                 square += weighted * weighted;
             }
-            #[allow(clippy::cast_precision_loss, reason = "a number of unknowns")]
             let norm = (square / y.len().max(1) as f64).sqrt();
             if norm.is_finite() && norm > 0.0 {
                 step = step.min((0.5 / norm).sqrt());

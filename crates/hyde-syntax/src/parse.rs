@@ -137,13 +137,26 @@ impl<'a> Parser<'a> {
             format!("`{token}`")
         });
         let hint = self.hint(start, begin);
+        // What is missing belongs behind the word before, not in front of the next line.
+        let (span, label) = match &hint {
+            Some(Hint {
+                expected: Some(missing),
+                behind: true,
+                ..
+            }) => {
+                let behind = start + recover::end_of_last_word(&self.text[start..begin]);
+                let span = Span::new(self.file, behind, behind);
+                (span, format!("{missing} is missing here"))
+            }
+            _ => (span, "not understood from here on".to_owned()),
+        };
         let expected = hint
             .as_ref()
             .and_then(|hint| hint.expected)
             .unwrap_or(&expected);
         let diagnostic =
             Diagnostic::error(Code::Syntax, format!("expected {expected}, found {found}"))
-                .label(span, "not understood from here on");
+                .label(span, label);
         match hint {
             Some(hint) => diagnostic.help(hint.help),
             None => diagnostic,
@@ -159,19 +172,26 @@ impl<'a> Parser<'a> {
         let help = |help| {
             Some(Hint {
                 expected: None,
+                behind: false,
                 help,
             })
         };
         if here.starts_with(":=") {
-            help("equations and bindings are written with `=`")
+            Some(Hint {
+                expected: Some("`=`"),
+                behind: false,
+                help: "equations and bindings are written with `=`, not `:=`",
+            })
         } else if open && here.starts_with(';') {
             Some(Hint {
                 expected: Some("`)`"),
+                behind: true,
                 help: "a parenthesis is open: close it before the `;`",
             })
         } else if other_line && !before.is_empty() && !before.ends_with([';', '{', '}']) {
             Some(Hint {
                 expected: Some("`;`"),
+                behind: true,
                 help: "end the line before with `;`",
             })
         } else if here.starts_with("==") {
@@ -189,5 +209,7 @@ impl<'a> Parser<'a> {
 /// What a slip looks like it needs.
 struct Hint {
     expected: Option<&'static str>,
+    /// It is missing behind the last word that was understood.
+    behind: bool,
     help: &'static str,
 }

@@ -42,6 +42,13 @@ impl<'a> Iterator for Scanner<'a> {
     }
 }
 
+/// The end of the last word of a text, comments and white space left out; 0 if it has none.
+pub(crate) fn end_of_last_word(text: &str) -> usize {
+    Scanner::new(text, 0)
+        .last()
+        .map_or(0, |(at, token)| at + token.len())
+}
+
 /// The first byte that is neither white space nor comment, from `at` on.
 pub(crate) fn skip_blank(text: &str, at: usize) -> usize {
     let mut at = at;

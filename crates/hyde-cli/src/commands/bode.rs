@@ -86,9 +86,10 @@ fn responses(args: &BodeArgs) -> Result<String, Exit> {
         for (frequency, damping) in &linear.resonances {
             let _ = writeln!(
                 text,
-                "  mode at {:>8} Hz, damping {}",
+                "  mode at {:>8} Hz, damping {:<8} {}",
                 significant(*frequency, 4),
-                significant(*damping, 2)
+                significant(*damping, 2),
+                where_seen(*frequency, &linear)
             );
         }
         for (output, (name, response)) in linear.outputs.iter().enumerate() {
@@ -195,7 +196,7 @@ fn linear(
     let resonances = hyde_experiment::modes(&system)
         .into_iter()
         .filter(|mode| {
-            mode.damping < 0.3 && (0.5 * band.0..2.0 * band.1).contains(&mode.frequency_hz)
+            mode.damping < 0.3 && (0.5 * band.0..=band.1).contains(&mode.frequency_hz)
         })
         .map(|mode| (mode.frequency_hz, mode.damping))
         .collect();
@@ -204,6 +205,36 @@ fn linear(
         outputs,
         resonances,
     })
+}
+
+/// At which outputs a mode is seen: by how much each response stands out there.
+fn where_seen(frequency_hz: f64, linear: &LinearResponse) -> String {
+    let seen: Vec<String> = linear
+        .outputs
+        .iter()
+        .filter_map(|(name, response)| {
+            let height = prominence(frequency_hz, &linear.frequency, response)?;
+            Some(format!("{name} {height:+.1} dB"))
+        })
+        .collect();
+    seen.join(", ")
+}
+
+/// The magnitude at a frequency over the straight line in the Bode plot from 3/4 to 4/3 of it, in dB; the largest within a tenth around.
+fn prominence(at: f64, frequency: &[f64], response: &[(f64, f64)]) -> Option<f64> {
+    let gain = |f: f64| {
+        let k = frequency.partition_point(|other| *other < f);
+        let (re, im) = *response.get(k)?;
+        (k > 0).then(|| 20.0 * re.hypot(im).log10())
+    };
+    let (low, high) = (gain(at * 0.75)?, gain(at / 0.75)?);
+    (-10..=10)
+        .filter_map(|k| {
+            let f = at * 1.1_f64.powf(f64::from(k) / 10.0);
+            let along = (f / (0.75 * at)).ln() / (1.0 / (0.75 * 0.75_f64)).ln();
+            Some(gain(f)? - (low + along * (high - low)))
+        })
+        .max_by(|a, b| a.abs().total_cmp(&b.abs()))
 }
 
 /// Frequencies at which the magnitude stands out by more than a decibel from its valleys on both sides.
@@ -239,10 +270,13 @@ fn response_unit(program: &Program, bode: &Bode, output: usize) -> String {
     let Some(input) = input else {
         return String::new();
     };
-    let dimension = program.outputs[bode.outputs[output].1]
-        .dimension
-        .divide(input.dimension);
-    shown(&dimension.usual_unit()).to_owned()
+    let output = program.outputs[bode.outputs[output].1].dimension;
+    let (of, per) = (output.usual_unit(), input.dimension.usual_unit());
+    match (shown(&of), shown(&per)) {
+        (of, "") => of.to_owned(),
+        ("", per) => format!("1/{per}"),
+        (of, per) => format!("{of} per {per}"),
+    }
 }
 
 fn drawn(

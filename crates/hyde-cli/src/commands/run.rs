@@ -59,10 +59,10 @@ fn finish(
     run: &Run,
     took: std::time::Duration,
 ) -> Exit {
-    if let Some(folder) = &args.out {
-        if let Err(reason) = leave(folder, args.format, project, compiled, run) {
-            return complain(&args.model, Exit::CommandLine, &reason);
-        }
+    if let Some(folder) = &args.out
+        && let Err(reason) = leave(folder, args.format, project, compiled, run)
+    {
+        return complain(&args.model, Exit::CommandLine, &reason);
     }
     if args.model.json {
         print_output(&format!("{:#}", summary::json(project, compiled, run)));
@@ -147,10 +147,10 @@ fn results_json(program: &Program, results: &Results) -> Value {
 }
 
 fn failed(args: &RunArgs, mut project: Project, compiled: &Compiled, error: &RunError) -> Exit {
-    let diagnostic = match run_failure::diagnostic(error) {
-        Ok(diagnostic) => diagnostic,
-        Err(reason) => return complain(&args.model, Exit::CommandLine, &reason),
-    };
+    let name = project.experiment.as_deref();
+    let mut experiments = project.file.experiments();
+    let experiment = experiments.find(|known| name == Some(known.name.text.as_str()));
+    let (diagnostic, exit) = run_failure::diagnostic(error, &compiled.program, experiment);
     project.diagnostics.push(diagnostic);
     if args.model.json {
         let diagnostics = render::to_json(&project.diagnostics, &project.sources);
@@ -180,5 +180,5 @@ fn failed(args: &RunArgs, mut project: Project, compiled: &Compiled, error: &Run
             print_error(&format!("error: {reason}"));
         }
     }
-    Exit::Solver
+    exit
 }

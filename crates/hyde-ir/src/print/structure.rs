@@ -121,14 +121,6 @@ pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
         };
         let _ = writeln!(out, "  {text}");
     }
-    let work = dae.variables.ids().filter(|&var| {
-        dae.place(var)
-            .is_some_and(|place| place.space == Space::Work)
-    });
-    debug_assert!(
-        work.count() <= dae.n_work,
-        "every explicit variable has a place"
-    );
     for note in &dae.notes {
         let _ = writeln!(out, "note: {note}");
     }

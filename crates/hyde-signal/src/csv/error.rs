@@ -9,6 +9,11 @@ use std::fmt;
 pub enum ReadError {
     /// There is no header, not even a line.
     Empty,
+    /// The first line is a row of numbers.
+    NoHeader {
+        /// The line.
+        line: u64,
+    },
     /// A header without a row below it.
     NoRows,
     /// The text is not UTF-8 here.
@@ -81,10 +86,45 @@ pub enum ReadError {
     Table(TableError),
 }
 
+impl ReadError {
+    /// What to change in the file.
+    #[must_use]
+    pub fn repair(&self) -> String {
+        match self {
+            Self::Empty | Self::NoHeader { .. } => {
+                "write a header of `name [unit]` columns as the first line, time in the first: `t [s],x [mm]`".to_owned()
+            }
+            Self::NoRows => "write a row for every instant below the header".to_owned(),
+            Self::Encoding { .. } => "save the file as UTF-8".to_owned(),
+            Self::NoName { .. } => "give every column of the header a name".to_owned(),
+            Self::Unit { .. } => "write the unit as in a model, `F [N]`, `x [mm]`".to_owned(),
+            Self::NoTime { .. } => {
+                "put a column of time first, or declare the time between rows: `record file every 1 [ms]`".to_owned()
+            }
+            Self::Ragged { .. } => {
+                "give every row a cell for each column; a comma in a number splits it in two".to_owned()
+            }
+            Self::NotANumber { .. } => {
+                "write numbers with a point, `0.5`; take rows that were not measured out".to_owned()
+            }
+            Self::NotFinite { .. } => {
+                "take the row out, or put the value in that belongs there: it cannot be guessed".to_owned()
+            }
+            Self::TimeRunsBack { .. } => {
+                "sort the rows by time, or declare the time between rows: `record file every 1 [ms]`".to_owned()
+            }
+            Self::Table(_) => "give every column a name of its own".to_owned(),
+        }
+    }
+}
+
 impl fmt::Display for ReadError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Empty => write!(f, "the file is empty"),
+            Self::NoHeader { line } => {
+                write!(f, "line {line}: a row of numbers stands where the header belongs")
+            }
             Self::NoRows => write!(f, "there is a header but no row"),
             Self::Encoding { line } => write!(f, "line {line}: not UTF-8 text"),
             Self::NoName { column } => write!(f, "column {column} has no name"),

@@ -19,6 +19,9 @@ pub fn read(text: &[u8], every: Option<f64>) -> Result<Table, ReadError> {
     if !rows.advance()? {
         return Err(ReadError::Empty);
     }
+    if rows.cells().all(|cell| number(cell).is_some()) {
+        return Err(ReadError::NoHeader { line: rows.line() });
+    }
     let header = read_header(&rows)?;
     if every.is_none() {
         check_time_unit(&header[0])?;

@@ -158,7 +158,11 @@ impl Parser<'_> {
                         let Some(element) = self.build(start).element(node) else {
                             continue;
                         };
+                        let is_equation = matches!(element, Element::Equation(_));
                         elements.push(self.placed(element, section, span));
+                        if is_equation && section == Section::Declarations {
+                            section = Section::Equations; // The word is missing once, not at every equation.
+                        }
                     }
                 }
             }
