@@ -44,6 +44,18 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
             free.push(block.offset);
         }
     }
+    // Constraints determine as many of a group as there are of them: those that are not fixed first.
+    for selection in &dae.selections {
+        let mut determined = selection.constraints.len();
+        let mut loose = selection.candidates.clone();
+        loose.sort_by_key(|candidate| !free.contains(candidate));
+        for candidate in loose {
+            if determined > 0 && free.contains(&candidate) {
+                free.retain(|&other| other != candidate);
+                determined -= 1;
+            }
+        }
+    }
     let equations: Vec<(Range, ExprId, hyde_diag::Origin)> = system
         .flat
         .initial_equations

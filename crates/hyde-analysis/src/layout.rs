@@ -5,8 +5,11 @@
 
 use crate::explicit::{Order, access};
 use crate::matching::{Matched, Node, origin};
-use crate::system::System;
-use hyde_ir::dae::{AutomatonInfo, Dae, Definition, Place, Residual, Space, Start, Unknown};
+use crate::reduce;
+use crate::system::{Cell, System};
+use hyde_ir::dae::{
+    AutomatonInfo, Dae, Definition, Place, Residual, Selection, Space, Start, Unknown,
+};
 use hyde_ir::{Expr, ExprId, Id as _, IdVec, Index, Range, VarId, VariableKind};
 
 /// Builds the DAE with its places, definitions and residuals; pins exchange rows later.
@@ -94,9 +97,31 @@ pub(crate) fn place(system: &mut System, matched: &Matched, order: &Order) -> Da
             origin: origin(system, matched.equation_of[explicit.unknown]),
         });
     }
+    selections(system, matched, &mut dae);
     std::mem::swap(&mut dae.exprs, &mut system.flat.exprs);
     starts(system, &mut dae);
     dae
+}
+
+/// Where the variables, constraints and factors of each group lie.
+fn selections(system: &System, matched: &Matched, dae: &mut Dae) {
+    for (number, group) in system.groups.iter().enumerate() {
+        let Some(factors) = group.factors.and_then(|factors| dae.places[factors]) else {
+            continue;
+        };
+        let position = |cell: Cell| Some(dae.places[cell.0]?.base + cell.1);
+        let constraints = matched.unknowns.iter().zip(&matched.equation_of);
+        let constraints = constraints
+            .filter(|(_, node)| matches!(node, Node::Equation(equation) if reduce::group_of(system, *equation) == Some(number)))
+            .filter_map(|(unknown, _)| position((unknown.var, unknown.first)))
+            .collect();
+        let candidates = group.candidates.iter();
+        dae.selections.push(Selection {
+            candidates: candidates.filter_map(|(cell, _)| position(*cell)).collect(),
+            constraints,
+            factors: factors.base,
+        });
+    }
 }
 
 /// `lhs - rhs`; of a slot by mode, with zero where a mode fixes a state (its row is exchanged later).

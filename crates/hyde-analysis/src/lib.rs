@@ -4,17 +4,19 @@
 //! In order:
 //! 1. [`alias`] and [`derivatives`], repeated until nothing changes: variables that are equal become one, before and
 //!    after differentiation (M5); derivatives of explicit variables become explicit;
-//! 2. [`relations`]: comparisons in continuous equations become relations with root functions;
-//! 3. [`matching`]: every equation is matched to the unknown it determines, array equations as a whole (F3);
-//! 4. [`explicit`]: algebraic variables with an explicit solution become definitions, loops are torn;
-//! 5. [`layout`]: every variable gets its place;
-//! 6. [`pins`]: modes that fix a state exchange rows with the force that holds it (M3);
-//! 7. [`clocked`]: the equations of each clocked part become ordered assignments;
-//! 8. [`events`]: exits, `when` and `assert` become reactions;
-//! 9. [`initial`]: the initial system;
-//! 10. [`outputs`]: what is reported;
-//! 11. [`partials`]: derivatives of every function;
-//! 12. [`hoist`]: what depends on parameters alone is computed once a run.
+//! 2. [`reduce`]: equations that constrain states to each other are differentiated, and states chosen among the
+//!    constrained variables while running;
+//! 3. [`relations`]: comparisons in continuous equations become relations with root functions;
+//! 4. [`matching`]: every equation is matched to the unknown it determines, array equations as a whole (F3);
+//! 5. [`explicit`]: algebraic variables with an explicit solution become definitions, loops are torn;
+//! 6. [`layout`]: every variable gets its place;
+//! 7. [`pins`]: modes that fix a state exchange rows with the force that holds it (M3);
+//! 8. [`clocked`]: the equations of each clocked part become ordered assignments;
+//! 9. [`events`]: exits, `when` and `assert` become reactions;
+//! 10. [`initial`]: the initial system;
+//! 11. [`outputs`]: what is reported;
+//! 12. [`partials`]: derivatives of every function;
+//! 13. [`hoist`]: what depends on parameters alone is computed once a run.
 
 mod alias;
 mod clocked;
@@ -29,6 +31,7 @@ mod matching;
 mod outputs;
 mod partials;
 mod pins;
+mod reduce;
 mod relations;
 mod segments;
 mod solve;
@@ -46,6 +49,7 @@ use hyde_ir::{Dae, FlatModel};
 pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
     let mut system = system::System::new(flat);
     derivatives::simplify(&mut system, diagnostics);
+    reduce::reduce(&mut system);
     relations::extract(&mut system);
     let matched = matching::match_equations(&mut system, diagnostics)?;
     let order = explicit::choose(&mut system, &matched);

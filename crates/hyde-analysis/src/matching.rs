@@ -97,7 +97,8 @@ pub(crate) fn sides(system: &System, node: Node) -> Vec<(Range, ExprId, ExprId)>
 }
 
 /// The unknowns an equation can determine, best first: what it is written for, derivatives, the rest.
-fn edges(system: &System, node: Node, unknowns: &[Segment]) -> Vec<usize> {
+pub(crate) fn edges(system: &System, node: Node, unknowns: &[Segment]) -> Vec<usize> {
+    let constraint = matches!(node, Node::Equation(number) if system.equations[number].constraint);
     let mut found: Vec<(u8, usize)> = Vec::new();
     for (range, lhs, rhs) in sides(system, node) {
         for id in system.flat.exprs.below(&[lhs, rhs]) {
@@ -110,7 +111,12 @@ fn edges(system: &System, node: Node, unknowns: &[Segment]) -> Vec<usize> {
             let covered = unknowns.binary_search_by(|u| (u.var, u.first).cmp(&(var, first)));
             let Ok(number) = covered else { continue };
             let unknown = unknowns[number];
-            if unknown.last != last || unknown.len() != range.len() || unknown.state != derivative {
+            // A constraint determines one of its group instead of the row that would tie its derivative.
+            let tied = constraint && unknown.state && system.rate_of((var, first)).is_some();
+            if unknown.last != last
+                || unknown.len() != range.len()
+                || (unknown.state != derivative && !tied)
+            {
                 continue;
             }
             let cost = match (id == lhs, derivative) {
@@ -224,7 +230,12 @@ fn unbound_input(system: &System, unknown: Segment) -> Diagnostic {
         Code::UnboundInput,
         format!("the input `{name}` has nothing to read"),
     )
-    .placed(system, &variable.origin, &format!("gives no `{}`", short(name)), "declared here")
+    .placed(
+        system,
+        &variable.origin,
+        &format!("gives no `{}`", short(name)),
+        "declared here",
+    )
     .help(format!(
         "bind it where its component is declared: `({} = …)`, or write an equation: `{name} = …;`",
         short(name)
@@ -247,7 +258,12 @@ fn too_few(
         Code::TooFewEquations,
         format!("no equation determines `{what}`"),
     )
-    .placed(system, &variable.origin, "in this component", "declared here");
+    .placed(
+        system,
+        &variable.origin,
+        "in this component",
+        "declared here",
+    );
     if !lefts.is_empty() {
         let others: Vec<String> = rights
             .iter()
@@ -272,10 +288,7 @@ fn too_few(
     }
     let help = match variable.flow {
         true => "connect its connector, or give the force a law".to_owned(),
-        false => format!(
-            "add an equation for it: `{} = …;`",
-            short(&variable.name)
-        ),
+        false => format!("add an equation for it: `{} = …;`", short(&variable.name)),
     };
     diagnostic.help(help)
 }

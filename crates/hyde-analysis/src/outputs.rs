@@ -10,7 +10,15 @@ const MAX_ELEMENTS: usize = 32;
 /// Fills in the outputs of the DAE.
 pub(crate) fn report(dae: &mut Dae, system: &mut System) {
     let mut skipped = Vec::new();
+    let hidden: Vec<_> = system
+        .groups
+        .iter()
+        .filter_map(|group| group.factors)
+        .collect();
     for id in dae.variables.ids().collect::<Vec<_>>() {
+        if hidden.contains(&id) {
+            continue;
+        }
         let variable = dae.variables[id].clone();
         let discrete = match variable.kind {
             VariableKind::Continuous => false,

@@ -135,10 +135,14 @@ fn refuse_two_pins(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
                         &system.flat.automata[slot.automaton].name,
                     );
                     let state = dae.variables[cell.0].element_name(cell.1);
-                    let mut diagnostic =
-                        Diagnostic::error(Code::TwoPins, format!("`{a}` and `{b}` both fix `{state}`"));
+                    let mut diagnostic = Diagnostic::error(
+                        Code::TwoPins,
+                        format!("`{a}` and `{b}` both fix `{state}`"),
+                    );
                     for (name, origin) in [(b, &branch.origin), (a, origin)] {
-                        let declared = system.component(origin).map_or(origin.span, |(_, span)| span);
+                        let declared = system
+                            .component(origin)
+                            .map_or(origin.span, |(_, span)| span);
                         diagnostic = diagnostic.label(declared, format!("`{name}` fixes it"));
                     }
                     diagnostics.push(

@@ -1,5 +1,6 @@
 //! The model while it is analysed: its equations as one list, those of modes in slots.
 
+use crate::reduce::Group;
 use hyde_diag::{InstancePath, Origin, Span};
 use hyde_ir::dae::Alias;
 use hyde_ir::flat::{Action, FlatModel};
@@ -33,6 +34,10 @@ pub(crate) struct Equation {
     pub(crate) lhs: ExprId,
     pub(crate) rhs: ExprId,
     pub(crate) origin: Origin,
+    /// How often it was differentiated.
+    pub(crate) order: u8,
+    /// It constrains variables of a group, and has been differentiated for that.
+    pub(crate) constraint: bool,
 }
 
 /// The model under analysis.
@@ -44,6 +49,8 @@ pub(crate) struct System {
     pub(crate) aliases: BTreeMap<Cell, Alias>,
     /// Start values that joined variables gave to the one kept: value, fixed, and who gave it.
     pub(crate) starts: BTreeMap<Cell, Vec<(ExprId, bool, VarId)>>,
+    /// Variables that constraints tie to each other.
+    pub(crate) groups: Vec<Group>,
     pub(crate) relations: hyde_ir::IdVec<hyde_ir::RelationId, hyde_ir::dae::Relation>,
     pub(crate) notes: Vec<String>,
     /// The equation that gave an eliminated cell its value.
@@ -67,6 +74,8 @@ impl System {
                 lhs: e.lhs,
                 rhs: e.rhs,
                 origin: e.origin,
+                order: 0,
+                constraint: false,
             })
             .collect();
         let mut slots = Vec::new();
@@ -106,6 +115,7 @@ impl System {
             slots,
             aliases: BTreeMap::new(),
             starts,
+            groups: Vec::new(),
             relations: hyde_ir::IdVec::new(),
             notes: Vec::new(),
             valued: BTreeMap::new(),

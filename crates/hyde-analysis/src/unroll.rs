@@ -63,6 +63,8 @@ pub(crate) fn unroll(
                 lhs,
                 rhs,
                 origin: equation.origin.clone(),
+                order: equation.order,
+                constraint: equation.constraint,
             });
         }
     }

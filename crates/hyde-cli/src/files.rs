@@ -1,6 +1,6 @@
 //! Files: read whole, written whole or not at all.
 
-use std::io::Write as _;
+use std::io::{ErrorKind, Write as _};
 use std::path::Path;
 
 /// Reads a file; the error says which and why.

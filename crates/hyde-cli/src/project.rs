@@ -13,7 +13,7 @@ use hyde_syntax::ast::Experiment;
 use serde_json::json;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use std::io::IsTerminal as _;
+use std::io::{IsTerminal as _, Write as _};
 
 /// A loaded file with what was chosen of it.
 pub(crate) struct Project {
@@ -127,8 +127,7 @@ impl Project {
                 None => Err(unknown_parameter(&compiled, &setting.path)),
             };
             if let Err(reason) = checked {
-                let diagnostic =
-                    run_failure::cannot_set(&compiled.program, &setting.path, reason);
+                let diagnostic = run_failure::cannot_set(&compiled.program, &setting.path, reason);
                 self.diagnostics.push(diagnostic);
                 self.finish_with_errors(args);
                 return Err(Exit::CommandLine);
@@ -253,14 +252,12 @@ pub(crate) fn complain(args: &ModelArgs, exit: Exit, reason: &str) -> Exit {
     exit
 }
 
-/// A line on standard output.
-#[allow(clippy::print_stdout, reason = "the command line prints")]
+/// A line on standard output. Whoever reads it may have gone: a closed pipe is no mistake.
 pub(crate) fn print_output(text: &str) {
-    println!("{}", text.trim_end());
+    drop(writeln!(std::io::stdout().lock(), "{}", text.trim_end()));
 }
 
 /// A line on standard error.
-#[allow(clippy::print_stderr, reason = "the command line prints")]
 pub(crate) fn print_error(text: &str) {
-    eprintln!("{}", text.trim_end());
+    drop(writeln!(std::io::stderr().lock(), "{}", text.trim_end()));
 }

@@ -15,10 +15,7 @@ pub(crate) fn diagnostic(
 ) -> (Diagnostic, Exit) {
     match error {
         RunError::NoParameter(name) => (
-            Diagnostic::error(
-                Code::BadSet,
-                format!("the model has no parameter `{name}`"),
-            ),
+            Diagnostic::error(Code::BadSet, format!("the model has no parameter `{name}`")),
             Exit::CommandLine,
         ),
         RunError::CannotSet(name, why) => {
@@ -92,7 +89,7 @@ fn failed(failure: &Failure) -> Diagnostic {
             (
                 Code::InitialFailed,
                 message,
-                "check the start values, and that every mode determines its forces",
+                "check the start values, and that these equations have a solution there",
             )
         }
         FailureKind::Solver(reason) => (
@@ -118,8 +115,8 @@ fn failed(failure: &Failure) -> Diagnostic {
         }
         FailureKind::TooManyEvents => (
             Code::TooManyEvents,
-            format!("events come faster and faster, more than 2000 {at}"),
-            "end the motion by a mode that rests, or add a damping",
+            format!("events come faster and faster {at}"),
+            "add a mode that rests where these conditions meet, such as `mode stuck { v = 0; exit … }`",
         ),
         FailureKind::Impact(name, from, to) => (
             Code::ImpactOnPin,

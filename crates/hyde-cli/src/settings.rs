@@ -77,6 +77,10 @@ mod tests {
     use super::*;
 
     #[test]
+    #[expect(
+        clippy::float_cmp,
+        reason = "a number without a prefix is the nearest double"
+    )]
     fn values_take_their_unit_with_or_without_brackets() {
         let setting = parse("saddle.M=320 [kg]").unwrap();
         assert_eq!((setting.path.as_str(), setting.value), ("saddle.M", 320.0));

@@ -103,7 +103,7 @@ pub fn linearize(
         u: &u,
         p: parameters,
     };
-    let differential = program.differential();
+    let differential = program.differential(&point.z);
     let states: Vec<usize> = (0..n).filter(|&i| differential[i]).collect();
     let algebraic: Vec<usize> = (0..n).filter(|&i| !differential[i]).collect();
     let held: Vec<usize> = program

@@ -143,25 +143,11 @@ impl<'a> Model<'a, '_> {
             "held" => self.held_column(&args, scope, span),
             "interval" => self.interval(&args, scope, span),
             "noEvent" => match self.exactly(name, &args, span) {
-                Some([a]) => {
-                    let a = self.lower(a, scope);
-                    Typed {
-                        id: self.flat.exprs.no_event(a.id),
-                        span,
-                        ..a
-                    }
-                }
+                Some([a]) => self.without_events(a, scope, span),
                 None => self.poison(span),
             },
             "smooth" => match self.exactly(name, &args, span) {
-                Some([_, a]) => {
-                    let a = self.lower(a, scope);
-                    Typed {
-                        id: self.flat.exprs.no_event(a.id),
-                        span,
-                        ..a
-                    }
-                }
+                Some([_, a]) => self.without_events(a, scope, span),
                 None => self.poison(span),
             },
             "abs" | "sign" | "sqrt" => self.of_value(name, &args, scope, span),
@@ -214,10 +200,8 @@ impl<'a> Model<'a, '_> {
             .parts
             .last()
             .map_or("", |part| part.name.text.as_str());
-        if last == "at" {
-            if let [argument] = arguments {
-                return self.field_at(function, &argument.value, scope, span);
-            }
+        if let ("at", [argument]) = (last, arguments) {
+            return self.field_at(function, &argument.value, scope, span);
         }
         self.report(
             Diagnostic::error(
@@ -275,7 +259,16 @@ impl<'a> Model<'a, '_> {
                 second = true;
                 None
             }
-            _ => None,
+            Ir::Const(_)
+            | Ir::Counter
+            | Ir::Param(..)
+            | Ir::Pre(..)
+            | Ir::Relation(_)
+            | Ir::InMode(..)
+            | Ir::Unary(..)
+            | Ir::Binary(..)
+            | Ir::If(..)
+            | Ir::NoEvent(_) => None,
         });
         if second {
             self.report(
@@ -384,15 +377,12 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         let clock = *clock;
-        let source = match self.flat.exprs[inner.id] {
-            Ir::Var(
-                var,
-                Index {
-                    stride: 0,
-                    offset: 0,
-                },
-            ) if self.flat.variables[var].len.is_none() => var,
-            _ => self.clocked_part_of(clock, a, &inner, scope, span),
+        let source = if let Ir::Var(var, Index::SCALAR) = self.flat.exprs[inner.id]
+            && self.flat.variables[var].len.is_none()
+        {
+            var
+        } else {
+            self.clocked_part_of(clock, a, &inner, scope, span)
         };
         let held = match self.held.get(&(clock, source)) {
             Some(&held) => held,
@@ -456,12 +446,11 @@ impl<'a> Model<'a, '_> {
     pub(crate) fn clocks_of(&self, id: ExprId) -> Vec<ClockId> {
         let mut clocks = Vec::new();
         for id in self.flat.exprs.below(&[id]) {
-            if let Ir::Var(var, _) | Ir::Pre(var, _) = self.flat.exprs[id] {
-                if let VariableKind::Clocked(clock) = self.flat.variables[var].kind {
-                    if !clocks.contains(&clock) {
-                        clocks.push(clock);
-                    }
-                }
+            if let Ir::Var(var, _) | Ir::Pre(var, _) = self.flat.exprs[id]
+                && let VariableKind::Clocked(clock) = self.flat.variables[var].kind
+                && !clocks.contains(&clock)
+            {
+                clocks.push(clock);
             }
         }
         clocks
@@ -473,13 +462,12 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         let inner = self.value(a, scope);
-        if let Ir::Var(var, _) = self.flat.exprs[inner.id] {
-            if let VariableKind::Column(column, _) = self.flat.variables[var].kind {
-                if let Some((_, held)) = self.column_variables.get(&column) {
-                    let id = self.flat.exprs.var(*held);
-                    return self.typed(id, inner.dim, span);
-                }
-            }
+        if let Ir::Var(var, _) = self.flat.exprs[inner.id]
+            && let VariableKind::Column(column, _) = self.flat.variables[var].kind
+            && let Some((_, held)) = self.column_variables.get(&column)
+        {
+            let id = self.flat.exprs.var(*held);
+            return self.typed(id, inner.dim, span);
         }
         self.report(
             Diagnostic::error(Code::BadArguments, "`held` takes a column of a record")
@@ -548,22 +536,15 @@ impl<'a> Model<'a, '_> {
                     .help(format!("quantise where it is read: `{name}(sample(…), …)` in a clocked part, or in `measured`")),
             );
         }
-        let a = match (name, args) {
-            ("floor" | "ceil" | "integer", [a]) | ("mod" | "floor_to" | "round_to", [a, _]) => {
-                self.value(a, scope)
-            }
-            _ => {
-                let _ = if matches!(name, "floor" | "ceil" | "integer") {
-                    self.exactly::<1>(name, args, span).is_some()
-                } else {
-                    self.exactly::<2>(name, args, span).is_some()
-                };
-                return self.poison(span);
-            }
+        let operands = if matches!(name, "floor" | "ceil" | "integer") {
+            let one = self.exactly(name, args, span);
+            one.map(|[a]| (self.value(a, scope), self.number_one(span)))
+        } else {
+            let two = self.exactly(name, args, span);
+            two.map(|[a, b]| (self.value(a, scope), self.value(b, scope)))
         };
-        let b = match args {
-            [_, b] => self.value(b, scope),
-            _ => self.number_one(span),
+        let Some((a, b)) = operands else {
+            return self.poison(span);
         };
         self.agree(&a, &b, "the step and the value are", scope.instance);
         let arena = &mut self.flat.exprs;
@@ -580,6 +561,15 @@ impl<'a> Model<'a, '_> {
             }
         };
         self.typed(id, a.dim, span)
+    }
+
+    fn without_events(&mut self, a: &'a Expr, scope: &Scope<'a>, span: Span) -> Typed {
+        let a = self.lower(a, scope);
+        Typed {
+            id: self.flat.exprs.no_event(a.id),
+            span,
+            ..a
+        }
     }
 
     fn number_one(&mut self, span: Span) -> Typed {
@@ -674,20 +664,7 @@ impl<'a> Model<'a, '_> {
     /// An array expression at one value of its counter.
     pub(crate) fn element_of(&mut self, id: ExprId, element: usize) -> ExprId {
         let at = i32::try_from(element).unwrap_or(i32::MAX);
-        self.flat.exprs.rewrite(
-            id,
-            &mut std::collections::HashMap::new(),
-            |arena, _, expr| match expr {
-                Ir::Var(var, index) => Some(arena.add(Ir::Var(var, Index::fixed(index.at(at))))),
-                Ir::Der(var, index) => Some(arena.add(Ir::Der(var, Index::fixed(index.at(at))))),
-                Ir::Pre(var, index) => Some(arena.add(Ir::Pre(var, Index::fixed(index.at(at))))),
-                Ir::Param(param, index) => {
-                    Some(arena.add(Ir::Param(param, Index::fixed(index.at(at)))))
-                }
-                Ir::Counter => Some(arena.constant(f64::from(at))),
-                _ => None,
-            },
-        )
+        self.flat.exprs.at_counter(id, at)
     }
 
     /// `chirp(t, f0, f1, T)`: a sine whose frequency rises from f0 to f1 within T, `sin(2 pi (f0 t + (f1 - f0)/(2 T) t^2))`.
@@ -777,14 +754,7 @@ impl<'a> Model<'a, '_> {
     fn expand_bindings(&mut self, id: ExprId, keep: VarId, depth: usize) -> ExprId {
         let mut memo = std::collections::HashMap::new();
         for inner in self.flat.exprs.below(&[id]) {
-            let Ir::Var(
-                var,
-                Index {
-                    stride: 0,
-                    offset: 0,
-                },
-            ) = self.flat.exprs[inner]
-            else {
+            let Ir::Var(var, Index::SCALAR) = self.flat.exprs[inner] else {
                 continue;
             };
             let notes = &self.variables[var.index()];

@@ -178,8 +178,8 @@ impl<'a> Model<'a, '_> {
             }
             self.set_equations(members, origin);
         }
-        for id in 0..self.instances.len() {
-            if self.instances[id].class.kind != ClassKind::Connector || connected_inside[id] {
+        for (id, connected) in connected_inside.into_iter().enumerate() {
+            if self.instances[id].class.kind != ClassKind::Connector || connected {
                 continue;
             }
             // A top-level connector, and one that no parent connects: nothing flows in.

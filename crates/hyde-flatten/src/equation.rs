@@ -79,10 +79,9 @@ impl<'a> Model<'a, '_> {
                         },
                     span,
                 }) = element
+                    && place.end.is_none()
                 {
-                    if place.end.is_none() {
-                        self.traces_of(lhs, rhs, place, &Scope::new(id, Setting::Equation), *span);
-                    }
+                    self.traces_of(lhs, rhs, place, &Scope::new(id, Setting::Equation), *span);
                 }
             }
         }
@@ -267,7 +266,15 @@ impl<'a> Model<'a, '_> {
                     let parameter = &self.flat.parameters[param];
                     (parameter.size(), index, &parameter.name, 1)
                 }
-                _ => continue,
+                Ir::Const(_)
+                | Ir::Time
+                | Ir::Counter
+                | Ir::Relation(_)
+                | Ir::InMode(..)
+                | Ir::Unary(..)
+                | Ir::Binary(..)
+                | Ir::If(..)
+                | Ir::NoEvent(_) => continue,
             };
             for counter in [equation.range.first, equation.range.last] {
                 let at = index.at(counter);
@@ -430,7 +437,12 @@ impl<'a> Model<'a, '_> {
                 rhs,
                 place: None,
             } => (name, rhs, false),
-            _ => {
+            EquationKind::Equality { .. }
+            | EquationKind::Connect(_)
+            | EquationKind::For { .. }
+            | EquationKind::If { .. }
+            | EquationKind::When(_)
+            | EquationKind::Assert(..) => {
                 self.report(
                     Diagnostic::error(Code::Misplaced, "an event sets variables one by one")
                         .label(equation.span, "neither `reinit(x, e)` nor `d = e`"),

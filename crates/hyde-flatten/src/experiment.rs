@@ -126,7 +126,10 @@ impl<'a> Model<'a, '_> {
                 format!("the record `{record}` has no column `{column}`"),
             )
             .label(
-                reference.parts.get(1).map_or(reference.span, |part| part.name.span),
+                reference
+                    .parts
+                    .get(1)
+                    .map_or(reference.span, |part| part.name.span),
                 "not in its header",
             );
             let diagnostic = match near {
@@ -304,8 +307,6 @@ impl<'a> Model<'a, '_> {
         let origin = self
             .origin(root, drive.target.span)
             .made_by(MadeBy::Experiment);
-        let clocked = matches!(self.flat.variables[var].kind, VariableKind::Clocked(_));
-        debug_assert!(!clocked, "the top of a model is not clocked");
         self.flat.equations.push(Equation {
             range: Range::SCALAR,
             lhs,
@@ -438,7 +439,13 @@ impl<'a> Model<'a, '_> {
                 steps.push(Preparation::Scale(number));
                 Some((column, typed.dim.multiply(&dim)))
             }
-            _ => {
+            ExprKind::Number(..)
+            | ExprKind::String(_)
+            | ExprKind::Boolean(_)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::If(..)
+            | ExprKind::Array(..) => {
                 self.report(
                     Diagnostic::error(Code::NoColumn, "what was measured is a column of a record")
                         .label(expr.span, "no column")
@@ -547,15 +554,13 @@ impl<'a> Model<'a, '_> {
     }
 
     fn stop(&mut self, expr: &'a Expr, scope: &Scope<'a>) {
-        if let ExprKind::Reference(reference) = &expr.kind {
-            if let [record, end] = reference.parts.as_slice() {
-                if end.name.text == "end"
-                    && self.flat.experiment.records.contains(&record.name.text)
-                {
-                    self.flat.experiment.stop = Some(Stop::EndOf(record.name.text.clone()));
-                    return;
-                }
-            }
+        if let ExprKind::Reference(reference) = &expr.kind
+            && let [record, end] = reference.parts.as_slice()
+            && end.name.text == "end"
+            && self.flat.experiment.records.contains(&record.name.text)
+        {
+            self.flat.experiment.stop = Some(Stop::EndOf(record.name.text.clone()));
+            return;
         }
         let time = self.value(expr, scope);
         self.agree_time(&time, "a run stops at a time, this relates", scope.instance);

@@ -269,23 +269,9 @@ impl<'a> Model<'a, '_> {
         span: Span,
     ) {
         let name = place.domain.text.as_str();
-        let Some(crate::instance::Member::Domain(domain)) =
-            self.instances[scope.instance].members.get(name)
-        else {
-            if !self.undeclared.insert(name) {
-                return;
-            }
-            self.report(
-                Diagnostic::error(
-                    Code::UnknownName,
-                    format!("no domain is called `{name}` here"),
-                )
-                .label(place.domain.span, "not known")
-                .help("declare it: `domain bar(x in 0 .. len);`"),
-            );
+        let Some(domain) = self.domain_named(scope.instance, &place.domain) else {
             return;
         };
-        let domain = *domain;
         match place.end.as_ref().map(|end| (end.text.as_str(), end.span)) {
             None => self.interior(domain, lhs, rhs, place, scope, span),
             Some(("left", _)) => self.boundary(domain, 0, lhs, rhs, scope, span),
@@ -621,7 +607,6 @@ impl<'a> Model<'a, '_> {
         self.agree(&from, &to, "the ends of a domain are", instance);
         let arena = &mut self.flat.exprs;
         let length = arena.minus(to.id, from.id);
-        #[allow(clippy::cast_precision_loss, reason = "at most ten million cells")]
         let count = arena.constant(cells as f64);
         let h = arena.over(length, count);
         let mesh = (from.id, h, to.dim);
@@ -648,7 +633,6 @@ impl<'a> Model<'a, '_> {
         let number = arena.over(distance, h);
         let value = self.evaluate(number)?;
         let cells = self.domains[domain].cells;
-        #[allow(clippy::cast_precision_loss, reason = "at most ten million cells")]
         let outside = !(-1e-9..=cells as f64 + 1e-9).contains(&value);
         if outside {
             self.report(
@@ -663,17 +647,11 @@ impl<'a> Model<'a, '_> {
         }
         let nearest = value.round();
         let at_node = (value - nearest).abs() < 1e-9;
-        #[allow(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "checked to lie on the mesh"
-        )]
         let node = if at_node {
             nearest as usize
         } else {
             value.floor() as usize
         };
-        #[allow(clippy::cast_precision_loss, reason = "at most ten million cells")]
         let first = self.flat.exprs.constant(node as f64);
         let share = self.flat.exprs.minus(number, first);
         Some(Point {
@@ -692,18 +670,17 @@ impl<'a> Model<'a, '_> {
             );
             return None;
         };
-        match self.resolve(name, scope)? {
-            Resolved::Variable(var, None) if self.notes(var).field.is_some() => {
-                Some((var, self.notes(var).field?))
-            }
-            _ => {
-                self.report(
-                    Diagnostic::error(Code::FieldUse, format!("`{}` is no field", name.dotted()))
-                        .label(expr.span, "has no derivative in space"),
-                );
-                None
-            }
+        let resolved = self.resolve(name, scope)?;
+        if let Resolved::Variable(var, None) = resolved
+            && let Some(field) = self.notes(var).field
+        {
+            return Some((var, field));
         }
+        self.report(
+            Diagnostic::error(Code::FieldUse, format!("`{}` is no field", name.dotted()))
+                .label(expr.span, "has no derivative in space"),
+        );
+        None
     }
 
     /// A field by a name that was cut out of a longer one.
@@ -766,15 +743,7 @@ impl<'a> Model<'a, '_> {
         if range.first != range.last {
             return id;
         }
-        let value = f64::from(range.first);
-        self.flat.exprs.rewrite(
-            id,
-            &mut std::collections::HashMap::new(),
-            |arena, _, expr| match expr {
-                Ir::Counter => Some(arena.constant(value)),
-                _ => None,
-            },
-        )
+        self.flat.exprs.at_counter(id, range.first)
     }
 }
 
@@ -846,8 +815,21 @@ fn split<'a>(
             split(b, !left, mass, fluxes);
         }
         ExprKind::Unary(Unary::Negative, inner) => split(inner, !left, mass, fluxes),
-        _ if crate::instantiate::calls(expr, "pder") => fluxes.push((expr, !left)),
-        _ => mass.push((expr, left)),
+        ExprKind::Number(..)
+        | ExprKind::String(_)
+        | ExprKind::Boolean(_)
+        | ExprKind::Reference(_)
+        | ExprKind::Call(..)
+        | ExprKind::Unary(..)
+        | ExprKind::Binary(..)
+        | ExprKind::If(..)
+        | ExprKind::Array(..) => {
+            if expr.calls("pder") {
+                fluxes.push((expr, !left));
+            } else {
+                mass.push((expr, left));
+            }
+        }
     }
 }
 

@@ -93,10 +93,10 @@ impl Model<'_, '_> {
             stack.push((id, true));
             let values = self.flat.parameters[id].value.clone();
             for below in self.flat.exprs.below(&values) {
-                if let Ir::Param(used, _) = self.flat.exprs[below] {
-                    if state[used.index()] != Lowering::Done {
-                        stack.push((used, false));
-                    }
+                if let Ir::Param(used, _) = self.flat.exprs[below]
+                    && state[used.index()] != Lowering::Done
+                {
+                    stack.push((used, false));
                 }
             }
         }

@@ -7,7 +7,8 @@
 
 use crate::dimension::Dim;
 use crate::instance::{
-    Binding, Domain, Field, Instance, InstanceId, Lowering, Member, ParameterNotes, VariableNotes,
+    Binding, Domain, DomainId, Field, Instance, InstanceId, Lowering, Member, ParameterNotes,
+    VariableNotes,
 };
 use crate::model::{Model, listed};
 use crate::names::{FileIndex, TypeName, nearest};
@@ -39,6 +40,23 @@ struct Collected<'a> {
     modifiers: Vec<Modifier<'a>>,
 }
 
+/// Where an instance stands.
+struct Place {
+    path: InstancePath,
+    parent: Option<InstanceId>,
+    clock: Option<ClockId>,
+    span: Span,
+}
+
+/// How far a walk over a class and its bases has come: the modifications that the `extends` clauses on the way made.
+#[derive(Clone)]
+struct Walk<'a> {
+    id: InstanceId,
+    file: FileIndex,
+    modifiers: Vec<Modifier<'a>>,
+    depth: usize,
+}
+
 impl<'a> Model<'a, '_> {
     /// Instantiates the model asked for; `None` if there is none of that name.
     pub(crate) fn instantiate_root(&mut self) -> Option<InstanceId> {
@@ -46,9 +64,9 @@ impl<'a> Model<'a, '_> {
         let Some(class) = self.names.own_class(name) else {
             let file = self.input.files.first()?.0;
             let diagnostic = Diagnostic::error(
-                    Code::NoExperiment,
-                    format!("the file has no model `{name}`"),
-                );
+                Code::NoExperiment,
+                format!("the file has no model `{name}`"),
+            );
             let models: Vec<&str> = self.names.own_models().collect();
             let written = self
                 .input
@@ -83,15 +101,13 @@ impl<'a> Model<'a, '_> {
                 .iter_mut()
                 .for_each(|modifier| modifier.records = true);
         }
-        let root = self.instantiate(
-            0,
-            class,
-            InstancePath::root(),
-            modifiers,
-            None,
-            None,
-            class.name.span,
-        );
+        let place = Place {
+            path: InstancePath::root(),
+            parent: None,
+            clock: None,
+            span: class.name.span,
+        };
+        let root = self.instantiate(0, class, modifiers, place);
         self.report_unused_modifications();
         Some(root)
     }
@@ -100,12 +116,15 @@ impl<'a> Model<'a, '_> {
         &mut self,
         file: FileIndex,
         class: &'a Class,
-        path: InstancePath,
         modifiers: Vec<Modifier<'a>>,
-        parent: Option<InstanceId>,
-        clock: Option<ClockId>,
-        span: Span,
+        place: Place,
     ) -> InstanceId {
+        let Place {
+            path,
+            parent,
+            clock,
+            span,
+        } = place;
         let id = self.instances.len();
         self.instances.push(Instance {
             path,
@@ -129,11 +148,19 @@ impl<'a> Model<'a, '_> {
             );
             return id;
         }
-        let last_words = modifiers.iter().filter(|modifier| modifier.target.len() == 1);
+        let last_words = modifiers
+            .iter()
+            .filter(|modifier| modifier.target.len() == 1);
         self.modified
             .extend(last_words.map(|modifier| (modifier.number, id)));
         let mut collected = Vec::new();
-        self.collect(id, file, class, modifiers, &mut collected, 0);
+        let walk = Walk {
+            id,
+            file,
+            modifiers,
+            depth: 0,
+        };
+        self.collect(walk, class, &mut collected);
         self.members(id, &collected);
         id
     }
@@ -156,11 +183,14 @@ impl<'a> Model<'a, '_> {
         }
         for item in collected {
             if let Element::Domain(domain) = item.element {
-                let method = collected.iter().find_map(|other| match other.element {
-                    Element::Discretize(method) if method.domain.text == domain.name.text => {
+                let method = collected.iter().find_map(|other| {
+                    if let Element::Discretize(method) = other.element
+                        && method.domain.text == domain.name.text
+                    {
                         Some(method)
+                    } else {
+                        None
                     }
-                    _ => None,
                 });
                 self.declare_domain(id, domain, method);
             }
@@ -172,25 +202,19 @@ impl<'a> Model<'a, '_> {
                 }
                 Element::Clocked(clocked) => self.clocked(id, item, clocked),
                 Element::Discretize(method) => {
-                    if !matches!(
-                        self.instances[id].members.get(method.domain.text.as_str()),
-                        Some(Member::Domain(_))
-                    ) {
-                        let word = &method.domain.text;
-                        if !self.undeclared.insert(word) {
-                            continue;
-                        }
-                        self.report(
-                            Diagnostic::error(
-                                Code::UnknownName,
-                                format!("no domain is called `{word}` here"),
-                            )
-                            .label(method.domain.span, "not known")
-                            .help("declare it: `domain bar(x in 0 .. len);`"),
-                        );
-                    }
+                    self.domain_named(id, &method.domain);
                 }
-                _ => {}
+                Element::Extends(..)
+                | Element::Domain(_)
+                | Element::Modes(_)
+                | Element::Equation(_)
+                | Element::InitialEquation(_)
+                | Element::Wrap(..)
+                | Element::Add(_)
+                | Element::Replace(..)
+                | Element::Signature(_)
+                | Element::Confounds(_)
+                | Element::Measure(_) => {}
             }
         }
         self.instances[id].elements = collected
@@ -200,16 +224,8 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The elements of a class, those of its bases first.
-    fn collect(
-        &mut self,
-        id: InstanceId,
-        file: FileIndex,
-        class: &'a Class,
-        modifiers: Vec<Modifier<'a>>,
-        out: &mut Vec<Collected<'a>>,
-        depth: usize,
-    ) {
-        if depth > 40 {
+    fn collect(&mut self, walk: Walk<'a>, class: &'a Class, out: &mut Vec<Collected<'a>>) {
+        if walk.depth > 40 {
             self.report(
                 Diagnostic::error(Code::Cycle, format!("`{}` extends itself", class.name.text))
                     .label(class.name.span, "declared here"),
@@ -225,17 +241,17 @@ impl<'a> Model<'a, '_> {
                 if let Some(used) = effects.first() {
                     self.not_yet("adding effects to a model", used.effect.span);
                 }
-                self.collect_base(id, file, base, changes, modifiers, out, depth);
+                self.collect_base(walk, base, changes, out);
             }
             ClassBody::Long { elements, .. } => {
                 for element in elements {
                     if let Element::Extends(base, changes) = element {
-                        self.collect_base(id, file, base, changes, modifiers.clone(), out, depth);
+                        self.collect_base(walk.clone(), base, changes, out);
                     } else {
                         out.push(Collected {
                             element,
-                            file,
-                            modifiers: modifiers.clone(),
+                            file: walk.file,
+                            modifiers: walk.modifiers.clone(),
                         });
                     }
                 }
@@ -243,22 +259,22 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    #[allow(clippy::too_many_arguments, reason = "the state of a walk over bases")]
     fn collect_base(
         &mut self,
-        id: InstanceId,
-        file: FileIndex,
+        mut walk: Walk<'a>,
         base: &'a Reference,
         changes: &'a [Change],
-        mut modifiers: Vec<Modifier<'a>>,
         out: &mut Vec<Collected<'a>>,
-        depth: usize,
     ) {
-        self.modifiers_of(changes, id, &mut modifiers);
-        match self.names.class(file, base) {
-            Some((file, class)) => self.collect(id, file, class, modifiers, out, depth + 1),
+        self.modifiers_of(changes, walk.id, &mut walk.modifiers);
+        match self.names.class(walk.file, base) {
+            Some((file, class)) => {
+                walk.file = file;
+                walk.depth += 1;
+                self.collect(walk, class, out);
+            }
             None => {
-                let diagnostic = self.names.unknown(file, base);
+                let diagnostic = self.names.unknown(walk.file, base);
                 self.report(diagnostic);
             }
         }
@@ -353,11 +369,15 @@ impl<'a> Model<'a, '_> {
             return;
         };
         let (path, clock) = (self.path(id), self.instances[id].clock);
-        let span = declarator.name.span;
+        let place = |path: InstancePath| Place {
+            path,
+            parent: Some(id),
+            clock,
+            span: declarator.name.span,
+        };
         match count {
             None => {
-                let part =
-                    self.instantiate(file, class, path.child(name), inner, Some(id), clock, span);
+                let part = self.instantiate(file, class, inner, place(path.child(name)));
                 self.instances[id]
                     .members
                     .insert(name, Member::Instance(part));
@@ -372,7 +392,7 @@ impl<'a> Model<'a, '_> {
                         }
                     }
                     let child = path.child(&format!("{name}[{}]", index + 1));
-                    parts.push(self.instantiate(file, class, child, own, Some(id), clock, span));
+                    parts.push(self.instantiate(file, class, own, place(child)));
                 }
                 self.instances[id]
                     .members
@@ -399,13 +419,13 @@ impl<'a> Model<'a, '_> {
         if !declaration.prefixes.contains(&Prefix::Replaceable) {
             let name = &declarator.name.text;
             self.report(
-                Diagnostic::error(
-                    Code::FinalModified,
-                    format!("`{name}` is not replaceable"),
-                )
-                .label(modifier.change.target.span, "cannot be redeclared")
-                .label(declarator.name.span, "declared here, for good")
-                .help(format!("declare it `replaceable {} {name}`", declared.1.name.text)),
+                Diagnostic::error(Code::FinalModified, format!("`{name}` is not replaceable"))
+                    .label(modifier.change.target.span, "cannot be redeclared")
+                    .label(declarator.name.span, "declared here, for good")
+                    .help(format!(
+                        "declare it `replaceable {} {name}`",
+                        declared.1.name.text
+                    )),
             );
             return None;
         }
@@ -437,7 +457,7 @@ impl<'a> Model<'a, '_> {
         let fixed = attribute(self, "fixed");
         self.check_attributes(declarator, &modifiers);
         let fixed = fixed.is_some_and(|fixed| matches!(fixed.expr.kind, ExprKind::Boolean(true)));
-        let (dim, quantity) = self.quantity(item.file, kind, binding.map(|binding| binding.expr));
+        let (dim, quantity) = self.quantity(kind, binding.map(|binding| binding.expr));
         let clock = self.instances[id].clock;
         let variable_kind = match clock {
             Some(clock) => VariableKind::Clocked(clock),
@@ -550,8 +570,7 @@ impl<'a> Model<'a, '_> {
                 .or_else(|| declarator.source.clone());
             let binding = self.binding(id, declarator, &modifiers);
             self.check_attributes(declarator, &modifiers);
-            let (dim, quantity) =
-                self.quantity(item.file, kind, binding.map(|binding| binding.expr));
+            let (dim, quantity) = self.quantity(kind, binding.map(|binding| binding.expr));
             let len = self.length(id, &declaration.dims, &declarator.dims);
             let span = binding.map_or(declarator.name.span, |binding| binding.span);
             let path = self.path(id);
@@ -680,33 +699,34 @@ impl<'a> Model<'a, '_> {
             );
             return None;
         };
-        match self.instances[id].members.get(domain.text.as_str()) {
-            Some(Member::Domain(domain)) => {
-                let flux = declarator
-                    .binding
-                    .as_ref()
-                    .is_some_and(|binding| calls(binding, "pder"));
-                Some(Field {
-                    domain: *domain,
-                    flux,
-                    traces: None,
-                })
-            }
-            _ => {
-                if !self.undeclared.insert(&domain.text) {
-                    return None;
-                }
-                self.report(
-                    Diagnostic::error(
-                        Code::UnknownName,
-                        format!("no domain is called `{}` here", domain.text),
-                    )
-                    .label(domain.span, "not known")
-                    .help("declare it: `domain bar(x in 0 .. len);`"),
-                );
-                None
-            }
+        let domain = self.domain_named(id, domain)?;
+        let flux = declarator
+            .binding
+            .as_ref()
+            .is_some_and(|binding| binding.calls("pder"));
+        Some(Field {
+            domain,
+            flux,
+            traces: None,
+        })
+    }
+
+    /// The domain of that name in an instance; reported once if there is none.
+    pub(crate) fn domain_named(&mut self, id: InstanceId, name: &'a ast::Name) -> Option<DomainId> {
+        if let Some(Member::Domain(domain)) = self.instances[id].members.get(name.text.as_str()) {
+            return Some(*domain);
         }
+        if self.undeclared.insert(&name.text) {
+            self.report(
+                Diagnostic::error(
+                    Code::UnknownName,
+                    format!("no domain is called `{}` here", name.text),
+                )
+                .label(name.span, "not known")
+                .help("declare it: `domain bar(x in 0 .. len);`"),
+            );
+        }
+        None
     }
 
     fn clocked(&mut self, id: InstanceId, item: &Collected<'a>, clocked: &'a ast::Clocked) {
@@ -757,12 +777,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The dimension and printed unit of a declared type; `Real` takes those of a literal it is bound to.
-    fn quantity(
-        &mut self,
-        file: FileIndex,
-        kind: TypeName<'a>,
-        binding: Option<&'a Expr>,
-    ) -> (Dim, Quantity) {
+    fn quantity(&mut self, kind: TypeName<'a>, binding: Option<&'a Expr>) -> (Dim, Quantity) {
         let written = binding
             .and_then(literal_unit)
             .and_then(|unit| NamedUnit::parse(&unit.text).ok());
@@ -780,7 +795,6 @@ impl<'a> Model<'a, '_> {
                 (dim, unit)
             }
         };
-        let _ = file;
         let same = |unit: &NamedUnit| dim.as_known() == Some(unit.unit().dimension);
         let quantity = match (written.filter(same), unit) {
             (Some(unit), _) | (None, Some(unit)) => Quantity {
@@ -1156,7 +1170,15 @@ fn element_uses_member(element: &Element, name: &str) -> bool {
                 .any(|equation| equation_uses_member(equation, name))
                 || mode.exits.iter().any(|exit| expr(&exit.guard))
         }),
-        _ => false,
+        Element::Extends(..)
+        | Element::Domain(_)
+        | Element::Discretize(_)
+        | Element::Wrap(..)
+        | Element::Add(_)
+        | Element::Replace(..)
+        | Element::Signature(_)
+        | Element::Confounds(_)
+        | Element::Measure(_) => false,
     }
 }
 
@@ -1180,54 +1202,13 @@ fn equation_uses_member(equation: &ast::Equation, name: &str) -> bool {
 }
 
 fn uses_member(expr: &Expr, name: &str) -> bool {
-    match &expr.kind {
-        ExprKind::Reference(reference) => starts_with_member(reference, name),
-        ExprKind::Call(function, arguments) => {
-            starts_with_member(function, name)
-                || arguments
-                    .iter()
-                    .any(|argument| uses_member(&argument.value, name))
-        }
-        ExprKind::Unary(_, inner) => uses_member(inner, name),
-        ExprKind::Binary(_, a, b) => uses_member(a, name) || uses_member(b, name),
-        ExprKind::If(branches, otherwise) => {
-            branches
-                .iter()
-                .any(|(c, v)| uses_member(c, name) || uses_member(v, name))
-                || uses_member(otherwise, name)
-        }
-        ExprKind::Array(items, _) => items.iter().any(|item| uses_member(item, name)),
-        ExprKind::Number(..) | ExprKind::String(_) | ExprKind::Boolean(_) => false,
-    }
+    expr.any(&|expr| {
+        matches!(&expr.kind, ExprKind::Reference(path) | ExprKind::Call(path, _) if starts_with_member(path, name))
+    })
 }
 
 fn starts_with_member(reference: &Reference, name: &str) -> bool {
     reference.parts.len() > 1 && reference.parts[0].name.text == name
-}
-
-/// Whether an expression calls a function.
-pub(crate) fn calls(expr: &Expr, function: &str) -> bool {
-    match &expr.kind {
-        ExprKind::Call(name, arguments) => {
-            name.as_word() == Some(function)
-                || arguments
-                    .iter()
-                    .any(|argument| calls(&argument.value, function))
-        }
-        ExprKind::Unary(_, inner) => calls(inner, function),
-        ExprKind::Binary(_, a, b) => calls(a, function) || calls(b, function),
-        ExprKind::If(branches, otherwise) => {
-            branches
-                .iter()
-                .any(|(c, v)| calls(c, function) || calls(v, function))
-                || calls(otherwise, function)
-        }
-        ExprKind::Array(items, _) => items.iter().any(|item| calls(item, function)),
-        ExprKind::Number(..)
-        | ExprKind::String(_)
-        | ExprKind::Boolean(_)
-        | ExprKind::Reference(_) => false,
-    }
 }
 
 /// The names that the `when` clauses of an element assign.
@@ -1239,16 +1220,14 @@ fn assigned_in_when(element: &Element) -> Vec<&str> {
         return Vec::new();
     };
     let equations = branches.iter().flat_map(|(_, list)| list);
-    let assigned = equations.filter_map(|equation| match &equation.kind {
-        EquationKind::Equality {
-            lhs:
-                Expr {
-                    kind: ExprKind::Reference(name),
-                    ..
-                },
-            ..
-        } => name.as_word(),
-        _ => None,
+    let assigned = equations.filter_map(|equation| {
+        if let EquationKind::Equality { lhs, .. } = &equation.kind
+            && let ExprKind::Reference(name) = &lhs.kind
+        {
+            name.as_word()
+        } else {
+            None
+        }
     });
     assigned.collect()
 }
@@ -1261,6 +1240,11 @@ fn literal_unit(expr: &Expr) -> Option<&ast::UnitText> {
         ExprKind::Array(items, unit) => unit
             .as_ref()
             .or_else(|| items.first().and_then(literal_unit)),
-        _ => None,
+        ExprKind::String(_)
+        | ExprKind::Boolean(_)
+        | ExprKind::Reference(_)
+        | ExprKind::Call(..)
+        | ExprKind::Binary(..)
+        | ExprKind::If(..) => None,
     }
 }

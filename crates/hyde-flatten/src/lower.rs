@@ -216,23 +216,23 @@ impl<'a> Model<'a, '_> {
 
     /// Subscripts affine in the counter: `stride*i + offset`, counted as written.
     pub(crate) fn affine(&mut self, expr: &'a Expr, scope: &Scope<'a>) -> Option<Index> {
+        if !mentions_counter(expr, scope) {
+            let value = self.structural_integer_in(scope, expr)?;
+            return Some(Index::fixed(i32::try_from(value).unwrap_or(i32::MAX)));
+        }
         match &expr.kind {
-            ExprKind::Reference(reference) if is_symbolic_counter(reference, scope) => {
-                Some(Index {
-                    stride: 1,
-                    offset: 0,
-                })
-            }
-            ExprKind::Unary(Unary::Negative, inner) if mentions_counter(inner, scope) => {
+            ExprKind::Reference(_) => Some(Index {
+                stride: 1,
+                offset: 0,
+            }),
+            ExprKind::Unary(Unary::Negative, inner) => {
                 let inner = self.affine(inner, scope)?;
                 Some(Index {
                     stride: -inner.stride,
                     offset: -inner.offset,
                 })
             }
-            ExprKind::Binary(op @ (Binary::Add | Binary::Sub), a, b)
-                if mentions_counter(expr, scope) =>
-            {
+            ExprKind::Binary(op @ (Binary::Add | Binary::Sub), a, b) => {
                 let (a, b) = (self.affine(a, scope)?, self.affine(b, scope)?);
                 let sign = if *op == Binary::Add { 1 } else { -1 };
                 Some(Index {
@@ -240,7 +240,7 @@ impl<'a> Model<'a, '_> {
                     offset: a.offset + sign * b.offset,
                 })
             }
-            ExprKind::Binary(Binary::Mul, a, b) if mentions_counter(expr, scope) => {
+            ExprKind::Binary(Binary::Mul, a, b) => {
                 let (a, b) = (self.affine(a, scope)?, self.affine(b, scope)?);
                 match (a.stride, b.stride) {
                     (0, _) => Some(Index {
@@ -257,13 +257,16 @@ impl<'a> Model<'a, '_> {
                     }
                 }
             }
-            _ if mentions_counter(expr, scope) => {
+            ExprKind::Number(..)
+            | ExprKind::String(_)
+            | ExprKind::Boolean(_)
+            | ExprKind::Call(..)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::If(..)
+            | ExprKind::Array(..) => {
                 self.needs_unrolling = true;
                 None
-            }
-            _ => {
-                let value = self.structural_integer_in(scope, expr)?;
-                Some(Index::fixed(i32::try_from(value).unwrap_or(i32::MAX)))
             }
         }
     }
@@ -380,10 +383,8 @@ impl<'a> Model<'a, '_> {
             self.not_constant(&format!("`{name}`"), span);
             return self.poison(span);
         }
-        if let Some(field) = self.notes(var).field {
-            if index.is_none() {
-                return self.field_value(var, field, scope, span);
-            }
+        if let (Some(field), None) = (self.notes(var).field, index) {
+            return self.field_value(var, field, scope, span);
         }
         let len = self.flat.variables[var].len;
         let Some(index) = self.whole(index, len, scope, span) else {
@@ -476,9 +477,12 @@ impl<'a> Model<'a, '_> {
                     ..self.typed(id, Dim::NUMBER, span)
                 }
             }
-            Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge | Binary::Eq | Binary::Ne => {
-                self.comparison(op, left, right, scope, span)
-            }
+            Binary::Lt => self.comparison(BinaryOp::Lt, left, right, scope, span),
+            Binary::Le => self.comparison(BinaryOp::Le, left, right, scope, span),
+            Binary::Gt => self.comparison(BinaryOp::Gt, left, right, scope, span),
+            Binary::Ge => self.comparison(BinaryOp::Ge, left, right, scope, span),
+            Binary::Eq => self.comparison(BinaryOp::Eq, left, right, scope, span),
+            Binary::Ne => self.comparison(BinaryOp::Ne, left, right, scope, span),
             Binary::Add | Binary::Sub => {
                 let (a, b) = (self.value(left, scope), self.value(right, scope));
                 let (ir, what) = if op == Binary::Add {
@@ -516,7 +520,7 @@ impl<'a> Model<'a, '_> {
 
     fn comparison(
         &mut self,
-        op: Binary,
+        op: BinaryOp,
         left: &'a Expr,
         right: &'a Expr,
         scope: &Scope<'a>,
@@ -525,17 +529,9 @@ impl<'a> Model<'a, '_> {
         let (a, b) = (self.lower(left, scope), self.lower(right, scope));
         self.same_kind(&a, &b);
         self.agree(&a, &b, "a comparison of", scope.instance);
-        let ir = match op {
-            Binary::Lt => BinaryOp::Lt,
-            Binary::Le => BinaryOp::Le,
-            Binary::Gt => BinaryOp::Gt,
-            Binary::Ge => BinaryOp::Ge,
-            Binary::Eq => BinaryOp::Eq,
-            _ => BinaryOp::Ne,
-        };
         let continuous = matches!(scope.setting, Setting::Equation | Setting::Condition);
         if continuous
-            && matches!(ir, BinaryOp::Eq | BinaryOp::Ne)
+            && matches!(op, BinaryOp::Eq | BinaryOp::Ne)
             && (self.varies(a.id) || self.varies(b.id))
         {
             self.report(
@@ -544,7 +540,7 @@ impl<'a> Model<'a, '_> {
                     .help("compare with `<` or `>`"),
             );
         }
-        let id = self.flat.exprs.binary(ir, a.id, b.id);
+        let id = self.flat.exprs.binary(op, a.id, b.id);
         Typed {
             truth: true,
             ..self.typed(id, Dim::NUMBER, span)
@@ -563,7 +559,16 @@ impl<'a> Model<'a, '_> {
                         VariableKind::Continuous | VariableKind::Column(..)
                     )
             }
-            _ => false,
+            Ir::Const(_)
+            | Ir::Counter
+            | Ir::Param(..)
+            | Ir::Pre(..)
+            | Ir::Relation(_)
+            | Ir::InMode(..)
+            | Ir::Unary(..)
+            | Ir::Binary(..)
+            | Ir::If(..)
+            | Ir::NoEvent(_) => false,
         })
     }
 
@@ -650,10 +655,6 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The element of a subscript, counted from 0; `Some(None)` where there is no subscript.
-    #[allow(
-        clippy::option_option,
-        reason = "no subscript is not a wrong subscript"
-    )]
     fn element(
         &mut self,
         subscript: Option<&'a Expr>,
@@ -846,20 +847,7 @@ fn is_symbolic_counter(reference: &Reference, scope: &Scope<'_>) -> bool {
 
 /// Whether an expression depends on the counter of a range equation.
 pub(crate) fn mentions_counter(expr: &Expr, scope: &Scope<'_>) -> bool {
-    match &expr.kind {
-        ExprKind::Reference(reference) => is_symbolic_counter(reference, scope),
-        ExprKind::Unary(_, inner) => mentions_counter(inner, scope),
-        ExprKind::Binary(_, a, b) => mentions_counter(a, scope) || mentions_counter(b, scope),
-        ExprKind::Call(_, arguments) => arguments
-            .iter()
-            .any(|argument| mentions_counter(&argument.value, scope)),
-        ExprKind::If(branches, otherwise) => {
-            branches
-                .iter()
-                .any(|(c, v)| mentions_counter(c, scope) || mentions_counter(v, scope))
-                || mentions_counter(otherwise, scope)
-        }
-        ExprKind::Array(items, _) => items.iter().any(|item| mentions_counter(item, scope)),
-        ExprKind::Number(..) | ExprKind::String(_) | ExprKind::Boolean(_) => false,
-    }
+    expr.any(&|expr| {
+        matches!(&expr.kind, ExprKind::Reference(reference) if is_symbolic_counter(reference, scope))
+    })
 }

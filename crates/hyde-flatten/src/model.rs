@@ -1,6 +1,7 @@
 //! [`Model`]: the flat model while it is being built, with the tree of instances beside it.
 
 use crate::Input;
+use crate::bind::short;
 use crate::dimension::{Demand, Dim, Dimensions};
 use crate::instance::{
     Domain, Instance, InstanceId, Member, ParameterNotes, Scope, Typed, VariableNotes,
@@ -256,12 +257,11 @@ fn in_scope(
     let chain = [Some(id), instances[id].parent];
     for instance in chain.into_iter().flatten() {
         for member in instances[instance].members.values() {
-            if let Member::Parameter(param) = member {
-                if let Some(dimension) = parameters[hyde_ir::Id::index(*param)].dim.as_known() {
-                    let name = &flat.parameters[*param].name;
-                    let short = name.rsplit('.').next().unwrap_or(name);
-                    found.push((short.to_owned(), dimension));
-                }
+            if let Member::Parameter(param) = member
+                && let Some(dimension) = parameters[hyde_ir::Id::index(*param)].dim.as_known()
+            {
+                let name = &flat.parameters[*param].name;
+                found.push((short(name).to_owned(), dimension));
             }
         }
     }

@@ -34,10 +34,6 @@ impl<'a> Model<'a, '_> {
             );
             return None;
         }
-        #[allow(
-            clippy::cast_possible_truncation,
-            reason = "checked to be whole and small"
-        )]
         Some(value as i64)
     }
 

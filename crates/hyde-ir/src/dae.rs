@@ -210,6 +210,18 @@ pub struct Pin {
     pub origin: Origin,
 }
 
+/// Variables of one order that constraints tie to each other: as many as there are no constraints for are states, and
+/// the run chooses which (dummy derivatives).
+#[derive(Clone, Debug)]
+pub struct Selection {
+    /// Positions of the variables in the solver's vector.
+    pub candidates: Vec<usize>,
+    /// Rows of the constraints.
+    pub constraints: Vec<usize>,
+    /// Position of the factors in the memory: for each state a row with a one at the variable chosen.
+    pub factors: usize,
+}
+
 /// One assignment of a tick.
 #[derive(Clone, Debug)]
 pub struct ClockedAssignment {
@@ -406,6 +418,8 @@ pub struct Dae {
     pub assignments: Vec<Assignment>,
     /// Modes that fix states.
     pub pins: Vec<Pin>,
+    /// Groups of variables of which the run chooses the states.
+    pub selections: Vec<Selection>,
     /// Clocked partitions.
     pub ticks: IdVec<ClockId, Tick>,
     /// The order in which partitions that tick together run.

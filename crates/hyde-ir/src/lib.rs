@@ -32,6 +32,7 @@ pub mod flat;
 pub mod print;
 
 mod builtin;
+mod counter;
 mod differentiate;
 mod evaluate;
 mod expr;

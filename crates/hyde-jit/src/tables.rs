@@ -7,7 +7,7 @@ use hyde_ir::{Id as _, VariableKind};
 use hyde_program::{
     Assignment, Automaton, Bode, Clock, Column, Experiment, Function, Hold, InitialCondition,
     Measure, Measured, Output, Parameter, Pin, Preparation, Prior, Program, Reaction, ReactionKind,
-    Reduction, ReductionKind, Relation, RelationUse, Stop, Target, UnknownBlock,
+    Reduction, ReductionKind, Relation, RelationUse, Selection, Stop, Target, UnknownBlock,
 };
 use std::sync::Arc;
 
@@ -57,6 +57,15 @@ pub(crate) fn program(kernels: Compiled) -> Program {
                 mode: pin.mode,
                 state: pin.state,
                 origin: pin.origin.clone(),
+            })
+            .collect(),
+        selections: dae
+            .selections
+            .iter()
+            .map(|selection| Selection {
+                candidates: selection.candidates.clone(),
+                constraints: selection.constraints.clone(),
+                factors: selection.factors,
             })
             .collect(),
         clocks: dae

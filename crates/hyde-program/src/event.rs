@@ -110,6 +110,19 @@ pub struct Pin {
     pub origin: Origin,
 }
 
+/// Variables of one order that constraints tie to each other: as many as there are no constraints for are states, and
+/// the run chooses which. With S states among the m candidates the factors are S rows of m numbers, in each row a one at
+/// the variable chosen and zeros elsewhere.
+#[derive(Clone, Debug)]
+pub struct Selection {
+    /// Positions of the variables in the solver's vector.
+    pub candidates: Vec<usize>,
+    /// Rows of the constraints in the residual.
+    pub constraints: Vec<usize>,
+    /// Position of the first factor in the memory.
+    pub factors: usize,
+}
+
 /// A clocked part; its times are [`crate::Constant`]s.
 #[derive(Clone, Debug)]
 pub struct Clock {

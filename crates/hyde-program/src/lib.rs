@@ -24,7 +24,7 @@ mod program;
 
 pub use event::{
     Assignment, Automaton, Clock, Hold, InitialCondition, Pin, Reaction, ReactionKind, Relation,
-    RelationUse, Target,
+    RelationUse, Selection, Target,
 };
 pub use experiment::{
     Bode, Experiment, Measure, Measured, Preparation, Reduction, ReductionKind, Stop,

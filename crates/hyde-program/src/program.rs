@@ -1,6 +1,8 @@
 //! [`Program`]: the kernels and everything that is to be known of their numbers.
 
-use crate::event::{Assignment, Automaton, Clock, Hold, InitialCondition, Pin, Reaction, Relation};
+use crate::event::{
+    Assignment, Automaton, Clock, Hold, InitialCondition, Pin, Reaction, Relation, Selection,
+};
 use crate::experiment::Experiment;
 use crate::jacobian::{Jacobian, JacobianEntry};
 use crate::kernels::{Function, Kernels};
@@ -142,6 +144,8 @@ pub struct Program {
     pub assignments: Vec<Assignment>,
     /// Modes that fix states.
     pub pins: Vec<Pin>,
+    /// Groups of variables of which the run chooses the states.
+    pub selections: Vec<Selection>,
     /// The clocks.
     pub clocks: Vec<Clock>,
     /// The order in which clocks that tick together run.
@@ -191,14 +195,21 @@ impl Program {
         }
     }
 
-    /// Whether each unknown is a state.
+    /// Whether each unknown is a state, with the choice of states that the memory holds.
     #[must_use]
-    pub fn differential(&self) -> Vec<bool> {
+    pub fn differential(&self, memory: &[f64]) -> Vec<bool> {
         let mut found = vec![false; self.n_unknowns];
         for block in self.unknowns.iter().filter(|block| block.differential) {
             found[block.offset..block.offset + block.len]
                 .iter_mut()
                 .for_each(|flag| *flag = true);
+        }
+        for selection in &self.selections {
+            let m = selection.candidates.len();
+            let factors = &memory[selection.factors..][..m * (m - selection.constraints.len())];
+            for (column, &candidate) in selection.candidates.iter().enumerate() {
+                found[candidate] = factors.iter().skip(column).step_by(m).any(|&f| f != 0.0);
+            }
         }
         found
     }

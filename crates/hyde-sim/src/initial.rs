@@ -5,6 +5,7 @@
 
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
+use crate::selection;
 use crate::state::State;
 use hyde_ida::{LinearMethod, Pattern, SparseSolver};
 use hyde_program::{Function, InitialCondition, Wrt};
@@ -30,6 +31,7 @@ pub(crate) fn solve(
     yp: &mut [f64],
 ) -> Result<(), Box<Failure>> {
     let program = state.program;
+    selection::choose_at_start(state, t, y, yp);
     let count = program.rows(Function::Initial);
     if count == 0 {
         return consistent.solve(state, t, y, yp, true);
@@ -60,7 +62,7 @@ pub(crate) fn solve(
             state: first, len, ..
         } = condition
         {
-            fixed.extend(*first..*first + *len);
+            fixed.extend((*first..*first + *len).filter(|&i| state.differential[i]));
         }
     }
     let targets: Vec<f64> = fixed.iter().map(|&i| y[i]).collect();
@@ -133,8 +135,7 @@ pub(crate) fn solve(
             factor *= 0.5;
         }
         let size_of = |v: &[f64]| v.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        if whole && size_of(&step) <= 1e-11 * (1.0 + size_of(&old_y).max(size_of(&old_yp)))
-        {
+        if whole && size_of(&step) <= 1e-11 * (1.0 + size_of(&old_y).max(size_of(&old_yp))) {
             return consistent.solve(state, t, y, yp, true);
         }
     }

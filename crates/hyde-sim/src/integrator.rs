@@ -176,7 +176,8 @@ impl<'a> Integrator<'a> {
             }
         };
         let mut failure = Failure::new(kind, failed.t);
-        if let Some(row) = failed.equation {
+        // Without an equation of its own the unknown leads to the one that it was matched to.
+        if let Some(row) = failed.equation.or(failed.unknown) {
             failure = failure.at_row(program, row, &self.y);
         }
         if let Some(unknown) = failed.unknown {

@@ -3,6 +3,7 @@
 //! ```text
 //! initial      start values, initial equations, first modes                         initial.rs
 //! loop         one step of IDA, never past the next instant known beforehand        integrator.rs
+//!              states chosen anew where constraints tie them                     selection.rs
 //!              guards checked on the step's interpolant; the first crossing located guards.rs
 //!              events: reactions, ticks, held values, until nothing fires           events.rs, clocks.rs
 //!              consistent values again, then on                                     consistent.rs
@@ -20,6 +21,7 @@ mod inputs;
 mod integrator;
 mod operating_point;
 mod results;
+mod selection;
 mod setup;
 mod simulation;
 mod state;

@@ -8,6 +8,7 @@ use crate::guards;
 use crate::initial;
 use crate::integrator::Integrator;
 use crate::results::{Event, Results};
+use crate::selection;
 use crate::setup::{Setup, same_instant};
 use crate::state::State;
 use hyde_program::{Function, Program};
@@ -28,6 +29,32 @@ pub(crate) struct Simulation<'a> {
     outputs: Vec<f64>,
     /// Start of the window in which events are counted, and their number.
     crowd: (f64, u64),
+    hurry: Hurry,
+}
+
+/// Events that follow each other faster and faster.
+#[derive(Default)]
+struct Hurry {
+    /// Time of the last event in s.
+    last: f64,
+    /// The first interval of the run of ever shorter ones, the latest, and their number.
+    first: f64,
+    interval: f64,
+    count: u64,
+}
+
+impl Hurry {
+    /// Takes note of an event; whether a long run of ever shorter intervals has come down to nothing.
+    fn no_end(&mut self, t: f64) -> bool {
+        let interval = t - self.last;
+        if interval < self.interval {
+            self.count += 1;
+        } else {
+            (self.first, self.count) = (interval, 0);
+        }
+        (self.last, self.interval) = (t, interval);
+        self.count >= 12 && interval < 1e-4 * self.first
+    }
 }
 
 impl<'a> Simulation<'a> {
@@ -72,6 +99,7 @@ impl<'a> Simulation<'a> {
             next_row: 0,
             outputs: vec![0.0; program.outputs.len()],
             crowd: (t, 0),
+            hurry: Hurry::default(),
         })
     }
 
@@ -165,10 +193,33 @@ impl<'a> Simulation<'a> {
                 self.integrator.yp = yp;
                 return Ok(true);
             }
+            if self.chooses_states_anew()? {
+                return Ok(true);
+            }
             if self.integrator.t >= target || same_instant(self.integrator.t, target) {
                 return Ok(false);
             }
         }
+    }
+
+    /// Chooses states anew where the constraints ask for it; the values are consistent then.
+    fn chooses_states_anew(&mut self) -> Result<bool, Box<Failure>> {
+        if self.program.selections.is_empty() {
+            return Ok(false);
+        }
+        let (t, mut y, mut yp) = (
+            self.integrator.t,
+            self.integrator.y.clone(),
+            self.integrator.yp.clone(),
+        );
+        if !selection::choose_again(self.integrator.state_mut(), t, &y, &yp) {
+            return Ok(false);
+        }
+        self.consistent
+            .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
+        self.integrator.y = y;
+        self.integrator.yp = yp;
+        Ok(true)
     }
 
     /// Everything that happens at an instant: left limit, events, ticks, events, right limit (C1).
@@ -361,7 +412,7 @@ impl<'a> Simulation<'a> {
             self.crowd = (t, 0);
         }
         self.crowd.1 += 1;
-        if self.crowd.1 <= MAX_EVENTS_AT_ONCE {
+        if !self.hurry.no_end(t) && self.crowd.1 <= MAX_EVENTS_AT_ONCE {
             return Ok(());
         }
         let mut failure = Failure::new(FailureKind::TooManyEvents, t);

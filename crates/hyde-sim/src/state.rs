@@ -33,7 +33,7 @@ impl<'a> State<'a> {
             workspace: Workspace::new(program.n_work),
             partials: vec![0.0; program.jacobian.n_values()],
             pinned: Vec::new(),
-            differential: program.differential(),
+            differential: program.differential(&vec![0.0; program.n_memory]),
         };
         state.inputs.read(setup.start_s, &mut state.u);
         Ok(state)
@@ -49,17 +49,9 @@ impl<'a> State<'a> {
         out: &mut [f64],
     ) {
         self.inputs.read_continuous(t, &mut self.u);
-        let at = Point {
-            t,
-            y,
-            yp,
-            z: &self.z,
-            u: &self.u,
-            p: &self.p,
-        };
-        self.program
-            .kernels
-            .evaluate(function, at, &mut self.workspace, out);
+        let program = self.program;
+        let (at, workspace) = self.at(t, y, yp);
+        program.kernels.evaluate(function, at, workspace, out);
     }
 
     /// The derivatives of a function, in the program's order.
@@ -72,34 +64,18 @@ impl<'a> State<'a> {
     ) -> Vec<f64> {
         self.inputs.read_continuous(t, &mut self.u);
         let mut out = vec![0.0; self.program.partials(function).len()];
-        let at = Point {
-            t,
-            y,
-            yp,
-            z: &self.z,
-            u: &self.u,
-            p: &self.p,
-        };
-        self.program
-            .kernels
-            .partials(function, at, &mut self.workspace, &mut out);
+        let program = self.program;
+        let (at, workspace) = self.at(t, y, yp);
+        program.kernels.partials(function, at, workspace, &mut out);
         out
     }
 
     /// Truth of every reaction's condition with the memory as it is.
     pub(crate) fn conditions(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<bool> {
         let mut out = vec![0.0; self.program.reactions.len()];
-        let at = Point {
-            t,
-            y,
-            yp,
-            z: &self.z,
-            u: &self.u,
-            p: &self.p,
-        };
-        self.program
-            .kernels
-            .conditions(at, &mut self.workspace, &mut out);
+        let program = self.program;
+        let (at, workspace) = self.at(t, y, yp);
+        program.kernels.conditions(at, workspace, &mut out);
         out.into_iter().map(|truth| truth != 0.0).collect()
     }
 
@@ -107,17 +83,9 @@ impl<'a> State<'a> {
     pub(crate) fn tick(&mut self, clock: usize, t: f64, y: &[f64], yp: &[f64]) {
         self.inputs.read(t, &mut self.u);
         let mut after = self.z.clone();
-        let at = Point {
-            t,
-            y,
-            yp,
-            z: &self.z,
-            u: &self.u,
-            p: &self.p,
-        };
-        self.program
-            .kernels
-            .tick(clock, at, &mut self.workspace, &mut after);
+        let program = self.program;
+        let (at, workspace) = self.at(t, y, yp);
+        program.kernels.tick(clock, at, workspace, &mut after);
         self.z = after;
     }
 
@@ -165,6 +133,17 @@ impl<'a> State<'a> {
 
     fn residual_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) {
         self.inputs.read_continuous(t, &mut self.u);
+        let program = self.program;
+        let mut values = std::mem::take(&mut self.partials);
+        let (at, workspace) = self.at(t, y, yp);
+        program
+            .kernels
+            .partials(Function::Residual, at, workspace, &mut values);
+        self.partials = values;
+    }
+
+    /// The model at a point, with the room that kernels work in.
+    fn at<'s>(&'s mut self, t: f64, y: &'s [f64], yp: &'s [f64]) -> (Point<'s>, &'s mut Workspace) {
         let at = Point {
             t,
             y,
@@ -173,12 +152,7 @@ impl<'a> State<'a> {
             u: &self.u,
             p: &self.p,
         };
-        self.program.kernels.partials(
-            Function::Residual,
-            at,
-            &mut self.workspace,
-            &mut self.partials,
-        );
+        (at, &mut self.workspace)
     }
 }
 

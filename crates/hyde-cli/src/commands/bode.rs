@@ -166,7 +166,6 @@ fn linear(
         }
     })?;
     let count = points.max(2);
-    #[allow(clippy::cast_precision_loss, reason = "a number of points")]
     let frequency: Vec<f64> = (0..count)
         .map(|k| band.0 * (band.1 / band.0).powf(k as f64 / (count - 1) as f64))
         .collect();
@@ -195,9 +194,7 @@ fn linear(
         .collect();
     let resonances = hyde_experiment::modes(&system)
         .into_iter()
-        .filter(|mode| {
-            mode.damping < 0.3 && (0.5 * band.0..=band.1).contains(&mode.frequency_hz)
-        })
+        .filter(|mode| mode.damping < 0.3 && (0.5 * band.0..=band.1).contains(&mode.frequency_hz))
         .map(|mode| (mode.frequency_hz, mode.damping))
         .collect();
     Ok(LinearResponse {

@@ -3,14 +3,18 @@
 use crate::args::{CheckArgs, ModelArgs};
 use crate::exit::Exit;
 use crate::project::{self, Records, print_output};
-use serde_json::json;
+use crate::render;
+use serde_json::{Value, json};
 
 /// Checks every experiment of a file (its records included), or its last model if it has none.
 pub(crate) fn check(args: &CheckArgs) -> Exit {
     match checked(args) {
-        Ok(names) => {
+        Ok((names, warnings)) => {
             if args.model.json {
-                print_output(&format!("{:#}", json!({ "ok": true, "checked": names })));
+                print_output(&format!(
+                    "{:#}",
+                    json!({ "ok": true, "checked": names, "diagnostics": warnings })
+                ));
             } else if !args.model.quiet {
                 print_output(&format!(
                     "{}: {} in order",
@@ -24,20 +28,24 @@ pub(crate) fn check(args: &CheckArgs) -> Exit {
     }
 }
 
-fn checked(args: &CheckArgs) -> Result<Vec<String>, Exit> {
-    let mut names = Vec::new();
+/// What was checked, and the warnings of it as JSON.
+fn checked(args: &CheckArgs) -> Result<(Vec<String>, Vec<Value>), Exit> {
+    let (mut names, mut warnings) = (Vec::new(), Vec::new());
     for args in each(&args.model)? {
         let mut project = project::load(&args, Records::IfThere)?;
         let alone = project.experiment.is_none();
         let compiled = project.compile(&args, alone)?;
         project.print_warnings(&args);
+        if let Value::Array(list) = render::to_json(&project.diagnostics, &project.sources) {
+            warnings.extend(list);
+        }
         let what = project.experiment.as_ref().map_or_else(
             || format!("model {}", project.model),
             |experiment| format!("experiment {experiment}"),
         );
         names.push(format!("{what} ({} unknowns)", compiled.program.n_unknowns));
     }
-    Ok(names)
+    Ok((names, warnings))
 }
 
 /// The arguments for each experiment of the file, if none is named.

@@ -21,7 +21,7 @@ pub(crate) fn explain(args: &ExplainArgs) -> Exit {
         .find(|code| code.as_str().eq_ignore_ascii_case(text))
     {
         Some(code) => {
-            print_output(page(*code));
+            print_output(&plain(page(*code)));
             Exit::Done
         }
         None => {
@@ -31,6 +31,23 @@ pub(crate) fn explain(args: &ExplainArgs) -> Exit {
             Exit::CommandLine
         }
     }
+}
+
+/// A page for a terminal: code is set in instead of fenced, and the title has no mark.
+fn plain(page: &str) -> String {
+    let mut text = String::new();
+    let mut code = false;
+    for line in page.lines() {
+        if line.starts_with("```") {
+            code = !code;
+        } else if code && !line.is_empty() {
+            let _ = writeln!(text, "    {line}");
+        } else {
+            let _ = writeln!(text, "{}", line.trim_start_matches("# "));
+        }
+    }
+    // A blank line stands on either side of a fence: one is enough.
+    text.replace("\n\n\n", "\n\n")
 }
 
 macro_rules! pages {

@@ -1,7 +1,7 @@
 //! Prints the structure of a [`Dae`]: what became of every variable, and in which order the rest is solved.
 
 use super::{comment, dae};
-use crate::dae::{Alias, Dae, InitialCondition, Reason, Space};
+use crate::dae::{Alias, Dae, InitialCondition, Reason};
 use hyde_diag::Sources;
 use std::fmt::Write as _;
 

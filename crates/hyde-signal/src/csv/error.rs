@@ -123,7 +123,10 @@ impl fmt::Display for ReadError {
         match self {
             Self::Empty => write!(f, "the file is empty"),
             Self::NoHeader { line } => {
-                write!(f, "line {line}: a row of numbers stands where the header belongs")
+                write!(
+                    f,
+                    "line {line}: a row of numbers stands where the header belongs"
+                )
             }
             Self::NoRows => write!(f, "there is a header but no row"),
             Self::Encoding { line } => write!(f, "line {line}: not UTF-8 text"),

@@ -125,10 +125,10 @@ impl Builder<'_> {
     pub(super) fn range(&mut self, node: Node<'_>) -> Option<Range> {
         let mut bounds = self.expressions(node).into_iter();
         let (mut from, to) = (bounds.next()?, bounds.next()?);
-        if let Some(unit) = unit_of(&to) {
-            if let Some(slot) = missing_unit(&mut from) {
-                *slot = Some(unit);
-            }
+        if let Some(unit) = unit_of(&to)
+            && let Some(slot) = missing_unit(&mut from)
+        {
+            *slot = Some(unit);
         }
         Some(Range { from, to })
     }
@@ -198,15 +198,27 @@ fn unit_of(expr: &Expr) -> Option<crate::ast::UnitText> {
     match &expr.kind {
         ExprKind::Number(_, unit) => unit.clone(),
         ExprKind::Unary(_, inner) => unit_of(inner),
-        _ => None,
+        ExprKind::String(_)
+        | ExprKind::Boolean(_)
+        | ExprKind::Reference(_)
+        | ExprKind::Call(..)
+        | ExprKind::Binary(..)
+        | ExprKind::If(..)
+        | ExprKind::Array(..) => None,
     }
 }
 
 fn missing_unit(expr: &mut Expr) -> Option<&mut Option<crate::ast::UnitText>> {
     match &mut expr.kind {
-        ExprKind::Number(_, unit) if unit.is_none() => Some(unit),
+        ExprKind::Number(_, unit) => unit.is_none().then_some(unit),
         ExprKind::Unary(_, inner) => missing_unit(inner),
-        _ => None,
+        ExprKind::String(_)
+        | ExprKind::Boolean(_)
+        | ExprKind::Reference(_)
+        | ExprKind::Call(..)
+        | ExprKind::Binary(..)
+        | ExprKind::If(..)
+        | ExprKind::Array(..) => None,
     }
 }
 

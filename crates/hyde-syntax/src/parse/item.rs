@@ -76,11 +76,11 @@ impl Parser<'_> {
         {
             return self.study().map(Item::Study);
         }
-        if self.looking_at("model") {
-            if let Some(pairs) = self.accept(Rule::short_item) {
-                let node = significant(pairs).next()?;
-                return self.build(start).short_class(node).map(Item::Class);
-            }
+        if self.looking_at("model")
+            && let Some(pairs) = self.accept(Rule::short_item)
+        {
+            let node = significant(pairs).next()?;
+            return self.build(start).short_class(node).map(Item::Class);
         }
         self.class().map(Item::Class)
     }

@@ -1,0 +1,118 @@
+//! The choice of states among variables that constraints tie to each other (dummy derivatives: Mattsson and Söderlind,
+//! SIAM J. Sci. Comput. 14 (1993) 677).
+//!
+//! With k constraints between m variables the k that the constraints determine best are not states: the columns that a
+//! QR factorisation with column pivoting takes first (Golub and Van Loan, Matrix Computations, §5.4).
+
+use crate::state::State;
+use hyde_program::{Function, InitialCondition, Selection, Wrt};
+use nalgebra::DMatrix;
+
+/// The choice is changed when another one is better by this factor.
+const WORTH_A_CHANGE: f64 = 5.0;
+
+/// Chooses at the start: variables with a fixed start value stay states where the constraints allow it.
+pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) {
+    let mut fixed = vec![false; y.len()];
+    for condition in &state.program.initial {
+        if let InitialCondition::Fixed {
+            state: first, len, ..
+        } = condition
+        {
+            fixed[*first..*first + *len]
+                .iter_mut()
+                .for_each(|flag| *flag = true);
+        }
+    }
+    for selection in &state.program.selections {
+        let mut jacobian = jacobian(state, selection, t, y, yp);
+        for (column, &candidate) in selection.candidates.iter().enumerate() {
+            if fixed[candidate] {
+                jacobian.column_mut(column).scale_mut(1e-6);
+            }
+        }
+        let determined = best(&jacobian);
+        set(state, selection, &determined);
+    }
+}
+
+/// Chooses anew where another choice has become much better; whether anything changed.
+pub(crate) fn choose_again(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) -> bool {
+    let mut changed = false;
+    for selection in &state.program.selections {
+        let jacobian = jacobian(state, selection, t, y, yp);
+        let candidates = 0..selection.candidates.len();
+        let now: Vec<usize> = candidates
+            .filter(|&column| !state.differential[selection.candidates[column]])
+            .collect();
+        let better = best(&jacobian);
+        if quality(&jacobian, &better) > WORTH_A_CHANGE * quality(&jacobian, &now) {
+            set(state, selection, &better);
+            changed = true;
+        }
+    }
+    changed
+}
+
+/// The derivatives of the constraints by the variables.
+fn jacobian(
+    state: &mut State<'_>,
+    selection: &Selection,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+) -> DMatrix<f64> {
+    let values = state.partials(Function::Residual, t, y, yp);
+    let mut found = DMatrix::zeros(selection.constraints.len(), selection.candidates.len());
+    let entries = state.program.partials(Function::Residual);
+    for (entry, value) in entries.iter().zip(values) {
+        let row = selection
+            .constraints
+            .iter()
+            .position(|&row| row == entry.row);
+        let Wrt::Unknown(unknown) = entry.wrt else {
+            continue;
+        };
+        let column = selection
+            .candidates
+            .iter()
+            .position(|&candidate| candidate == unknown);
+        if let (Some(row), Some(column)) = (row, column) {
+            found[(row, column)] += value;
+        }
+    }
+    found
+}
+
+/// The columns that determine the constraints best.
+fn best(jacobian: &DMatrix<f64>) -> Vec<usize> {
+    let mut order = DMatrix::from_fn(1, jacobian.ncols(), |_, column| column);
+    jacobian
+        .clone()
+        .col_piv_qr()
+        .p()
+        .permute_columns(&mut order);
+    let mut found: Vec<usize> = order.iter().take(jacobian.nrows()).copied().collect();
+    found.sort_unstable();
+    found
+}
+
+/// How far a choice is from singular: the least diagonal element of its factor.
+fn quality(jacobian: &DMatrix<f64>, columns: &[usize]) -> f64 {
+    let r = jacobian.select_columns(columns).col_piv_qr().r();
+    r.diagonal()
+        .iter()
+        .fold(f64::INFINITY, |least, value| least.min(value.abs()))
+}
+
+/// Writes a choice into the memory.
+fn set(state: &mut State<'_>, selection: &Selection, determined: &[usize]) {
+    let m = selection.candidates.len();
+    let states = (0..m).filter(|column| !determined.contains(column));
+    let rows = m - selection.constraints.len();
+    state.z[selection.factors..][..rows * m].fill(0.0);
+    for (row, column) in states.enumerate() {
+        state.z[selection.factors + row * m + column] = 1.0;
+    }
+    state.differential = state.program.differential(&state.z);
+}

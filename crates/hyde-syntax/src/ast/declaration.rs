@@ -1,0 +1,103 @@
+//! Declarations and modifications.
+
+use super::{Expr, Name, Range, Reference, UnitText};
+use hyde_diag::Span;
+
+/// The words before a declaration.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Prefix {
+    /// `parameter`: keeps one value during a run.
+    Parameter,
+    /// `constant`: has one value for ever.
+    Constant,
+    /// `final`: may not be modified.
+    Final,
+    /// `flow`: the values of connected ones sum to zero.
+    Flow,
+    /// `input`: set from outside.
+    Input,
+    /// `output`: read from outside.
+    Output,
+    /// `replaceable`: its model may be redeclared.
+    Replaceable,
+    /// `site`: effects may change it.
+    Site,
+    /// `field`: has a value at every point of a domain.
+    Field,
+    /// `size`: a parameter at whose neutral value an effect vanishes.
+    Size,
+    /// `shape`: a parameter that means nothing where the effect has vanished.
+    Shape,
+}
+
+/// `prefixes Type[dims] a, b;`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Declaration {
+    /// The words before the type.
+    pub prefixes: Vec<Prefix>,
+    /// The type.
+    pub type_name: Reference,
+    /// Dimensions after the type.
+    pub dims: Vec<Expr>,
+    /// What is declared.
+    pub declarators: Vec<Declarator>,
+    /// Its place.
+    pub span: Span,
+}
+
+/// One declared name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Declarator {
+    /// The name.
+    pub name: Name,
+    /// Dimensions after the name.
+    pub dims: Vec<Expr>,
+    /// Changes to the component, or `start` and `fixed` of a variable.
+    pub changes: Vec<Change>,
+    /// `on bar`, of a field.
+    pub domain: Option<Name>,
+    /// `= e`
+    pub binding: Option<Expr>,
+    /// `~ ±8%`
+    pub prior: Option<Prior>,
+    /// `from "datasheet"`
+    pub source: Option<String>,
+    /// `in 0 .. 1 [kN]`
+    pub within: Option<Range>,
+    /// Its documentation.
+    pub doc: Option<String>,
+}
+
+/// `~ ±8%`, `~ ±0.1 [mm]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prior {
+    /// The number.
+    pub value: f64,
+    /// Whether it is in percent of the value.
+    pub percent: bool,
+    /// Its unit, if not.
+    pub unit: Option<UnitText>,
+    /// Its place.
+    pub span: Span,
+}
+
+/// A modification: `R = 2`, `contact.k = 1e8`, `redeclare Contact contact(…)`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Change {
+    /// What is changed.
+    pub target: Reference,
+    /// The new model of a replaceable component.
+    pub redeclare: Option<Reference>,
+    /// Applies to each element of an array.
+    pub each: bool,
+    /// May not be changed further.
+    pub is_final: bool,
+    /// Nested changes.
+    pub changes: Vec<Change>,
+    /// The new value.
+    pub value: Option<Expr>,
+    /// Its prior.
+    pub prior: Option<Prior>,
+    /// Its source.
+    pub source: Option<String>,
+}

@@ -1,0 +1,94 @@
+//! Experiments.
+
+use super::{Argument, Change, Expr, Measure, Name, Range, Reference};
+use hyde_diag::Span;
+
+/// `experiment bench(record file) of Axis … end bench;`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Experiment {
+    /// Its name.
+    pub name: Name,
+    /// Its records.
+    pub records: Vec<RecordItem>,
+    /// Its model.
+    pub model: Reference,
+    /// With these changes.
+    pub changes: Vec<Change>,
+    /// Its documentation.
+    pub doc: Option<String>,
+    /// What is in it.
+    pub items: Vec<ExperimentItem>,
+    /// From the keyword to the end.
+    pub span: Span,
+}
+
+/// `record file every 1 [ms] = "records/strokes.csv"`
+#[derive(Clone, Debug, PartialEq)]
+pub struct RecordItem {
+    /// The name in the experiment.
+    pub name: Name,
+    /// Time between rows, where the record's own time is not to be used.
+    pub every: Option<Expr>,
+    /// The file used where no other is given, relative to the model's file.
+    pub default: Option<Name>,
+}
+
+/// `target = value`, of a stimulus or a replay.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drive {
+    /// What is driven.
+    pub target: Reference,
+    /// By what.
+    pub value: Expr,
+}
+
+/// `file.i = motor.i ~ 0.02 [A]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channel {
+    /// The recorded signal.
+    pub signal: Expr,
+    /// What the model has for it.
+    pub value: Expr,
+    /// Standard deviation of its noise.
+    pub noise: Option<Expr>,
+    /// What it is called in reports.
+    pub doc: Option<String>,
+}
+
+/// An element of an experiment.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ExperimentItem {
+    /// `stimulus r = file.r;`
+    Stimulus(Vec<Drive>),
+    /// `measured file.i = motor.i;`
+    Measured(Vec<Channel>),
+    /// `replay motor.i_ref = file.i_ref;`
+    Replay(Vec<Drive>),
+    /// `expect max(abs(v)) < 1 [m/s] "doc";`
+    Expect(Expr, Option<String>),
+    /// `measure Length peak = max(abs(e));`
+    Measure(Measure),
+    /// `solve ida(rtol = 1e-6)`
+    Solve(Name, Vec<Argument>),
+    /// `stop 10 [s]`
+    Stop(Expr),
+    /// `every 1 [ms]`
+    Every(Expr),
+    /// `skip 50 [ms]`
+    Skip(Expr),
+    /// `bode from u to y over 1 .. 50 [Hz] in guide = slip;`
+    Bode(Bode),
+}
+
+/// `bode from u to y over 1 .. 50 [Hz] in guide = slip;`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bode {
+    /// The driven input.
+    pub input: Reference,
+    /// The responses.
+    pub outputs: Vec<Expr>,
+    /// The band of frequencies.
+    pub band: Range,
+    /// The modes in which the linearised system is taken: instance and mode.
+    pub modes: Vec<(Reference, Name)>,
+}

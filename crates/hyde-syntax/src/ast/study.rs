@@ -1,0 +1,61 @@
+//! Studies: calibrations, diagnoses and sweeps.
+
+use super::{Expr, Name, Range, Reference};
+use hyde_diag::Span;
+
+/// What kind of study.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum StudyKind {
+    /// `calibrate`
+    Calibrate,
+    /// `diagnose`
+    Diagnose,
+    /// `sweep`
+    Sweep,
+}
+
+/// `calibrate bench of Axis … end bench;`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// Which.
+    pub kind: StudyKind,
+    /// Its name.
+    pub name: Name,
+    /// The model, experiment or calibration it is of.
+    pub of: Reference,
+    /// Its documentation.
+    pub doc: Option<String>,
+    /// What is in it.
+    pub items: Vec<StudyItem>,
+    /// From the keyword to the end.
+    pub span: Span,
+}
+
+/// An element of a study.
+#[derive(Clone, Debug, PartialEq)]
+pub enum StudyItem {
+    /// `vary saddle.M in 200 .. 400 [kg];`
+    Vary(Vec<Variation>),
+    /// `max_effects 3;`, `fit bench("fit-*.csv");`
+    Setting(Name, Vec<SettingValue>),
+}
+
+/// What is varied, and how.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variation {
+    /// A parameter, or the word `uncertain`.
+    pub target: Reference,
+    /// `in a .. b`
+    pub within: Option<Range>,
+    /// `= {…}`
+    pub values: Option<Expr>,
+}
+
+/// The value of a setting.
+#[derive(Clone, Debug, PartialEq)]
+pub enum SettingValue {
+    /// `Effects.*`
+    Everything(Reference),
+    /// Any expression.
+    Expr(Expr),
+}

@@ -1,0 +1,114 @@
+//! Experiments.
+
+use super::declaration::{measure_text, modification};
+use super::expression::{optional_arguments, range};
+use super::name::{doc, quoted, reference};
+use super::{Printer, expression};
+use crate::ast::{Drive, Experiment, ExperimentItem};
+
+impl Printer {
+    pub(super) fn experiment(&mut self, experiment: &Experiment) {
+        let records: Vec<String> = experiment
+            .records
+            .iter()
+            .map(|record| {
+                let every = record
+                    .every
+                    .as_ref()
+                    .map_or_else(String::new, |every| format!(" every {}", expression(every)));
+                let default = record
+                    .default
+                    .as_ref()
+                    .map_or_else(String::new, |name| format!(" = {}", quoted(&name.text)));
+                format!("record {}{every}{default}", record.name.text)
+            })
+            .collect();
+        let records = if records.is_empty() {
+            String::new()
+        } else {
+            format!("({})", records.join(", "))
+        };
+        let name = &experiment.name.text;
+        self.line(&format!(
+            "experiment {name}{records} of {}{}{}",
+            reference(&experiment.model),
+            modification(&experiment.changes),
+            doc(experiment.doc.as_deref())
+        ));
+        self.indented(|out| {
+            experiment
+                .items
+                .iter()
+                .for_each(|item| out.experiment_item(item))
+        });
+        self.line(&format!("end {name};"));
+    }
+
+    fn experiment_item(&mut self, item: &ExperimentItem) {
+        let drives = |list: &[Drive]| {
+            let texts: Vec<String> = list
+                .iter()
+                .map(|drive| {
+                    format!(
+                        "{} = {}",
+                        reference(&drive.target),
+                        expression(&drive.value)
+                    )
+                })
+                .collect();
+            texts.join(", ")
+        };
+        let line = match item {
+            ExperimentItem::Stimulus(list) => format!("stimulus {};", drives(list)),
+            ExperimentItem::Replay(list) => format!("replay {};", drives(list)),
+            ExperimentItem::Measured(channels) => {
+                let texts: Vec<String> = channels
+                    .iter()
+                    .map(|channel| {
+                        let noise = channel
+                            .noise
+                            .as_ref()
+                            .map_or_else(String::new, |noise| format!(" ~ {}", expression(noise)));
+                        format!(
+                            "{} = {}{noise}{}",
+                            expression(&channel.signal),
+                            expression(&channel.value),
+                            doc(channel.doc.as_deref())
+                        )
+                    })
+                    .collect();
+                format!("measured {};", texts.join(", "))
+            }
+            ExperimentItem::Expect(condition, text) => {
+                format!("expect {}{};", expression(condition), doc(text.as_deref()))
+            }
+            ExperimentItem::Measure(measure) => measure_text(measure),
+            ExperimentItem::Solve(method, arguments) => {
+                let arguments = optional_arguments(arguments);
+                format!("solve {}{arguments};", method.text)
+            }
+            ExperimentItem::Stop(at) => format!("stop {};", expression(at)),
+            ExperimentItem::Every(step) => format!("every {};", expression(step)),
+            ExperimentItem::Skip(time) => format!("skip {};", expression(time)),
+            ExperimentItem::Bode(bode) => {
+                let outputs: Vec<String> = bode.outputs.iter().map(expression).collect();
+                let modes: Vec<String> = bode
+                    .modes
+                    .iter()
+                    .map(|(name, mode)| format!("{} = {}", reference(name), mode.text))
+                    .collect();
+                let modes = if modes.is_empty() {
+                    String::new()
+                } else {
+                    format!(" in {}", modes.join(", "))
+                };
+                let (input, band) = (reference(&bode.input), range(&bode.band));
+                format!(
+                    "bode from {input} to {} over {band}{modes};",
+                    outputs.join(", ")
+                )
+            }
+        };
+        self.line(&line);
+    }
+}

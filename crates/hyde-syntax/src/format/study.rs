@@ -1,0 +1,57 @@
+//! Studies: calibrations, diagnoses and sweeps.
+
+use super::expression::range;
+use super::name::{doc, reference};
+use super::{Printer, expression};
+use crate::ast::{SettingValue, Study, StudyItem, StudyKind};
+
+impl Printer {
+    pub(super) fn study(&mut self, study: &Study) {
+        let (word, of) = match study.kind {
+            StudyKind::Calibrate => ("calibrate", "of"),
+            StudyKind::Diagnose => ("diagnose", "of calibrate"),
+            StudyKind::Sweep => ("sweep", "of"),
+        };
+        let name = &study.name.text;
+        self.line(&format!(
+            "{word} {name} {of} {}{}",
+            reference(&study.of),
+            doc(study.doc.as_deref())
+        ));
+        self.indented(|out| {
+            for item in &study.items {
+                let line = match item {
+                    StudyItem::Vary(list) => {
+                        let texts: Vec<String> = list
+                            .iter()
+                            .map(|variation| {
+                                let within = variation
+                                    .within
+                                    .as_ref()
+                                    .map_or_else(String::new, |r| format!(" in {}", range(r)));
+                                let values = variation
+                                    .values
+                                    .as_ref()
+                                    .map_or_else(String::new, |e| format!(" = {}", expression(e)));
+                                format!("{}{within}{values}", reference(&variation.target))
+                            })
+                            .collect();
+                        format!("vary {};", texts.join(", "))
+                    }
+                    StudyItem::Setting(name, values) => {
+                        let texts: Vec<String> = values
+                            .iter()
+                            .map(|value| match value {
+                                SettingValue::Everything(path) => format!("{}.*", reference(path)),
+                                SettingValue::Expr(expr) => expression(expr),
+                            })
+                            .collect();
+                        format!("{} {};", name.text, texts.join(", "))
+                    }
+                };
+                out.line(&line);
+            }
+        });
+        self.line(&format!("end {name};"));
+    }
+}

@@ -1,0 +1,48 @@
+//! `figures [NAME…]`: measures the promises of the project and prints a line each. Exit status 1 where one falls short, 2
+//! where there is none of that name.
+
+use hyde_tests::figures::{FIGURES, Figure, Session};
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+/// The folder of the records that are not shipped; `shared/data` beside the project without it.
+const DATA: &str = "HYDE_DATA";
+
+#[allow(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "a command prints"
+)]
+fn main() -> ExitCode {
+    let names: Vec<String> = std::env::args().skip(1).collect();
+    let mut chosen: Vec<&Figure> = Vec::new();
+    for name in &names {
+        match FIGURES.iter().find(|figure| figure.name == name) {
+            Some(figure) => chosen.push(figure),
+            None => {
+                let known: Vec<&str> = FIGURES.iter().map(|figure| figure.name).collect();
+                eprintln!(
+                    "no figure is called `{name}`; there are {}",
+                    known.join(", ")
+                );
+                return ExitCode::from(2);
+            }
+        }
+    }
+    if names.is_empty() {
+        chosen = FIGURES.iter().collect();
+    }
+    let session = Session::new(data());
+    let mut any_short = false;
+    for figure in chosen {
+        let (line, short) = figure.line(&(figure.measure)(&session));
+        println!("{line}");
+        any_short |= short;
+    }
+    ExitCode::from(u8::from(any_short))
+}
+
+#[allow(clippy::disallowed_methods, reason = "the one setting of this command")]
+fn data() -> PathBuf {
+    std::env::var(DATA).map_or_else(|_| hyde_tests::root().join("../shared/data"), PathBuf::from)
+}

@@ -1,0 +1,30 @@
+//! The promises of the project as numbers that can be measured: one small file a promise.
+
+mod backends;
+mod bench;
+mod clif_growth;
+mod emps;
+mod energy;
+mod promise;
+mod residual_cost;
+mod start;
+mod stick;
+
+pub use promise::{Figure, Measured, Promise, Session};
+pub use start::{START, first_step};
+
+/// Every figure, in the order printed.
+pub const FIGURES: &[Figure] = &[
+    clif_growth::FIGURE,
+    residual_cost::FIGURE,
+    start::FIGURE,
+    stick::FIGURE,
+    emps::FORCE,
+    emps::VELOCITY,
+    emps::POSITION,
+    bench::TABLE,
+    bench::TACHO,
+    bench::ANGLE,
+    energy::FIGURE,
+    backends::FIGURE,
+];

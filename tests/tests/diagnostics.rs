@@ -1,0 +1,151 @@
+//! Every diagnostic code has a fixture that shows it, and a page whose examples are true.
+//!
+//! A fixture is `tests/fixtures/errors/EXXXX_name.hyde`, the smallest model that one might write wrongly. It is checked,
+//! or, if its first line says `// hyde run FILE …`, run; what the command prints is a snapshot. A page is
+//! `book/src/errors/EXXXX.md`; its blocks marked `hyde wrong` give that code and no other, those marked `hyde right`
+//! nothing at all. Review a changed message with `cargo insta review`.
+
+use hyde_diag::Code;
+use serde_json::Value;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+#[test]
+fn every_fixture_says_what_its_snapshot_shows() {
+    for path in fixtures() {
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let output = hyde(&text, &path, &folder(), false);
+        let shown = format!(
+            "{}{}--> exit status {}\n",
+            String::from_utf8_lossy(&output.stdout),
+            String::from_utf8_lossy(&output.stderr),
+            output.status.code().unwrap()
+        );
+        insta::assert_snapshot!(name, shown);
+    }
+}
+
+#[test]
+fn every_fixture_shows_its_code_and_no_other() {
+    for path in fixtures() {
+        let name = path.file_stem().unwrap().to_string_lossy().into_owned();
+        let text = std::fs::read_to_string(&path).unwrap();
+        let output = hyde(&text, &path, &folder(), true);
+        assert_eq!(codes(&output), [&name[..5]], "{name}");
+    }
+}
+
+#[test]
+fn every_code_has_a_fixture() {
+    let shown: BTreeSet<String> = fixtures()
+        .iter()
+        .map(|path| path.file_name().unwrap().to_string_lossy()[..5].to_owned())
+        .collect();
+    let codes: BTreeSet<String> = Code::ALL.iter().map(ToString::to_string).collect();
+    assert_eq!(shown, codes);
+}
+
+#[test]
+fn every_page_explains_its_code_with_examples_that_are_true() {
+    let scratch = tempfile::tempdir().unwrap();
+    for code in Code::ALL {
+        let page = page(*code);
+        let title = format!("# {code}: {}", code.title());
+        assert_eq!(page.lines().next(), Some(title.as_str()), "{code}");
+        let long = page.lines().find(|line| line.chars().count() > 80);
+        assert_eq!(long, None, "{code}: the page is 80 columns wide");
+        let (wrong, right) = (blocks(&page, "hyde wrong"), blocks(&page, "hyde right"));
+        assert!(
+            !wrong.is_empty() && !right.is_empty(),
+            "{code}: two examples"
+        );
+        for text in &wrong {
+            let output = written(text, scratch.path());
+            assert_eq!(codes(&output), [code.as_str()], "{code}, as wrong:\n{text}");
+        }
+        for text in &right {
+            let output = written(text, scratch.path());
+            let printed = String::from_utf8_lossy(&output.stdout);
+            assert!(
+                output.status.success(),
+                "{code}, as right:\n{text}\n{printed}"
+            );
+            let quiet: &[String] = &[];
+            assert_eq!(codes(&output), quiet, "{code}, as right:\n{text}");
+        }
+    }
+}
+
+/// Every fixture, in the order of its name.
+fn fixtures() -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder()).unwrap();
+    let mut found: Vec<PathBuf> = entries
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| {
+            path.extension()
+                .is_some_and(|extension| extension == "hyde")
+        })
+        .collect();
+    found.sort();
+    found
+}
+
+/// The page of a code, as the book has it.
+fn page(code: Code) -> String {
+    let book = Path::new(env!("CARGO_MANIFEST_DIR")).join("../book/src/errors");
+    std::fs::read_to_string(book.join(format!("{code}.md"))).unwrap()
+}
+
+/// The code blocks of a page that are marked so.
+fn blocks(page: &str, mark: &str) -> Vec<String> {
+    let fence = format!("```{mark}\n");
+    page.split(&fence)
+        .skip(1)
+        .filter_map(|rest| rest.split("```").next())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Writes an example of a page beside the fixtures' records and takes it as its first line says.
+fn written(text: &str, scratch: &Path) -> Output {
+    let path = scratch.join("example.hyde");
+    std::fs::write(&path, text).unwrap();
+    hyde(text, &path, &folder(), true)
+}
+
+/// What the command says of a file: checked, or as its first line says.
+fn hyde(text: &str, path: &Path, data: &Path, json: bool) -> Output {
+    let first = text.lines().next().unwrap_or_default();
+    let line = first.strip_prefix("// hyde ").unwrap_or("check FILE");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_hyde-tested"));
+    command.current_dir(path.parent().unwrap());
+    for word in line.split_whitespace() {
+        match word {
+            "FILE" => command.arg(path.file_name().unwrap()),
+            word => command.arg(word),
+        };
+    }
+    command.arg("--data").arg(data);
+    if json {
+        command.arg("--json");
+    }
+    command.output().unwrap()
+}
+
+/// The codes of what a command reported, each once, in their order.
+fn codes(output: &Output) -> Vec<String> {
+    let printed: Value = serde_json::from_slice(&output.stdout).unwrap_or_default();
+    let listed = printed["diagnostics"].as_array();
+    let found: BTreeSet<String> = listed
+        .into_iter()
+        .flatten()
+        .filter_map(|diagnostic| diagnostic["code"].as_str().map(str::to_owned))
+        .collect();
+    found.into_iter().collect()
+}
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("fixtures/errors")
+}

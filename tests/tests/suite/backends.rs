@@ -1,0 +1,124 @@
+//! Machine code against the interpreter of the same IR: no bit apart, kernel by kernel and over a whole run.
+
+use crate::examples::{self, Case};
+use crate::points::{Random, Values, parameters, plain};
+use hyde_compiler::Backend;
+use hyde_experiment::Options;
+use hyde_program::{Function, Point, Program, Workspace};
+
+#[test]
+fn every_kernel_agrees_to_the_last_bit() {
+    for case in examples::all() {
+        let [native, oracle] = both(&case);
+        let p = parameters(&native, &[]);
+        same(&case, "parameters", &p, &parameters(&oracle, &[]));
+        same(&case, "start", &start(&native, &p), &start(&oracle, &p));
+        let mut random = Random(1);
+        for _ in 0..8 {
+            let values = Values::of(&native, &mut random);
+            let at = values.point(&p);
+            let pairs = numbers(&native, at).into_iter().zip(numbers(&oracle, at));
+            for ((kernel, a), (_, b)) in pairs {
+                same(&case, &kernel, &a, &b);
+            }
+        }
+    }
+}
+
+#[test]
+fn derivatives_by_parameters_agree_to_the_last_bit() {
+    for case in examples::all() {
+        let [native, oracle] = both(&case);
+        let p = parameters(&native, &[]);
+        let values = Values::of(&native, &mut Random(2));
+        let at = values.point(&p);
+        let all = plain(&native);
+        for function in Function::ALL {
+            let of = |program: &Program| {
+                let mut work = Workspace::new(program.n_work);
+                let kernels = &program.kernels;
+                kernels.parameter_partials(function, &all, at, &mut work)
+            };
+            let (a, b) = (of(&native), of(&oracle));
+            let places = |list: &[(hyde_program::PartialEntry, f64)]| {
+                list.iter().map(|(entry, _)| *entry).collect::<Vec<_>>()
+            };
+            assert_eq!(places(&a), places(&b), "{}: {function:?}", case.name);
+            let numbers =
+                |list: &[(_, f64)]| list.iter().map(|(_, value)| *value).collect::<Vec<_>>();
+            same(&case, &format!("{function:?}"), &numbers(&a), &numbers(&b));
+        }
+    }
+}
+
+#[test]
+fn a_run_is_the_same_on_both() {
+    for case in examples::all() {
+        let loaded = case.example.parse().unwrap();
+        let options = Options {
+            stop_s: Some(0.1),
+            ..Options::default()
+        };
+        let [a, b] = both(&case)
+            .map(|program| hyde_experiment::run(&program, &loaded.tables, &options).unwrap());
+        same(&case, "time", &a.results.time, &b.results.time);
+        assert_eq!(a.results.columns.len(), b.results.columns.len());
+        for (number, (a, b)) in a.results.columns.iter().zip(&b.results.columns).enumerate() {
+            same(&case, &format!("output {number}"), a, b);
+        }
+        assert_eq!(a.results.events, b.results.events, "{}", case.name);
+        assert_eq!(a.results.statistics, b.results.statistics, "{}", case.name);
+    }
+}
+
+fn both(case: &Case) -> [Program; 2] {
+    [Backend::Native, Backend::Interpreter].map(|backend| {
+        let compiled = case.example.compile(backend);
+        compiled
+            .unwrap_or_else(|error| panic!("{}: {error}", case.name))
+            .program
+    })
+}
+
+fn start(program: &Program, p: &[f64]) -> Vec<f64> {
+    let (mut y, mut z) = (vec![0.0; program.n_unknowns], vec![0.0; program.n_memory]);
+    program.kernels.start(p, &mut y, &mut z);
+    y.extend(z);
+    y
+}
+
+/// What every kernel gives at a point, with its name.
+fn numbers(program: &Program, at: Point<'_>) -> Vec<(String, Vec<f64>)> {
+    let kernels = &program.kernels;
+    let mut work = Workspace::new(program.n_work);
+    let mut found = Vec::new();
+    for function in Function::ALL {
+        let mut out = vec![f64::NAN; program.rows(function)];
+        kernels.evaluate(function, at, &mut work, &mut out);
+        found.push((format!("{function:?}"), out));
+        let mut out = vec![f64::NAN; program.partials(function).len()];
+        kernels.partials(function, at, &mut work, &mut out);
+        found.push((format!("partials of {function:?}"), out));
+    }
+    let mut out = vec![f64::NAN; program.reactions.len()];
+    kernels.conditions(at, &mut work, &mut out);
+    found.push(("conditions".to_owned(), out));
+    for clock in 0..program.clocks.len() {
+        let mut after = at.z.to_vec();
+        kernels.tick(clock, at, &mut work, &mut after);
+        found.push((format!("tick of clock {clock}"), after));
+    }
+    found
+}
+
+/// Bit by bit; two values that are no number are alike.
+fn same(case: &Case, what: &str, a: &[f64], b: &[f64]) {
+    assert_eq!(a.len(), b.len(), "{}: {what}", case.name);
+    for (number, (a, b)) in a.iter().zip(b).enumerate() {
+        assert!(
+            a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan()),
+            "{}: {what}, value {number}: {a:e} by machine code, {b:e} by the interpreter",
+            case.name
+        );
+    }
+}

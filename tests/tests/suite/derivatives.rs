@@ -1,0 +1,202 @@
+//! Derivatives against central differences, entry by entry; what is not in a pattern must be zero.
+
+use crate::examples::{self, Case};
+use crate::points::{Random, Values, parameters, plain};
+use hyde_compiler::Backend;
+use hyde_program::{Function, Point, Program, Workspace, Wrt};
+
+/// The step of a difference against the size of what is varied.
+const STEP: f64 = 1e-4;
+/// Central differences are wrong by the third derivative times STEP^2/6; the laws here are of the fourth power (a screw's
+/// diameter) at most, whose relative third derivative is 24.
+const CURVATURE: f64 = 1e-6;
+/// Values carry some roundings of their largest term.
+const ROUNDING: f64 = 20.0 * f64::EPSILON;
+
+#[test]
+fn jacobian_and_other_derivatives_are_those_of_the_functions() {
+    for case in examples::all() {
+        let program = case.example.compile(Backend::Native).unwrap().program;
+        let p = parameters(&program, &[]);
+        let mut random = Random(3);
+        for _ in 0..3 {
+            let mut values = Values::of(&program, &mut random);
+            for function in Function::ALL {
+                let exact = exact(&program, function, values.point(&p));
+                let size = size(&program, function, values.point(&p), &exact);
+                for unknown in 0..program.n_unknowns {
+                    for by_derivative in [false, true] {
+                        let at = |values: &mut Values, step: f64| {
+                            let vector = if by_derivative {
+                                &mut values.yp
+                            } else {
+                                &mut values.y
+                            };
+                            let before = vector[unknown];
+                            vector[unknown] = before + step;
+                            let out = evaluated(&program, function, values.point(&p));
+                            let vector = if by_derivative {
+                                &mut values.yp
+                            } else {
+                                &mut values.y
+                            };
+                            vector[unknown] = before;
+                            out
+                        };
+                        let high = at(&mut values, STEP);
+                        let low = at(&mut values, -STEP);
+                        let (wrt, name) = if by_derivative {
+                            (
+                                Wrt::Derivative(unknown),
+                                format!("der({})", program.unknown_name(unknown)),
+                            )
+                        } else {
+                            (Wrt::Unknown(unknown), program.unknown_name(unknown))
+                        };
+                        let column = Column {
+                            function,
+                            wrt,
+                            name,
+                            step: STEP,
+                        };
+                        column.check(&case, &program, &exact, &size, &high, &low);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn derivatives_by_parameters_are_those_of_the_functions() {
+    for case in examples::all() {
+        let program = case.example.compile(Backend::Native).unwrap().program;
+        let p = parameters(&program, &[]);
+        let all = plain(&program);
+        let values = Values::of(&program, &mut Random(4));
+        for function in Function::ALL {
+            let mut work = Workspace::new(program.n_work);
+            let at = values.point(&p);
+            let exact: Vec<_> = program
+                .kernels
+                .parameter_partials(function, &all, at, &mut work)
+                .into_iter()
+                .map(|(entry, value)| (entry.row, entry.wrt, value))
+                .collect();
+            let mut size = size(&program, function, at, &self::exact(&program, function, at));
+            for &(row, wrt, value) in &exact {
+                if let Wrt::Parameter(place) = wrt {
+                    size[row] += (value * p[place]).abs();
+                }
+            }
+            for &place in &all {
+                let step = if p[place] == 0.0 {
+                    STEP
+                } else {
+                    STEP * p[place].abs()
+                };
+                // A parameter whose value uses others stays: the run knows which of them it sets.
+                let at = |change: f64| {
+                    let set: Vec<(usize, f64)> = all
+                        .iter()
+                        .map(|&k| (k, p[k] + if k == place { change } else { 0.0 }))
+                        .collect();
+                    let p = parameters(&program, &set);
+                    evaluated(&program, function, values.point(&p))
+                };
+                let known = program.parameters.iter();
+                let mut known = known.filter(|known| known.place <= place);
+                let column = Column {
+                    function,
+                    wrt: Wrt::Parameter(place),
+                    name: known
+                        .next_back()
+                        .map_or_else(String::new, |k| k.name.clone()),
+                    step,
+                };
+                column.check(&case, &program, &exact, &size, &at(step), &at(-step));
+            }
+        }
+    }
+}
+
+/// The derivatives of a function by one thing.
+struct Column {
+    function: Function,
+    wrt: Wrt,
+    name: String,
+    step: f64,
+}
+
+impl Column {
+    /// Against the difference of two evaluations, row by row.
+    fn check(
+        &self,
+        case: &Case,
+        program: &Program,
+        exact: &[(usize, Wrt, f64)],
+        size: &[f64],
+        high: &[f64],
+        low: &[f64],
+    ) {
+        for row in 0..high.len() {
+            // Quantisers stand in measured channels and are differentiated as the identity (S3).
+            if self.function == Function::Outputs && program.outputs[row].auxiliary {
+                continue;
+            }
+            let entries = exact.iter();
+            let entries = entries.filter(|(r, wrt, _)| *r == row && *wrt == self.wrt);
+            let derivative: f64 = entries.map(|(_, _, value)| value).sum();
+            let difference = (high[row] - low[row]) / (2.0 * self.step);
+            let tolerance = CURVATURE * derivative.abs() + ROUNDING * size[row] / self.step;
+            assert!(
+                (difference - derivative).abs() <= tolerance,
+                "{}: {:?} {row} by {}: {derivative:e}, but differences say {difference:e} (± {tolerance:e})",
+                case.name,
+                self.function,
+                self.name
+            );
+        }
+    }
+}
+
+fn evaluated(program: &Program, function: Function, at: Point<'_>) -> Vec<f64> {
+    let mut work = Workspace::new(program.n_work);
+    let mut out = vec![0.0; program.rows(function)];
+    program.kernels.evaluate(function, at, &mut work, &mut out);
+    out
+}
+
+/// The derivatives by unknowns and their derivatives.
+fn exact(program: &Program, function: Function, at: Point<'_>) -> Vec<(usize, Wrt, f64)> {
+    let entries = program.partials(function);
+    let mut work = Workspace::new(program.n_work);
+    let mut out = vec![0.0; entries.len()];
+    program.kernels.partials(function, at, &mut work, &mut out);
+    entries
+        .iter()
+        .zip(out)
+        .map(|(entry, value)| (entry.row, entry.wrt, value))
+        .collect()
+}
+
+/// How large the terms of each row are together.
+fn size(
+    program: &Program,
+    function: Function,
+    at: Point<'_>,
+    exact: &[(usize, Wrt, f64)],
+) -> Vec<f64> {
+    let mut size: Vec<f64> = evaluated(program, function, at)
+        .iter()
+        .map(|value| value.abs())
+        .collect();
+    for &(row, wrt, value) in exact {
+        size[row] += match wrt {
+            Wrt::Unknown(k) => (value * at.y[k]).abs(),
+            Wrt::Derivative(k) => (value * at.yp[k]).abs(),
+            Wrt::Parameter(_) | Wrt::Time => 0.0,
+        };
+    }
+    size
+}

@@ -1,0 +1,15 @@
+//! Tests across crates: every example through every stage and on both backends, and small models with a closed form.
+
+mod backends;
+mod bar;
+mod bouncing_ball;
+mod derivatives;
+mod digests;
+mod energy;
+mod examples;
+mod first_order;
+mod models;
+mod points;
+mod sampled;
+mod stages;
+mod stick_slip;

@@ -1,0 +1,85 @@
+//! What every stage makes of every example. A snapshot that changes is read before it is accepted.
+
+use crate::examples;
+use hyde_compiler::Stage;
+use hyde_tests::root;
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+/// Longer than this nobody reads a snapshot: of longer code the instructions of each kernel are counted.
+const LONGEST: usize = 2000;
+
+#[test]
+fn every_stage_of_every_example() {
+    let mut written = BTreeSet::new();
+    for case in examples::all() {
+        // The tree is that of the file, whatever the experiment.
+        let ast = format!("{}.ast", case.folder);
+        if !written.contains(&ast) {
+            check(&case, Stage::Ast, &ast);
+            written.insert(ast);
+        }
+        for (stage, extension) in [
+            (Stage::Flat, "flat"),
+            (Stage::Structure, "structure"),
+            (Stage::Dae, "dae"),
+            // Cranelift's IR as it is before a machine is chosen: the same on every one.
+            (Stage::Clif, "clif"),
+        ] {
+            let name = format!("{}.{extension}", case.name);
+            check(&case, stage, &name);
+            written.insert(name);
+        }
+    }
+    let stages = ["ast", "flat", "structure", "dae", "clif"];
+    for file in std::fs::read_dir(root().join("tests/snapshots")).unwrap() {
+        let file = file.unwrap().file_name().to_string_lossy().into_owned();
+        let Some(name) = file.strip_suffix(".snap") else {
+            continue;
+        };
+        let of_a_stage = name
+            .rsplit('.')
+            .next()
+            .is_some_and(|end| stages.contains(&end));
+        assert!(
+            !of_a_stage || written.contains(name),
+            "`{file}` belongs to no example any more"
+        );
+    }
+}
+
+fn check(case: &examples::Case, stage: Stage, name: &str) {
+    let text = case.example.emit(stage);
+    let text = text.unwrap_or_else(|error| panic!("{name}: {error}"));
+    let text = if text.lines().count() > LONGEST {
+        instructions(&text)
+    } else {
+        text
+    };
+    insta::with_settings!({
+        snapshot_path => "../../snapshots",
+        prepend_module_to_snapshot => false,
+        omit_expression => true,
+    }, {
+        insta::assert_snapshot!(name, text);
+    });
+}
+
+/// How often each instruction stands in each kernel.
+fn instructions(clif: &str) -> String {
+    let mut out = String::new();
+    let mut counts: BTreeMap<&str, usize> = BTreeMap::new();
+    for line in clif.lines().chain(["}"]) {
+        if line == "}" {
+            for (instruction, count) in std::mem::take(&mut counts) {
+                let _ = writeln!(out, "{count:>6} {instruction}");
+            }
+        } else if let Some(code) = line.strip_prefix("    ") {
+            let code = code.split_once(" = ").map_or(code, |(_, code)| code);
+            *counts.entry(code.split(' ').next().unwrap()).or_default() += 1;
+        } else if line.starts_with("; ") {
+            let _ = writeln!(out, "{line}");
+        }
+    }
+    out
+}

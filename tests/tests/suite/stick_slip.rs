@@ -1,0 +1,73 @@
+//! Stick–slip of a mass pulled through a spring at constant speed, breakaway above sliding friction.
+//!
+//! With w = sqrt(k/m) and D = Fs - F a slide from rest takes 2/w*(pi - atan(w*D/(k*v0))) and the rest after it
+//! 2*D/(k*v0), for ever (Leine, van Campen, de Kraker, van den Steen: Stick-slip vibrations induced by alternate friction
+//! models, Nonlinear Dynamics 16 (1998) 41).
+
+use crate::models::{close, solve};
+
+const M: f64 = 1.0;
+const K: f64 = 100.0;
+const V0: f64 = 0.1;
+const SLIDING: f64 = 1.0;
+const BREAKAWAY: f64 = 2.0;
+
+#[test]
+fn slides_and_rests_last_as_long_as_published() {
+    let pulled = solve("stick_slip", "creep");
+    let events = pulled.events();
+    let w = (K / M).sqrt();
+    let drop = BREAKAWAY - SLIDING;
+    let slide = 2.0 / w * (std::f64::consts::PI - (w * drop / (K * V0)).atan());
+    let rest = 2.0 * drop / (K * V0);
+    assert!(events.len() >= 15, "{events:?}");
+    let mut expected = BREAKAWAY / (K * V0);
+    for (number, &(t, mode)) in events.iter().enumerate() {
+        assert_eq!(mode, if number % 2 == 0 { "slip" } else { "stuck" });
+        // rtol 1e-9; the motion repeats, so that errors do not grow but add up.
+        close(t, expected, 1e-6);
+        expected += if number % 2 == 0 { slide } else { rest };
+    }
+}
+
+#[test]
+fn at_rest_the_velocity_is_exactly_zero() {
+    let pulled = solve("stick_slip", "creep");
+    let events = pulled.events();
+    let (v, s) = (pulled.column("body.v"), pulled.column("body.s"));
+    let force = pulled.column("floor.a.f");
+    let mut rows = 0;
+    let mut place = None;
+    for (row, &t) in pulled.time().iter().enumerate() {
+        let before = events.iter().rev().find(|(event, _)| *event <= t);
+        let stuck = before.is_none_or(|&(event, mode)| mode == "stuck" && event < t);
+        let ends = events
+            .iter()
+            .any(|&(event, _)| event.to_bits() == t.to_bits());
+        if !stuck || ends {
+            place = None;
+            continue;
+        }
+        rows += 1;
+        assert_eq!(v[row].to_bits(), 0.0_f64.to_bits(), "at {t} s");
+        // It stays where it is to the last bit, and the floor takes what the spring gives.
+        assert_eq!(
+            s[row].to_bits(),
+            place.get_or_insert(s[row]).to_bits(),
+            "at {t} s"
+        );
+        close(force[row], K * (V0 * t - s[row]), 1e-12);
+        assert!(force[row].abs() <= BREAKAWAY);
+    }
+    assert!(rows > 1000, "only {rows} rows at rest");
+}
+
+#[test]
+fn below_breakaway_a_whole_drive_stands_still() {
+    let axis = solve("stick", "off");
+    for name in ["saddle.v", "motor.w", "pulley.w"] {
+        let moved = axis.column(name).iter().filter(|v| v.to_bits() != 0);
+        assert_eq!(moved.count(), 0, "{name}");
+    }
+    assert!(axis.events().is_empty());
+}
