@@ -131,14 +131,14 @@ pub(crate) fn eliminate(system: &mut System) -> bool {
 
 /// The cell an expression is, up to its sign.
 pub(crate) fn signed_cell(system: &System, id: ExprId) -> Option<(Cell, bool)> {
-    match system.flat.exprs[id] {
-        Expr::Var(var, index) => Some((System::cell(var, index)?, false)),
-        Expr::Unary(UnaryOp::Neg, inner) => {
-            let (cell, negated) = signed_cell(system, inner)?;
-            Some((cell, !negated))
-        }
-        _ => None,
+    if let Expr::Unary(UnaryOp::Neg, inner) = system.flat.exprs[id] {
+        let (cell, negated) = signed_cell(system, inner)?;
+        return Some((cell, !negated));
     }
+    let Expr::Var(var, index) = system.flat.exprs[id] else {
+        return None;
+    };
+    Some((System::cell(var, index)?, false))
 }
 
 fn fact(system: &System, lhs: ExprId, rhs: ExprId) -> Option<Fact> {

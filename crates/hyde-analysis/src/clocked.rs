@@ -51,9 +51,11 @@ fn assignments(
         .map(|(id, _)| id)
         .collect();
     // One node an element of a scalar or whole array; elements of arrays set one by one are not mixed with ranges.
-    let target = |dae: &Dae, item: &ClockedEquation| match dae.exprs[item.equation.lhs] {
-        Expr::Var(var, index) if unknowns.contains(&var) => Some((var, index)),
-        _ => None,
+    let unknown = |dae: &Dae, id: ExprId| {
+        let Expr::Var(var, index) = dae.exprs[id] else {
+            return None;
+        };
+        unknowns.contains(&var).then_some((var, index))
     };
     let mut nodes: Vec<(VarId, Index)> = Vec::new();
     let mut edges = Vec::new();
@@ -71,14 +73,12 @@ fn assignments(
                 own.push(number);
             }
         };
-        if let Some(node) = target(dae, item) {
+        if let Some(node) = unknown(dae, item.equation.lhs) {
             add(node);
         }
         for id in dae.exprs.below(&[item.equation.lhs, item.equation.rhs]) {
-            if let Expr::Var(var, index) = dae.exprs[id] {
-                if unknowns.contains(&var) {
-                    add((var, index));
-                }
+            if let Some(node) = unknown(dae, id) {
+                add(node);
             }
         }
         edges.push(own);
@@ -238,12 +238,12 @@ fn order_clocks(dae: &mut Dae, diagnostics: &mut Diagnostics) {
                 .collect();
             let mut found = Vec::new();
             for id in dae.exprs.below(&values) {
-                if let Expr::Var(var, _) = dae.exprs[id] {
-                    if let VariableKind::Clocked(other) = dae.variables[var].kind {
-                        if other != clock && !found.contains(&other.index()) {
-                            found.push(other.index());
-                        }
-                    }
+                if let Expr::Var(var, _) = dae.exprs[id]
+                    && let VariableKind::Clocked(other) = dae.variables[var].kind
+                    && other != clock
+                    && !found.contains(&other.index())
+                {
+                    found.push(other.index());
                 }
             }
             found
@@ -293,10 +293,6 @@ fn holds(dae: &mut Dae) {
         let (Some(target), Some(from)) = (dae.places[id], dae.places[source]) else {
             continue;
         };
-        debug_assert!(
-            target.space == Space::Memory && from.space == Space::Memory,
-            "held values lie in the memory"
-        );
         dae.holds.push(Hold {
             clock,
             source: from.base,

@@ -293,22 +293,24 @@ fn state_leaves(
 ) -> Option<Vec<Cell>> {
     let mut found = Vec::new();
     for id in system.flat.exprs.below(&[lhs, rhs]) {
-        match system.flat.exprs[id] {
-            Expr::Der(..) => return None,
-            Expr::Var(var, index) => match system.flat.variables[var].kind {
-                VariableKind::Continuous => {
-                    let cell = System::cell(var, index)?;
-                    if !states.contains(&cell) && !derivable(system, cell, states, 0) {
-                        return None;
-                    }
-                    found.push(cell);
+        let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
+            continue;
+        };
+        if derivative {
+            return None;
+        }
+        match system.flat.variables[var].kind {
+            VariableKind::Continuous => {
+                let cell = System::cell(var, index)?;
+                if !states.contains(&cell) && !derivable(system, cell, states, 0) {
+                    return None;
                 }
-                VariableKind::Discrete | VariableKind::Held(..) => {}
-                VariableKind::Clocked(_)
-                | VariableKind::Column(..)
-                | VariableKind::Reduction(_) => return None,
-            },
-            _ => {}
+                found.push(cell);
+            }
+            VariableKind::Discrete | VariableKind::Held(..) => {}
+            VariableKind::Clocked(_) | VariableKind::Column(..) | VariableKind::Reduction(_) => {
+                return None;
+            }
         }
     }
     Some(found)
@@ -327,20 +329,21 @@ fn derivable(system: &System, cell: Cell, states: &BTreeSet<Cell>, depth: usize)
         .exprs
         .below(&[rhs])
         .into_iter()
-        .all(|id| match system.flat.exprs[id] {
-            Expr::Der(..) => false,
-            Expr::Var(var, index) => {
-                match (system.flat.variables[var].kind, System::cell(var, index)) {
-                    (VariableKind::Continuous, Some(inner)) => {
-                        inner != cell
-                            && (states.contains(&inner)
-                                || derivable(system, inner, states, depth + 1))
-                    }
-                    (VariableKind::Discrete | VariableKind::Held(..), _) => true,
-                    _ => false,
-                }
+        .all(|id| {
+            let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
+                return true;
+            };
+            match system.flat.variables[var].kind {
+                _ if derivative => false,
+                VariableKind::Continuous => System::cell(var, index).is_some_and(|inner| {
+                    inner != cell
+                        && (states.contains(&inner) || derivable(system, inner, states, depth + 1))
+                }),
+                VariableKind::Discrete | VariableKind::Held(..) => true,
+                VariableKind::Clocked(_)
+                | VariableKind::Column(..)
+                | VariableKind::Reduction(_) => false,
             }
-            _ => true,
         })
 }
 
@@ -369,9 +372,11 @@ fn derivative(
         .exprs
         .below(&[id])
         .into_iter()
-        .filter_map(|id| match system.flat.exprs[id] {
-            Expr::Var(var, index) if system.is_continuous(var) => System::cell(var, index),
-            _ => None,
+        .filter_map(|id| {
+            let Expr::Var(var, index) = system.flat.exprs[id] else {
+                return None;
+            };
+            System::cell(var, index).filter(|_| system.is_continuous(var))
         })
         .collect();
     let mut rates = BTreeMap::new();
@@ -390,10 +395,14 @@ fn derivative(
         rates.insert(cell, rate);
     }
     let one = system.exprs().constant(1.0);
-    Some(system.flat.exprs.tangent(id, |_, leaf| match leaf {
-        Expr::Var(var, index) => rates.get(&System::cell(var, index)?).copied(),
-        Expr::Time => Some(one),
-        _ => None,
+    Some(system.flat.exprs.tangent(id, |_, leaf| {
+        if leaf == Expr::Time {
+            return Some(one);
+        }
+        let Expr::Var(var, index) = leaf else {
+            return None;
+        };
+        rates.get(&System::cell(var, index)?).copied()
     }))
 }
 

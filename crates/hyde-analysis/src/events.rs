@@ -110,14 +110,16 @@ fn add(
 /// value.
 fn before_the_event(dae: &mut Dae, value: ExprId, set: &[(VarId, Index, ExprId)]) -> ExprId {
     dae.exprs
-        .rewrite(value, &mut HashMap::new(), |arena, _, expr| match expr {
-            Expr::Pre(var, index) => Some(arena.add(Expr::Var(var, index))),
-            Expr::Var(var, index) => set
-                .iter()
-                .rev()
-                .find(|(v, i, _)| *v == var && *i == index)
-                .map(|(_, _, new)| *new),
-            _ => None,
+        .rewrite(value, &mut HashMap::new(), |arena, _, expr| {
+            if let Expr::Pre(var, index) = expr {
+                return Some(arena.add(Expr::Var(var, index)));
+            }
+            let Expr::Var(var, index) = expr else {
+                return None;
+            };
+            let mut latest = set.iter().rev();
+            let (.., new) = latest.find(|(v, i, _)| *v == var && *i == index)?;
+            Some(*new)
         })
 }
 

@@ -104,10 +104,8 @@ pub(crate) fn access(system: &System, matched: &Matched, number: usize) -> Optio
     let unknown = matched.unknowns[number];
     for (range, lhs, rhs) in sides(system, matched.equation_of[number]) {
         for id in system.flat.exprs.below(&[lhs, rhs]) {
-            let (var, index, derivative) = match system.flat.exprs[id] {
-                Expr::Var(var, index) => (var, index, false),
-                Expr::Der(var, index) => (var, index, true),
-                _ => continue,
+            let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
+                continue;
             };
             let fits = var == unknown.var
                 && derivative == unknown.state

@@ -234,7 +234,7 @@ fn memory(system: &System, dae: &mut Dae) {
 }
 
 /// Start values of the vector and the memory.
-fn starts(system: &mut System, dae: &mut Dae) {
+fn starts(system: &System, dae: &mut Dae) {
     for id in dae.variables.ids().collect::<Vec<_>>() {
         let Some(place) = dae.places[id] else {
             continue;
@@ -256,81 +256,61 @@ fn starts(system: &mut System, dae: &mut Dae) {
         let last = i32::try_from(size).unwrap_or(i32::MAX) - 1;
         match list.as_slice() {
             [] => {}
-            [value] if size == 1 => {
-                dae.starts.push(Start {
-                    place,
-                    range: Range::SCALAR,
-                    index: Index::SCALAR,
-                    value: *value,
-                });
-            }
-            [value] => {
-                let index = Index {
+            // One value serves all elements.
+            [value] if size > 1 => dae.starts.push(Start {
+                place,
+                range: Range { first: 0, last },
+                index: Index {
                     stride: 1,
                     offset: 0,
-                };
-                dae.starts.push(Start {
-                    place,
-                    range: Range { first: 0, last },
-                    index,
-                    value: *value,
-                });
-            }
-            values => {
-                for (element, &value) in values.iter().enumerate().take(size) {
-                    let index = Index::fixed(i32::try_from(element).unwrap_or(0));
-                    dae.starts.push(Start {
-                        place,
-                        range: Range::SCALAR,
-                        index,
-                        value,
-                    });
-                }
-            }
+                },
+                value: *value,
+            }),
+            values => dae.starts.extend(
+                (0..size)
+                    .zip(values)
+                    .map(|(element, &value)| start(place, element, value)),
+            ),
         }
         // An element of an array that is joined to a component starts as the component does.
         if dae.variables[id].len.is_some() {
             for element in 0..size {
                 if let Some(given) = system.starts.get(&(id, element)) {
-                    let index = Index::fixed(i32::try_from(element).unwrap_or(0));
-                    dae.starts.push(Start {
-                        place,
-                        range: Range::SCALAR,
-                        index,
-                        value: best_start(given),
-                    });
+                    dae.starts.push(start(place, element, best_start(given)));
                 }
             }
         }
     }
     for automaton in dae.automata.iter() {
-        #[allow(clippy::cast_precision_loss, reason = "a number of modes")]
-        let value = dae.exprs.constant(automaton.initial as f64);
         let place = Place {
             space: Space::Memory,
             base: automaton.place,
         };
-        dae.starts.push(Start {
-            place,
-            range: Range::SCALAR,
-            index: Index::SCALAR,
-            value,
-        });
+        let value = dae.exprs.constant(automaton.initial as f64);
+        dae.starts.push(start(place, 0, value));
     }
-    for (number, automaton) in system.flat.automata.iter().enumerate() {
-        for action in &automaton.initial_actions {
-            if let hyde_ir::flat::Action::Assign(var, index, value) = action {
-                if let Some(place) = dae.places[*var] {
-                    dae.starts.push(Start {
-                        place,
-                        range: Range::SCALAR,
-                        index: *index,
-                        value: *value,
-                    });
-                }
-            }
+    let entries = system.flat.automata.iter();
+    for action in entries.flat_map(|automaton| &automaton.initial_actions) {
+        if let hyde_ir::flat::Action::Assign(var, index, value) = action
+            && let Some(place) = dae.places[*var]
+        {
+            dae.starts.push(Start {
+                place,
+                range: Range::SCALAR,
+                index: *index,
+                value: *value,
+            });
         }
-        debug_assert!(number < dae.automata.len(), "one entry an automaton");
+    }
+}
+
+/// The start value of one element.
+fn start(place: Place, element: usize, value: ExprId) -> Start {
+    Start {
+        place,
+        range: Range::SCALAR,
+        index: Index::fixed(i32::try_from(element).unwrap_or(0)),
+        value,
     }
 }
 

@@ -102,10 +102,8 @@ pub(crate) fn edges(system: &System, node: Node, unknowns: &[Segment]) -> Vec<us
     let mut found: Vec<(u8, usize)> = Vec::new();
     for (range, lhs, rhs) in sides(system, node) {
         for id in system.flat.exprs.below(&[lhs, rhs]) {
-            let (var, index, derivative) = match system.flat.exprs[id] {
-                Expr::Var(var, index) => (var, index, false),
-                Expr::Der(var, index) => (var, index, true),
-                _ => continue,
+            let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
+                continue;
             };
             let (first, last) = System::interval(index, range);
             let covered = unknowns.binary_search_by(|u| (u.var, u.first).cmp(&(var, first)));
@@ -332,10 +330,10 @@ fn nothing_new(system: &System, origin: &Origin) -> Diagnostic {
             let Some(cell) = System::cell(var, index) else {
                 continue;
             };
-            if let Some(by) = value_given_by(system, cell) {
-                if !known.iter().any(|(other, _)| *other == cell) {
-                    known.push((cell, by));
-                }
+            if let Some(by) = value_given_by(system, cell)
+                && !known.iter().any(|(other, _)| *other == cell)
+            {
+                known.push((cell, by));
             }
         }
     }
@@ -474,10 +472,8 @@ pub(crate) fn plural(count: usize, word: &str) -> String {
 fn short(name: &str) -> &str {
     // `screw.q.left` is shown as `q.left`.
     match name.rsplit_once('.') {
-        Some((before, end @ ("left" | "right"))) => {
-            let start = before.rfind('.').map_or(0, |at| at + 1);
-            let _ = end;
-            &name[start..]
+        Some((before, "left" | "right")) => {
+            &name[before.rfind('.').map_or(0, |at| at + 1)..]
         }
         Some((_, last)) => last,
         None => name,

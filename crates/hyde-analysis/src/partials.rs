@@ -35,8 +35,8 @@ pub(crate) fn differentiate(dae: &mut Dae) {
     }
 }
 
-/// Derivatives of the functions by chosen elements of parameters, through what is derived from them alone. Parameters
-/// whose values use others count as independent: the run knows which of them are set.
+/// Derivatives of the functions by chosen elements of parameters. The chosen ones are independent of each other; every
+/// other parameter whose value uses them follows.
 pub fn parameter_partials(
     dae: &mut Dae,
     chosen: &[(ParamId, usize)],
@@ -48,7 +48,7 @@ pub fn parameter_partials(
         for (range, row, value) in rows(dae, function) {
             let value = expand(&mut dae.exprs, value, &definitions);
             for &(param, element) in chosen {
-                let derivative = by_parameter(dae, value, param, element);
+                let derivative = by_parameter(dae, value, (param, element), chosen);
                 if !dae.exprs.is_constant(derivative, 0.0) {
                     let position = dae.parameter_places[param] + element;
                     list.push(Partial {
@@ -89,12 +89,14 @@ pub fn tick_partials(dae: &mut Dae, clock: ClockId) -> Vec<(usize, TickWrt, Expr
                 offset: counter,
             };
             let value = expand(&mut dae.exprs, assignment.value, &definitions);
-            let value = shift(&mut dae.exprs, value, at);
+            let value = dae.exprs.with_counter(value, at);
             let value = dae
                 .exprs
-                .rewrite(value, &mut HashMap::new(), |_, _, expr| match expr {
-                    Expr::Var(var, index) => assigned.get(&(var, index.offset)).copied(),
-                    _ => None,
+                .rewrite(value, &mut HashMap::new(), |_, _, expr| {
+                    let Expr::Var(var, index) = expr else {
+                        return None;
+                    };
+                    assigned.get(&(var, index.offset)).copied()
                 });
             let element = assignment.index.at(counter);
             assigned.insert((assignment.var, element), value);
@@ -125,41 +127,61 @@ pub fn tick_partials(dae: &mut Dae, clock: ClockId) -> Vec<(usize, TickWrt, Expr
     found
 }
 
-fn by_parameter(dae: &mut Dae, value: ExprId, param: ParamId, element: usize) -> ExprId {
-    let mut derived: HashMap<ParamId, ExprId> = HashMap::new();
-    let used: Vec<ParamId> = dae
-        .exprs
-        .below(&[value])
-        .into_iter()
-        .filter_map(|id| {
-            if let Expr::Param(p, _) = dae.exprs[id] {
-                Some(p)
-            } else {
-                None
-            }
-        })
-        .filter(|&p| dae.parameters[p].derived)
-        .collect();
-    for p in used {
-        let inner = dae.parameters[p].value[0];
-        let derivative = by_parameter(dae, inner, param, element);
-        derived.insert(p, derivative);
-    }
-    let one = dae.exprs.constant(1.0);
-    let chosen = Index::fixed(i32::try_from(element).unwrap_or(0));
-    dae.exprs.tangent(value, |arena, leaf| match leaf {
-        Expr::Param(p, index) if p == param && index == chosen => Some(one),
-        // An element that moves with the counter: 1 where the counter meets it.
-        Expr::Param(p, index) if p == param && index.stride != 0 => {
-            let counter = arena.add(Expr::Counter);
-            let at =
-                arena.constant(f64::from(chosen.offset - index.offset) / f64::from(index.stride));
-            let meets = arena.binary(hyde_ir::BinaryOp::Eq, counter, at);
-            let zero = arena.constant(0.0);
-            Some(arena.if_else(meets, one, zero))
+fn by_parameter(
+    dae: &mut Dae,
+    value: ExprId,
+    (param, element): (ParamId, usize),
+    chosen: &[(ParamId, usize)],
+) -> ExprId {
+    let mut following: HashMap<ParamId, Vec<ExprId>> = HashMap::new();
+    for id in dae.exprs.below(&[value]) {
+        let Expr::Param(p, _) = dae.exprs[id] else {
+            continue;
+        };
+        if following.contains_key(&p) || chosen.iter().any(|(other, _)| *other == p) {
+            continue;
         }
-        Expr::Param(p, _) => derived.get(&p).copied(),
-        _ => None,
+        let values = dae.parameters[p].value.clone();
+        let derivatives = values
+            .into_iter()
+            .map(|inner| by_parameter(dae, inner, (param, element), chosen))
+            .collect();
+        following.insert(p, derivatives);
+    }
+    let (zero, one) = (dae.exprs.constant(0.0), dae.exprs.constant(1.0));
+    // An element that moves with the counter is the one of that number where the counter meets it.
+    let at_element = |arena: &mut ExprArena, index: Index, number: usize, value, other| {
+        let number = i32::try_from(number).unwrap_or(0);
+        let counter = arena.add(Expr::Counter);
+        let at = arena.constant(f64::from(number - index.offset) / f64::from(index.stride));
+        let meets = arena.binary(hyde_ir::BinaryOp::Eq, counter, at);
+        arena.if_else(meets, value, other)
+    };
+    dae.exprs.tangent(value, |arena, leaf| {
+        let Expr::Param(p, index) = leaf else {
+            return None;
+        };
+        if p == param {
+            let fixed = Index::fixed(i32::try_from(element).unwrap_or(0));
+            return match index.stride {
+                0 => (index == fixed).then_some(one),
+                _ => Some(at_element(arena, index, element, one, zero)),
+            };
+        }
+        let values = following.get(&p)?;
+        match (values.as_slice(), index.stride) {
+            // One value serves all elements.
+            ([all], _) => Some(*all),
+            (values, 0) => values.get(usize::try_from(index.offset).ok()?).copied(),
+            (values, _) => {
+                let moving = values.iter().enumerate();
+                let moving = moving.filter(|&(_, &value)| value != zero);
+                moving.fold(None, |rest, (number, &value)| {
+                    let other = rest.unwrap_or(zero);
+                    Some(at_element(arena, index, number, value, other))
+                })
+            }
+        }
     })
 }
 
@@ -238,12 +260,16 @@ fn wrt(dae: &Dae, leaf: Expr) -> Option<Wrt> {
             ..index
         })
     };
-    match leaf {
-        Expr::Var(var, index) => Some(Wrt::Unknown(in_vector(var, index)?)),
-        Expr::Der(var, index) => Some(Wrt::Derivative(in_vector(var, index)?)),
-        Expr::Time => Some(Wrt::Time),
-        _ => None,
+    if leaf == Expr::Time {
+        return Some(Wrt::Time);
     }
+    let (var, index, derivative) = leaf.access()?;
+    let place = in_vector(var, index)?;
+    Some(if derivative {
+        Wrt::Derivative(place)
+    } else {
+        Wrt::Unknown(place)
+    })
 }
 
 /// The definitions with earlier ones put in.
@@ -278,39 +304,6 @@ fn expand(arena: &mut ExprArena, root: ExprId, definitions: &HashMap<VarId, Defi
             stride: sign * index.stride,
             offset: sign * (index.offset - definition.index.offset),
         };
-        Some(shift(arena, definition.value, counter))
-    })
-}
-
-/// An expression with its counter replaced by `stride*i + offset`.
-fn shift(arena: &mut ExprArena, root: ExprId, counter: Index) -> ExprId {
-    if counter
-        == (Index {
-            stride: 1,
-            offset: 0,
-        })
-    {
-        return root;
-    }
-    let moved = |index: Index| Index {
-        stride: index.stride * counter.stride,
-        offset: index.stride * counter.offset + index.offset,
-    };
-    arena.rewrite(root, &mut HashMap::new(), |arena, _, expr| match expr {
-        Expr::Var(var, index) if index.stride != 0 => Some(arena.add(Expr::Var(var, moved(index)))),
-        Expr::Der(var, index) if index.stride != 0 => Some(arena.add(Expr::Der(var, moved(index)))),
-        Expr::Param(param, index) if index.stride != 0 => {
-            Some(arena.add(Expr::Param(param, moved(index))))
-        }
-        Expr::Counter => {
-            let i = arena.add(Expr::Counter);
-            let (stride, offset) = (
-                arena.constant(f64::from(counter.stride)),
-                arena.constant(f64::from(counter.offset)),
-            );
-            let scaled = arena.times(stride, i);
-            Some(arena.plus(scaled, offset))
-        }
-        _ => None,
+        Some(arena.with_counter(definition.value, counter))
     })
 }

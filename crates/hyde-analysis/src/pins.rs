@@ -65,7 +65,7 @@ pub(crate) fn exchange_rows(
             continue;
         }
         let automaton = system.slots[slot].automaton;
-        let slot_row = row_of(dae, matched, order, number);
+        let slot_row = row_of(order, number);
         for (mode, branch) in branches.iter().enumerate() {
             let Some((cell, value)) = branch.pin else {
                 continue;
@@ -108,13 +108,12 @@ pub(crate) fn exchange_rows(
 
 /// A value that changes at events only.
 fn constant_between_events(system: &System, id: ExprId) -> bool {
-    !system.flat.exprs.any(id, |expr| match expr {
-        Expr::Time | Expr::Der(..) => true,
-        Expr::Var(var, _) => !matches!(
-            system.flat.variables[var].kind,
-            VariableKind::Discrete | VariableKind::Held(..)
-        ),
-        _ => false,
+    !system.flat.exprs.any(id, |expr| {
+        expr == Expr::Time
+            || expr.access().is_some_and(|(var, _, derivative)| {
+                let kind = system.flat.variables[var].kind;
+                derivative || !matches!(kind, VariableKind::Discrete | VariableKind::Held(..))
+            })
     })
 }
 
@@ -159,17 +158,9 @@ fn refuse_two_pins(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
 }
 
 /// Number of the residual of an unknown that stays in the vector.
-fn row_of(dae: &Dae, matched: &Matched, order: &Order, number: usize) -> usize {
-    let before = order.in_vector[..number]
-        .iter()
-        .filter(|&&kept| kept)
-        .count();
-    debug_assert!(
-        before < dae.residuals.len() && order.in_vector[number],
-        "{:?} stays in the vector",
-        matched.unknowns[number]
-    );
-    before
+fn row_of(order: &Order, number: usize) -> usize {
+    let before = order.in_vector[..number].iter();
+    before.filter(|&&kept| kept).count()
 }
 
 fn row_of_state(dae: &Dae, cell: Cell) -> Option<usize> {
@@ -219,10 +210,6 @@ fn no_force(
     let force = dae.variables[block.var].element_name(block.first);
     let name = &system.flat.automata[automaton].modes[mode].name;
     let origin = &system.flat.automata[automaton].modes[mode].origin;
-    debug_assert!(
-        automaton.index() < system.flat.automata.len(),
-        "an automaton of the model"
-    );
     Diagnostic::error(
         Code::BadPin,
         format!("the mode `{name}` fixes `{state}`, but nothing holds it"),

@@ -188,15 +188,12 @@ fn time_event(system: &mut System, root: ExprId) -> Option<ExprId> {
 
 /// Whether an expression changes between events.
 fn varies(system: &System, id: ExprId) -> bool {
-    system.flat.exprs.any(id, |expr| match expr {
-        Expr::Time | Expr::Der(..) => true,
-        Expr::Var(var, _) => {
-            matches!(
-                system.flat.variables[var].kind,
-                VariableKind::Continuous | VariableKind::Column(..)
-            )
-        }
-        _ => false,
+    system.flat.exprs.any(id, |expr| {
+        expr == Expr::Time
+            || expr.access().is_some_and(|(var, _, derivative)| {
+                let kind = system.flat.variables[var].kind;
+                derivative || matches!(kind, VariableKind::Continuous | VariableKind::Column(..))
+            })
     })
 }
 

@@ -149,10 +149,8 @@ fn candidates(system: &mut System) -> BTreeMap<VarId, Vec<Candidate>> {
         let scalar = range == Range::SCALAR;
         let mut accesses: Vec<(VarId, Index, bool)> = Vec::new();
         for id in system.flat.exprs.below(&[lhs, rhs]) {
-            let (var, index, derivative) = match system.flat.exprs[id] {
-                Expr::Der(var, index) => (var, index, true),
-                Expr::Var(var, index) => (var, index, false),
-                _ => continue,
+            let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
+                continue;
             };
             let array = system.flat.variables[var].len.is_some() && system.is_continuous(var);
             if array && (index.stride.abs() != 1) == scalar {

@@ -100,13 +100,11 @@ impl System {
         }
         let mut starts: BTreeMap<Cell, Vec<(ExprId, bool, VarId)>> = BTreeMap::new();
         for (id, variable) in flat.variables.enumerate() {
-            if variable.len.is_none() {
-                if let Some(&start) = variable.start.first() {
-                    starts
-                        .entry((id, 0))
-                        .or_default()
-                        .push((start, variable.fixed, id));
-                }
+            if let (None, Some(&start)) = (variable.len, variable.start.first()) {
+                starts
+                    .entry((id, 0))
+                    .or_default()
+                    .push((start, variable.fixed, id));
             }
         }
         Self {
@@ -279,15 +277,14 @@ impl System {
 
 /// The value of a leaf of parameters alone.
 fn declared(values: &[Vec<f64>], counter: usize, expr: Expr) -> Result<f64, ()> {
-    match expr {
-        Expr::Param(param, index) => {
-            let at = usize::try_from(index.at(i32::try_from(counter).unwrap_or(0))).unwrap_or(0);
-            values[param.index()].get(at).copied().ok_or(())
-        }
-        #[allow(clippy::cast_precision_loss, reason = "element numbers are small")]
-        Expr::Counter => Ok(counter as f64),
-        _ => Err(()),
+    if expr == Expr::Counter {
+        return Ok(counter as f64);
     }
+    let Expr::Param(param, index) = expr else {
+        return Err(());
+    };
+    let at = usize::try_from(index.at(i32::try_from(counter).unwrap_or(0))).unwrap_or(0);
+    values[param.index()].get(at).copied().ok_or(())
 }
 
 fn action_value(action: &mut Action) -> &mut ExprId {

@@ -74,18 +74,7 @@ pub(crate) fn unroll(
 
 /// An expression at one value of its counter.
 pub(crate) fn at(system: &mut System, id: ExprId, counter: i32) -> ExprId {
-    let fixed = |index: Index| Index::fixed(index.at(counter));
-    system
-        .flat
-        .exprs
-        .rewrite(id, &mut HashMap::new(), |arena, _, expr| match expr {
-            Expr::Var(var, index) => Some(arena.add(Expr::Var(var, fixed(index)))),
-            Expr::Der(var, index) => Some(arena.add(Expr::Der(var, fixed(index)))),
-            Expr::Pre(var, index) => Some(arena.add(Expr::Pre(var, fixed(index)))),
-            Expr::Param(param, index) => Some(arena.add(Expr::Param(param, fixed(index)))),
-            Expr::Counter => Some(arena.constant(f64::from(counter))),
-            _ => None,
-        })
+    system.flat.exprs.at_counter(id, counter)
 }
 
 fn mentions(system: &System, equation: &Equation, arrays: &[VarId]) -> bool {

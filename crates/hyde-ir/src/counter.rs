@@ -1,4 +1,4 @@
-//! An array expression at one value of its counter.
+//! The counter of an array expression: fixed at a value, or counting differently.
 
 use crate::expr::{Expr, ExprArena, Index};
 use crate::id::ExprId;
@@ -7,13 +7,27 @@ use std::collections::HashMap;
 impl ExprArena {
     /// The expression at one value of its counter: elements that count along become fixed ones, the counter a number.
     pub fn at_counter(&mut self, root: ExprId, counter: i32) -> ExprId {
-        let fixed = |index: Index| Index::fixed(index.at(counter));
+        self.with_counter(root, Index::fixed(counter))
+    }
+
+    /// The expression with its counter replaced by `stride*counter + offset`.
+    pub fn with_counter(&mut self, root: ExprId, counter: Index) -> ExprId {
+        let moved = |index: Index| Index {
+            stride: index.stride * counter.stride,
+            offset: index.at(counter.offset),
+        };
         self.rewrite(root, &mut HashMap::new(), |arena, _, expr| match expr {
-            Expr::Var(var, index) => Some(arena.add(Expr::Var(var, fixed(index)))),
-            Expr::Der(var, index) => Some(arena.add(Expr::Der(var, fixed(index)))),
-            Expr::Pre(var, index) => Some(arena.add(Expr::Pre(var, fixed(index)))),
-            Expr::Param(param, index) => Some(arena.add(Expr::Param(param, fixed(index)))),
-            Expr::Counter => Some(arena.constant(f64::from(counter))),
+            Expr::Var(var, index) => Some(arena.add(Expr::Var(var, moved(index)))),
+            Expr::Der(var, index) => Some(arena.add(Expr::Der(var, moved(index)))),
+            Expr::Pre(var, index) => Some(arena.add(Expr::Pre(var, moved(index)))),
+            Expr::Param(param, index) => Some(arena.add(Expr::Param(param, moved(index)))),
+            Expr::Counter => {
+                let own = arena.add(Expr::Counter);
+                let stride = arena.constant(f64::from(counter.stride));
+                let offset = arena.constant(f64::from(counter.offset));
+                let scaled = arena.times(stride, own);
+                Some(arena.plus(scaled, offset))
+            }
             Expr::Const(_)
             | Expr::Time
             | Expr::Relation(_)

@@ -116,6 +116,26 @@ pub enum Expr {
 }
 
 impl Expr {
+    /// The element of a variable that a leaf reads, and whether it reads its derivative.
+    #[must_use]
+    pub fn access(self) -> Option<(VarId, Index, bool)> {
+        match self {
+            Self::Var(var, index) => Some((var, index, false)),
+            Self::Der(var, index) => Some((var, index, true)),
+            Self::Const(_)
+            | Self::Time
+            | Self::Counter
+            | Self::Param(..)
+            | Self::Pre(..)
+            | Self::Relation(_)
+            | Self::InMode(..)
+            | Self::Unary(..)
+            | Self::Binary(..)
+            | Self::If(..)
+            | Self::NoEvent(_) => None,
+        }
+    }
+
     /// Calls `visit` with each child.
     pub fn for_each_child(self, mut visit: impl FnMut(ExprId)) {
         match self {

@@ -134,7 +134,8 @@ pub trait Kernels: Send + Sync {
         out: &mut [f64],
     );
 
-    /// The derivatives of a function by parameters (positions in `p`, plain ones), with their places.
+    /// The derivatives of a function by parameters (positions in `p`, plain ones), with their places. Those given are
+    /// independent of each other; every other parameter whose value uses them follows.
     fn parameter_partials(
         &self,
         function: Function,

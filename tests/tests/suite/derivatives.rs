@@ -71,52 +71,63 @@ fn jacobian_and_other_derivatives_are_those_of_the_functions() {
 fn derivatives_by_parameters_are_those_of_the_functions() {
     for case in examples::all() {
         let program = case.example.compile(Backend::Native).unwrap().program;
-        let p = parameters(&program, &[]);
+        // All at once: they are independent of each other. One by one: what is bound to it follows.
         let all = plain(&program);
-        let values = Values::of(&program, &mut Random(4));
         for function in Function::ALL {
-            let mut work = Workspace::new(program.n_work);
-            let at = values.point(&p);
-            let exact: Vec<_> = program
-                .kernels
-                .parameter_partials(function, &all, at, &mut work)
-                .into_iter()
-                .map(|(entry, value)| (entry.row, entry.wrt, value))
-                .collect();
-            let mut size = size(&program, function, at, &self::exact(&program, function, at));
-            for &(row, wrt, value) in &exact {
-                if let Wrt::Parameter(place) = wrt {
-                    size[row] += (value * p[place]).abs();
-                }
-            }
-            for &place in &all {
-                let step = if p[place] == 0.0 {
-                    STEP
-                } else {
-                    STEP * p[place].abs()
-                };
-                // A parameter whose value uses others stays: the run knows which of them it sets.
-                let at = |change: f64| {
-                    let set: Vec<(usize, f64)> = all
-                        .iter()
-                        .map(|&k| (k, p[k] + if k == place { change } else { 0.0 }))
-                        .collect();
-                    let p = parameters(&program, &set);
-                    evaluated(&program, function, values.point(&p))
-                };
-                let known = program.parameters.iter();
-                let mut known = known.filter(|known| known.place <= place);
-                let column = Column {
-                    function,
-                    wrt: Wrt::Parameter(place),
-                    name: known
-                        .next_back()
-                        .map_or_else(String::new, |k| k.name.clone()),
-                    step,
-                };
-                column.check(&case, &program, &exact, &size, &at(step), &at(-step));
-            }
+            by_parameters(&case, &program, function, &all);
         }
+        for &place in &all {
+            by_parameters(&case, &program, Function::Residual, &[place]);
+        }
+    }
+}
+
+/// The derivatives by a chosen set of parameters, by their positions.
+fn by_parameters(case: &Case, program: &Program, function: Function, chosen: &[usize]) {
+    let p = parameters(program, &[]);
+    let values = Values::of(program, &mut Random(4));
+    let at = values.point(&p);
+    let mut work = Workspace::new(program.n_work);
+    let kernels = &program.kernels;
+    let exact: Vec<_> = kernels
+        .parameter_partials(function, chosen, at, &mut work)
+        .into_iter()
+        .map(|(entry, value)| (entry.row, entry.wrt, value))
+        .collect();
+    let mut size = size(program, function, at, &self::exact(program, function, at));
+    for &(row, wrt, value) in &exact {
+        if let Wrt::Parameter(place) = wrt {
+            size[row] += (value * p[place]).abs();
+        }
+    }
+    for &place in chosen {
+        let step = match p[place].abs() {
+            0.0 => STEP,
+            value => STEP * value,
+        };
+        let changed = |change: f64| {
+            let value = |&k: &usize| (k, p[k] + if k == place { change } else { 0.0 });
+            let set: Vec<(usize, f64)> = chosen.iter().map(value).collect();
+            let p = parameters(program, &set);
+            evaluated(program, function, values.point(&p))
+        };
+        let known = program.parameters.iter();
+        let mut known =
+            known.filter(|known| (known.place..known.place + known.len).contains(&place));
+        let column = Column {
+            function,
+            wrt: Wrt::Parameter(place),
+            name: known.next().unwrap().name.clone(),
+            step,
+        };
+        column.check(
+            case,
+            program,
+            &exact,
+            &size,
+            &changed(step),
+            &changed(-step),
+        );
     }
 }
 

@@ -75,8 +75,11 @@ fn instructions(clif: &str) -> String {
                 let _ = writeln!(out, "{count:>6} {instruction}");
             }
         } else if let Some(code) = line.strip_prefix("    ") {
-            let code = code.split_once(" = ").map_or(code, |(_, code)| code);
-            *counts.entry(code.split(' ').next().unwrap()).or_default() += 1;
+            let code = code.split("  ;").next().unwrap();
+            let (result, code) = code.split_once(" = ").unwrap_or(("", code));
+            if !result.starts_with("sig") && !result.starts_with("fn") {
+                *counts.entry(code.split(' ').next().unwrap()).or_default() += 1;
+            }
         } else if line.starts_with("; ") {
             let _ = writeln!(out, "{line}");
         }

@@ -1,0 +1,234 @@
+//! `pre`, `sample`, `hold`, `held` and `interval`: values across the borders of clocked parts.
+
+use crate::dimension::Dim;
+use crate::instance::{Scope, Setting, Typed};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use hyde_ir::flat::{ClockedEquation, Equation};
+use hyde_ir::{ClockId, Expr as Ir, ExprId, Index, Range, VarId, VariableKind};
+use hyde_syntax::ast::{Expr, ExprKind};
+use hyde_units::Dimension;
+
+impl<'a> Model<'a, '_> {
+    /// `pre(x)`: in a clocked part the value at the last tick, in an event the value before it.
+    pub(super) fn pre(&mut self, args: &[&'a Expr], scope: &Scope<'a>, span: Span) -> Typed {
+        let Some([a]) = self.exactly("pre", args, span) else {
+            return self.poison(span);
+        };
+        let ExprKind::Reference(reference) = &a.kind else {
+            self.report(
+                Diagnostic::error(Code::BadArguments, "`pre` takes a variable")
+                    .label(a.span, "an expression"),
+            );
+            return self.poison(span);
+        };
+        let inner = self.value(a, &scope.with(Setting::Report));
+        let Ir::Var(var, index) = self.flat.exprs[inner.id] else {
+            return self.poison(span);
+        };
+        let allowed = match (self.flat.variables[var].kind, scope.setting) {
+            (VariableKind::Clocked(clock), Setting::Clocked) => {
+                Some(clock) == self.instances[scope.instance].clock
+            }
+            (VariableKind::Discrete, Setting::Action | Setting::Condition | Setting::Equation) => {
+                true
+            }
+            (VariableKind::Continuous, Setting::Action) => true,
+            _ => false,
+        };
+        if !allowed {
+            self.report(
+                Diagnostic::error(Code::ClockBorder, format!("`pre({})` has no meaning here", reference.dotted()))
+                    .label(span, "there is no value before")
+                    .help("`pre` takes a variable of the same clocked part, or a discrete one at an event"),
+            );
+        }
+        let id = self.flat.exprs.add(Ir::Pre(var, index));
+        self.typed(id, inner.dim, span)
+    }
+
+    /// `sample(e)`: a continuous expression read at the tick.
+    pub(super) fn sample(&mut self, args: &[&'a Expr], scope: &Scope<'a>, span: Span) -> Typed {
+        let Some([a]) = self.exactly("sample", args, span) else {
+            return self.poison(span);
+        };
+        if scope.setting != Setting::Clocked {
+            self.report(
+                Diagnostic::error(Code::ClockBorder, "`sample` outside a clocked part")
+                    .label(span, "there is no clock here")
+                    .help("`sample` brings a continuous value into `clocked … end`"),
+            );
+            return self.poison(span);
+        }
+        let inner = self.lower(a, &scope.with(Setting::Report));
+        if let Some(clock) = self.clocks_of(inner.id).first().copied() {
+            let name = self.flat.clocks[clock].name.clone();
+            self.report(
+                Diagnostic::error(
+                    Code::ClockBorder,
+                    format!("what is sampled belongs to the clocked part `{name}`"),
+                )
+                .label(a.span, "clocked already")
+                .help("read it without `sample`"),
+            );
+        }
+        Typed {
+            span,
+            bare: false,
+            two_pi: false,
+            ..inner
+        }
+    }
+
+    /// `hold(e)`: a clocked value between its ticks.
+    pub(super) fn hold(&mut self, args: &[&'a Expr], scope: &Scope<'a>, span: Span) -> Typed {
+        let Some([a]) = self.exactly("hold", args, span) else {
+            return self.poison(span);
+        };
+        if matches!(scope.setting, Setting::Clocked | Setting::Parameter) {
+            self.report(
+                Diagnostic::error(Code::ClockBorder, "`hold` inside a clocked part")
+                    .label(span, "nothing to hold here")
+                    .help("read the variable of the other clocked part directly"),
+            );
+            return self.poison(span);
+        }
+        let inner = self.value(a, &scope.with(Setting::Clocked));
+        let clocks = self.clocks_of(inner.id);
+        let [clock] = clocks.as_slice() else {
+            self.report(
+                Diagnostic::error(
+                    Code::ClockBorder,
+                    "`hold` takes a value of one clocked part",
+                )
+                .label(a.span, format!("belongs to {}", clocks.len()))
+                .help("hold each value apart"),
+            );
+            return self.poison(span);
+        };
+        let clock = *clock;
+        let source = if let Ir::Var(var, Index::SCALAR) = self.flat.exprs[inner.id]
+            && self.flat.variables[var].len.is_none()
+        {
+            var
+        } else {
+            self.clocked_part_of(clock, a, &inner, scope, span)
+        };
+        let held = match self.held.get(&(clock, source)) {
+            Some(&held) => held,
+            None => {
+                let name = format!("hold({})", self.flat.variables[source].name);
+                let kind = VariableKind::Held(clock, source);
+                let held = self.add_variable(
+                    scope.instance,
+                    name,
+                    kind,
+                    inner.dim.clone(),
+                    span,
+                    MadeBy::Source,
+                );
+                self.held.insert((clock, source), held);
+                held
+            }
+        };
+        let id = self.flat.exprs.var(held);
+        self.typed(id, inner.dim, span)
+    }
+
+    /// A clocked variable for an expression that is held.
+    fn clocked_part_of(
+        &mut self,
+        clock: ClockId,
+        written: &Expr,
+        value: &Typed,
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> VarId {
+        let name = format!(
+            "{}.({})",
+            self.flat.clocks[clock].name,
+            hyde_syntax::format_expression(written)
+        );
+        let kind = VariableKind::Clocked(clock);
+        let var = self.add_variable(
+            scope.instance,
+            name,
+            kind,
+            value.dim.clone(),
+            span,
+            MadeBy::Source,
+        );
+        let lhs = self.flat.exprs.var(var);
+        let origin = self.origin(scope.instance, span);
+        let equation = Equation {
+            range: Range::SCALAR,
+            lhs,
+            rhs: value.id,
+            origin,
+        };
+        self.flat
+            .clocked_equations
+            .push(ClockedEquation { clock, equation });
+        var
+    }
+
+    /// The clocks of the variables in an expression, each once.
+    pub(crate) fn clocks_of(&self, id: ExprId) -> Vec<ClockId> {
+        let mut clocks = Vec::new();
+        for id in self.flat.exprs.below(&[id]) {
+            if let Ir::Var(var, _) | Ir::Pre(var, _) = self.flat.exprs[id]
+                && let VariableKind::Clocked(clock) = self.flat.variables[var].kind
+                && !clocks.contains(&clock)
+            {
+                clocks.push(clock);
+            }
+        }
+        clocks
+    }
+
+    /// `held(file.r)`: a record's column held between rows, where it would be read linearly.
+    pub(super) fn held_column(
+        &mut self,
+        args: &[&'a Expr],
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Typed {
+        let Some([a]) = self.exactly("held", args, span) else {
+            return self.poison(span);
+        };
+        let inner = self.value(a, scope);
+        if let Ir::Var(var, _) = self.flat.exprs[inner.id]
+            && let VariableKind::Column(column, _) = self.flat.variables[var].kind
+            && let Some((_, held)) = self.column_variables.get(&column)
+        {
+            let id = self.flat.exprs.var(*held);
+            return self.typed(id, inner.dim, span);
+        }
+        self.report(
+            Diagnostic::error(Code::BadArguments, "`held` takes a column of a record")
+                .label(a.span, "no column")
+                .help("a clocked value is held with `hold`"),
+        );
+        self.poison(span)
+    }
+
+    /// `interval()`: the period of the clocked part.
+    pub(super) fn interval(&mut self, args: &[&'a Expr], scope: &Scope<'a>, span: Span) -> Typed {
+        let Some([]) = self.exactly("interval", args, span) else {
+            return self.poison(span);
+        };
+        match self.instances[scope.instance].clock {
+            Some(clock) if scope.setting == Setting::Clocked => {
+                let id = self.flat.clocks[clock].period;
+                self.typed(id, Dim::known(Dimension::TIME), span)
+            }
+            _ => {
+                self.report(
+                    Diagnostic::error(Code::ClockBorder, "`interval()` outside a clocked part")
+                        .label(span, "there is no clock here"),
+                );
+                self.poison(span)
+            }
+        }
+    }
+}

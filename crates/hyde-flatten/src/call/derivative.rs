@@ -1,0 +1,136 @@
+//! `der` and `partial`: derivatives by the time and by a variable.
+
+use crate::dimension::Dim;
+use crate::instance::{Scope, Setting, Typed};
+use crate::lower::Resolved;
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, Span};
+use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, VarId, VariableKind};
+use hyde_syntax::ast::{Expr, ExprKind};
+use hyde_units::Dimension;
+
+impl<'a> Model<'a, '_> {
+    /// `der(e)`: of a variable its derivative, of an expression the derivative by the chain rule.
+    pub(super) fn der(&mut self, args: &[&'a Expr], scope: &Scope<'a>, span: Span) -> Typed {
+        let Some([a]) = self.exactly("der", args, span) else {
+            return self.poison(span);
+        };
+        if matches!(scope.setting, Setting::Clocked | Setting::Parameter) {
+            self.report(
+                Diagnostic::error(Code::ClockBorder, "no derivative exists here")
+                    .label(
+                        span,
+                        if scope.setting == Setting::Clocked {
+                            "in a clocked part"
+                        } else {
+                            "of a parameter"
+                        },
+                    )
+                    .help("in a clocked part take a difference: `(x - pre(x))/interval()`"),
+            );
+            return self.poison(span);
+        }
+        let inner = self.value(a, scope);
+        let dim = inner.dim.divide(&Dim::known(Dimension::TIME));
+        let id = self.time_derivative(inner.id, span);
+        self.typed(id, dim, span)
+    }
+
+    pub(crate) fn time_derivative(&mut self, id: ExprId, span: Span) -> ExprId {
+        let mut second = false;
+        let variables = &self.flat.variables;
+        let arena = &mut self.flat.exprs;
+        let result = arena.tangent(id, |arena, leaf| match leaf {
+            Ir::Var(var, index) => match variables[var].kind {
+                VariableKind::Continuous | VariableKind::Column(..) => {
+                    Some(arena.add(Ir::Der(var, index)))
+                }
+                VariableKind::Discrete
+                | VariableKind::Clocked(_)
+                | VariableKind::Held(..)
+                | VariableKind::Reduction(_) => None,
+            },
+            Ir::Time => Some(arena.constant(1.0)),
+            Ir::Der(..) => {
+                second = true;
+                None
+            }
+            Ir::Const(_)
+            | Ir::Counter
+            | Ir::Param(..)
+            | Ir::Pre(..)
+            | Ir::Relation(_)
+            | Ir::InMode(..)
+            | Ir::Unary(..)
+            | Ir::Binary(..)
+            | Ir::If(..)
+            | Ir::NoEvent(_) => None,
+        });
+        if second {
+            self.report(
+                Diagnostic::error(Code::BadArguments, "the derivative of a derivative")
+                    .label(span, "needs a name for the first derivative")
+                    .help("declare it: `Velocity v = der(s);` and write `der(v)`"),
+            );
+        }
+        result
+    }
+
+    /// `partial(e, v)`: the derivative of e by the variable v; variables with a declared value count as that value.
+    pub(super) fn partial(&mut self, args: &[&'a Expr], scope: &Scope<'a>, span: Span) -> Typed {
+        let Some([e, by]) = self.exactly("partial", args, span) else {
+            return self.poison(span);
+        };
+        let ExprKind::Reference(name) = &by.kind else {
+            self.report(
+                Diagnostic::error(
+                    Code::BadArguments,
+                    "the second argument of `partial` is a variable",
+                )
+                .label(by.span, "an expression"),
+            );
+            return self.poison(span);
+        };
+        let Some(Resolved::Variable(var, index)) = self.resolve(name, scope) else {
+            self.report(
+                Diagnostic::error(
+                    Code::BadArguments,
+                    "the second argument of `partial` is a variable",
+                )
+                .label(by.span, "no variable"),
+            );
+            return self.poison(span);
+        };
+        let index = index.unwrap_or_default();
+        let value = self.value(e, scope);
+        let expanded = self.expand_bindings(value.id, var, 0);
+        let one = self.flat.exprs.constant(1.0);
+        let id = self.flat.exprs.tangent(expanded, |_, leaf| {
+            (leaf == Ir::Var(var, index)).then_some(one)
+        });
+        let dim = value.dim.divide(&self.dim(var));
+        self.typed(id, dim, span)
+    }
+
+    /// Variables with a declared value replaced by it, down to `keep`.
+    fn expand_bindings(&mut self, id: ExprId, keep: VarId, depth: usize) -> ExprId {
+        let mut memo = std::collections::HashMap::new();
+        for inner in self.flat.exprs.below(&[id]) {
+            let Ir::Var(var, Index::SCALAR) = self.flat.exprs[inner] else {
+                continue;
+            };
+            let notes = &self.variables[var.index()];
+            let Some(binding) = notes.binding else {
+                continue;
+            };
+            if var == keep || depth > 40 || self.flat.variables[var].len.is_some() {
+                continue;
+            }
+            let scope = binding.scope_for(Setting::Equation);
+            let value = self.value(binding.expr, &scope);
+            let value = self.expand_bindings(value.id, keep, depth + 1);
+            memo.insert(inner, value);
+        }
+        self.flat.exprs.rewrite(id, &mut memo, |_, _, _| None)
+    }
+}

@@ -1,0 +1,60 @@
+//! `floor`, `ceil`, `mod` and their kin.
+
+use crate::dimension::Dim;
+use crate::instance::{Scope, Setting, Typed};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, Span};
+use hyde_ir::{BinaryOp, UnaryOp};
+use hyde_syntax::ast::Expr;
+
+impl<'a> Model<'a, '_> {
+    /// Rounding, allowed where values are sampled or measured (C5).
+    pub(super) fn quantiser(
+        &mut self,
+        name: &str,
+        args: &[&'a Expr],
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Typed {
+        if matches!(scope.setting, Setting::Equation | Setting::Condition) {
+            self.report(
+                Diagnostic::error(Code::QuantiserOnContinuous, format!("`{name}` on a continuous value"))
+                    .label(span, "every step of it would be an event, thousands a second")
+                    .help(format!("quantise where it is read: `{name}(sample(…), …)` in a clocked part, or in `measured`")),
+            );
+        }
+        let operands = if matches!(name, "floor" | "ceil" | "integer") {
+            let one = self.exactly(name, args, span);
+            one.map(|[a]| (self.value(a, scope), self.number_one(span)))
+        } else {
+            let two = self.exactly(name, args, span);
+            two.map(|[a, b]| (self.value(a, scope), self.value(b, scope)))
+        };
+        let Some((a, b)) = operands else {
+            return self.poison(span);
+        };
+        self.agree(&a, &b, "the step and the value are", scope.instance);
+        let arena = &mut self.flat.exprs;
+        let id = match name {
+            "floor" | "integer" => arena.unary(UnaryOp::Floor, a.id),
+            "ceil" => arena.unary(UnaryOp::Ceil, a.id),
+            "floor_to" => arena.binary(BinaryOp::FloorTo, a.id, b.id),
+            "round_to" => arena.binary(BinaryOp::RoundTo, a.id, b.id),
+            _ => {
+                let quotient = arena.over(a.id, b.id);
+                let whole = arena.unary(UnaryOp::Floor, quotient);
+                let part = arena.times(whole, b.id);
+                arena.minus(a.id, part)
+            }
+        };
+        self.typed(id, a.dim, span)
+    }
+
+    fn number_one(&mut self, span: Span) -> Typed {
+        let id = self.flat.exprs.constant(1.0);
+        Typed {
+            bare: true,
+            ..self.typed(id, Dim::NUMBER, span)
+        }
+    }
+}

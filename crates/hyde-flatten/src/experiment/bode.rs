@@ -1,0 +1,123 @@
+//! Frequency responses.
+
+use crate::dimension::Dim;
+use crate::instance::{InstanceId, Scope, Setting, Typed};
+use crate::lower::Resolved;
+use crate::model::{Model, listed};
+use hyde_diag::{Code, Diagnostic, MadeBy};
+use hyde_ir::Quantity;
+use hyde_ir::flat::Bode;
+use hyde_syntax::ast::{self, Reference};
+use hyde_units::Dimension;
+
+impl<'a> Model<'a, '_> {
+    pub(super) fn bode(&mut self, bode: &'a ast::Bode, root: InstanceId) {
+        let (input, outputs, band) = (&bode.input, &bode.outputs, &bode.band);
+        let scope = Scope::new(root, Setting::Report);
+        let driven = match self.resolve(input, &scope) {
+            Some(Resolved::Variable(var, None)) if self.flat.variables[var].input => var,
+            _ => {
+                self.report(
+                    Diagnostic::error(
+                        Code::NotAnInput,
+                        format!("`{}` is no input", input.dotted()),
+                    )
+                    .label(
+                        input.span,
+                        "a frequency response starts at an input of the model",
+                    ),
+                );
+                return;
+            }
+        };
+        let mut list = Vec::new();
+        for output in outputs {
+            let typed = self.value(output, &scope);
+            let dimension = self
+                .dimensions
+                .resolve(&typed.dim)
+                .as_known()
+                .unwrap_or(Dimension::DIMENSIONLESS);
+            list.push((
+                hyde_syntax::format_expression(output),
+                typed.id,
+                Quantity::usual(dimension),
+            ));
+        }
+        let parameter = Scope::new(root, Setting::Parameter);
+        let (from, to) = (
+            self.value(&band.from, &parameter),
+            self.value(&band.to, &parameter),
+        );
+        let rate = Typed {
+            dim: Dim::NUMBER.divide(&Dim::known(Dimension::TIME)),
+            ..from.clone()
+        };
+        self.agree(&from, &rate, "a band of frequencies relates", root);
+        self.agree(&to, &rate, "a band of frequencies relates", root);
+        let modes = bode
+            .modes
+            .iter()
+            .filter_map(|(name, mode)| self.mode_of(name, mode))
+            .collect();
+        let origin = self.origin(root, input.span).made_by(MadeBy::Experiment);
+        let band = (from.id, to.id);
+        self.flat.experiment.bodes.push(Bode {
+            input: driven,
+            outputs: list,
+            band,
+            modes,
+            origin,
+        });
+    }
+
+    /// An automaton by the name of its instance, and one of its modes.
+    fn mode_of(
+        &mut self,
+        name: &Reference,
+        mode: &ast::Name,
+    ) -> Option<(hyde_ir::AutomatonId, usize)> {
+        let path = name.dotted();
+        let found = self
+            .flat
+            .automata
+            .enumerate()
+            .find(|(_, automaton)| automaton.name == path);
+        let Some((id, automaton)) = found else {
+            let known: Vec<&str> = self
+                .flat
+                .automata
+                .iter()
+                .map(|automaton| automaton.name.as_str())
+                .collect();
+            let help = format!("modes are in {}", listed(&known));
+            self.report(
+                Diagnostic::error(Code::UnknownName, format!("`{path}` has no modes"))
+                    .label(name.span, "no `modes` block")
+                    .help(help),
+            );
+            return None;
+        };
+        let number = automaton
+            .modes
+            .iter()
+            .position(|known| known.name == mode.text);
+        if number.is_none() {
+            let known: Vec<&str> = automaton
+                .modes
+                .iter()
+                .map(|mode| mode.name.as_str())
+                .collect();
+            let help = format!("its modes are {}", listed(&known));
+            self.report(
+                Diagnostic::error(
+                    Code::UnknownName,
+                    format!("`{path}` has no mode `{}`", mode.text),
+                )
+                .label(mode.span, "not known")
+                .help(help),
+            );
+        }
+        Some((id, number?))
+    }
+}

@@ -1,0 +1,74 @@
+//! Measures and expectations.
+
+use crate::dimension::Dim;
+use crate::instance::{Scope, Typed};
+use crate::model::Model;
+use hyde_diag::MadeBy;
+use hyde_ir::Quantity;
+use hyde_ir::flat::Measure;
+use hyde_syntax::ast;
+use hyde_units::{Dimension, NamedUnit};
+
+impl<'a> Model<'a, '_> {
+    pub(crate) fn add_measure(&mut self, measure: &'a ast::Measure, scope: &Scope<'a>) {
+        let typed = self.lower(&measure.value, scope);
+        let file = self.instances[scope.instance].file;
+        let mut unit = None;
+        match self.names.quantity(file, &measure.type_name) {
+            Some(crate::names::TypeName::Quantity(_, item)) => {
+                unit = item
+                    .unit
+                    .as_ref()
+                    .and_then(|unit| NamedUnit::parse(&unit.text).ok());
+                if let Some(unit) = &unit {
+                    let declared = Typed {
+                        dim: Dim::known(unit.unit().dimension),
+                        span: measure.name.span,
+                        ..typed.clone()
+                    };
+                    self.agree(
+                        &declared,
+                        &typed,
+                        "the measure and its value are",
+                        scope.instance,
+                    );
+                }
+            }
+            Some(_) => {}
+            None => {
+                let diagnostic = self.names.unknown(file, &measure.type_name);
+                self.report(diagnostic);
+            }
+        }
+        self.push_measure(measure.name.text.clone(), typed, false, unit);
+    }
+
+    pub(super) fn push_measure(
+        &mut self,
+        name: String,
+        typed: Typed,
+        expectation: bool,
+        unit: Option<NamedUnit>,
+    ) {
+        let dimension = self
+            .dimensions
+            .resolve(&typed.dim)
+            .as_known()
+            .unwrap_or(Dimension::DIMENSIONLESS);
+        let quantity = match unit {
+            Some(unit) => Quantity {
+                dimension: unit.unit().dimension,
+                unit,
+            },
+            None => Quantity::usual(dimension),
+        };
+        let origin = self.origin(0, typed.span).made_by(MadeBy::Experiment);
+        self.flat.experiment.measures.push(Measure {
+            name,
+            value: typed.id,
+            expectation,
+            quantity,
+            origin,
+        });
+    }
+}

@@ -1,0 +1,154 @@
+//! Measured channels: a prepared column beside what the model has for it.
+
+use crate::dimension::Dim;
+use crate::instance::{InstanceId, Scope, Setting, Typed};
+use crate::lower::Resolved;
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, MadeBy};
+use hyde_ir::flat::{Measured, Preparation};
+use hyde_ir::{ColumnId, Quantity, VariableKind};
+use hyde_syntax::ast::{self, Channel, Expr, ExprKind};
+use hyde_units::Dimension;
+
+impl<'a> Model<'a, '_> {
+    /// `measured column = e ~ noise`.
+    pub(super) fn measured(&mut self, channel: &'a Channel, root: InstanceId) {
+        let mut preparation = Vec::new();
+        let Some((column, mut dim)) = self.recorded(&channel.signal, root, &mut preparation) else {
+            return;
+        };
+        let scope = Scope {
+            records: true,
+            ..Scope::new(root, Setting::Report)
+        };
+        let value = self.value(&channel.value, &scope);
+        let left = self.typed(value.id, dim.clone(), channel.signal.span);
+        self.agree(&left, &value, "the record and the model are", root);
+        let noise = channel.noise.as_ref().map(|noise| {
+            let typed = self.value(noise, &scope.with(Setting::Parameter));
+            self.agree(&typed, &value, "the noise and the value are", root);
+            typed.id
+        });
+        if dim.as_known().is_none() {
+            dim = value.dim.clone();
+        }
+        let dimension = self
+            .dimensions
+            .resolve(&dim)
+            .as_known()
+            .unwrap_or(Dimension::DIMENSIONLESS);
+        let written = &self.flat.variables[self.column_variables[&column].0].quantity;
+        let quantity = if preparation.is_empty() && written.dimension == dimension {
+            written.clone()
+        } else {
+            Quantity::usual(dimension)
+        };
+        let clocked = !self.clocks_of(value.id).is_empty();
+        let signal = hyde_syntax::format_expression(&channel.signal);
+        let name = match (&channel.doc, signal.split_once('.')) {
+            (Some(doc), _) => doc.clone(),
+            (None, Some((_, column))) if preparation.is_empty() => column.to_owned(),
+            (None, _) => signal,
+        };
+        let origin = self
+            .origin(root, channel.signal.span)
+            .made_by(MadeBy::Experiment);
+        self.flat.experiment.measured.push(Measured {
+            name,
+            column,
+            preparation,
+            value: value.id,
+            clocked,
+            noise,
+            quantity,
+            origin,
+        });
+    }
+
+    /// The recorded signal of a measured channel: a column, low-passed, differentiated or scaled.
+    fn recorded(
+        &mut self,
+        expr: &'a Expr,
+        root: InstanceId,
+        steps: &mut Vec<Preparation>,
+    ) -> Option<(ColumnId, Dim)> {
+        let scope = Scope {
+            records: true,
+            ..Scope::new(root, Setting::Report)
+        };
+        match &expr.kind {
+            ExprKind::Reference(reference) => {
+                if let Some(Resolved::Variable(var, None)) = self.resolve(reference, &scope) {
+                    if let VariableKind::Column(column, _) = self.flat.variables[var].kind {
+                        return Some((column, self.dim(var)));
+                    }
+                    self.report(
+                        Diagnostic::error(
+                            Code::NoColumn,
+                            format!("`{}` is no column of a record", reference.dotted()),
+                        )
+                        .label(expr.span, "left of `=` stands what was measured")
+                        .help("write `measured file.x = saddle.s;`"),
+                    );
+                }
+                None
+            }
+            ExprKind::Call(function, arguments) => {
+                match (function.as_word(), arguments.as_slice()) {
+                    (Some("lowpass"), [inner, corner]) => {
+                        let found = self.recorded(&inner.value, root, steps)?;
+                        let parameter = scope.with(Setting::Parameter);
+                        let corner_typed = self.value(&corner.value, &parameter);
+                        let rate = Typed {
+                            dim: Dim::NUMBER.divide(&Dim::known(Dimension::TIME)),
+                            ..corner_typed.clone()
+                        };
+                        self.agree(
+                            &corner_typed,
+                            &rate,
+                            "a corner is a frequency, this relates",
+                            root,
+                        );
+                        let corner = self.structural_number(&parameter, &corner.value)?;
+                        steps.push(Preparation::Lowpass(corner));
+                        Some(found)
+                    }
+                    (Some("slope"), [inner]) => {
+                        let (column, dim) = self.recorded(&inner.value, root, steps)?;
+                        steps.push(Preparation::Slope);
+                        Some((column, dim.divide(&Dim::known(Dimension::TIME))))
+                    }
+                    _ => {
+                        self.report(
+                        Diagnostic::error(Code::BadArguments, "a record is prepared with `lowpass(x, f)`, `slope(x)`, or a factor")
+                            .label(expr.span, "not one of these"),
+                    );
+                        None
+                    }
+                }
+            }
+            ExprKind::Binary(ast::Binary::Mul, factor, inner) => {
+                let parameter = scope.with(Setting::Parameter);
+                let typed = self.value(factor, &parameter);
+                let number = self.structural_number(&parameter, factor)?;
+                let (column, dim) = self.recorded(inner, root, steps)?;
+                steps.push(Preparation::Scale(number));
+                Some((column, typed.dim.multiply(&dim)))
+            }
+            ExprKind::Number(..)
+            | ExprKind::String(_)
+            | ExprKind::Boolean(_)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::If(..)
+            | ExprKind::Array(..) => {
+                self.report(
+                    Diagnostic::error(Code::NoColumn, "what was measured is a column of a record")
+                        .label(expr.span, "no column")
+                        .help("write `measured file.x = saddle.s;`"),
+                );
+                None
+            }
+        }
+    }
+}

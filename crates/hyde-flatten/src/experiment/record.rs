@@ -1,0 +1,191 @@
+//! Columns of records: read between rows, held, one row ahead, and their first value.
+
+use crate::dimension::Dim;
+use crate::instance::{Lowering, ParameterNotes, Scope, Setting};
+use crate::lower::Resolved;
+use crate::model::{Model, listed};
+use crate::names::nearest;
+use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use hyde_ir::{Column, ColumnId, Interpolation, Parameter, Quantity, VarId, VariableKind};
+use hyde_syntax::ast::Reference;
+use hyde_units::NamedUnit;
+
+impl<'a> Model<'a, '_> {
+    /// `record.column`, `.next`, `.first`.
+    pub(crate) fn record_column(
+        &mut self,
+        reference: &'a Reference,
+        scope: &Scope<'a>,
+    ) -> Option<Resolved> {
+        let record = reference.parts.first()?.name.text.clone();
+        let (column, suffix) = match reference.parts.as_slice() {
+            [_, column] => (column.name.text.as_str(), None),
+            [_, column, suffix] => (column.name.text.as_str(), Some(suffix.name.text.as_str())),
+            _ => {
+                self.report(
+                    Diagnostic::error(Code::NoColumn, "which column of the record?")
+                        .label(reference.span, "names a record")
+                        .help(format!("write `{record}.column`")),
+                );
+                return None;
+            }
+        };
+        let header = self.input.records.get(&record);
+        let known =
+            header.and_then(|header| header.columns.iter().find(|(name, _)| name == column));
+        let Some((_, unit)) = known else {
+            let names: Vec<&str> = header
+                .map(|header| {
+                    header
+                        .columns
+                        .iter()
+                        .map(|(name, _)| name.as_str())
+                        .collect()
+                })
+                .unwrap_or_default();
+            let near = nearest(column, names.iter().copied());
+            let diagnostic = Diagnostic::error(
+                Code::NoColumn,
+                format!("the record `{record}` has no column `{column}`"),
+            )
+            .label(
+                reference
+                    .parts
+                    .get(1)
+                    .map_or(reference.span, |part| part.name.span),
+                "not in its header",
+            );
+            let diagnostic = match near {
+                Some(near) => diagnostic
+                    .note(format!("its columns are {}", listed(&names)))
+                    .help(format!("did you mean `{record}.{near}`?")),
+                None if names.is_empty() => {
+                    diagnostic.help("the record was not given: `--record NAME=PATH`")
+                }
+                None => diagnostic.help(format!("its columns are {}", listed(&names))),
+            };
+            self.report(diagnostic);
+            return None;
+        };
+        let unit = unit.clone();
+        match suffix {
+            None | Some("next") => {
+                if scope.setting == Setting::Parameter {
+                    self.not_constant(&format!("`{record}.{column}`"), reference.span);
+                    return None;
+                }
+                let (_, linear, _) =
+                    self.column(&record, column, unit, suffix.is_some(), reference.span);
+                Some(Resolved::Variable(linear, None))
+            }
+            Some("first") => Some(Resolved::Parameter(
+                self.first_value(&record, column, unit, reference.span),
+                None,
+            )),
+            Some(other) => {
+                self.report(
+                    Diagnostic::error(Code::NoColumn, format!("a column has no `{other}`"))
+                        .label(reference.span, "unknown")
+                        .help("write `.next` for the value one row ahead, `.first` for the first"),
+                );
+                None
+            }
+        }
+    }
+
+    /// The column and its linear and held variables, made at first use.
+    pub(super) fn column(
+        &mut self,
+        record: &str,
+        column: &str,
+        unit: Option<NamedUnit>,
+        next: bool,
+        span: Span,
+    ) -> (ColumnId, VarId, VarId) {
+        let known = self.flat.columns.enumerate().find(|(_, known)| {
+            known.record == record && known.column == column && known.next == next
+        });
+        if let Some((id, _)) = known {
+            let (linear, held) = self.column_variables[&id];
+            return (id, linear, held);
+        }
+        let id = self.flat.columns.push(Column {
+            record: record.to_owned(),
+            column: column.to_owned(),
+            next,
+            scale: (1.0, 0.0),
+        });
+        let dim = match &unit {
+            Some(unit) => Dim::known(unit.unit().dimension),
+            None => Dim::unknown(self.dimensions.fresh()),
+        };
+        let name = format!("{record}.{column}{}", if next { ".next" } else { "" });
+        let linear = VariableKind::Column(id, Interpolation::Linear);
+        let held = VariableKind::Column(id, Interpolation::Held);
+        let linear = self.add_variable(
+            0,
+            name.clone(),
+            linear,
+            dim.clone(),
+            span,
+            MadeBy::Experiment,
+        );
+        let held = self.add_variable(
+            0,
+            format!("held({name})"),
+            held,
+            dim,
+            span,
+            MadeBy::Experiment,
+        );
+        if let Some(unit) = unit {
+            let quantity = Quantity {
+                dimension: unit.unit().dimension,
+                unit,
+            };
+            self.flat.variables[linear].quantity = quantity.clone();
+            self.flat.variables[held].quantity = quantity;
+        }
+        self.column_variables.insert(id, (linear, held));
+        (id, linear, held)
+    }
+
+    /// The first value of a column: a parameter that the run fills in.
+    fn first_value(
+        &mut self,
+        record: &str,
+        column: &str,
+        unit: Option<NamedUnit>,
+        span: Span,
+    ) -> hyde_ir::ParamId {
+        let key = (record.to_owned(), column.to_owned());
+        if let Some(&param) = self.column_firsts.get(&key) {
+            return param;
+        }
+        let (_, linear, _) = self.column(record, column, unit.clone(), false, span);
+        let dim = self.dim(linear);
+        let zero = self.flat.exprs.constant(0.0);
+        self.parameters.push(ParameterNotes {
+            dim,
+            binding: None,
+            state: Lowering::Done,
+            boolean: false,
+        });
+        let quantity = self.flat.variables[linear].quantity.clone();
+        let origin = self.origin(0, span).made_by(MadeBy::Experiment);
+        let param = self.flat.parameters.push(Parameter {
+            name: format!("{record}.{column}.first"),
+            len: None,
+            value: vec![zero],
+            quantity,
+            structural: false,
+            is_final: false,
+            derived: false,
+            prior: None,
+            source: Some(format!("record {record}")),
+            origin,
+        });
+        self.column_firsts.insert(key, param);
+        param
+    }
+}

@@ -1,0 +1,153 @@
+//! Free inputs: driven by stimuli, made parameters for linearisation, or reported.
+
+use crate::bind::short;
+use crate::instance::{InstanceId, Lowering, Member, ParameterNotes, Scope, Setting};
+use crate::model::{Model, listed};
+use hyde_diag::{Code, Diagnostic, MadeBy};
+use hyde_ir::flat::Equation;
+use hyde_ir::{Expr as Ir, Id as _, Parameter, Range, VarId};
+use hyde_syntax::ast::Drive;
+
+impl<'a> Model<'a, '_> {
+    /// `stimulus r = e`: drives a free input.
+    pub(super) fn stimulus(&mut self, drive: &'a Drive, root: InstanceId) {
+        let word = drive.target.as_word().unwrap_or("");
+        let member = self.instances[root].members.get(word).cloned();
+        let free = match member {
+            Some(Member::Variable(var)) => {
+                let variable = &self.flat.variables[var];
+                (variable.input && self.notes(var).binding.is_none()).then_some(var)
+            }
+            _ => None,
+        };
+        let Some(var) = free else {
+            let inputs: Vec<&str> = self.instances[root]
+                .members
+                .iter()
+                .filter(|(_, member)| matches!(member, Member::Variable(var) if self.flat.variables[*var].input))
+                .map(|(name, _)| *name)
+                .collect();
+            let diagnostic = Diagnostic::error(
+                Code::NotAnInput,
+                format!("`{}` is no free input of the model", drive.target.dotted()),
+            )
+            .label(drive.target.span, "cannot be driven");
+            self.report(if inputs.is_empty() {
+                diagnostic.help("declare it in the model: `input Length r;`")
+            } else {
+                diagnostic.help(format!("its inputs are {}", listed(&inputs)))
+            });
+            return;
+        };
+        let scope = Scope {
+            records: true,
+            ..Scope::new(root, Setting::Equation)
+        };
+        let value = self.value(&drive.value, &scope);
+        let lhs = self.flat.exprs.var(var);
+        let left = self.typed(lhs, self.dim(var), drive.target.span);
+        self.agree(&left, &value, "the input and its stimulus are", root);
+        let origin = self
+            .origin(root, drive.target.span)
+            .made_by(MadeBy::Experiment);
+        self.flat.equations.push(Equation {
+            range: Range::SCALAR,
+            lhs,
+            rhs: value.id,
+            origin,
+        });
+    }
+
+    /// Makes every free input a parameter of its name with the value zero: what a linearised model is driven by.
+    pub(crate) fn free_inputs(&mut self, root: InstanceId) {
+        if !self.input.free_inputs {
+            return;
+        }
+        let members: Vec<VarId> = self.instances[root]
+            .members
+            .values()
+            .filter_map(|member| {
+                if let Member::Variable(var) = member {
+                    Some(*var)
+                } else {
+                    None
+                }
+            })
+            .filter(|&var| self.flat.variables[var].input && self.notes(var).binding.is_none())
+            .collect();
+        for var in members {
+            let (dim, quantity) = (self.dim(var), self.flat.variables[var].quantity.clone());
+            let zero = self.flat.exprs.constant(0.0);
+            self.parameters.push(ParameterNotes {
+                dim,
+                binding: None,
+                state: Lowering::Done,
+                boolean: false,
+            });
+            let origin = self.flat.variables[var]
+                .origin
+                .clone()
+                .made_by(MadeBy::Experiment);
+            let param = self.flat.parameters.push(Parameter {
+                name: self.flat.variables[var].name.clone(),
+                len: None,
+                value: vec![zero],
+                quantity,
+                structural: false,
+                is_final: false,
+                derived: false,
+                prior: None,
+                source: None,
+                origin: origin.clone(),
+            });
+            let lhs = self.flat.exprs.var(var);
+            let rhs = self
+                .flat
+                .exprs
+                .add(Ir::Param(param, hyde_ir::Index::SCALAR));
+            self.flat.equations.push(Equation {
+                range: Range::SCALAR,
+                lhs,
+                rhs,
+                origin,
+            });
+        }
+    }
+
+    /// The free inputs of the model that nothing drives.
+    pub(crate) fn report_undriven(&mut self) {
+        let mut undriven = Vec::new();
+        for (id, variable) in self.flat.variables.enumerate() {
+            let notes = &self.variables[id.index()];
+            let top = self.instances[notes.instance].parent.is_none();
+            if !variable.input || !top || notes.binding.is_some() {
+                continue;
+            }
+            let target = Ir::Var(id, hyde_ir::Index::SCALAR);
+            let driven = self
+                .flat
+                .equations
+                .iter()
+                .any(|equation| self.flat.exprs[equation.lhs] == target);
+            if !driven {
+                undriven.push((variable.name.clone(), variable.origin.span));
+            }
+        }
+        for (name, span) in undriven {
+            let help = match self.input.experiment {
+                Some(experiment) => {
+                    format!("write in `experiment {experiment}`: `stimulus {name} = …;`")
+                }
+                None => format!("run an experiment that drives it: `stimulus {name} = …;`"),
+            };
+            self.report(
+                Diagnostic::error(
+                    Code::UndrivenInput,
+                    format!("the input `{}` is not driven", short(&name)),
+                )
+                .label(span, "a free input of the model")
+                .help(help),
+            );
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! A declaration: whether it means variables or components, its names and its length.
+
+use super::Collected;
+use crate::instance::{InstanceId, Member};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic};
+use hyde_syntax::ast::{
+    self, Declaration, Declarator, Element, EquationKind, Expr, ExprKind, Prefix, Reference,
+};
+
+impl<'a> Model<'a, '_> {
+    /// Declares variables or components.
+    pub(super) fn declare(
+        &mut self,
+        id: InstanceId,
+        item: &Collected<'a>,
+        declaration: &'a Declaration,
+        discrete: &[&'a str],
+        collected: &[Collected<'a>],
+    ) {
+        let class = self.names.class(item.file, &declaration.type_name);
+        let quantity = self.names.quantity(item.file, &declaration.type_name);
+        for declarator in &declaration.declarators {
+            if !self.free_name(id, declarator) {
+                continue;
+            }
+            let as_component = match (&class, &quantity) {
+                (Some(_), None) => true,
+                (None, Some(_)) => false,
+                (Some(_), Some(_)) => means_component(declaration, declarator, collected),
+                (None, None) => {
+                    let diagnostic = self.names.unknown(item.file, &declaration.type_name);
+                    self.report(diagnostic);
+                    let names = declaration.declarators.iter();
+                    self.undeclared
+                        .extend(names.map(|declarator| declarator.name.text.as_str()));
+                    return;
+                }
+            };
+            match (as_component, class, quantity) {
+                (true, Some((file, class)), _) => {
+                    self.declare_component(id, item, declaration, declarator, file, class)
+                }
+                (_, _, Some(quantity)) => {
+                    self.declare_variable(id, item, declaration, declarator, quantity, discrete)
+                }
+                _ => {}
+            }
+        }
+    }
+
+    pub(super) fn free_name(&mut self, id: InstanceId, declarator: &'a Declarator) -> bool {
+        let name = declarator.name.text.as_str();
+        let Some(member) = self.instances[id].members.get(name) else {
+            return true;
+        };
+        let first = match member {
+            Member::Variable(var) => Some(self.flat.variables[*var].origin.span),
+            Member::Parameter(param) => Some(self.flat.parameters[*param].origin.span),
+            Member::Instance(part) => Some(self.instances[*part].span),
+            Member::Instances(parts) => parts.first().map(|part| self.instances[*part].span),
+            Member::Domain(domain) => Some(self.domains[*domain].span),
+        };
+        let diagnostic = Diagnostic::error(Code::Duplicate, format!("`{name}` is declared twice"))
+            .label(declarator.name.span, "declared again here");
+        let diagnostic = match first {
+            Some(first) => diagnostic.label(first, "declared first here"),
+            None => diagnostic,
+        };
+        self.report(diagnostic.help("rename one of the two, or take it out"));
+        false
+    }
+
+    /// The length that dimensions after the type or the name give.
+    pub(super) fn length(
+        &mut self,
+        id: InstanceId,
+        of_type: &'a [Expr],
+        of_name: &'a [Expr],
+    ) -> Option<usize> {
+        let dims: Vec<&'a Expr> = of_name.iter().chain(of_type).collect();
+        match dims.as_slice() {
+            [] => None,
+            [dim] => {
+                let Some(length) = self.structural_integer(id, dim) else {
+                    return Some(0); // Reported; no element is looked for in it.
+                };
+                if !(0..=100_000_000).contains(&length) {
+                    self.report(
+                        Diagnostic::error(
+                            Code::BadShape,
+                            format!("an array cannot have {length} elements"),
+                        )
+                        .label(dim.span, "the number of elements"),
+                    );
+                    return Some(0);
+                }
+                usize::try_from(length).ok()
+            }
+            [_, second, ..] => {
+                self.report(
+                    Diagnostic::error(Code::NotYet, "arrays have one dimension in this version")
+                        .label(second.span, "a second dimension"),
+                );
+                None
+            }
+        }
+    }
+}
+
+/// Whether a name declared with a word that is both a type and a model means a component: it is used with a dot or
+/// modified as one.
+fn means_component(
+    declaration: &Declaration,
+    declarator: &Declarator,
+    collected: &[Collected<'_>],
+) -> bool {
+    let quantity = [
+        Prefix::Input,
+        Prefix::Output,
+        Prefix::Flow,
+        Prefix::Site,
+        Prefix::Field,
+    ];
+    if declarator.binding.is_some()
+        || declaration
+            .prefixes
+            .iter()
+            .any(|prefix| quantity.contains(prefix))
+    {
+        return false;
+    }
+    if !declarator.changes.is_empty() {
+        return declarator
+            .changes
+            .iter()
+            .any(|change| !matches!(change.target.as_word(), Some("start" | "fixed")));
+    }
+    collected
+        .iter()
+        .any(|item| element_uses_member(item.element, &declarator.name.text))
+}
+
+fn element_uses_member(element: &Element, name: &str) -> bool {
+    let expr = |e: &Expr| uses_member(e, name);
+    match element {
+        Element::Equation(equation) | Element::InitialEquation(equation) => {
+            equation_uses_member(equation, name)
+        }
+        Element::Declaration(declaration) => declaration.declarators.iter().any(|declarator| {
+            declarator.binding.as_ref().is_some_and(expr)
+                || declarator
+                    .changes
+                    .iter()
+                    .any(|change| change.value.as_ref().is_some_and(expr))
+        }),
+        Element::Clocked(clocked) => clocked
+            .elements
+            .iter()
+            .any(|inner| element_uses_member(inner, name)),
+        Element::Modes(modes) => modes.modes.iter().any(|mode| {
+            mode.equations
+                .iter()
+                .any(|equation| equation_uses_member(equation, name))
+                || mode.exits.iter().any(|exit| expr(&exit.guard))
+        }),
+        Element::Extends(..)
+        | Element::Domain(_)
+        | Element::Discretize(_)
+        | Element::Wrap(..)
+        | Element::Add(_)
+        | Element::Replace(..)
+        | Element::Signature(_)
+        | Element::Confounds(_)
+        | Element::Measure(_) => false,
+    }
+}
+
+fn equation_uses_member(equation: &ast::Equation, name: &str) -> bool {
+    let inside =
+        |list: &[ast::Equation]| list.iter().any(|inner| equation_uses_member(inner, name));
+    match &equation.kind {
+        EquationKind::Connect(sides) => sides.iter().any(|side| starts_with_member(side, name)),
+        EquationKind::Equality { lhs, rhs, .. } => uses_member(lhs, name) || uses_member(rhs, name),
+        EquationKind::For { equations, .. } => inside(equations),
+        EquationKind::If {
+            branches,
+            otherwise,
+        } => branches.iter().any(|(_, list)| inside(list)) || inside(otherwise),
+        EquationKind::When(branches) => branches.iter().any(|(_, list)| inside(list)),
+        EquationKind::Assert(condition, _) => uses_member(condition, name),
+        EquationKind::Reinit(state, value) => {
+            starts_with_member(state, name) || uses_member(value, name)
+        }
+    }
+}
+
+fn uses_member(expr: &Expr, name: &str) -> bool {
+    expr.any(&|expr| {
+        matches!(&expr.kind, ExprKind::Reference(path) | ExprKind::Call(path, _) if starts_with_member(path, name))
+    })
+}
+
+fn starts_with_member(reference: &Reference, name: &str) -> bool {
+    reference.parts.len() > 1 && reference.parts[0].name.text == name
+}

@@ -1,0 +1,218 @@
+//! Modifications: each as a single change with the scope its value stands in, and what of them nothing used.
+
+use crate::instance::{Binding, InstanceId};
+use crate::model::{Model, listed};
+use crate::names::nearest;
+use hyde_diag::{Code, Diagnostic, Span};
+use hyde_syntax::ast::{Change, Declarator};
+
+/// A modification of something below an instance, with the scope its value stands in.
+#[derive(Clone)]
+pub(super) struct Modifier<'a> {
+    pub(super) target: Vec<&'a str>,
+    pub(super) change: &'a Change,
+    pub(super) scope: InstanceId,
+    /// Given by the experiment, so that it can read the records' columns.
+    pub(super) records: bool,
+    pub(super) element: Option<usize>,
+    /// Index into the model's list of modifications, to tell which were used.
+    pub(super) number: usize,
+}
+
+impl<'a> Model<'a, '_> {
+    /// The modifications of `name`, with it taken off their targets.
+    pub(super) fn modifiers_for(
+        &mut self,
+        name: &str,
+        modifiers: &[Modifier<'a>],
+    ) -> Vec<Modifier<'a>> {
+        let mut found = Vec::new();
+        for modifier in modifiers
+            .iter()
+            .filter(|modifier| modifier.target.first() == Some(&name))
+        {
+            let mut inner = modifier.clone();
+            inner.target.remove(0);
+            if inner.target.is_empty() {
+                self.modifications[inner.number].2 = true;
+            }
+            found.push(inner);
+        }
+        found
+    }
+
+    /// Nested changes as a list of single ones.
+    pub(super) fn modifiers_of(
+        &mut self,
+        changes: &'a [Change],
+        scope: InstanceId,
+        out: &mut Vec<Modifier<'a>>,
+    ) {
+        self.modifiers_below(changes, scope, &[], out);
+    }
+
+    fn modifiers_below(
+        &mut self,
+        changes: &'a [Change],
+        scope: InstanceId,
+        above: &[&'a str],
+        out: &mut Vec<Modifier<'a>>,
+    ) {
+        for change in changes {
+            let mut target = above.to_vec();
+            target.extend(
+                change
+                    .target
+                    .parts
+                    .iter()
+                    .map(|part| part.name.text.as_str()),
+            );
+            self.modifiers_below(&change.changes, scope, &target, out);
+            if change.redeclare.is_some()
+                || change.value.is_some()
+                || change.prior.is_some()
+                || change.source.is_some()
+            {
+                let number = self.modifications.len();
+                self.modifications
+                    .push((change.target.span, target.join("."), false));
+                out.push(Modifier {
+                    target,
+                    change,
+                    scope,
+                    records: false,
+                    element: None,
+                    number,
+                });
+            }
+        }
+    }
+
+    pub(super) fn report_unused_modifications(&mut self) {
+        let unused: Vec<(usize, Span, String)> = (0..)
+            .zip(&self.modifications)
+            .filter(|(_, (.., used))| !used)
+            .map(|(number, (span, name, _))| (number, *span, name.clone()))
+            .collect();
+        for (number, span, name) in unused {
+            let last = name.rsplit('.').next().unwrap_or(&name);
+            if name.split('.').any(|word| self.undeclared.contains(word)) {
+                continue;
+            }
+            let diagnostic = Diagnostic::error(
+                Code::UnknownModification,
+                format!("there is no `{name}` to modify"),
+            );
+            let Some(instance) = self.modified.get(&number).map(|&id| &self.instances[id]) else {
+                self.report(diagnostic.label(span, "changes nothing"));
+                continue;
+            };
+            let known: Vec<&str> = instance.members.keys().copied().collect();
+            let diagnostic = diagnostic.label(
+                span,
+                format!("`{}` has nothing of that name", instance.class.name.text),
+            );
+            let near = nearest(last, known.iter().copied()).filter(|near| *near != last);
+            self.report(match near {
+                Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+                None => diagnostic.help(format!("it has {}", listed(&known))),
+            });
+        }
+    }
+
+    /// The value of a name: the outermost modification, else the declaration.
+    pub(super) fn binding(
+        &mut self,
+        id: InstanceId,
+        declarator: &'a Declarator,
+        modifiers: &[Modifier<'a>],
+    ) -> Option<Binding<'a>> {
+        let modified = modifiers
+            .iter()
+            .find(|modifier| modifier.target.is_empty() && modifier.change.value.is_some());
+        match modified {
+            Some(modifier) => {
+                let expr = modifier.change.value.as_ref()?;
+                Some(Binding {
+                    expr,
+                    scope: modifier.scope,
+                    records: modifier.records,
+                    element: modifier.element,
+                    span: modifier.change.target.span,
+                })
+            }
+            None => {
+                let expr = declarator.binding.as_ref()?;
+                Some(Binding {
+                    expr,
+                    scope: id,
+                    records: false,
+                    element: None,
+                    span: declarator.name.span,
+                })
+            }
+        }
+    }
+
+    /// `start` or `fixed` of a variable: the outermost modification, else the declaration.
+    pub(super) fn attribute(
+        &mut self,
+        id: InstanceId,
+        declarator: &'a Declarator,
+        modifiers: &[Modifier<'a>],
+        word: &str,
+    ) -> Option<Binding<'a>> {
+        let modified = modifiers
+            .iter()
+            .find(|modifier| modifier.target == [word] && modifier.change.value.is_some());
+        if let Some(modifier) = modified {
+            self.modifications[modifier.number].2 = true;
+            let expr = modifier.change.value.as_ref()?;
+            return Some(Binding {
+                expr,
+                scope: modifier.scope,
+                records: modifier.records,
+                element: modifier.element,
+                span: expr.span,
+            });
+        }
+        let change = declarator
+            .changes
+            .iter()
+            .find(|change| change.target.as_word() == Some(word))?;
+        let expr = change.value.as_ref()?;
+        Some(Binding {
+            expr,
+            scope: id,
+            records: false,
+            element: None,
+            span: expr.span,
+        })
+    }
+
+    pub(super) fn check_attributes(
+        &mut self,
+        declarator: &'a Declarator,
+        modifiers: &[Modifier<'a>],
+    ) {
+        for modifier in modifiers {
+            if modifier.target.is_empty()
+                || matches!(modifier.target.as_slice(), ["start" | "fixed"])
+            {
+                self.modifications[modifier.number].2 = true;
+            }
+        }
+        for change in &declarator.changes {
+            if !matches!(change.target.as_word(), Some("start" | "fixed")) {
+                self.report(
+                    Diagnostic::error(
+                        Code::UnknownModification,
+                        format!("a variable has no attribute `{}`", change.target.dotted()),
+                    )
+                    .label(change.target.span, "changes nothing")
+                    .help("attributes are `start` and `fixed`"),
+                );
+            }
+        }
+    }
+}

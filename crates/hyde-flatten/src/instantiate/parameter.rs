@@ -1,0 +1,109 @@
+//! Parameters with their priors and sources.
+
+use super::Collected;
+use crate::instance::{InstanceId, Lowering, Member, ParameterNotes};
+use crate::model::Model;
+use crate::names::TypeName;
+use hyde_diag::{Code, Diagnostic};
+use hyde_ir::Parameter;
+use hyde_syntax::ast::{self, Declaration, Prefix};
+use hyde_units::NamedUnit;
+
+impl<'a> Model<'a, '_> {
+    pub(super) fn declare_parameters(
+        &mut self,
+        id: InstanceId,
+        item: &Collected<'a>,
+        declaration: &'a Declaration,
+    ) {
+        let Some(kind) = self.names.quantity(item.file, &declaration.type_name) else {
+            let diagnostic = match self.names.class(item.file, &declaration.type_name) {
+                Some(_) => Diagnostic::error(Code::WrongType, "a model cannot be a parameter")
+                    .label(declaration.type_name.span, "this is a model")
+                    .help("declare it without `parameter`; exchange it by `replaceable`"),
+                None => self.names.unknown(item.file, &declaration.type_name),
+            };
+            self.report(diagnostic);
+            let names = declaration.declarators.iter();
+            self.undeclared
+                .extend(names.map(|declarator| declarator.name.text.as_str()));
+            return;
+        };
+        let has = |prefix| declaration.prefixes.contains(&prefix);
+        for declarator in &declaration.declarators {
+            if !self.free_name(id, declarator) {
+                continue;
+            }
+            let name = declarator.name.text.as_str();
+            let modifiers = self.modifiers_for(name, &item.modifiers);
+            let outermost = modifiers.iter().find(|modifier| modifier.target.is_empty());
+            if let (true, Some(modifier)) = (has(Prefix::Final) || has(Prefix::Constant), outermost)
+            {
+                self.report(
+                    Diagnostic::error(Code::FinalModified, format!("`{name}` is final"))
+                        .label(modifier.change.target.span, "cannot be modified")
+                        .label(declarator.name.span, "declared final here")
+                        .help(format!(
+                            "leave `{name}` out: modify the parameters that its value is made of"
+                        )),
+                );
+            }
+            let declared = declarator
+                .prior
+                .as_ref()
+                .or_else(|| outermost.and_then(|m| m.change.prior.as_ref()));
+            let prior = outermost.and_then(|m| m.change.prior.as_ref()).or(declared);
+            let prior = prior.and_then(|prior| self.prior(prior));
+            let source = outermost
+                .and_then(|m| m.change.source.clone())
+                .or_else(|| declarator.source.clone());
+            let binding = self.binding(id, declarator, &modifiers);
+            self.check_attributes(declarator, &modifiers);
+            let (dim, quantity) = self.quantity(kind, binding.map(|binding| binding.expr));
+            let len = self.length(id, &declaration.dims, &declarator.dims);
+            let span = binding.map_or(declarator.name.span, |binding| binding.span);
+            let path = self.path(id);
+            let is_final = has(Prefix::Final)
+                || has(Prefix::Constant)
+                || outermost.is_some_and(|m| m.change.is_final);
+            self.parameters.push(ParameterNotes {
+                dim,
+                binding,
+                state: Lowering::Waiting,
+                boolean: matches!(kind, TypeName::Boolean),
+            });
+            let param = self.flat.parameters.push(Parameter {
+                name: path.member(name),
+                len,
+                value: Vec::new(),
+                quantity,
+                structural: false,
+                is_final,
+                derived: false,
+                prior,
+                source,
+                origin: self.origin(id, span),
+            });
+            self.instances[id]
+                .members
+                .insert(name, Member::Parameter(param));
+        }
+    }
+
+    pub(super) fn prior(&mut self, prior: &'a ast::Prior) -> Option<hyde_ir::Prior> {
+        if prior.percent {
+            return Some(hyde_ir::Prior::Relative(prior.value / 100.0));
+        }
+        let scale = match &prior.unit {
+            None => 1.0,
+            Some(unit) => match NamedUnit::parse(&unit.text) {
+                Ok(unit) => unit.unit().difference_to_si(1.0),
+                Err(error) => {
+                    self.bad_unit(unit, &error);
+                    return None;
+                }
+            },
+        };
+        Some(hyde_ir::Prior::Absolute(prior.value * scale))
+    }
+}

@@ -1,0 +1,90 @@
+//! The dimension and printed unit of a declared type.
+
+use crate::dimension::Dim;
+use crate::model::Model;
+use crate::names::{FileIndex, TypeName};
+use hyde_ir::Quantity;
+use hyde_syntax::ast::{self, Expr, ExprKind};
+use hyde_units::NamedUnit;
+
+impl<'a> Model<'a, '_> {
+    /// The dimension and printed unit of a declared type; `Real` takes those of a literal it is bound to.
+    pub(super) fn quantity(
+        &mut self,
+        kind: TypeName<'a>,
+        binding: Option<&'a Expr>,
+    ) -> (Dim, Quantity) {
+        let written = binding
+            .and_then(literal_unit)
+            .and_then(|unit| NamedUnit::parse(&unit.text).ok());
+        let (dim, unit) = match kind {
+            TypeName::Integer | TypeName::Boolean => return (Dim::NUMBER, Quantity::number()),
+            TypeName::Real => match &written {
+                Some(unit) => (Dim::known(unit.unit().dimension), None),
+                None => (Dim::unknown(self.dimensions.fresh()), None),
+            },
+            TypeName::Quantity(file_of_type, item) => {
+                let unit = self.type_unit(file_of_type, item, 0);
+                let dim = unit
+                    .as_ref()
+                    .map_or(Dim::NUMBER, |unit| Dim::known(unit.unit().dimension));
+                (dim, unit)
+            }
+        };
+        let same = |unit: &NamedUnit| dim.as_known() == Some(unit.unit().dimension);
+        let quantity = match (written.filter(same), unit) {
+            (Some(unit), _) | (None, Some(unit)) => Quantity {
+                dimension: unit.unit().dimension,
+                unit,
+            },
+            (None, None) => Quantity::number(),
+        };
+        (dim, quantity)
+    }
+
+    fn type_unit(
+        &mut self,
+        file: FileIndex,
+        item: &'a ast::TypeItem,
+        depth: usize,
+    ) -> Option<NamedUnit> {
+        if let Some(unit) = &item.unit {
+            return match NamedUnit::parse(&unit.text) {
+                Ok(unit) => Some(unit),
+                Err(error) => {
+                    self.bad_unit(unit, &error);
+                    None
+                }
+            };
+        }
+        if depth > 20 {
+            return None;
+        }
+        match self.names.quantity(file, &item.base) {
+            Some(TypeName::Quantity(file, base)) => self.type_unit(file, base, depth + 1),
+            Some(TypeName::Real | TypeName::Integer | TypeName::Boolean) => None,
+            None => {
+                let diagnostic = self.names.unknown(file, &item.base);
+                self.report(diagnostic);
+                None
+            }
+        }
+    }
+}
+
+/// The unit of a literal, possibly negative.
+fn literal_unit(expr: &Expr) -> Option<&ast::UnitText> {
+    match &expr.kind {
+        ExprKind::Number(_, unit) => unit.as_ref(),
+        ExprKind::Unary(_, inner) => literal_unit(inner),
+        ExprKind::Array(items, unit) => unit
+            .as_ref()
+            .or_else(|| items.first().and_then(literal_unit)),
+        ExprKind::String(_)
+        | ExprKind::Boolean(_)
+        | ExprKind::Reference(_)
+        | ExprKind::Call(..)
+        | ExprKind::Binary(..)
+        | ExprKind::If(..) => None,
+    }
+}

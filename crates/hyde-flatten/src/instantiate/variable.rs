@@ -1,0 +1,94 @@
+//! Variables with their kind, length and attributes.
+
+use super::Collected;
+use crate::instance::{InstanceId, Member, VariableNotes};
+use crate::model::Model;
+use crate::names::TypeName;
+use hyde_diag::{Code, Diagnostic};
+use hyde_ir::{Variable, VariableKind};
+use hyde_syntax::ast::{ClassKind, Declaration, Declarator, ExprKind, Prefix};
+
+impl<'a> Model<'a, '_> {
+    pub(super) fn declare_variable(
+        &mut self,
+        id: InstanceId,
+        item: &Collected<'a>,
+        declaration: &'a Declaration,
+        declarator: &'a Declarator,
+        kind: TypeName<'a>,
+        discrete: &[&'a str],
+    ) {
+        let name = declarator.name.text.as_str();
+        let has = |prefix| declaration.prefixes.contains(&prefix);
+        let modifiers = self.modifiers_for(name, &item.modifiers);
+        let binding = self.binding(id, declarator, &modifiers);
+        let attribute =
+            |model: &mut Self, word: &str| model.attribute(id, declarator, &modifiers, word);
+        let start = attribute(self, "start");
+        let fixed = attribute(self, "fixed");
+        self.check_attributes(declarator, &modifiers);
+        let fixed = fixed.is_some_and(|fixed| matches!(fixed.expr.kind, ExprKind::Boolean(true)));
+        let (dim, quantity) = self.quantity(kind, binding.map(|binding| binding.expr));
+        let clock = self.instances[id].clock;
+        let variable_kind = match clock {
+            Some(clock) => VariableKind::Clocked(clock),
+            None if discrete.contains(&name) => VariableKind::Discrete,
+            None => VariableKind::Continuous,
+        };
+        let field = if has(Prefix::Field) {
+            let field = self.field(id, declarator);
+            if field.is_none() {
+                self.undeclared.insert(name);
+                return;
+            }
+            field
+        } else {
+            None
+        };
+        let (len, first) = match field {
+            Some(field) => {
+                let cells = self.domains[field.domain].cells;
+                (
+                    Some(if field.flux { cells } else { cells + 1 }),
+                    i32::from(field.flux),
+                )
+            }
+            None => (self.length(id, &declaration.dims, &declarator.dims), 1),
+        };
+        let origin = self.origin(id, declarator.name.span);
+        let flow = has(Prefix::Flow);
+        if flow && self.instances[id].class.kind != ClassKind::Connector {
+            self.report(
+                Diagnostic::error(
+                    Code::BadConnection,
+                    format!("`flow` on `{name}`, which is in no connector"),
+                )
+                .label(declaration.span, "only the variables of a connector flow"),
+            );
+        }
+        self.variables.push(VariableNotes {
+            instance: id,
+            dim,
+            binding,
+            start,
+            field,
+        });
+        let var = self.flat.variables.push(Variable {
+            name: self.instances[id].path.member(name),
+            len,
+            first,
+            kind: variable_kind,
+            quantity,
+            start: Vec::new(),
+            fixed,
+            flow,
+            boolean: matches!(kind, TypeName::Boolean),
+            input: has(Prefix::Input),
+            trace: None,
+            origin,
+        });
+        self.instances[id]
+            .members
+            .insert(name, Member::Variable(var));
+    }
+}

@@ -1,0 +1,234 @@
+//! Operators, each with what it demands of the dimensions of its operands.
+
+use super::sum_dim;
+use crate::dimension::Dim;
+use crate::instance::{Scope, Setting, Typed};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, Span};
+use hyde_ir::{BinaryOp, Expr as Ir, UnaryOp, VariableKind};
+use hyde_syntax::ast::{Binary, Expr, Unary};
+use hyde_units::{AngleExponent, Exponent};
+
+impl<'a> Model<'a, '_> {
+    pub(super) fn unary(
+        &mut self,
+        op: Unary,
+        inner: &'a Expr,
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Typed {
+        match op {
+            Unary::Not => {
+                let condition = self.truth(inner, scope);
+                let id = self.flat.exprs.unary(UnaryOp::Not, condition);
+                Typed {
+                    truth: true,
+                    ..self.typed(id, Dim::NUMBER, span)
+                }
+            }
+            Unary::Positive => Typed {
+                span,
+                ..self.value(inner, scope)
+            },
+            Unary::Negative => {
+                let value = self.value(inner, scope);
+                let id = self.flat.exprs.negative(value.id);
+                Typed {
+                    id,
+                    span,
+                    two_pi: false,
+                    ..value
+                }
+            }
+        }
+    }
+
+    pub(super) fn binary(
+        &mut self,
+        op: Binary,
+        left: &'a Expr,
+        right: &'a Expr,
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Typed {
+        match op {
+            Binary::And | Binary::Or => {
+                let (a, b) = (self.truth(left, scope), self.truth(right, scope));
+                let op = if op == Binary::And {
+                    BinaryOp::And
+                } else {
+                    BinaryOp::Or
+                };
+                let id = self.flat.exprs.binary(op, a, b);
+                Typed {
+                    truth: true,
+                    ..self.typed(id, Dim::NUMBER, span)
+                }
+            }
+            Binary::Lt => self.comparison(BinaryOp::Lt, left, right, scope, span),
+            Binary::Le => self.comparison(BinaryOp::Le, left, right, scope, span),
+            Binary::Gt => self.comparison(BinaryOp::Gt, left, right, scope, span),
+            Binary::Ge => self.comparison(BinaryOp::Ge, left, right, scope, span),
+            Binary::Eq => self.comparison(BinaryOp::Eq, left, right, scope, span),
+            Binary::Ne => self.comparison(BinaryOp::Ne, left, right, scope, span),
+            Binary::Add | Binary::Sub => {
+                let (a, b) = (self.value(left, scope), self.value(right, scope));
+                let (ir, what) = if op == Binary::Add {
+                    (BinaryOp::Add, "`+` adds")
+                } else {
+                    (BinaryOp::Sub, "`-` subtracts")
+                };
+                self.agree(&a, &b, what, scope.instance);
+                let id = self.flat.exprs.binary(ir, a.id, b.id);
+                Typed {
+                    bare: a.bare && b.bare,
+                    ..self.typed(id, sum_dim(&a.dim, &b.dim), span)
+                }
+            }
+            Binary::Mul | Binary::Div => {
+                let (a, b) = (self.value(left, scope), self.value(right, scope));
+                self.doubtful_turns(&a, &b);
+                let (ir, dim) = if op == Binary::Mul {
+                    (BinaryOp::Mul, a.dim.multiply(&b.dim))
+                } else {
+                    (BinaryOp::Div, a.dim.divide(&b.dim))
+                };
+                let id = self.flat.exprs.binary(ir, a.id, b.id);
+                let two_pi =
+                    self.flat.exprs.is_constant(id, std::f64::consts::TAU) && a.bare && b.bare;
+                Typed {
+                    bare: a.bare && b.bare,
+                    two_pi,
+                    ..self.typed(id, dim, span)
+                }
+            }
+            Binary::Pow => self.power(left, right, scope, span),
+        }
+    }
+
+    fn comparison(
+        &mut self,
+        op: BinaryOp,
+        left: &'a Expr,
+        right: &'a Expr,
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Typed {
+        let (a, b) = (self.lower(left, scope), self.lower(right, scope));
+        self.same_kind(&a, &b);
+        self.agree(&a, &b, "a comparison of", scope.instance);
+        let continuous = matches!(scope.setting, Setting::Equation | Setting::Condition);
+        if continuous
+            && matches!(op, BinaryOp::Eq | BinaryOp::Ne)
+            && (self.varies(a.id) || self.varies(b.id))
+        {
+            self.report(
+                Diagnostic::error(Code::WrongType, "continuous values are hardly ever equal")
+                    .label(span, "compares values that change continuously")
+                    .help("compare with `<` or `>`"),
+            );
+        }
+        let id = self.flat.exprs.binary(op, a.id, b.id);
+        Typed {
+            truth: true,
+            ..self.typed(id, Dim::NUMBER, span)
+        }
+    }
+
+    /// Whether an expression changes between events.
+    fn varies(&self, id: hyde_ir::ExprId) -> bool {
+        self.flat.exprs.any(id, |expr| match expr {
+            Ir::Time | Ir::Der(..) => true,
+            Ir::Var(var, _) => {
+                let variable = &self.flat.variables[var];
+                !variable.boolean
+                    && matches!(
+                        variable.kind,
+                        VariableKind::Continuous | VariableKind::Column(..)
+                    )
+            }
+            Ir::Const(_)
+            | Ir::Counter
+            | Ir::Param(..)
+            | Ir::Pre(..)
+            | Ir::Relation(_)
+            | Ir::InMode(..)
+            | Ir::Unary(..)
+            | Ir::Binary(..)
+            | Ir::If(..)
+            | Ir::NoEvent(_) => false,
+        })
+    }
+
+    fn power(&mut self, left: &'a Expr, right: &'a Expr, scope: &Scope<'a>, span: Span) -> Typed {
+        let (a, b) = (self.value(left, scope), self.value(right, scope));
+        let number = Typed {
+            dim: Dim::NUMBER,
+            ..b.clone()
+        };
+        self.agree(
+            &b,
+            &number,
+            "an exponent is a pure number, not",
+            scope.instance,
+        );
+        let id = self.flat.exprs.binary(BinaryOp::Pow, a.id, b.id);
+        let exponent = self
+            .flat
+            .exprs
+            .as_constant(b.id)
+            .and_then(Exponent::from_f64);
+        let dim = match exponent {
+            Some(exponent) => a.dim.power(exponent),
+            None => {
+                let number = Typed {
+                    dim: Dim::NUMBER,
+                    ..a.clone()
+                };
+                self.agree(
+                    &a,
+                    &number,
+                    "a power with a varying exponent has a pure number as its base, not",
+                    scope.instance,
+                );
+                Some(Dim::NUMBER)
+            }
+        };
+        let dim = dim.unwrap_or_else(|| {
+            self.report(
+                Diagnostic::error(
+                    Code::UnitMismatch,
+                    "a dimension to this power cannot be told exactly",
+                )
+                .label(span, "an exponent like 1/2 or 2/3 can"),
+            );
+            Dim::Any
+        });
+        Typed {
+            bare: a.bare && b.bare,
+            ..self.typed(id, dim, span)
+        }
+    }
+
+    /// `2*pi` beside a quantity that is per angle already (U1).
+    fn doubtful_turns(&mut self, a: &Typed, b: &Typed) {
+        for (turn, other) in [(a, b), (b, a)] {
+            let Some(dimension) = other.dim.as_known() else {
+                continue;
+            };
+            let per_angle = matches!(dimension.angle(), AngleExponent::Known(e) if e.is_negative());
+            if turn.two_pi && per_angle {
+                self.report(
+                    Diagnostic::warning(
+                        Code::AngleMismatch,
+                        "2*pi times a quantity that is per angle already",
+                    )
+                    .label(other.span, format!("this is {dimension}"))
+                    .label(turn.span, "turns it once more")
+                    .note("units like mm/rev are converted to m/rad as they are read")
+                    .help("leave the `2*pi` out"),
+                );
+            }
+        }
+    }
+}

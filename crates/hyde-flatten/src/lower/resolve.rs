@@ -1,0 +1,208 @@
+//! Names: what they stand for in scope.
+
+use super::subscript::mentions_counter;
+use crate::instance::{Counter, FieldPlace, InstanceId, Member, Scope};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic};
+use hyde_ir::{Index, ParamId, VarId};
+use hyde_syntax::ast::{Expr, Reference};
+
+/// What a name stands for.
+pub(crate) enum Resolved {
+    /// A variable; the element, if one is named.
+    Variable(VarId, Option<Index>),
+    /// A parameter; the element, if one is named.
+    Parameter(ParamId, Option<Index>),
+    Instance(InstanceId),
+    Counter(Counter),
+    Time,
+    Pi,
+    /// The coordinate of the domain the field expression is on.
+    Coordinate,
+}
+
+impl<'a> Model<'a, '_> {
+    /// What a name stands for; reported if nothing.
+    pub(crate) fn resolve(
+        &mut self,
+        reference: &'a Reference,
+        scope: &Scope<'a>,
+    ) -> Option<Resolved> {
+        let first = reference.parts.first()?;
+        let word = first.name.text.as_str();
+        if reference.parts.len() == 1 && first.subscripts.is_empty() {
+            if let Some((_, counter)) = scope.counters.iter().rev().find(|(name, _)| *name == word)
+            {
+                return Some(Resolved::Counter(*counter));
+            }
+            if let Some((_, var)) = scope.locals.iter().rev().find(|(name, _)| *name == word) {
+                return Some(Resolved::Variable(*var, None));
+            }
+            if self.coordinate(scope) == Some(word) {
+                return Some(Resolved::Coordinate);
+            }
+        }
+        if scope.records
+            && self
+                .flat
+                .experiment
+                .records
+                .iter()
+                .any(|record| record == word)
+        {
+            return self.record_column(reference, scope);
+        }
+        let mut at = scope.instance;
+        let mut member = loop {
+            if let Some(member) = self.instances[at].members.get(word) {
+                break member.clone();
+            }
+            match (self.instances[at].outer, word) {
+                (Some(outer), _) => at = outer,
+                (None, "time") => return Some(Resolved::Time),
+                (None, "pi") => return Some(Resolved::Pi),
+                (None, _) => {
+                    self.unknown_name(scope, scope.instance, word, reference);
+                    return None;
+                }
+            }
+        };
+        let mut parts = reference.parts.iter();
+        let mut part = parts.next()?;
+        loop {
+            let subscript = match part.subscripts.as_slice() {
+                [] => None,
+                [subscript] => Some(subscript),
+                [_, second, ..] => {
+                    self.report(
+                        Diagnostic::error(
+                            Code::BadShape,
+                            "arrays have one dimension in this version",
+                        )
+                        .label(second.span, "a second subscript"),
+                    );
+                    return None;
+                }
+            };
+            let instance = match member {
+                Member::Variable(var) => {
+                    let variable = &self.flat.variables[var];
+                    let (len, first) = (variable.len, variable.first);
+                    let rest = parts.next();
+                    let index = self.element(subscript, len, first, scope, reference)?;
+                    return self
+                        .last(rest, reference)
+                        .then_some(Resolved::Variable(var, index));
+                }
+                Member::Parameter(param) => {
+                    let len = self.flat.parameters[param].len;
+                    let rest = parts.next();
+                    let index = self.element(subscript, len, 1, scope, reference)?;
+                    return self
+                        .last(rest, reference)
+                        .then_some(Resolved::Parameter(param, index));
+                }
+                Member::Domain(_) => {
+                    self.report(
+                        Diagnostic::error(
+                            Code::FieldUse,
+                            format!("`{}` is a domain, not a value", part.name.text),
+                        )
+                        .label(reference.span, "a domain"),
+                    );
+                    return None;
+                }
+                Member::Instance(instance) if subscript.is_none() => instance,
+                Member::Instance(_) => {
+                    self.not_an_array(reference);
+                    return None;
+                }
+                Member::Instances(list) => self.one_of(&list, subscript, scope, reference)?,
+            };
+            let Some(next) = parts.next() else {
+                return Some(Resolved::Instance(instance));
+            };
+            let word = next.name.text.as_str();
+            let Some(inner) = self.instances[instance].members.get(word) else {
+                self.unknown_name(scope, instance, word, reference);
+                return None;
+            };
+            member = inner.clone();
+            part = next;
+        }
+    }
+
+    fn one_of(
+        &mut self,
+        list: &[InstanceId],
+        subscript: Option<&'a Expr>,
+        scope: &Scope<'a>,
+        reference: &Reference,
+    ) -> Option<InstanceId> {
+        let Some(subscript) = subscript else {
+            self.report(
+                Diagnostic::error(
+                    Code::BadShape,
+                    format!(
+                        "`{}` is an array of {} components",
+                        reference.dotted(),
+                        list.len()
+                    ),
+                )
+                .label(reference.span, "which one?")
+                .help(format!("name one: `{}[1]`", reference.dotted())),
+            );
+            return None;
+        };
+        if mentions_counter(subscript, scope) {
+            self.needs_unrolling = true;
+            return None;
+        }
+        let number = self.structural_integer_in(scope, subscript)?;
+        let found = usize::try_from(number - 1)
+            .ok()
+            .and_then(|at| list.get(at))
+            .copied();
+        if found.is_none() {
+            self.report(
+                Diagnostic::error(
+                    Code::BadShape,
+                    format!("there are components 1 to {}", list.len()),
+                )
+                .label(subscript.span, format!("component {number}")),
+            );
+        }
+        found
+    }
+
+    pub(super) fn last(
+        &mut self,
+        rest: Option<&hyde_syntax::ast::Part>,
+        reference: &Reference,
+    ) -> bool {
+        let Some(part) = rest else { return true };
+        self.report(
+            Diagnostic::error(
+                Code::UnknownName,
+                format!(
+                    "`{}` has no `{}`: it is no component",
+                    reference.dotted(),
+                    part.name.text
+                ),
+            )
+            .label(part.name.span, "nothing is below a value"),
+        );
+        false
+    }
+
+    /// The name of the coordinate where a field expression is being lowered.
+    fn coordinate(&self, scope: &Scope<'a>) -> Option<&'a str> {
+        match scope.place {
+            FieldPlace::Nowhere => None,
+            FieldPlace::Node(domain, _) | FieldPlace::Cell(domain, _) => {
+                (self.domains[domain].instance == scope.instance)
+                    .then(|| self.domains[domain].coordinate)
+            }
+        }
+    }
+}

@@ -1,0 +1,169 @@
+//! Subscripts: elements by number or affine in the counter of a `for` equation, and whole arrays.
+
+use crate::instance::{Counter, Scope};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, Span};
+use hyde_ir::Index;
+use hyde_syntax::ast::{Binary, Expr, ExprKind, Reference, Unary};
+
+impl<'a> Model<'a, '_> {
+    /// Subscripts affine in the counter: `stride*i + offset`, counted as written.
+    pub(crate) fn affine(&mut self, expr: &'a Expr, scope: &Scope<'a>) -> Option<Index> {
+        if !mentions_counter(expr, scope) {
+            let value = self.structural_integer_in(scope, expr)?;
+            return Some(Index::fixed(i32::try_from(value).unwrap_or(i32::MAX)));
+        }
+        match &expr.kind {
+            ExprKind::Reference(_) => Some(Index {
+                stride: 1,
+                offset: 0,
+            }),
+            ExprKind::Unary(Unary::Negative, inner) => {
+                let inner = self.affine(inner, scope)?;
+                Some(Index {
+                    stride: -inner.stride,
+                    offset: -inner.offset,
+                })
+            }
+            ExprKind::Binary(op @ (Binary::Add | Binary::Sub), a, b) => {
+                let (a, b) = (self.affine(a, scope)?, self.affine(b, scope)?);
+                let sign = if *op == Binary::Add { 1 } else { -1 };
+                Some(Index {
+                    stride: a.stride + sign * b.stride,
+                    offset: a.offset + sign * b.offset,
+                })
+            }
+            ExprKind::Binary(Binary::Mul, a, b) => {
+                let (a, b) = (self.affine(a, scope)?, self.affine(b, scope)?);
+                match (a.stride, b.stride) {
+                    (0, _) => Some(Index {
+                        stride: a.offset * b.stride,
+                        offset: a.offset * b.offset,
+                    }),
+                    (_, 0) => Some(Index {
+                        stride: b.offset * a.stride,
+                        offset: b.offset * a.offset,
+                    }),
+                    _ => {
+                        self.needs_unrolling = true;
+                        None
+                    }
+                }
+            }
+            ExprKind::Number(..)
+            | ExprKind::String(_)
+            | ExprKind::Boolean(_)
+            | ExprKind::Call(..)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::If(..)
+            | ExprKind::Array(..) => {
+                self.needs_unrolling = true;
+                None
+            }
+        }
+    }
+
+    /// The element of a subscript, counted from 0; `Some(None)` where there is no subscript.
+    pub(super) fn element(
+        &mut self,
+        subscript: Option<&'a Expr>,
+        len: Option<usize>,
+        first: i32,
+        scope: &Scope<'a>,
+        reference: &Reference,
+    ) -> Option<Option<Index>> {
+        let Some(subscript) = subscript else {
+            return Some(None);
+        };
+        let Some(len) = len else {
+            self.not_an_array(reference);
+            return None;
+        };
+        if len == 0 && self.diagnostics.has_errors() {
+            return None; // Its length is the mistake.
+        }
+        let written = self.affine(subscript, scope)?;
+        let index = Index {
+            stride: written.stride,
+            offset: written.offset - first,
+        };
+        let inside = usize::try_from(index.offset).is_ok_and(|at| at < len);
+        if index.stride == 0 && !inside {
+            let last = i64::from(first) + i64::try_from(len).unwrap_or(0) - 1;
+            self.report(
+                Diagnostic::error(
+                    Code::BadShape,
+                    format!("`{}` has elements {first} to {last}", reference.dotted()),
+                )
+                .label(subscript.span, format!("element {}", written.offset)),
+            );
+            return None;
+        }
+        Some(Some(index))
+    }
+
+    /// The element a whole array means in an array equation; an error where one value is expected.
+    pub(super) fn whole(
+        &mut self,
+        index: Option<Index>,
+        len: Option<usize>,
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Option<Index> {
+        match (index, len, scope.elementwise) {
+            (Some(index), ..) => Some(index),
+            (None, None, _) => Some(Index::SCALAR),
+            (None, Some(len), Some(expected)) if len == expected => Some(Index {
+                stride: 1,
+                offset: 0,
+            }),
+            (None, Some(len), Some(expected)) => {
+                self.report(
+                    Diagnostic::error(
+                        Code::BadShape,
+                        format!("an array of {len} stands beside arrays of {expected}"),
+                    )
+                    .label(span, format!("has {len} elements")),
+                );
+                None
+            }
+            (None, Some(len), None) => {
+                self.report(
+                    Diagnostic::error(
+                        Code::BadShape,
+                        "an array stands where one value is expected",
+                    )
+                    .label(span, format!("has {len} elements"))
+                    .help("name an element, `x[1]`, or sum them, `sum(x)`"),
+                );
+                None
+            }
+        }
+    }
+
+    pub(super) fn not_an_array(&mut self, reference: &Reference) {
+        self.report(
+            Diagnostic::error(
+                Code::BadShape,
+                format!("`{}` is no array", reference.dotted()),
+            )
+            .label(reference.span, "has no elements"),
+        );
+    }
+}
+
+fn is_symbolic_counter(reference: &Reference, scope: &Scope<'_>) -> bool {
+    let Some(word) = reference.as_word() else {
+        return false;
+    };
+    let counter = scope.counters.iter().rev().find(|(name, _)| *name == word);
+    matches!(counter, Some((_, Counter::Symbolic)))
+}
+
+/// Whether an expression depends on the counter of a range equation.
+pub(crate) fn mentions_counter(expr: &Expr, scope: &Scope<'_>) -> bool {
+    expr.any(&|expr| {
+        matches!(&expr.kind, ExprKind::Reference(reference) if is_symbolic_counter(reference, scope))
+    })
+}

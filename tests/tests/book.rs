@@ -1,0 +1,178 @@
+//! The models of the README and the book: each compiles, or is wrong in just the way the book shows.
+//!
+//! A block marked `hyde` is a whole file, and `hyde check` finds nothing to say against it. One marked `hyde wrong` is
+//! followed by what the command says of it, word by word. The pages of the diagnostics have a test of their own. Links to
+//! files, those of ARCHITECTURE.md too, lead somewhere.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+#[test]
+fn every_model_compiles() {
+    let scratch = tempfile::tempdir().unwrap();
+    let mut found = 0;
+    for (page, text) in pages() {
+        for block in blocks(&text, "```hyde\n") {
+            found += 1;
+            let output = check(&block.code, scratch.path());
+            let said = String::from_utf8_lossy(&output.stderr);
+            assert!(
+                output.status.success() && said.is_empty(),
+                "{}: `{}`:\n{said}",
+                page.display(),
+                package(&block.code)
+            );
+        }
+    }
+    assert!(found > 10, "only {found} models were found");
+}
+
+#[test]
+fn what_is_wrong_is_told_as_shown() {
+    let scratch = tempfile::tempdir().unwrap();
+    let mut found = 0;
+    for (page, text) in pages() {
+        for block in blocks(&text, "```hyde wrong\n") {
+            found += 1;
+            let output = check(&block.code, scratch.path());
+            let said = String::from_utf8_lossy(&output.stderr);
+            let shown = block.shown.as_deref().unwrap_or_default();
+            assert_eq!(
+                said.trim(),
+                shown.trim(),
+                "{}: `{}`",
+                page.display(),
+                package(&block.code)
+            );
+        }
+    }
+    assert!(found > 0, "no wrong models were found");
+}
+
+#[test]
+fn every_block_of_the_language_is_marked_in_a_way_that_is_tested() {
+    for (page, text) in pages() {
+        for line in text.lines().filter(|line| line.starts_with("```hyde")) {
+            let known = matches!(line, "```hyde" | "```hyde wrong");
+            assert!(known, "{}: `{line}`", page.display());
+        }
+    }
+}
+
+#[test]
+fn every_page_is_in_the_table_of_contents() {
+    let folder = root().join("book/src");
+    let summary = read(&folder.join("SUMMARY.md"));
+    for folder in [folder.clone(), folder.join("errors")] {
+        for path in markdown(&folder) {
+            let name = path.strip_prefix(root().join("book/src")).unwrap();
+            let name = name.to_string_lossy().replace('\\', "/");
+            let listed = name == "SUMMARY.md" || summary.contains(&format!("({name})"));
+            assert!(listed, "{name} is not in SUMMARY.md");
+        }
+    }
+}
+
+#[test]
+fn every_file_that_a_page_links_to_is_there() {
+    let mut paths = markdown(&root());
+    paths.extend(markdown(&root().join("book/src")));
+    let mut found = 0;
+    for path in paths {
+        let folder = path.parent().unwrap();
+        for target in links(&read(&path)) {
+            found += 1;
+            let there = folder.join(&target).exists();
+            assert!(there, "{}: `{target}` is not there", path.display());
+        }
+    }
+    assert!(found > 50, "only {found} links were found");
+}
+
+/// A model as printed, and the block that follows it at once.
+struct Block {
+    code: String,
+    shown: Option<String>,
+}
+
+/// The blocks that open with this fence.
+fn blocks(text: &str, fence: &str) -> Vec<Block> {
+    let text = format!("\n{text}");
+    text.split(&format!("\n{fence}"))
+        .skip(1)
+        .filter_map(|rest| {
+            let (code, after) = rest.split_once("```")?;
+            let shown = after
+                .strip_prefix("\n\n```text\n")
+                .and_then(|rest| Some(rest.split_once("\n```")?.0.to_owned()));
+            Some(Block {
+                code: code.to_owned(),
+                shown,
+            })
+        })
+        .collect()
+}
+
+/// The targets of a page's links within the project, without the place on their page; brackets in code are no links.
+fn links(text: &str) -> Vec<String> {
+    let prose = text.split("\n```").step_by(2);
+    prose
+        .flat_map(|part| part.split("](").skip(1))
+        .filter_map(|rest| rest.split_once(')'))
+        .filter_map(|(target, _)| target.split('#').next())
+        .filter(|target| !target.is_empty() && !target.contains("://"))
+        .map(str::to_owned)
+        .collect()
+}
+
+/// Checks a model in a file called as its package. Its records are those of the bench.
+fn check(code: &str, folder: &Path) -> Output {
+    let name = format!("{}.hyde", package(code));
+    std::fs::write(folder.join(&name), code).unwrap();
+    Command::new(env!("CARGO_BIN_EXE_hyde-tested"))
+        .current_dir(folder)
+        .args(["check", &name, "--data"])
+        .arg(root().join("examples/bench_axis"))
+        .output()
+        .unwrap()
+}
+
+/// The name in `package name …`.
+fn package(code: &str) -> &str {
+    let rest = code.strip_prefix("package ").unwrap_or("model");
+    let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_'));
+    &rest[..end.unwrap_or(rest.len())]
+}
+
+/// The README and the chapters of the book.
+fn pages() -> Vec<(PathBuf, String)> {
+    let mut paths = vec![root().join("README.md")];
+    paths.extend(markdown(&root().join("book/src")));
+    paths
+        .into_iter()
+        .map(|path| {
+            let text = read(&path);
+            (path, text)
+        })
+        .collect()
+}
+
+/// The pages in a folder, in the order of their names.
+fn markdown(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap();
+    let mut found: Vec<PathBuf> = entries
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.extension().is_some_and(|extension| extension == "md"))
+        .collect();
+    found.sort();
+    found
+}
+
+#[allow(clippy::disallowed_methods, reason = "tests read the book")]
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap()
+}
+
+fn root() -> PathBuf {
+    hyde_tests::root()
+}
