@@ -3,6 +3,11 @@
 //! A block marked `hyde` is a whole file, and `hyde check` finds nothing to say against it. One marked `hyde wrong` is
 //! followed by what the command says of it, word by word. The pages of the diagnostics have a test of their own. Links to
 //! files, those of ARCHITECTURE.md too, lead somewhere.
+#![allow(
+    clippy::disallowed_methods,
+    clippy::unwrap_used,
+    reason = "tests open files, and unwrap what must be there"
+)]
 
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -168,7 +173,6 @@ fn markdown(folder: &Path) -> Vec<PathBuf> {
     found
 }
 
-#[allow(clippy::disallowed_methods, reason = "tests read the book")]
 fn read(path: &Path) -> String {
     std::fs::read_to_string(path).unwrap()
 }

@@ -4,6 +4,11 @@
 //! or, if its first line says `// hyde run FILE …`, run; what the command prints is a snapshot. A page is
 //! `book/src/errors/EXXXX.md`; its blocks marked `hyde wrong` give that code and no other, those marked `hyde right`
 //! nothing at all. Review a changed message with `cargo insta review`.
+#![allow(
+    clippy::disallowed_methods,
+    clippy::unwrap_used,
+    reason = "tests open files, and unwrap what must be there"
+)]
 
 use hyde_diag::Code;
 use serde_json::Value;

@@ -7,9 +7,9 @@ use crate::graph::{Bipartite, strongly_connected_components};
 use crate::solve::solve_for;
 use crate::system::System;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
-use hyde_ir::dae::{ClockedAssignment, Dae, Hold, Space, Tick};
+use hyde_ir::dae::{ClockedAssignment, Dae, Hold, Tick};
 use hyde_ir::flat::ClockedEquation;
-use hyde_ir::{ClockId, Expr, Id as _, Index, Interpolation, VarId, VariableKind};
+use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, Interpolation, VarId, VariableKind};
 
 /// Sorts the equations of every clocked part.
 pub(crate) fn sort(dae: &mut Dae, system: &mut System, diagnostics: &mut Diagnostics) {

@@ -324,27 +324,22 @@ fn derivable(system: &System, cell: Cell, states: &BTreeSet<Cell>, depth: usize)
     if depth > 50 {
         return false;
     }
-    system
-        .flat
-        .exprs
-        .below(&[rhs])
-        .into_iter()
-        .all(|id| {
-            let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
-                return true;
-            };
-            match system.flat.variables[var].kind {
-                _ if derivative => false,
-                VariableKind::Continuous => System::cell(var, index).is_some_and(|inner| {
-                    inner != cell
-                        && (states.contains(&inner) || derivable(system, inner, states, depth + 1))
-                }),
-                VariableKind::Discrete | VariableKind::Held(..) => true,
-                VariableKind::Clocked(_)
-                | VariableKind::Column(..)
-                | VariableKind::Reduction(_) => false,
+    system.flat.exprs.below(&[rhs]).into_iter().all(|id| {
+        let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
+            return true;
+        };
+        match system.flat.variables[var].kind {
+            _ if derivative => false,
+            VariableKind::Continuous => System::cell(var, index).is_some_and(|inner| {
+                inner != cell
+                    && (states.contains(&inner) || derivable(system, inner, states, depth + 1))
+            }),
+            VariableKind::Discrete | VariableKind::Held(..) => true,
+            VariableKind::Clocked(_) | VariableKind::Column(..) | VariableKind::Reduction(_) => {
+                false
             }
-        })
+        }
+    })
 }
 
 /// `cell = rhs`, as an equation says it.
@@ -394,8 +389,13 @@ fn derivative(
         };
         rates.insert(cell, rate);
     }
+    Some(by_rates(system, id, &rates))
+}
+
+/// The time derivative of an expression by the chain rule; variables without a rate do not change.
+pub(crate) fn by_rates(system: &mut System, id: ExprId, rates: &BTreeMap<Cell, ExprId>) -> ExprId {
     let one = system.exprs().constant(1.0);
-    Some(system.flat.exprs.tangent(id, |_, leaf| {
+    system.flat.exprs.tangent(id, |_, leaf| {
         if leaf == Expr::Time {
             return Some(one);
         }
@@ -403,7 +403,7 @@ fn derivative(
             return None;
         };
         rates.get(&System::cell(var, index)?).copied()
-    }))
+    })
 }
 
 fn refuse_derivatives_of_records(system: &System, diagnostics: &mut Diagnostics) {

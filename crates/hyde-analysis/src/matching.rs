@@ -472,9 +472,7 @@ pub(crate) fn plural(count: usize, word: &str) -> String {
 fn short(name: &str) -> &str {
     // `screw.q.left` is shown as `q.left`.
     match name.rsplit_once('.') {
-        Some((before, "left" | "right")) => {
-            &name[before.rfind('.').map_or(0, |at| at + 1)..]
-        }
+        Some((before, "left" | "right")) => &name[before.rfind('.').map_or(0, |at| at + 1)..],
         Some((_, last)) => last,
         None => name,
     }

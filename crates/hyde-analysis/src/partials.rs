@@ -90,14 +90,12 @@ pub fn tick_partials(dae: &mut Dae, clock: ClockId) -> Vec<(usize, TickWrt, Expr
             };
             let value = expand(&mut dae.exprs, assignment.value, &definitions);
             let value = dae.exprs.with_counter(value, at);
-            let value = dae
-                .exprs
-                .rewrite(value, &mut HashMap::new(), |_, _, expr| {
-                    let Expr::Var(var, index) = expr else {
-                        return None;
-                    };
-                    assigned.get(&(var, index.offset)).copied()
-                });
+            let value = dae.exprs.rewrite(value, &mut HashMap::new(), |_, _, expr| {
+                let Expr::Var(var, index) = expr else {
+                    return None;
+                };
+                assigned.get(&(var, index.offset)).copied()
+            });
             let element = assignment.index.at(counter);
             assigned.insert((assignment.var, element), value);
             let Some(target) = dae.place(assignment.var) else {

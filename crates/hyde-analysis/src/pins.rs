@@ -15,7 +15,7 @@ use crate::segments::Segment;
 use crate::system::{Cell, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy};
 use hyde_ir::dae::{Dae, Pin};
-use hyde_ir::{AutomatonId, Expr, ExprId, Id as _, VariableKind};
+use hyde_ir::{AutomatonId, Expr, ExprId, VariableKind};
 
 /// Marks the branches of slots that fix a state.
 pub(crate) fn mark(system: &mut System, unknowns: &[Segment]) {

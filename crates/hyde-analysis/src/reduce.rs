@@ -11,6 +11,7 @@
 //! variables of their own; m - k rows tie derivatives to rates, each to the variable that the run picks by the
 //! constraints' Jacobian. A switch changes the c in the memory, neither layout nor sparsity (M1, M6).
 
+use crate::derivatives::by_rates;
 use crate::graph::Bipartite;
 use crate::matching::{self, Node};
 use crate::segments;
@@ -43,12 +44,8 @@ pub(crate) fn reduce(system: &mut System) {
     loop {
         match deficient(system) {
             Some(set) if set.is_empty() => break,
-            Some(set) => {
-                if differentiate(system, &set).is_some() {
-                    continue;
-                }
-            }
-            None => {}
+            Some(set) if differentiate(system, &set).is_some() => continue,
+            Some(_) | None => {}
         }
         system.equations = equations;
         system.flat.variables = variables;
@@ -254,10 +251,10 @@ fn named_rates(system: &System) -> BTreeMap<Cell, (Cell, usize)> {
     for (number, equation) in system.equations.iter().enumerate() {
         let exprs = &system.flat.exprs;
         for (v, d) in [(equation.lhs, equation.rhs), (equation.rhs, equation.lhs)] {
-            if let (Some(rate), Expr::Der(var, index)) = (variable(system, v), exprs[d]) {
-                if let Some(cell) = System::cell(var, index) {
-                    found.insert(cell, (rate, number));
-                }
+            if let (Some(rate), Expr::Der(var, index)) = (variable(system, v), exprs[d])
+                && let Some(cell) = System::cell(var, index)
+            {
+                found.insert(cell, (rate, number));
             }
         }
     }
@@ -266,10 +263,10 @@ fn named_rates(system: &System) -> BTreeMap<Cell, (Cell, usize)> {
 
 /// The cell that an expression is, if it is one.
 fn variable(system: &System, id: ExprId) -> Option<Cell> {
-    match system.flat.exprs[id] {
-        Expr::Var(var, index) => System::cell(var, index),
-        _ => None,
-    }
+    let Expr::Var(var, index) = system.flat.exprs[id] else {
+        return None;
+    };
+    System::cell(var, index)
 }
 
 /// The rate of a variable, no longer its derivative: what `v = der(x)` names, or a new variable.
@@ -356,12 +353,7 @@ fn derivative(system: &mut System, id: ExprId, group: &Group) -> Option<ExprId> 
         };
         rates.insert(cell, rate);
     }
-    let one = system.exprs().constant(1.0);
-    Some(system.flat.exprs.tangent(id, |_, leaf| match leaf {
-        Expr::Var(var, index) => rates.get(&System::cell(var, index)?).copied(),
-        Expr::Time => Some(one),
-        _ => None,
-    }))
+    Some(by_rates(system, id, &rates))
 }
 
 /// The rows that tie derivatives to rates, once all groups are known.

@@ -62,6 +62,7 @@ pub(crate) struct System {
 impl System {
     /// Splits the equations of modes into slots; everything else as it is.
     pub(crate) fn new(mut flat: FlatModel) -> Self {
+        let notes = std::mem::take(&mut flat.notes);
         let equations = std::mem::take(&mut flat.equations);
         let written = equations
             .iter()
@@ -115,7 +116,7 @@ impl System {
             starts,
             groups: Vec::new(),
             relations: hyde_ir::IdVec::new(),
-            notes: Vec::new(),
+            notes,
             valued: BTreeMap::new(),
             written,
         }

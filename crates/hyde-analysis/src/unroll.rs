@@ -2,8 +2,7 @@
 
 use crate::system::{Equation, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics};
-use hyde_ir::{Expr, ExprId, Index, Range, VarId};
-use std::collections::HashMap;
+use hyde_ir::{Expr, ExprId, Range, VarId};
 
 /// Arrays larger than this are not unrolled.
 const MAX_ELEMENTS: usize = 64;

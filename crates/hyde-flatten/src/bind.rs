@@ -322,7 +322,11 @@ impl<'a> Model<'a, '_> {
                     value,
                 )]
             }
-            (_, None) => vec![(Range::SCALAR, Index::SCALAR, self.lower(expr, &scope))],
+            (_, None) => {
+                let value = self.lower(expr, &scope);
+                let value = self.wrapped(var, value, setting);
+                vec![(Range::SCALAR, Index::SCALAR, value)]
+            }
         };
         for (range, index, value) in list {
             let lhs = self.flat.exprs.add(Ir::Var(var, index));

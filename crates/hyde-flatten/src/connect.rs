@@ -18,6 +18,13 @@ pub(crate) struct Connection {
     origin: Origin,
 }
 
+impl Connection {
+    /// A connection that the compiler makes.
+    pub(crate) fn joining(sides: Vec<(InstanceId, bool)>, origin: Origin) -> Self {
+        Self { sides, origin }
+    }
+}
+
 impl<'a> Model<'a, '_> {
     /// Lowers `connect(a, b, …)`: connectors are kept for the sets, signals are equated at once.
     pub(crate) fn connection(&mut self, sides: &'a [Reference], scope: &Scope<'a>, span: Span) {

@@ -30,7 +30,7 @@ impl<'a> Model<'a, '_> {
             let scope = Scope::new(id, setting);
             for (_, element) in self.instances[id].elements.clone() {
                 match element {
-                    Element::Equation(equation) => {
+                    Element::Equation(equation) | Element::Add(equation) => {
                         let list = self.equation(equation, &scope);
                         match clock {
                             Some(clock) => {
@@ -47,9 +47,6 @@ impl<'a> Model<'a, '_> {
                         self.flat.initial_equations.extend(list);
                     }
                     Element::Modes(modes) => self.modes(modes, id),
-                    Element::Wrap(site, _) => self.not_yet("`wrap`", site.span),
-                    Element::Add(equation) => self.not_yet("`add`", equation.span),
-                    Element::Replace(component, ..) => self.not_yet("`replace`", component.span),
                     Element::Measure(measure) if self.instances[id].parent.is_none() => {
                         self.measure(measure, id)
                     }
@@ -59,6 +56,8 @@ impl<'a> Model<'a, '_> {
                     | Element::Domain(_)
                     | Element::Discretize(_)
                     | Element::Clocked(_)
+                    | Element::Wrap(..)
+                    | Element::Replace(..)
                     | Element::Signature(_)
                     | Element::Confounds(_) => {}
                 }

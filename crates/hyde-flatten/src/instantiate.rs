@@ -9,6 +9,7 @@ mod clocked;
 mod component;
 mod declare;
 mod domain;
+mod effect;
 mod modification;
 mod parameter;
 mod quantity;
@@ -17,6 +18,7 @@ mod variable;
 use crate::instance::{Instance, InstanceId};
 use crate::model::{Model, listed};
 use crate::names::{FileIndex, nearest};
+pub(crate) use effect::{Hook, Replacement, written};
 use hyde_diag::{Code, Diagnostic, InstancePath, Span};
 use hyde_ir::ClockId;
 use hyde_syntax::ast::{
@@ -144,6 +146,7 @@ impl<'a> Model<'a, '_> {
             .filter(|modifier| modifier.target.len() == 1);
         self.modified
             .extend(last_words.map(|modifier| (modifier.number, id)));
+        self.effects_of(id);
         let mut collected = Vec::new();
         let walk = Walk {
             id,
@@ -229,9 +232,7 @@ impl<'a> Model<'a, '_> {
                 changes,
                 effects,
             } => {
-                if let Some(used) = effects.first() {
-                    self.not_yet("adding effects to a model", used.effect.span);
-                }
+                self.hook(walk.id, walk.file, effects);
                 self.collect_base(walk, base, changes, out);
             }
             ClassBody::Long { elements, .. } => {
@@ -273,17 +274,6 @@ impl<'a> Model<'a, '_> {
 
     fn depth(&self, id: InstanceId) -> usize {
         std::iter::successors(Some(id), |&id| self.instances[id].parent).count()
-    }
-
-    /// Refuses what is parsed but not compiled in this version.
-    pub(crate) fn not_yet(&mut self, what: &str, span: Span) {
-        self.report(
-            Diagnostic::error(
-                Code::NotYet,
-                format!("{what} is parsed but not compiled in this version"),
-            )
-            .label(span, "not compiled yet"),
-        );
     }
 }
 

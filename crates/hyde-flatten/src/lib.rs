@@ -27,6 +27,7 @@ mod model;
 mod modes;
 mod names;
 mod structural;
+mod wrap;
 
 use hyde_diag::{Diagnostics, FileId, Sources};
 use hyde_ir::FlatModel;
@@ -68,6 +69,7 @@ pub fn flatten(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<FlatM
     let root = model.instantiate_root()?;
     model.lower_bindings();
     model.lower_equations();
+    model.finish_effects();
     model.connect();
     model.free_inputs(root);
     model.experiment(root);

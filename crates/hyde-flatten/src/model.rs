@@ -31,6 +31,12 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) modifications: Vec<(Span, String, bool)>,
     /// The instance that a modification with one word left was given to, by its number.
     pub(crate) modified: BTreeMap<usize, InstanceId>,
+    /// Effects to be put on instances, what they wrap and what they replace.
+    pub(crate) hooks: Vec<crate::instantiate::Hook<'a>>,
+    pub(crate) wraps: Vec<crate::wrap::Wrap<'a>>,
+    pub(crate) replacements: Vec<crate::instantiate::Replacement<'a>>,
+    /// Connectors of effects with those of their hosts: they join connection sets after everything written.
+    pub(crate) joined: Vec<crate::connect::Connection>,
     /// Connected connectors and signals, in the order written.
     pub(crate) connections: Vec<crate::connect::Connection>,
     /// Held variables by clock and source.
@@ -59,6 +65,10 @@ impl<'a, 'd> Model<'a, 'd> {
             dimensions: Dimensions::default(),
             modifications: Vec::new(),
             modified: BTreeMap::new(),
+            hooks: Vec::new(),
+            wraps: Vec::new(),
+            replacements: Vec::new(),
+            joined: Vec::new(),
             connections: Vec::new(),
             held: BTreeMap::new(),
             column_variables: BTreeMap::new(),

@@ -243,6 +243,8 @@ pub struct Experiment {
 pub struct FlatModel {
     /// Name of the model.
     pub name: String,
+    /// What flatten decided and a user may want to know.
+    pub notes: Vec<String>,
     /// All expressions.
     pub exprs: ExprArena,
     /// All variables.

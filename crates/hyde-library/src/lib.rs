@@ -34,6 +34,10 @@ pub const PACKAGES: &[Package] = &[
         name: "Drives",
         text: include_str!("../models/Drives.hyde"),
     },
+    Package {
+        name: "Effects",
+        text: include_str!("../models/Effects.hyde"),
+    },
 ];
 
 /// The package of that name.

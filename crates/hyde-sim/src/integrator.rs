@@ -100,7 +100,7 @@ impl<'a> Integrator<'a> {
         let part = self.steps / SMOOTH_AFTER;
         if part.is_power_of_two()
             && (2..=LEAST_PART).contains(&part)
-            && self.steps % SMOOTH_AFTER == 0
+            && self.steps.is_multiple_of(SMOOTH_AFTER)
         {
             self.set_tolerances(part)?;
         }

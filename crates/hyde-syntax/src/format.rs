@@ -10,9 +10,10 @@ mod name;
 mod study;
 
 pub use expression::expression;
+pub use name::reference;
 
 use crate::ast::{File, Item};
-use name::{bracketed, doc, reference};
+use name::{bracketed, doc};
 
 /// A whole file.
 #[must_use]

@@ -12,5 +12,5 @@ mod parse;
 mod recover;
 mod words;
 
-pub use format::{expression as format_expression, file as format};
+pub use format::{expression as format_expression, file as format, reference as format_reference};
 pub use parse::parse;

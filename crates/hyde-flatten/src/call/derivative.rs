@@ -128,6 +128,7 @@ impl<'a> Model<'a, '_> {
             }
             let scope = binding.scope_for(Setting::Equation);
             let value = self.value(binding.expr, &scope);
+            let value = self.wrapped(var, value, Setting::Equation);
             let value = self.expand_bindings(value.id, keep, depth + 1);
             memo.insert(inner, value);
         }

@@ -3,7 +3,9 @@
 use super::expression;
 use crate::ast::{Expr, Reference, UnitText};
 
-pub(super) fn reference(name: &Reference) -> String {
+/// A reference as written, subscripts included: `joint[2].phi`.
+#[must_use]
+pub fn reference(name: &Reference) -> String {
     let parts: Vec<String> = name
         .parts
         .iter()

@@ -8,52 +8,44 @@
 //! An effect is an instance inside its host, `guide.Stribeck`, that sees its host's names after its own. Everything else
 //! of the model stays as it is. At exactly neutral sizes the effect is left out: only its parameters remain.
 
+use super::modification::Modifier;
+use super::{Collected, Place, Walk};
 use crate::connect::Connection;
-use crate::instance::{Instance, InstanceId, Member, Scope, Setting, Typed};
-use crate::instantiate::{Collected, Modifier};
-use crate::model::{Model, listed};
+use crate::instance::{Instance, InstanceId, Member};
+use crate::model::Model;
 use crate::names::FileIndex;
+use crate::wrap::Wrap;
 use hyde_diag::{Code, Diagnostic, InstancePath, MadeBy};
-use hyde_ir::{Expr as Ir, Id as _, Index, VarId};
+use hyde_ir::{Expr as Ir, Index};
 use hyde_syntax::ast::{
-    Change, Class, ClassBody, ClassKind, Element, EffectUse, Expr, Prefix, Reference,
+    Change, Class, ClassBody, ClassKind, EffectUse, Element, Prefix, Reference,
 };
-use std::collections::HashMap;
 
 /// An effect to be put on an instance once that is made.
 pub(crate) struct Hook<'a> {
     host: InstancePath,
-    site: &'a Reference,
+    pub(crate) site: &'a Reference,
     file: FileIndex,
     class: &'a Class,
     changes: &'a [Change],
     /// The model that uses the effect: its changes stand in its scope.
     scope: InstanceId,
-    used: bool,
-}
-
-/// `wrap x by e;`
-pub(crate) struct Wrap<'a> {
-    host: InstanceId,
-    site: &'a Reference,
-    value: &'a Expr,
-    effect: InstanceId,
-    used: bool,
+    pub(crate) used: bool,
 }
 
 /// `replace c by M(…);`
 pub(crate) struct Replacement<'a> {
-    host: InstanceId,
-    component: &'a Reference,
+    pub(crate) host: InstanceId,
+    pub(crate) component: &'a Reference,
     class: (FileIndex, &'a Class),
     changes: &'a [Change],
     effect: InstanceId,
-    used: bool,
+    pub(crate) used: bool,
 }
 
 impl<'a> Model<'a, '_> {
     /// Notes the effects of a model, to be put on their sites as those are made.
-    pub(crate) fn hook(&mut self, id: InstanceId, file: FileIndex, effects: &'a [EffectUse]) {
+    pub(super) fn hook(&mut self, id: InstanceId, file: FileIndex, effects: &'a [EffectUse]) {
         for used in effects {
             let found = self.names.class(file, &used.effect);
             let Some((file, class)) = found.filter(|(_, class)| class.kind == ClassKind::Effect)
@@ -84,7 +76,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// Makes the effects of an instance that was just made, before its own members.
-    pub(crate) fn effects_of(&mut self, host: InstanceId) {
+    pub(super) fn effects_of(&mut self, host: InstanceId) {
         for number in 0..self.hooks.len() {
             if self.hooks[number].host == self.instances[host].path && !self.hooks[number].used {
                 self.hooks[number].used = true;
@@ -129,39 +121,54 @@ impl<'a> Model<'a, '_> {
             elements: Vec::new(),
             span: site.span,
         });
-        if self.instances[host].members.insert(name, Member::Instance(id)).is_some() {
+        if self.instances[host]
+            .members
+            .insert(name, Member::Instance(id))
+            .is_some()
+        {
             self.report(
-                Diagnostic::error(Code::Duplicate, format!("`{name}` is on `{}` twice", written(site)))
-                    .label(site.span, "the second time")
-                    .help("give the second another name: `effect Other on … extends …`"),
+                Diagnostic::error(
+                    Code::Duplicate,
+                    format!("`{name}` is on `{}` twice", written(site)),
+                )
+                .label(site.span, "the second time")
+                .help("give the second another name: `effect Other on … extends …`"),
             );
         }
         let mut modifiers = Vec::new();
         self.modifiers_of(changes, scope, &mut modifiers);
         let mut collected = Vec::new();
-        self.collect(id, file, class, modifiers, &mut collected, 0);
+        let walk = Walk {
+            id,
+            file,
+            modifiers,
+            depth: 0,
+        };
+        self.collect(walk, class, &mut collected);
         let (parameters, rest): (Vec<_>, Vec<_>) = collected.into_iter().partition(is_parameter);
         self.members(id, &parameters);
         if self.is_neutral(id, &parameters) {
             self.instances[id].elements = Vec::new();
-            self.flat.notes.push(format!("`{}` is neutral and left out", self.path(id)));
+            self.flat
+                .notes
+                .push(format!("`{}` is neutral and left out", self.path(id)));
             return;
         }
         let connector = self.instances[host].class.kind == ClassKind::Connector;
         if connector {
             let (file, class) = (self.instances[host].file, self.instances[host].class);
-            let own = self.instantiate(
-                file,
-                class,
-                path.child(name).child("a"),
-                Vec::new(),
-                Some(id),
-                None,
-                site.span,
-            );
-            self.instances[id].members.insert("a", Member::Instance(own));
+            let place = Place {
+                path: path.child(name).child("a"),
+                parent: Some(id),
+                clock: None,
+                span: site.span,
+            };
+            let own = self.instantiate(file, class, Vec::new(), place);
+            self.instances[id]
+                .members
+                .insert("a", Member::Instance(own));
             let origin = self.origin(host, site.span).made_by(MadeBy::Connection);
-            self.connections
+            self.joined
                 .push(Connection::joining(vec![(host, true), (own, true)], origin));
         }
         for item in &rest {
@@ -192,10 +199,9 @@ impl<'a> Model<'a, '_> {
                 _ => {}
             }
         }
-        let all: Vec<Collected<'a>> = parameters.into_iter().chain(rest).collect();
-        let rest: Vec<Collected<'a>> = all.iter().filter(|item| !is_parameter(item)).cloned().collect();
         self.members(id, &rest);
-        self.instances[id].elements = all.iter().map(|item| (item.file, item.element)).collect();
+        let all = parameters.iter().chain(&rest);
+        self.instances[id].elements = all.map(|item| (item.file, item.element)).collect();
     }
 
     /// Whether an instance is of the type that an effect is for, or of one that extends it.
@@ -208,7 +214,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// Whether a class is another one or extends it.
-    pub(crate) fn is_a(&self, own: (FileIndex, &'a Class), other: &'a Class, depth: usize) -> bool {
+    fn is_a(&self, own: (FileIndex, &'a Class), other: &'a Class, depth: usize) -> bool {
         let (file, class) = own;
         if std::ptr::eq(class, other) {
             return true;
@@ -236,7 +242,9 @@ impl<'a> Model<'a, '_> {
         let mut sizes = 0;
         let mut neutral = true;
         for item in parameters {
-            let Element::Declaration(declaration) = item.element else { continue };
+            let Element::Declaration(declaration) = item.element else {
+                continue;
+            };
             if !declaration.prefixes.contains(&Prefix::Size) {
                 continue;
             }
@@ -260,7 +268,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// What an effect puts in the place of a component, with the modifications it brings.
-    pub(crate) fn replaced(
+    pub(super) fn replaced(
         &mut self,
         host: InstanceId,
         component: &str,
@@ -270,154 +278,22 @@ impl<'a> Model<'a, '_> {
             replacement.host == host && replacement.component.as_word() == Some(component)
         })?;
         self.replacements[number].used = true;
-        let Replacement { class, changes, effect, .. } = self.replacements[number];
+        let Replacement {
+            class,
+            changes,
+            effect,
+            ..
+        } = self.replacements[number];
         let mut own = Vec::new();
         self.modifiers_of(changes, effect, &mut own);
         // The effect's own modifications come before those of the component it replaces.
-        for (position, mut modifier) in own.into_iter().enumerate() {
-            modifier.records = false;
-            modifiers.insert(position, modifier);
-        }
+        modifiers.splice(0..0, own);
         Some(class)
-    }
-
-    /// A value with the effects that wrap its variable, in the order written.
-    pub(crate) fn wrapped(&mut self, var: VarId, value: Typed, setting: Setting) -> Typed {
-        let mut value = value;
-        for number in self.wraps_of(var) {
-            self.wraps[number].used = true;
-            let Wrap { value: by, effect, .. } = self.wraps[number];
-            let new = self.value(by, &Scope::new(effect, setting));
-            let declared = self.typed(value.id, self.dim(var), value.span);
-            self.agree(&declared, &new, "the site and what wraps it are", effect);
-            let leaf = self.flat.exprs.var(var);
-            let mut memo = HashMap::from([(leaf, value.id)]);
-            value.id = self.flat.exprs.rewrite(new.id, &mut memo, |_, _, _| None);
-        }
-        value
-    }
-
-    fn wraps_of(&self, var: VarId) -> Vec<usize> {
-        let instance = self.notes(var).instance;
-        let name = crate::bind::short(&self.flat.variables[var].name);
-        (0..self.wraps.len())
-            .filter(|&number| {
-                let wrap = &self.wraps[number];
-                wrap.host == instance && wrap.site.as_word() == Some(name)
-            })
-            .collect()
-    }
-
-    /// Wraps the sites that an equation determines, and reports what no site was found for.
-    pub(crate) fn finish_effects(&mut self) {
-        for number in 0..self.wraps.len() {
-            self.check_site(number);
-            if !self.wraps[number].used {
-                self.wrap_equation(number);
-            }
-        }
-        let unused: Vec<(hyde_diag::Span, String)> = self
-            .hooks
-            .iter()
-            .filter(|hook| !hook.used)
-            .map(|hook| (hook.site.span, written(hook.site)))
-            .collect();
-        for (span, site) in unused {
-            let known: Vec<&str> = self.instances[0].members.keys().copied().collect();
-            let help = format!("components here: {}", listed(&known));
-            self.report(
-                Diagnostic::error(Code::UnknownName, format!("there is no `{site}` to put the effect on"))
-                    .label(span, "no such component or connector")
-                    .help(help),
-            );
-        }
-        for number in 0..self.replacements.len() {
-            let Replacement { host, component, used, .. } = self.replacements[number];
-            if !used {
-                let class = self.instances[host].class.name.text.clone();
-                self.report(
-                    Diagnostic::error(
-                        Code::UnknownName,
-                        format!("`{class}` has no component `{}` to replace", component.dotted()),
-                    )
-                    .label(component.span, "not found in the host"),
-                );
-            }
-        }
-    }
-
-    /// Only what is declared a site, an input or an output may be wrapped (E1).
-    fn check_site(&mut self, number: usize) {
-        let Wrap { host, site, .. } = self.wraps[number];
-        let declared = self.instances[host].elements.iter().find_map(|(_, element)| match element {
-            Element::Declaration(declaration) => declaration
-                .declarators
-                .iter()
-                .any(|declarator| site.as_word() == Some(declarator.name.text.as_str()))
-                .then_some(declaration),
-            _ => None,
-        });
-        let is_site = |prefix: &Prefix| {
-            matches!(prefix, Prefix::Site | Prefix::Input | Prefix::Output)
-        };
-        if declared.is_some_and(|declaration| declaration.prefixes.iter().any(is_site)) {
-            return;
-        }
-        let class = self.instances[host].class.name.text.clone();
-        self.wraps[number].used = true;
-        let diagnostic = Diagnostic::error(
-            Code::UnknownName,
-            format!("`{class}` has no site `{}`", site.dotted()),
-        )
-        .label(site.span, "only sites, inputs and outputs can be wrapped");
-        self.report(match declared {
-            Some(declaration) => diagnostic
-                .label(declaration.span, "declared here, not as a site")
-                .help("declare it `site`"),
-            None => diagnostic,
-        });
-    }
-
-    /// `x = e`, written as an equation of the host, becomes `x = e2` with e for x.
-    fn wrap_equation(&mut self, number: usize) {
-        let Wrap { host, site, .. } = self.wraps[number];
-        let Some(Member::Variable(var)) = site
-            .as_word()
-            .and_then(|name| self.instances[host].members.get(name))
-        else {
-            return;
-        };
-        let var = *var;
-        let leaf = self.flat.exprs.var(var);
-        let plain = self.flat.equations.iter().position(|e| e.lhs == leaf);
-        let clocked = self.flat.clocked_equations.iter().position(|e| e.equation.lhs == leaf);
-        let (rhs, setting) = match (plain, clocked) {
-            (Some(at), _) => (self.flat.equations[at].rhs, Setting::Equation),
-            (None, Some(at)) => (self.flat.clocked_equations[at].equation.rhs, Setting::Clocked),
-            (None, None) => {
-                self.report(
-                    Diagnostic::error(
-                        Code::NotYet,
-                        format!("no single equation `{} = …` defines this site", site.dotted()),
-                    )
-                    .label(site.span, "cannot be wrapped")
-                    .help("give the site its value in one equation, its name on the left"),
-                );
-                return;
-            }
-        };
-        let value = self.typed(rhs, self.dim(var), site.span);
-        let new = self.wrapped(var, value, setting).id;
-        match (plain, clocked) {
-            (Some(at), _) => self.flat.equations[at].rhs = new,
-            (None, Some(at)) => self.flat.clocked_equations[at].equation.rhs = new,
-            (None, None) => {}
-        }
     }
 }
 
 /// The type an effect is for.
-pub(crate) fn host_of(class: &Class) -> Option<&Reference> {
+fn host_of(class: &Class) -> Option<&Reference> {
     match &class.body {
         ClassBody::Long { host, .. } => host.as_ref(),
         ClassBody::Short { .. } => None,
@@ -431,6 +307,6 @@ fn is_parameter(item: &Collected<'_>) -> bool {
 }
 
 /// A site as written, subscripts included: `joint[2].flange`.
-fn written(site: &Reference) -> String {
+pub(crate) fn written(site: &Reference) -> String {
     hyde_syntax::format_reference(site)
 }

@@ -1,0 +1,185 @@
+//! `wrap x by e;` of an effect: the equation of a site with the effect round its value (E2).
+//!
+//! ```text
+//! grip = F        with  wrap grip by grip + dF        is  grip = F + dF
+//! ```
+
+use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
+use crate::instantiate::{Replacement, written};
+use crate::model::{Model, listed};
+use hyde_diag::{Code, Diagnostic, Span};
+use hyde_ir::VarId;
+use hyde_syntax::ast::{Element, Expr, Prefix, Reference};
+use std::collections::HashMap;
+
+/// `wrap x by e;`
+pub(crate) struct Wrap<'a> {
+    pub(crate) host: InstanceId,
+    pub(crate) site: &'a Reference,
+    pub(crate) value: &'a Expr,
+    pub(crate) effect: InstanceId,
+    pub(crate) used: bool,
+}
+
+impl Model<'_, '_> {
+    /// A value with the effects that wrap its variable, in the order written.
+    pub(crate) fn wrapped(&mut self, var: VarId, value: Typed, setting: Setting) -> Typed {
+        let mut value = value;
+        for number in self.wraps_of(var) {
+            self.wraps[number].used = true;
+            let Wrap {
+                value: by, effect, ..
+            } = self.wraps[number];
+            let new = self.value(by, &Scope::new(effect, setting));
+            let declared = self.typed(value.id, self.dim(var), value.span);
+            self.agree(&declared, &new, "the site and what wraps it are", effect);
+            let leaf = self.flat.exprs.var(var);
+            let mut memo = HashMap::from([(leaf, value.id)]);
+            value.id = self.flat.exprs.rewrite(new.id, &mut memo, |_, _, _| None);
+        }
+        value
+    }
+
+    fn wraps_of(&self, var: VarId) -> Vec<usize> {
+        let instance = self.notes(var).instance;
+        let name = crate::bind::short(&self.flat.variables[var].name);
+        (0..self.wraps.len())
+            .filter(|&number| {
+                let wrap = &self.wraps[number];
+                wrap.host == instance && wrap.site.as_word() == Some(name)
+            })
+            .collect()
+    }
+
+    /// Wraps the sites that an equation determines, joins connectors, and reports what found no site.
+    pub(crate) fn finish_effects(&mut self) {
+        self.connections.append(&mut self.joined);
+        for number in 0..self.wraps.len() {
+            self.check_site(number);
+            if !self.wraps[number].used {
+                self.wrap_equation(number);
+            }
+        }
+        let unused: Vec<(Span, String)> = self
+            .hooks
+            .iter()
+            .filter(|hook| !hook.used)
+            .map(|hook| (hook.site.span, written(hook.site)))
+            .collect();
+        for (span, site) in unused {
+            let known: Vec<&str> = self.instances[0].members.keys().copied().collect();
+            let help = format!("components here: {}", listed(&known));
+            self.report(
+                Diagnostic::error(
+                    Code::UnknownName,
+                    format!("there is no `{site}` to put the effect on"),
+                )
+                .label(span, "no such component or connector")
+                .help(help),
+            );
+        }
+        for number in 0..self.replacements.len() {
+            let Replacement {
+                host,
+                component,
+                used,
+                ..
+            } = self.replacements[number];
+            if !used {
+                let class = self.instances[host].class.name.text.clone();
+                self.report(
+                    Diagnostic::error(
+                        Code::UnknownName,
+                        format!(
+                            "`{class}` has no component `{}` to replace",
+                            component.dotted()
+                        ),
+                    )
+                    .label(component.span, "not found in the host"),
+                );
+            }
+        }
+    }
+
+    /// Only what is declared a site, an input or an output may be wrapped (E1).
+    fn check_site(&mut self, number: usize) {
+        let Wrap { host, site, .. } = self.wraps[number];
+        let declared =
+            self.instances[host]
+                .elements
+                .iter()
+                .find_map(|(_, element)| match element {
+                    Element::Declaration(declaration) => declaration
+                        .declarators
+                        .iter()
+                        .any(|declarator| site.as_word() == Some(declarator.name.text.as_str()))
+                        .then_some(declaration),
+                    _ => None,
+                });
+        let is_site =
+            |prefix: &Prefix| matches!(prefix, Prefix::Site | Prefix::Input | Prefix::Output);
+        if declared.is_some_and(|declaration| declaration.prefixes.iter().any(is_site)) {
+            return;
+        }
+        let class = self.instances[host].class.name.text.clone();
+        self.wraps[number].used = true;
+        let diagnostic = Diagnostic::error(
+            Code::UnknownName,
+            format!("`{class}` has no site `{}`", site.dotted()),
+        )
+        .label(site.span, "only sites, inputs and outputs can be wrapped");
+        self.report(match declared {
+            Some(declaration) => diagnostic
+                .label(declaration.span, "declared here, not as a site")
+                .help("declare it `site`"),
+            None => diagnostic,
+        });
+    }
+
+    /// `x = e`, written as an equation of the host, becomes `x = e2` with e for x.
+    fn wrap_equation(&mut self, number: usize) {
+        let Wrap { host, site, .. } = self.wraps[number];
+        let Some(Member::Variable(var)) = site
+            .as_word()
+            .and_then(|name| self.instances[host].members.get(name))
+        else {
+            return;
+        };
+        let var = *var;
+        let leaf = self.flat.exprs.var(var);
+        let plain = self.flat.equations.iter().position(|e| e.lhs == leaf);
+        let clocked = self
+            .flat
+            .clocked_equations
+            .iter()
+            .position(|e| e.equation.lhs == leaf);
+        let (rhs, setting) = match (plain, clocked) {
+            (Some(at), _) => (self.flat.equations[at].rhs, Setting::Equation),
+            (None, Some(at)) => (
+                self.flat.clocked_equations[at].equation.rhs,
+                Setting::Clocked,
+            ),
+            (None, None) => {
+                self.report(
+                    Diagnostic::error(
+                        Code::NotYet,
+                        format!(
+                            "no single equation `{} = …` defines this site",
+                            site.dotted()
+                        ),
+                    )
+                    .label(site.span, "cannot be wrapped")
+                    .help("give the site its value in one equation, its name on the left"),
+                );
+                return;
+            }
+        };
+        let value = self.typed(rhs, self.dim(var), site.span);
+        let new = self.wrapped(var, value, setting).id;
+        match (plain, clocked) {
+            (Some(at), _) => self.flat.equations[at].rhs = new,
+            (None, Some(at)) => self.flat.clocked_equations[at].equation.rhs = new,
+            (None, None) => {}
+        }
+    }
+}
