@@ -2,21 +2,21 @@
 //! vector, what remains is matched row by row.
 //!
 //! In order:
-//! 1. [`alias`] and [`derivatives`], repeated until nothing changes: variables that are equal become one, before and
+//! 1. `alias` and `derivatives`, repeated until nothing changes: variables that are equal become one, before and
 //!    after differentiation (M5); derivatives of explicit variables become explicit;
-//! 2. [`reduce`]: equations that constrain states to each other are differentiated, and states chosen among the
+//! 2. `reduce`: equations that constrain states to each other are differentiated, and states chosen among the
 //!    constrained variables while running;
-//! 3. [`relations`]: comparisons in continuous equations become relations with root functions;
-//! 4. [`matching`]: every equation is matched to the unknown it determines, array equations as a whole (F3);
-//! 5. [`explicit`]: algebraic variables with an explicit solution become definitions, loops are torn;
-//! 6. [`layout`]: every variable gets its place;
-//! 7. [`pins`]: modes that fix a state exchange rows with the force that holds it (M3);
-//! 8. [`clocked`]: the equations of each clocked part become ordered assignments;
-//! 9. [`events`]: exits, `when` and `assert` become reactions;
-//! 10. [`initial`]: the initial system;
-//! 11. [`outputs`]: what is reported;
-//! 12. [`partials`]: derivatives of every function;
-//! 13. [`hoist`]: what depends on parameters alone is computed once a run.
+//! 3. `relations`: comparisons in continuous equations become relations with root functions;
+//! 4. `matching`: every equation is matched to the unknown it determines, array equations as a whole (F3);
+//! 5. `explicit`: algebraic variables with an explicit solution become definitions, loops are torn;
+//! 6. `layout`: every variable gets its place;
+//! 7. `pins`: modes that fix a state exchange rows with the force that holds it (M3);
+//! 8. `clocked`: the equations of each clocked part become ordered assignments;
+//! 9. `events`: exits, `when` and `assert` become reactions;
+//! 10. `initial`: the initial system;
+//! 11. `outputs`: what is reported;
+//! 12. `partials`: derivatives of every function;
+//! 13. `hoist`: what depends on parameters alone is computed once a run.
 
 mod alias;
 mod clocked;

@@ -26,22 +26,7 @@ pub(crate) fn solve_for(
     let [(_, factor)] = gradient.as_slice() else {
         return None;
     };
-    let constant = !arena.any(*factor, |expr| match expr {
-        Expr::Time
-        | Expr::Counter
-        | Expr::Var(..)
-        | Expr::Der(..)
-        | Expr::Pre(..)
-        | Expr::Relation(_)
-        | Expr::InMode(..) => true,
-        Expr::Const(_)
-        | Expr::Param(..)
-        | Expr::Unary(..)
-        | Expr::Binary(..)
-        | Expr::If(..)
-        | Expr::NoEvent(_) => false,
-    });
-    if !constant || arena.is_constant(*factor, 0.0) {
+    if !arena.is_parametric(*factor) || arena.is_constant(*factor, 0.0) {
         return None;
     }
     let mut memo = HashMap::new();

@@ -228,21 +228,7 @@ impl System {
 
     /// Whether an expression is made of parameters and numbers alone.
     pub(crate) fn is_parametric(&self, id: ExprId) -> bool {
-        !self.flat.exprs.any(id, |expr| match expr {
-            Expr::Time
-            | Expr::Counter
-            | Expr::Var(..)
-            | Expr::Der(..)
-            | Expr::Pre(..)
-            | Expr::Relation(_)
-            | Expr::InMode(..) => true,
-            Expr::Const(_)
-            | Expr::Param(..)
-            | Expr::Unary(..)
-            | Expr::Binary(..)
-            | Expr::If(..)
-            | Expr::NoEvent(_) => false,
-        })
+        self.flat.exprs.is_parametric(id)
     }
 
     /// The declared values of all parameters, element by element; empty where they cannot be told.

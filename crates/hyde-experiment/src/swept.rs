@@ -24,11 +24,7 @@ pub fn swept_response(bode: &Bode, results: &Results, band_hz: (f64, f64)) -> Ve
     let Some((time, rows)) = evenly(results) else {
         return Vec::new();
     };
-    let step_s = (time[time.len() - 1] - time[0]) / {
-        #[allow(clippy::cast_precision_loss, reason = "a number of rows")]
-        let steps = (time.len() - 1) as f64;
-        steps
-    };
+    let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
     let pick = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
     let driven = pick(input);
     let mut found = Vec::new();

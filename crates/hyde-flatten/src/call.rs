@@ -4,9 +4,11 @@ mod chirp;
 mod clock;
 mod derivative;
 mod extremum;
+mod function;
 mod quantiser;
 mod reduction;
 mod sum;
+mod table;
 
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
@@ -38,12 +40,52 @@ const OF_ANGLE: [(&str, UnaryOp); 3] = [
 ];
 
 /// Every function name, for near misses.
-const ALL: [&str; 43] = [
-    "der", "pre", "sample", "hold", "interval", "abs", "sign", "sqrt", "exp", "log", "log10",
-    "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "min", "max",
-    "floor", "ceil", "mod", "floor_to", "round_to", "clamp", "noEvent", "smooth", "pder",
-    "partial", "sum", "chirp", "rms", "mean", "first", "last", "lowpass", "slope", "held",
+const ALL: [&str; 45] = [
+    "der",
+    "pre",
+    "sample",
+    "hold",
+    "interval",
+    "abs",
+    "sign",
+    "sqrt",
+    "exp",
+    "log",
+    "log10",
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "atan2",
+    "sinh",
+    "cosh",
+    "tanh",
+    "min",
+    "max",
+    "floor",
+    "ceil",
+    "mod",
+    "floor_to",
+    "round_to",
+    "clamp",
+    "noEvent",
+    "smooth",
+    "pder",
+    "partial",
+    "sum",
+    "chirp",
+    "rms",
+    "mean",
+    "first",
+    "last",
+    "lowpass",
+    "slope",
+    "held",
     "integer",
+    "table",
+    "smooth_table",
 ];
 
 /// How a function is called, for the repair of a call with the wrong arguments.
@@ -68,6 +110,8 @@ fn usage(name: &str) -> Option<&'static str> {
         "chirp" => "chirp(time, from, to, duration)",
         "pder" => "pder(field, x)",
         "partial" => "partial(expression, variable)",
+        "table" => "table(x, {0, 1, 2}, {0, 1, 4})",
+        "smooth_table" => "smooth_table(x, {0, 1, 2}, {0, 1, 4})",
         _ => return None,
     })
 }
@@ -84,6 +128,11 @@ impl<'a> Model<'a, '_> {
         let Some(name) = function.as_word() else {
             return self.method(function, arguments, scope, span);
         };
+        if !ALL.contains(&name)
+            && let Some(found) = self.function_named(function)
+        {
+            return self.function(found, arguments, scope, span);
+        }
         if let Some(argument) = arguments.iter().find(|argument| argument.name.is_some()) {
             self.report(
                 Diagnostic::error(
@@ -174,6 +223,7 @@ impl<'a> Model<'a, '_> {
                 None => self.poison(span),
             },
             "sum" => self.sum(&args, scope, span),
+            "table" | "smooth_table" => self.table(name, &args, scope, span),
             "chirp" => self.chirp(&args, scope, span),
             "pder" => self.pder(&args, scope, span),
             "partial" => self.partial(&args, scope, span),
@@ -207,6 +257,9 @@ impl<'a> Model<'a, '_> {
             .map_or("", |part| part.name.text.as_str());
         if let ("at", [argument]) = (last, arguments) {
             return self.field_at(function, &argument.value, scope, span);
+        }
+        if let Some(found) = self.function_named(function) {
+            return self.function(found, arguments, scope, span);
         }
         self.report(
             Diagnostic::error(

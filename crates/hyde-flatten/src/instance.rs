@@ -156,6 +156,8 @@ pub(crate) struct Scope<'a> {
     pub(crate) counters: Vec<(&'a str, Counter)>,
     /// Mode parameters in scope.
     pub(crate) locals: Vec<(&'a str, VarId)>,
+    /// In a function: its inputs and variables, and nothing else.
+    pub(crate) values: Option<Vec<(&'a str, Typed)>>,
     pub(crate) place: FieldPlace,
     /// Whole arrays are read element by element, this many.
     pub(crate) elementwise: Option<usize>,
@@ -170,6 +172,7 @@ impl Scope<'_> {
             setting,
             counters: Vec::new(),
             locals: Vec::new(),
+            values: None,
             place: FieldPlace::Nowhere,
             elementwise: None,
             records: false,

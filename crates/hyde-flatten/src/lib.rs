@@ -1,14 +1,14 @@
 //! [`flatten`]: from trees to a [`FlatModel`]. Names become ids, components their equations.
 //!
 //! In order:
-//! 1. the classes and types of every file are indexed ([`names`]);
+//! 1. the classes and types of every file are indexed (`names`);
 //! 2. the model is instantiated: a tree of instances with their variables, parameters and parts, every modification
-//!    laid where it belongs ([`instantiate`]);
+//!    laid where it belongs (`instantiate`);
 //! 3. bindings, equations, modes, events and clocked parts are lowered to IR in the scope of their instance
-//!    ([`lower`], [`equation`], [`modes`], [`field`]), each expression with its dimension ([`dimension`]);
-//! 4. connection sets become equations ([`connect`]);
-//! 5. the experiment drives the free inputs and names what is measured ([`experiment`]);
-//! 6. what is known of dimensions is solved for the rest, and parameters are put in order ([`finish`]).
+//!    (`lower`, `equation`, `modes`, `field`), each expression with its dimension (`dimension`);
+//! 4. connection sets become equations (`connect`);
+//! 5. the experiment drives the free inputs and names what is measured (`experiment`);
+//! 6. what is known of dimensions is solved for the rest, and parameters are put in order (`finish`).
 //!
 //! Arrays and fields are not unrolled: a `for` equation or a field equation is one equation over a range.
 

@@ -84,6 +84,14 @@ impl<'a> Names<'a> {
     /// "no such type or model", with the nearest names that there are.
     pub(crate) fn unknown(self, file: FileIndex, name: &Reference) -> Diagnostic {
         let text = name.dotted();
+        if let [first, second, ..] = self.packages_with(file, &text).as_slice() {
+            return Diagnostic::error(
+                Code::UnknownType,
+                format!("`{text}` is in `{first}` and in `{second}`"),
+            )
+            .label(name.span, "which of them?")
+            .help(format!("write `{first}.{text}` or `{second}.{text}`"));
+        }
         let mut known: Vec<&str> = Vec::new();
         for (index, (_, tree)) in self.files.iter().enumerate() {
             if index == file || self.imports_everything(file, index) {
@@ -101,6 +109,27 @@ impl<'a> Names<'a> {
             None => diagnostic
                 .help("declare it, or import the package it is in: `import Rotational.*;`"),
         }
+    }
+
+    /// The packages imported whole that have a model of that name.
+    fn packages_with(self, file: FileIndex, name: &str) -> Vec<String> {
+        let Some((_, tree)) = self.files.get(file) else {
+            return Vec::new();
+        };
+        let has = |index: FileIndex| {
+            let items = &self.files[index].1.items;
+            items
+                .iter()
+                .any(|item| matches!(item, Item::Class(class) if class.name.text == name))
+        };
+        let mut found: Vec<String> = Vec::new();
+        for import in tree.imports.iter().filter(|import| import.everything) {
+            let package = import.path.dotted();
+            if self.package(&package).is_some_and(has) && !found.contains(&package) {
+                found.push(package);
+            }
+        }
+        found
     }
 
     fn own_items(self) -> impl Iterator<Item = &'a Item> {
@@ -141,10 +170,13 @@ impl<'a> Names<'a> {
                     in_file(self.package(&dotted(package))?, word)
                 });
             return exact.or_else(|| {
-                imports
+                let mut found = imports
                     .iter()
                     .filter(|import| import.everything)
-                    .find_map(|import| in_file(self.package(&import.path.dotted())?, word))
+                    .filter_map(|import| in_file(self.package(&import.path.dotted())?, word));
+                let first = found.next()?;
+                // A name that two packages have means neither: [`Names::unknown`] tells.
+                found.all(|(index, _)| index == first.0).then_some(first)
             });
         }
         in_file(self.package(&dotted(package))?, word)

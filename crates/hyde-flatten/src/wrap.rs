@@ -104,18 +104,19 @@ impl Model<'_, '_> {
     /// Only what is declared a site, an input or an output may be wrapped (E1).
     fn check_site(&mut self, number: usize) {
         let Wrap { host, site, .. } = self.wraps[number];
-        let declared =
-            self.instances[host]
-                .elements
-                .iter()
-                .find_map(|(_, element)| match element {
-                    Element::Declaration(declaration) => declaration
-                        .declarators
-                        .iter()
-                        .any(|declarator| site.as_word() == Some(declarator.name.text.as_str()))
-                        .then_some(declaration),
-                    _ => None,
-                });
+        let declared = self.instances[host]
+            .elements
+            .iter()
+            .find_map(|(_, element)| {
+                let Element::Declaration(declaration) = element else {
+                    return None;
+                };
+                declaration
+                    .declarators
+                    .iter()
+                    .any(|declarator| site.as_word() == Some(declarator.name.text.as_str()))
+                    .then_some(declaration)
+            });
         let is_site =
             |prefix: &Prefix| matches!(prefix, Prefix::Site | Prefix::Input | Prefix::Output);
         if declared.is_some_and(|declaration| declaration.prefixes.iter().any(is_site)) {

@@ -355,6 +355,26 @@ impl ExprArena {
         self.below(&[root]).into_iter().any(|id| test(self[id]))
     }
 
+    /// Whether an expression is made of parameters and numbers alone.
+    #[must_use]
+    pub fn is_parametric(&self, root: ExprId) -> bool {
+        !self.any(root, |expr| match expr {
+            Expr::Time
+            | Expr::Counter
+            | Expr::Var(..)
+            | Expr::Der(..)
+            | Expr::Pre(..)
+            | Expr::Relation(_)
+            | Expr::InMode(..) => true,
+            Expr::Const(_)
+            | Expr::Param(..)
+            | Expr::Unary(..)
+            | Expr::Binary(..)
+            | Expr::If(..)
+            | Expr::NoEvent(_) => false,
+        })
+    }
+
     /// Rebuilds `root` with every leaf (and `NoEvent`) passed through `replace`, which returns `None` to keep it.
     pub fn rewrite(
         &mut self,

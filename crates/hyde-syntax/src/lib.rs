@@ -1,7 +1,7 @@
 //! Text to [`ast::File`]: the first stage. Names are still text here; every node knows its [`hyde_diag::Span`].
 //!
 //! [`parse`] reads a file element by element, so that one error does not hide the next, and refuses what is nested
-//! too deeply before the parser's stack would. [`format`] prints a tree as source text again.
+//! too deeply before the parser's stack would. [`format()`] prints a tree as source text again.
 
 pub mod ast;
 

@@ -100,7 +100,8 @@ pub(crate) fn skip_item(text: &str, start: usize) -> usize {
         .map_or(text.len(), |(at, _)| at)
 }
 
-const ITEMS: [&str; 8] = [
+/// The words that items begin with.
+pub(crate) const ITEMS: [&str; 8] = [
     "model",
     "connector",
     "effect",

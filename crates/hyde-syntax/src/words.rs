@@ -78,7 +78,7 @@ fn word(rule: Rule) -> String {
         Rule::subscript => "a subscript",
         Rule::mode => "`mode`",
         Rule::exit => "`exit`",
-        Rule::class_kind => "`model`, `connector` or `effect`",
+        Rule::class_kind => "`model`, `connector`, `effect` or `function`",
         Rule::end_clause => "`end`",
         _ => return format!("{} {}", article(&name), name.replace('_', " ")),
     };

@@ -33,10 +33,6 @@ fn most_apart(session: &Session) -> Result<f64, String> {
         }
     }
     // Beyond 2^53 the count itself is rounded; by then nothing agrees.
-    #[allow(
-        clippy::cast_precision_loss,
-        reason = "a distance far below 2^53, or far too large"
-    )]
     Ok(most as f64)
 }
 
@@ -220,7 +216,6 @@ impl Random {
     }
 
     /// Between 0 and 1.
-    #[allow(clippy::cast_precision_loss, reason = "53 bits fit")]
     fn unit(&mut self) -> f64 {
         (self.next() >> 11) as f64 / (1_u64 << 53) as f64
     }
@@ -232,7 +227,6 @@ impl Random {
     }
 
     /// A whole number below `n`.
-    #[allow(clippy::cast_precision_loss, reason = "a few modes")]
     fn below(&mut self, n: usize) -> f64 {
         (self.unit() * n as f64).floor()
     }

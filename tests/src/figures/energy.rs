@@ -118,7 +118,6 @@ impl<'a> Drive<'a> {
             add(self.parameter(coefficient)?, values, values);
         }
         let node = |name: &str, number: usize| self.column(&format!("screw.{name}[{number}]"));
-        #[allow(clippy::cast_precision_loss, reason = "a few cells")]
         let cell = self.parameter("screw.len")? / self.cells as f64;
         let inertia = self.parameter("screw.rho")? * self.parameter("screw.Ip")? * cell;
         let stiffness = self.parameter("screw.G")? * self.parameter("screw.Ip")? / cell;

@@ -12,19 +12,12 @@ impl Random {
             .0
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
-        #[allow(clippy::cast_precision_loss, reason = "53 bits fit")]
         let unit = (self.0 >> 11) as f64 / (1_u64 << 53) as f64;
         2.0 * unit - 1.0
     }
 
     /// One of the first `n` whole numbers.
     pub(crate) fn below(&mut self, n: usize) -> usize {
-        #[allow(
-            clippy::cast_precision_loss,
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "small numbers"
-        )]
         let number = (0.5 * (self.next() + 1.0) * n as f64) as usize;
         number.min(n - 1)
     }

@@ -1,4 +1,10 @@
 //! The command line as its users meet it.
+#![allow(
+    clippy::disallowed_methods,
+    clippy::float_cmp,
+    clippy::unwrap_used,
+    reason = "tests open files, compare what is exact, and unwrap what must be there"
+)]
 
 mod analyses;
 mod command;

@@ -24,14 +24,18 @@ fn status_0_when_everything_was_done() {
 #[test]
 fn status_1_when_the_model_is_at_fault() {
     let folder = Folder::new();
-    let model = folder.file("wrong.hyde", &LAG.replace("u = 1;", "u = 1 [s];"));
+    let model = folder.file("wrong.hyde", &LAG.replace("10 [ms]", "10 [mm]"));
     for command in ["check", "run"] {
         let output = hyde(&[command, &model]);
         assert_eq!(status(&output), 1);
         assert_eq!(text(&output), "");
         let told = errors(&output);
         // Code, place, the line itself, and how to go on.
-        for part in ["error[E0301]", "wrong.hyde:13:", "stimulus u = 1 [s];"] {
+        for part in [
+            "error[E0301]",
+            "wrong.hyde:6:",
+            "parameter Time T = 10 [mm];",
+        ] {
             assert!(told.contains(part), "`{part}` is not in\n{told}");
         }
         assert!(told.contains("1 error; `hyde explain CODE` tells more"));
@@ -62,7 +66,6 @@ fn status_2_when_the_command_line_is() {
         ),
         (&["run", &model, "--set", "tau=5"], "no parameter `tau`"),
         (&["run", &model, "--record", "log=x.csv"], "no record `log`"),
-        (&["run", &model, "--stop", "0"], "stop must be positive"),
         (&["run", &model, "--stop", "soon"], "soon"),
         (&["modes", &model, "--in", "guide=slip"], "guide"),
         (&["bode", &model], "asks for no response"),

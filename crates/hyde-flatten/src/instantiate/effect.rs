@@ -196,7 +196,18 @@ impl<'a> Model<'a, '_> {
                         }
                     }
                 }
-                _ => {}
+                Element::Extends(..)
+                | Element::Declaration(_)
+                | Element::Domain(_)
+                | Element::Discretize(_)
+                | Element::Modes(_)
+                | Element::Clocked(_)
+                | Element::Equation(_)
+                | Element::InitialEquation(_)
+                | Element::Add(_)
+                | Element::Signature(_)
+                | Element::Confounds(_)
+                | Element::Measure(_) => {}
             }
         }
         self.members(id, &rest);
@@ -223,9 +234,12 @@ impl<'a> Model<'a, '_> {
             ClassBody::Short { base, .. } => vec![base],
             ClassBody::Long { elements, .. } => elements
                 .iter()
-                .filter_map(|element| match element {
-                    Element::Extends(base, _) => Some(base),
-                    _ => None,
+                .filter_map(|element| {
+                    if let Element::Extends(base, _) = element {
+                        Some(base)
+                    } else {
+                        None
+                    }
                 })
                 .collect(),
         };

@@ -9,7 +9,7 @@ use hyde_units::NamedUnit;
 
 impl<'a> Model<'a, '_> {
     /// The dimension and printed unit of a declared type; `Real` takes those of a literal it is bound to.
-    pub(super) fn quantity(
+    pub(crate) fn quantity(
         &mut self,
         kind: TypeName<'a>,
         binding: Option<&'a Expr>,

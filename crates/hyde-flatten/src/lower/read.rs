@@ -51,6 +51,7 @@ impl<'a> Model<'a, '_> {
                     ..self.typed(id, Dim::neutral_number(), span)
                 }
             }
+            Resolved::Value(value) => Typed { span, ..value },
             Resolved::Coordinate => self.coordinate_value(scope, span),
             Resolved::Instance(instance) => {
                 let name = self.instances[instance].class.name.text.clone();

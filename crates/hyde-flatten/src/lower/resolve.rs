@@ -1,7 +1,7 @@
 //! Names: what they stand for in scope.
 
 use super::subscript::mentions_counter;
-use crate::instance::{Counter, FieldPlace, InstanceId, Member, Scope};
+use crate::instance::{Counter, FieldPlace, InstanceId, Member, Scope, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic};
 use hyde_ir::{Index, ParamId, VarId};
@@ -19,9 +19,38 @@ pub(crate) enum Resolved {
     Pi,
     /// The coordinate of the domain the field expression is on.
     Coordinate,
+    /// An input or variable of a function.
+    Value(Typed),
 }
 
 impl<'a> Model<'a, '_> {
+    /// What a name stands for in a function.
+    fn in_function(
+        &mut self,
+        reference: &'a Reference,
+        values: &[(&'a str, Typed)],
+    ) -> Option<Resolved> {
+        let word = reference.as_word();
+        if let Some((_, value)) = values.iter().rev().find(|(name, _)| Some(*name) == word) {
+            return Some(Resolved::Value(value.clone()));
+        }
+        if word == Some("pi") {
+            return Some(Resolved::Pi);
+        }
+        let known: Vec<&str> = values.iter().map(|(name, _)| *name).collect();
+        let name = reference.dotted();
+        self.report(
+            Diagnostic::error(
+                Code::UnknownName,
+                format!("nothing is called `{name}` in this function"),
+            )
+            .label(reference.span, "not known")
+            .note("a function sees its inputs and what it declared before")
+            .help(format!("known here: {}", crate::model::listed(&known))),
+        );
+        None
+    }
+
     /// What a name stands for; reported if nothing.
     pub(crate) fn resolve(
         &mut self,
@@ -30,6 +59,9 @@ impl<'a> Model<'a, '_> {
     ) -> Option<Resolved> {
         let first = reference.parts.first()?;
         let word = first.name.text.as_str();
+        if let Some(values) = &scope.values {
+            return self.in_function(reference, values);
+        }
         if reference.parts.len() == 1 && first.subscripts.is_empty() {
             if let Some((_, counter)) = scope.counters.iter().rev().find(|(name, _)| *name == word)
             {

@@ -1,4 +1,4 @@
-//! Models, connectors and effects, and what may stand in them.
+//! Models, connectors, effects and functions, and what may stand in them.
 
 use super::{Argument, Change, Declaration, Equation, Expr, Modes, Name, Range, Reference};
 use hyde_diag::Span;
@@ -12,6 +12,8 @@ pub enum ClassKind {
     Connector,
     /// `effect`
     Effect,
+    /// `function`
+    Function,
 }
 
 /// A model, connector or effect.

@@ -13,6 +13,7 @@ impl Printer {
             ClassKind::Model => "model",
             ClassKind::Connector => "connector",
             ClassKind::Effect => "effect",
+            ClassKind::Function => "function",
         };
         let name = &class.name.text;
         match &class.body {

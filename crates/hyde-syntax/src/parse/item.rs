@@ -237,17 +237,8 @@ impl Parser<'_> {
 
     /// Whether a new item begins here, at the start of a line.
     pub(super) fn at_item(&self) -> bool {
-        let words = [
-            "model",
-            "connector",
-            "effect",
-            "type",
-            "experiment",
-            "calibrate",
-            "diagnose",
-            "sweep",
-        ];
-        self.text[..self.at].ends_with('\n') && words.iter().any(|word| self.looking_at(word))
+        self.text[..self.at].ends_with('\n')
+            && recover::ITEMS.iter().any(|word| self.looking_at(word))
     }
 }
 
@@ -327,6 +318,8 @@ fn class_kind(node: &Node<'_>) -> ClassKind {
         ClassKind::Connector
     } else if has(node, Rule::kw_effect) {
         ClassKind::Effect
+    } else if has(node, Rule::kw_function) {
+        ClassKind::Function
     } else {
         ClassKind::Model
     }

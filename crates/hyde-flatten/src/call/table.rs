@@ -1,0 +1,195 @@
+//! Lookup tables: `table(x, {0, 1, 2} [m], {0, 1, 4} [N])` linear between its points, `smooth_table` with a continuous
+//! derivative.
+//!
+//! Beyond its ends a table goes on along its last straight line. The smooth one is the monotone cubic of Fritsch and
+//! Carlson (SIAM J. Numer. Anal. 17 (1980) 238) with the slopes of Fritsch and Butland: it does not overshoot its points.
+//! No events: a table is a measured curve, not a switch.
+
+use crate::dimension::Dim;
+use crate::instance::{Scope, Setting, Typed};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, Span};
+use hyde_ir::{BinaryOp, ExprArena, ExprId};
+use hyde_syntax::ast::{Expr, ExprKind};
+
+impl<'a> Model<'a, '_> {
+    pub(super) fn table(
+        &mut self,
+        name: &str,
+        args: &[&'a Expr],
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Typed {
+        let Some([x, xs, ys]) = self.exactly(name, args, span) else {
+            return self.poison(span);
+        };
+        let x = self.value(x, scope);
+        let (Some((xs, x_dim)), Some((ys, y_dim))) =
+            (self.points(xs, scope), self.points(ys, scope))
+        else {
+            return self.poison(span);
+        };
+        if xs.len() != ys.len() || xs.len() < 2 {
+            self.report(
+                Diagnostic::error(
+                    Code::BadShape,
+                    format!("{} places and {} values", xs.len(), ys.len()),
+                )
+                .label(
+                    span,
+                    "a table has a value at each of its places, and two at least",
+                ),
+            );
+            return self.poison(span);
+        }
+        if let Some(at) = xs.windows(2).position(|pair| pair[0] >= pair[1]) {
+            self.report(
+                Diagnostic::error(Code::BadShape, "the places of a table ascend")
+                    .label(span, format!("{} is followed by {}", xs[at], xs[at + 1])),
+            );
+            return self.poison(span);
+        }
+        let place = self.typed(x.id, x_dim, span);
+        self.agree(
+            &x,
+            &place,
+            "the argument and the places of the table are",
+            scope.instance,
+        );
+        let slopes = if name == "table" {
+            None
+        } else {
+            Some(slopes(&xs, &ys))
+        };
+        let arena = &mut self.flat.exprs;
+        let value = between(arena, x.id, &xs, &ys, slopes.as_deref());
+        let id = arena.no_event(value);
+        self.typed(id, y_dim, span)
+    }
+
+    /// The numbers of a list, in SI, with their dimension.
+    fn points(&mut self, list: &'a Expr, scope: &Scope<'a>) -> Option<(Vec<f64>, Dim)> {
+        let ExprKind::Array(items, unit) = &list.kind else {
+            self.report(
+                Diagnostic::error(Code::BadShape, "a table is made of two lists")
+                    .label(list.span, "no list")
+                    .help("write `table(x, {0, 1, 2}, {0, 1, 4})`"),
+            );
+            return None;
+        };
+        let unit = match unit {
+            None => None,
+            Some(unit) => match hyde_units::NamedUnit::parse(&unit.text) {
+                Ok(unit) => Some(unit),
+                Err(error) => {
+                    self.bad_unit(unit, &error);
+                    return None;
+                }
+            },
+        };
+        let mut numbers = Vec::new();
+        let mut dim: Option<Typed> = None;
+        for item in items {
+            let inner = scope.with(Setting::Parameter);
+            let typed = self.value(item, &inner);
+            let number = self.structural_number(&inner, item)?;
+            numbers.push(
+                unit.as_ref()
+                    .map_or(number, |unit| unit.unit().to_si(number)),
+            );
+            match &dim {
+                None => dim = Some(typed),
+                Some(first) => {
+                    let first = first.clone();
+                    self.agree(&first, &typed, "the numbers of a list are", scope.instance);
+                }
+            }
+        }
+        let dim = match unit {
+            Some(unit) => Dim::known(unit.unit().dimension),
+            None => dim.map_or(Dim::NUMBER, |typed| typed.dim),
+        };
+        Some((numbers, dim))
+    }
+}
+
+/// The curve between points: the halves on both sides of the middle one, down to one piece.
+fn between(
+    arena: &mut ExprArena,
+    x: ExprId,
+    xs: &[f64],
+    ys: &[f64],
+    slopes: Option<&[f64]>,
+) -> ExprId {
+    if xs.len() == 2 {
+        return piece(arena, x, xs, ys, slopes);
+    }
+    let middle = xs.len() / 2;
+    let left = between(
+        arena,
+        x,
+        &xs[..=middle],
+        &ys[..=middle],
+        slopes.map(|slopes| &slopes[..=middle]),
+    );
+    let right = between(
+        arena,
+        x,
+        &xs[middle..],
+        &ys[middle..],
+        slopes.map(|slopes| &slopes[middle..]),
+    );
+    let limit = arena.constant(xs[middle]);
+    let below = arena.binary(BinaryOp::Lt, x, limit);
+    arena.if_else(below, left, right)
+}
+
+/// `y + d*(m + d*(b + d*a))` with d the distance from the left point; a and b vanish for a straight line.
+fn piece(
+    arena: &mut ExprArena,
+    x: ExprId,
+    xs: &[f64],
+    ys: &[f64],
+    slopes: Option<&[f64]>,
+) -> ExprId {
+    let width = xs[1] - xs[0];
+    let chord = (ys[1] - ys[0]) / width;
+    let (first, second) = slopes.map_or((chord, chord), |slopes| (slopes[0], slopes[1]));
+    let start = arena.constant(xs[0]);
+    let distance = arena.minus(x, start);
+    let mut sum = arena.constant(ys[0]);
+    let mut power = distance;
+    let cubic = (first + second - 2.0 * chord) / (width * width);
+    let square = (3.0 * chord - 2.0 * first - second) / width;
+    for factor in [first, square, cubic] {
+        if factor != 0.0 {
+            let factor = arena.constant(factor);
+            let term = arena.times(factor, power);
+            sum = arena.plus(sum, term);
+        }
+        power = arena.times(power, distance);
+    }
+    sum
+}
+
+/// Slopes at the points: a weighted harmonic mean of the neighbouring chords, zero at an extremum, the chord at the ends.
+fn slopes(xs: &[f64], ys: &[f64]) -> Vec<f64> {
+    let chords: Vec<f64> = xs
+        .windows(2)
+        .zip(ys.windows(2))
+        .map(|(x, y)| (y[1] - y[0]) / (x[1] - x[0]))
+        .collect();
+    let mut found = vec![chords[0]];
+    for k in 1..chords.len() {
+        let (a, b) = (chords[k - 1], chords[k]);
+        let (before, after) = (xs[k] - xs[k - 1], xs[k + 1] - xs[k]);
+        let (w1, w2) = (2.0 * after + before, after + 2.0 * before);
+        found.push(if a * b <= 0.0 {
+            0.0
+        } else {
+            (w1 + w2) / (w1 / a + w2 / b)
+        });
+    }
+    found.push(chords[chords.len() - 1]);
+    found
+}

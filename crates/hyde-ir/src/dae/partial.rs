@@ -1,0 +1,56 @@
+//! The functions of a DAE and their derivatives.
+
+use crate::id::ExprId;
+use crate::{Index, Range};
+
+/// With respect to what a function is differentiated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Wrt {
+    /// An unknown: element at a value of the counter, in the solver's vector.
+    Unknown(Index),
+    /// The derivative of an unknown.
+    Derivative(Index),
+    /// A parameter, by its position.
+    Parameter(usize),
+    /// Time.
+    Time,
+}
+
+/// Derivatives of a range of rows of a function.
+#[derive(Clone, Debug)]
+pub struct Partial {
+    /// Values of the counter.
+    pub range: Range,
+    /// Row at a value of the counter.
+    pub row: Index,
+    /// With respect to what.
+    pub wrt: Wrt,
+    /// The derivative.
+    pub value: ExprId,
+}
+
+/// The functions that a program offers with their derivatives (S2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Function {
+    /// `F`.
+    Residual,
+    /// Root functions of the relations.
+    Roots,
+    /// Values that events assign, then the values of the pins.
+    Assignments,
+    /// Reported quantities.
+    Outputs,
+    /// Conditions at the start that are equations.
+    Initial,
+}
+
+impl Function {
+    /// All of them.
+    pub const ALL: [Self; 5] = [
+        Self::Residual,
+        Self::Roots,
+        Self::Assignments,
+        Self::Outputs,
+        Self::Initial,
+    ];
+}
