@@ -31,13 +31,14 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
             }
             continue;
         }
-        if pinned.contains(&block.offset) {
-            continue;
-        }
         let given = system
             .starts
             .get(&(block.var, block.first))
             .is_some_and(|list| list.iter().any(|(_, fixed, _)| *fixed));
+        let pinned = pinned.contains(&block.offset);
+        if pinned && !given {
+            continue;
+        }
         if given || (array && dae.variables[block.var].fixed) {
             fixed.push((block.offset, 1));
         } else {

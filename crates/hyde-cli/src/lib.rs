@@ -1,7 +1,7 @@
 //! The `hyde` command. This crate alone opens files, reads the arguments, and prints.
 //!
 //! Each command is a file in `commands/`; what they share is loading a model with its records (`project`), rendering
-//! diagnostics ([`render`]), and writing files whole or not at all (`files`).
+//! diagnostics (`render`), and writing files whole or not at all (`files`).
 
 mod args;
 mod commands;

@@ -55,14 +55,18 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
             let noise = channel
                 .noise
                 .map_or(String::new(), |noise| engineering(noise, dimension));
-            let _ = writeln!(
-                out,
-                "  {:<28} {:>12} {:>9} % {:>12}",
+            // Nothing measured has no relative error.
+            let relative = if channel.relative_percent.is_finite() {
+                format!("{} %", significant(channel.relative_percent, 3))
+            } else {
+                String::new()
+            };
+            let line = format!(
+                "  {:<28} {:>12} {relative:>11} {noise:>12}",
                 channel.name,
                 engineering(channel.rms, dimension),
-                significant(channel.relative_percent, 3),
-                noise
             );
+            let _ = writeln!(out, "{}", line.trim_end());
         }
     }
     if !run.measures.is_empty() {

@@ -19,6 +19,10 @@ pub const PACKAGES: &[Package] = &[
         text: include_str!("../models/SI.hyde"),
     },
     Package {
+        name: "Blocks",
+        text: include_str!("../models/Blocks.hyde"),
+    },
+    Package {
         name: "Rotational",
         text: include_str!("../models/Rotational.hyde"),
     },

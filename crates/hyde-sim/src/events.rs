@@ -15,7 +15,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::guards::{current_mode, is_active};
 use crate::results::{Event, EventKind};
 use crate::state::State;
-use hyde_program::{Function, Program, ReactionKind, RelationUse, Target, Wrt};
+use hyde_program::{Function, InitialCondition, Program, ReactionKind, RelationUse, Target, Wrt};
 
 const MAX_ROUNDS: usize = 50;
 
@@ -46,8 +46,13 @@ impl Instant<'_, '_> {
         let mut changed = false;
         let mut seen: Vec<Vec<u64>> = Vec::new();
         let mut causes: Vec<String> = Vec::new();
+        // Guards that brought the run here, with their root functions' values: zero but for the location's rounding.
+        let mut located: Vec<(usize, f64)> = Vec::new();
         for _ in 0..MAX_ROUNDS {
-            let truths = self.truths(scheduled)?;
+            let (truths, roots) = self.truths(scheduled, &located)?;
+            if seen.is_empty() {
+                located = self.guards_that_became_true(&truths, &roots);
+            }
             let flipped = self.flip(&truths);
             let conditions = self.state.conditions(self.t, self.y, self.yp);
             let fired = self.fired(&conditions, at_start && seen.is_empty())?;
@@ -76,7 +81,11 @@ impl Instant<'_, '_> {
     }
 
     /// The truth of every relation that matters; of the others as they were.
-    fn truths(&mut self, scheduled: &[usize]) -> Result<Vec<bool>, Box<Failure>> {
+    fn truths(
+        &mut self,
+        scheduled: &[usize],
+        located: &[(usize, f64)],
+    ) -> Result<(Vec<bool>, Vec<f64>), Box<Failure>> {
         let program = self.state.program;
         let mut roots = vec![0.0; program.relations.len()];
         self.state
@@ -95,7 +104,11 @@ impl Instant<'_, '_> {
                     Failure::new(FailureKind::NotFinite, self.t).at_origin(&relation.origin)
                 );
             }
-            let zero = root == 0.0 || scheduled.contains(&number);
+            let still_there = |(relation, value): &(usize, f64)| {
+                *relation == number && root.abs() <= 2.0 * value.abs()
+            };
+            let zero =
+                root == 0.0 || scheduled.contains(&number) || located.iter().any(still_there);
             if !zero {
                 truths.push(root > 0.0);
                 continue;
@@ -110,7 +123,19 @@ impl Instant<'_, '_> {
                 rate > 0.0
             });
         }
-        Ok(truths)
+        Ok((truths, roots))
+    }
+
+    /// The guards of current modes that are true now and were not: of these the root function is at its zero.
+    fn guards_that_became_true(&self, truths: &[bool], roots: &[f64]) -> Vec<(usize, f64)> {
+        let relations = self.state.program.relations.iter().enumerate();
+        relations
+            .filter(|(number, relation)| {
+                let before = self.state.z[*number] != 0.0;
+                matches!(relation.used, RelationUse::Exit(..)) && truths[*number] && !before
+            })
+            .map(|(number, _)| (number, roots[number]))
+            .collect()
     }
 
     /// Writes the truths to the memory; the relations of equations whose truth changed.
@@ -291,6 +316,116 @@ impl Instant<'_, '_> {
         }
         failure
     }
+}
+
+/// Leaves initial modes that fix a state whose fixed start value is another one: by the first exit to a mode in which
+/// the model can be. A guide that moves at the start slips.
+pub(crate) fn leave_impossible_modes(
+    state: &mut State<'_>,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+) -> Result<(), Box<Failure>> {
+    let program: &Program = state.program;
+    let declared = |position: usize| {
+        program.initial.iter().any(|condition| match condition {
+            InitialCondition::Fixed {
+                state,
+                len,
+                declared,
+            } => *declared && (*state..*state + *len).contains(&position),
+            InitialCondition::Equation { .. } => false,
+        })
+    };
+    for automaton in 0..program.automata.len() {
+        let Some((pin, value)) = violated(state, automaton, t, y, yp, &declared) else {
+            continue;
+        };
+        let here = current_mode(program, &state.z, automaton);
+        let before = state.z.clone();
+        let mut found = false;
+        for reaction in &program.reactions {
+            let ReactionKind::Transition {
+                automaton: of,
+                from,
+                to,
+                ..
+            } = reaction.kind
+            else {
+                continue;
+            };
+            if of != automaton || from != here {
+                continue;
+            }
+            let mut values = vec![0.0; program.rows(Function::Assignments)];
+            state.evaluate(Function::Assignments, t, y, yp, &mut values);
+            for index in reaction.assignments.clone() {
+                if let Target::Memory(position) = program.assignments[index].target {
+                    state.z[position] = values[index];
+                }
+            }
+            state.z[program.automata[automaton].place] = to as f64;
+            if violated(state, automaton, t, y, yp, &declared).is_none()
+                && !leaves_at_once(state, automaton, to, t, y, yp)
+            {
+                found = true;
+                break;
+            }
+            state.z.copy_from_slice(&before);
+        }
+        if !found {
+            let name = program.unknown_name(program.pins[pin].state);
+            let kind = FailureKind::Impact(name, y[program.pins[pin].state], value);
+            return Err(Failure::new(kind, t).at_origin(&program.pins[pin].origin));
+        }
+    }
+    Ok(())
+}
+
+/// The pin of an automaton's mode that a fixed start value contradicts, with its value.
+fn violated(
+    state: &mut State<'_>,
+    automaton: usize,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+    declared: &dyn Fn(usize) -> bool,
+) -> Option<(usize, f64)> {
+    let program = state.program;
+    let mode = current_mode(program, &state.z, automaton);
+    let mut values = vec![0.0; program.rows(Function::Assignments)];
+    state.evaluate(Function::Assignments, t, y, yp, &mut values);
+    program.pins.iter().enumerate().find_map(|(number, pin)| {
+        let value = values[program.assignments.len() + number];
+        let tolerance = 1e-9 * value.abs().max(y[pin.state].abs());
+        let other = (y[pin.state] - value).abs() > tolerance;
+        (pin.automaton == automaton && pin.mode == mode && other && declared(pin.state))
+            .then_some((number, value))
+    })
+}
+
+/// Whether an exit of a mode is true as soon as it is entered.
+fn leaves_at_once(
+    state: &mut State<'_>,
+    automaton: usize,
+    mode: usize,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+) -> bool {
+    let program = state.program;
+    let mut roots = vec![0.0; program.relations.len()];
+    state.evaluate(Function::Roots, t, y, yp, &mut roots);
+    for (number, root) in roots.into_iter().enumerate() {
+        if is_active(program, &state.z, number) {
+            state.z[number] = f64::from(u8::from(root > 0.0));
+        }
+    }
+    let conditions = state.conditions(t, y, yp);
+    program.reactions.iter().zip(conditions).any(|(reaction, now)| {
+        matches!(reaction.kind, ReactionKind::Transition { automaton: of, from, .. } if of == automaton && from == mode)
+            && now
+    })
 }
 
 /// The states that the modes in the memory fix, with their values.

@@ -65,6 +65,8 @@ pub(crate) fn solve(
             fixed.extend((*first..*first + *len).filter(|&i| state.differential[i]));
         }
     }
+    fixed.sort_unstable();
+    fixed.dedup();
     let targets: Vec<f64> = fixed.iter().map(|&i| y[i]).collect();
     if n + count + fixed.len() != size {
         let kind = FailureKind::Inconsistent {

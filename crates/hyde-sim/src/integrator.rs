@@ -26,6 +26,7 @@ pub(crate) struct Integrator<'a> {
 const SMOOTH_AFTER: u32 = 16;
 const LEAST_PART: u32 = 512;
 const LEAST_RTOL: f64 = 5e-11;
+const LEAST_ATOL: f64 = 1e-2 * LEAST_RTOL;
 
 enum Solver<'a> {
     /// No continuous unknowns: time passes, nothing moves.
@@ -103,6 +104,7 @@ impl<'a> Integrator<'a> {
         if part.is_power_of_two()
             && (2..=LEAST_PART).contains(&part)
             && self.steps.is_multiple_of(SMOOTH_AFTER)
+            && self.tolerances.0 >= LEAST_RTOL * f64::from(part)
         {
             self.set_tolerances(part)?;
         }
@@ -167,7 +169,8 @@ impl<'a> Integrator<'a> {
         let (rtol, atol) = self.tolerances;
         let part = f64::from(part);
         if let Solver::Ida(ida) = &mut self.solver {
-            let atol = vec![atol / part; self.y.len()];
+            let least = atol.min(LEAST_ATOL);
+            let atol = vec![(atol / part).max(least); self.y.len()];
             if let Err(error) = ida.set_tolerances(rtol / part, &atol) {
                 return Err(self.failure(&error));
             }

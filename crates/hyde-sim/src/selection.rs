@@ -16,7 +16,9 @@ pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f6
     let mut fixed = vec![false; y.len()];
     for condition in &state.program.initial {
         if let InitialCondition::Fixed {
-            state: first, len, ..
+            state: first,
+            len,
+            declared: true,
         } = condition
         {
             fixed[*first..*first + *len]

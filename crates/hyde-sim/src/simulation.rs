@@ -2,7 +2,7 @@
 
 use crate::clocks::Schedule;
 use crate::consistent::Consistent;
-use crate::events::{Instant, initial_pins};
+use crate::events::{Instant, initial_pins, leave_impossible_modes};
 use crate::failure::{Failure, FailureKind};
 use crate::guards;
 use crate::initial;
@@ -57,6 +57,13 @@ impl Hurry {
     }
 }
 
+/// Values at an instant, from one side of it.
+struct Limit {
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    z: Vec<f64>,
+}
+
 impl<'a> Simulation<'a> {
     /// Finds the start: initial values, first modes, first ticks.
     pub(crate) fn new(program: &'a Program, setup: &'a Setup<'a>) -> Result<Self, Box<Failure>> {
@@ -71,6 +78,7 @@ impl<'a> Simulation<'a> {
             );
             Failure::new(FailureKind::Solver(message), t).at_origin(&program.clocks[clock].origin)
         })?;
+        leave_impossible_modes(&mut state, t, &y, &yp)?;
         state.pinned = initial_pins(&mut state, t, &y, &yp);
         initial::solve(&mut state, &mut consistent, t, &mut y, &mut yp)?;
         let keep = setup
@@ -145,11 +153,11 @@ impl<'a> Simulation<'a> {
     /// The start itself: events before the first step, first ticks, first rows.
     fn begin(&mut self) -> Result<(), Box<Failure>> {
         let t = self.integrator.t;
-        let scheduled = self.schedule.relations_at(t);
-        self.iterate(&scheduled, true)?;
+        self.settle()?;
         self.row();
         if self.schedule.due(t) {
-            self.tick()?;
+            let start = self.limit();
+            self.tick(&start)?;
             self.iterate(&[], false)?;
             self.row();
         }
@@ -162,6 +170,38 @@ impl<'a> Simulation<'a> {
             self.next_row += 1;
         }
         self.restart()
+    }
+
+    /// Events at the start. Relations are known only behind the first solution, so initial equations that read them are
+    /// solved again; a change of mode keeps the values of the states (I2).
+    fn settle(&mut self) -> Result<(), Box<Failure>> {
+        let t = self.integrator.t;
+        let scheduled = self.schedule.relations_at(t);
+        let automata = &self.program.automata;
+        let modes = |z: &[f64]| {
+            automata
+                .iter()
+                .map(|a| z[a.place].to_bits())
+                .collect::<Vec<_>>()
+        };
+        let initial_modes = modes(&self.integrator.state().z);
+        for _ in 0..MAX_ROUNDS_AT_START {
+            let changed = self.iterate(&scheduled, true)?;
+            let same_modes = modes(&self.integrator.state().z) == initial_modes;
+            if !changed || !same_modes || self.program.rows(Function::Initial) == 0 {
+                break;
+            }
+            let (mut y, mut yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
+            initial::solve(
+                self.integrator.state_mut(),
+                &mut self.consistent,
+                t,
+                &mut y,
+                &mut yp,
+            )?;
+            (self.integrator.y, self.integrator.yp) = (y, yp);
+        }
+        Ok(())
     }
 
     /// Steps until `target` or the first crossing; rows on the way are taken. Returns whether there was a crossing; the
@@ -224,14 +264,14 @@ impl<'a> Simulation<'a> {
 
     /// Everything that happens at an instant: left limit, events, ticks, events, right limit (C1).
     fn instant(&mut self, scheduled: &[usize], restart: bool) -> Result<(), Box<Failure>> {
-        let before = self.integrator.state().z.clone();
+        let limit = self.limit();
         let left = self.row_values();
         let events = self.results.events.len();
         let mut changed = self.iterate(scheduled, false)?;
         let mut ticked = false;
         if self.schedule.due(self.integrator.t) {
             ticked = true;
-            changed |= self.tick()?;
+            changed |= self.tick(&limit)?;
             changed |= self.iterate(&[], false)?;
         }
         let happened = self.results.events.len() > events;
@@ -240,7 +280,8 @@ impl<'a> Simulation<'a> {
             self.not_too_many()?;
         }
         let on_grid = self.row_is_due();
-        let moved = before
+        let moved = limit
+            .z
             .iter()
             .zip(&self.integrator.state().z)
             .any(|(a, b)| a.to_bits() != b.to_bits());
@@ -280,14 +321,32 @@ impl<'a> Simulation<'a> {
         outcome
     }
 
-    /// Runs the clocks that tick; consistent values follow if something that the equations read has changed.
-    fn tick(&mut self) -> Result<bool, Box<Failure>> {
+    /// The values now.
+    fn limit(&self) -> Limit {
+        Limit {
+            y: self.integrator.y.clone(),
+            yp: self.integrator.yp.clone(),
+            z: self.integrator.state().z.clone(),
+        }
+    }
+
+    /// Runs the clocks that tick on the left limit, whatever events happened at the instant since (C1); consistent
+    /// values follow if something that the equations read has changed.
+    fn tick(&mut self, left: &Limit) -> Result<bool, Box<Failure>> {
         let (t, mut y, mut yp) = (
             self.integrator.t,
             self.integrator.y.clone(),
             self.integrator.yp.clone(),
         );
-        let (ticks, changed) = self.schedule.run(self.integrator.state_mut(), t, &y, &yp);
+        let state = self.integrator.state_mut();
+        let mut now = std::mem::replace(&mut state.z, left.z.clone());
+        let (ticks, changed) = self.schedule.run(state, t, &left.y, &left.yp);
+        for ((now, after), before) in now.iter_mut().zip(&state.z).zip(&left.z) {
+            if after.to_bits() != before.to_bits() {
+                *now = *after;
+            }
+        }
+        state.z = now;
         self.results.statistics.ticks += ticks;
         if changed {
             self.consistent

@@ -7,6 +7,7 @@ use crate::figures::shown;
 use crate::files;
 use crate::project::{self, Records, complain, print_output};
 use crate::records;
+use crate::summary;
 use hyde_experiment::{
     BodeError, LinearizeError, Swept, frequency_response, linearize, parameters, swept_response,
 };
@@ -63,7 +64,11 @@ fn responses(args: &BodeArgs) -> Result<String, Exit> {
         };
         Some(run::solved(&run_args)?)
     };
-    let mut text = String::new();
+    let mut text = run
+        .as_ref()
+        .map_or_else(String::new, |(project, compiled, run, took)| {
+            summary::text(project, compiled, run, *took)
+        });
     let mut found = Vec::new();
     for (number, bode) in program.experiment.bodes.iter().enumerate() {
         let band = band(program, number, &p)
