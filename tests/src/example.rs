@@ -112,7 +112,13 @@ impl Example {
         let mut sources = Sources::new();
         let mut diagnostics = Diagnostics::new();
         let name = self.path.file_name().unwrap_or_default().to_string_lossy();
-        let file = hyde_compiler::load(&mut sources, &name, &self.text, &mut diagnostics);
+        let file = hyde_compiler::load(
+            &mut sources,
+            &name,
+            &self.text,
+            &hyde_compiler::Packages::LIBRARY,
+            &mut diagnostics,
+        );
         refuse(&diagnostics, &sources)?;
         let mut tables = BTreeMap::new();
         let experiment = self.experiment_of(&file)?;

@@ -5,6 +5,7 @@ mod bench;
 mod clif_growth;
 mod emps;
 mod energy;
+mod msl;
 mod promise;
 mod residual_cost;
 mod start;
@@ -27,4 +28,5 @@ pub const FIGURES: &[Figure] = &[
     bench::ANGLE,
     energy::FIGURE,
     backends::FIGURE,
+    msl::FIGURE,
 ];

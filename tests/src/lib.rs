@@ -1,6 +1,9 @@
 //! What the tests across crates and the figures share: the examples, compiled as the command line compiles them.
 
+mod data;
 mod example;
 pub mod figures;
+pub mod msl;
 
+pub use data::data;
 pub use example::{Example, Loaded, root};

@@ -28,6 +28,10 @@ pub(crate) enum Command {
     Bode(BodeArgs),
     /// Natural frequencies and dampings of the linearised model
     Modes(ModesArgs),
+    /// List the parameters with their values, units, priors and sources
+    Params(ParamsArgs),
+    /// List the effects of the library and of the file, and where on the model each fits
+    Effects(EffectsArgs),
     /// Explain a diagnostic code
     Explain(ExplainArgs),
 }
@@ -57,6 +61,9 @@ pub(crate) struct ModelArgs {
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
+    /// Every package of the library is known, named or not.
+    #[arg(skip)]
+    pub(crate) whole_library: bool,
 }
 
 #[derive(Debug, Args)]
@@ -172,6 +179,21 @@ pub(crate) struct ModesArgs {
     /// Only below this frequency in Hz
     #[arg(long, value_name = "HZ")]
     pub(crate) below: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ParamsArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Only those without a source
+    #[arg(long)]
+    pub(crate) unsourced: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct EffectsArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
 }
 
 #[derive(Debug, Args)]

@@ -2,8 +2,10 @@
 
 pub(crate) mod bode;
 pub(crate) mod check;
+pub(crate) mod effects;
 pub(crate) mod emit;
 pub(crate) mod explain;
 pub(crate) mod modes;
+pub(crate) mod params;
 pub(crate) mod plot;
 pub(crate) mod run;

@@ -44,6 +44,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Plot(args) => commands::plot::plot(args),
         Command::Bode(args) => commands::bode::bode(args),
         Command::Modes(args) => commands::modes::modes(args),
+        Command::Params(args) => commands::params::params(args),
+        Command::Effects(args) => commands::effects::effects(args),
         Command::Explain(args) => commands::explain::explain(args),
     };
     code.into()

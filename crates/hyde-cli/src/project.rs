@@ -48,12 +48,7 @@ pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
     let settings = settings.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
-    let file = hyde_compiler::load(
-        &mut sources,
-        &args.file.to_string_lossy(),
-        &text,
-        &mut diagnostics,
-    );
+    let file = loaded(args, &mut sources, &text, &mut diagnostics);
     let mut project = Project {
         sources,
         hash: format!("{:x}", Sha256::digest(text.as_bytes())),
@@ -90,6 +85,27 @@ pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
         }
     }
     Ok(project)
+}
+
+/// Parses the model's file with the packages it names: of the library, or files beside it, `a/b.hyde` for `a.b`.
+pub(crate) fn loaded(
+    args: &ModelArgs,
+    sources: &mut Sources,
+    text: &str,
+    diagnostics: &mut Diagnostics,
+) -> File {
+    let beside = args.file.parent().unwrap_or(std::path::Path::new(""));
+    let find = |package: &str| {
+        let place = beside.join(format!("{}.hyde", package.replace('.', "/")));
+        let text = files::read_text(&place).ok()?;
+        Some((place.to_string_lossy().into_owned(), text))
+    };
+    let packages = hyde_compiler::Packages {
+        find: &find,
+        whole_library: args.whole_library,
+    };
+    let name = args.file.to_string_lossy();
+    hyde_compiler::load(sources, &name, text, &packages, diagnostics)
 }
 
 impl Project {
@@ -134,6 +150,22 @@ impl Project {
             }
         }
         Ok(compiled)
+    }
+
+    /// Which effects fit where on the model, as long as that is in order.
+    pub(crate) fn fits(&mut self, args: &ModelArgs) -> Result<Vec<hyde_compiler::Fit>, Exit> {
+        let request = Request {
+            sources: &self.sources,
+            file: &self.file,
+            model: &self.model,
+            experiment: None,
+            settings: &BTreeMap::new(),
+            records: &BTreeMap::new(),
+            free_inputs: true,
+            backend: Backend::Native,
+        };
+        let found = hyde_compiler::fits(&request, &mut self.diagnostics);
+        found.ok_or_else(|| self.finish_with_errors(args))
     }
 
     /// The plain values set from outside, as the run takes them.

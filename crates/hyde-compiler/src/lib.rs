@@ -3,11 +3,13 @@
 //! Start reading at [`compile`] in `pipeline.rs`.
 
 mod emit;
+mod fits;
 mod load;
 mod pipeline;
 
 pub use emit::{Stage, emit};
+pub use fits::{Fit, fits};
 pub use hyde_flatten::Header;
 pub use hyde_jit::Backend;
-pub use load::{File, load};
+pub use load::{File, Packages, load};
 pub use pipeline::{Compiled, Request, analyze, compile};

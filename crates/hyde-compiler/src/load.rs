@@ -9,26 +9,54 @@ pub struct File {
     pub files: Vec<(FileId, ast::File)>,
 }
 
-/// Parses a file and the packages it names.
-pub fn load(sources: &mut Sources, name: &str, text: &str, diagnostics: &mut Diagnostics) -> File {
+/// Where packages come from besides the library.
+pub struct Packages<'a> {
+    /// The place and text of a package by its dotted name, if there is one.
+    pub find: &'a dyn Fn(&str) -> Option<(String, String)>,
+    /// Every package of the library, whether named or not.
+    pub whole_library: bool,
+}
+
+impl Packages<'_> {
+    /// The library alone.
+    pub const LIBRARY: Self = Self {
+        find: &|_| None,
+        whole_library: false,
+    };
+}
+
+/// Parses a file and the packages it names: `import a.b.*;` names the package `a.b`.
+pub fn load(
+    sources: &mut Sources,
+    name: &str,
+    text: &str,
+    packages: &Packages<'_>,
+    diagnostics: &mut Diagnostics,
+) -> File {
     let id = sources.add(name, text);
     let tree = hyde_syntax::parse(sources, id, diagnostics);
     let mut files = vec![(id, tree)];
-    let mut known: Vec<&str> = Vec::new();
+    let mut known: Vec<String> = Vec::new();
     let mut at = 0;
     while at < files.len() {
-        let wanted = packages_named(&files[at].1);
-        for package in wanted
-            .into_iter()
-            .filter_map(|name| hyde_library::package(&name))
-        {
-            if known.contains(&package.name) {
+        let mut wanted = packages_named(&files[at].1);
+        if at == 0 && packages.whole_library {
+            wanted.extend(hyde_library::PACKAGES.iter().map(|p| p.name.to_owned()));
+        }
+        for name in wanted {
+            if known.contains(&name) {
                 continue;
             }
-            known.push(package.name);
-            let id = sources.add(format!("{}.hyde", package.name), package.text);
-            let tree = hyde_syntax::parse(sources, id, diagnostics);
-            files.push((id, tree));
+            let found = match hyde_library::package(&name) {
+                Some(package) => Some((format!("{name}.hyde"), package.text.to_owned())),
+                None => (packages.find)(&name),
+            };
+            known.push(name);
+            if let Some((place, text)) = found {
+                let id = sources.add(place, text);
+                let tree = hyde_syntax::parse(sources, id, diagnostics);
+                files.push((id, tree));
+            }
         }
         at += 1;
     }
@@ -63,21 +91,29 @@ impl File {
     }
 }
 
-/// The first words of imports and of dotted types.
+/// The packages of imports and of dotted types.
 fn packages_named(file: &ast::File) -> Vec<String> {
     let mut found: Vec<String> = Vec::new();
-    let mut add = |reference: &Reference| {
-        if let Some(part) = reference.parts.first()
-            && !found.contains(&part.name.text)
-        {
-            found.push(part.name.text.clone());
+    let mut named = |package: String| {
+        if !package.is_empty() && !found.contains(&package) {
+            found.push(package);
         }
     };
-    file.imports.iter().for_each(|import| add(&import.path));
+    for import in &file.imports {
+        named(if import.everything {
+            import.path.dotted()
+        } else {
+            package_of(&import.path)
+        });
+    }
+    let mut add = |reference: &Reference| named(package_of(reference));
     for item in &file.items {
         match item {
             Item::Class(class) => match &class.body {
-                ClassBody::Short { base, .. } => add(base),
+                ClassBody::Short { base, effects, .. } => {
+                    add(base);
+                    effects.iter().for_each(|used| add(&used.effect));
+                }
                 ClassBody::Long { elements, .. } => types_named(elements, &mut add),
             },
             Item::Experiment(experiment) => add(&experiment.model),
@@ -86,6 +122,14 @@ fn packages_named(file: &ast::File) -> Vec<String> {
         }
     }
     found
+}
+
+/// What stands before the last dot.
+fn package_of(reference: &Reference) -> String {
+    let dotted = reference.dotted();
+    dotted
+        .rsplit_once('.')
+        .map_or_else(String::new, |(package, _)| package.to_owned())
 }
 
 fn types_named(elements: &[Element], add: &mut impl FnMut(&Reference)) {
@@ -134,7 +178,10 @@ fn unknown_imports(files: &[(FileId, ast::File)], diagnostics: &mut Diagnostics)
                     Code::UnknownType,
                     format!("no package is called `{package}`"),
                 )
-                .label(import.path.span, "not in the library")
+                .label(
+                    import.path.span,
+                    "neither in the library nor beside the file",
+                )
                 .help(format!("the library has {}", names.join(", "))),
             );
         }

@@ -132,6 +132,22 @@ impl<'a> Names<'a> {
         found
     }
 
+    /// Every effect, with its file and the package it is in; those of the user's file without one.
+    pub(crate) fn effects(self) -> Vec<(FileIndex, Option<String>, &'a Class)> {
+        let mut found = Vec::new();
+        for (index, (_, tree)) in self.files.iter().enumerate() {
+            let package = tree.package.as_ref().filter(|_| index > 0);
+            let package = package.map(|(path, _)| path.dotted());
+            found.extend(tree.items.iter().filter_map(|item| match item {
+                Item::Class(class) if class.kind == ast::ClassKind::Effect => {
+                    Some((index, package.clone(), class))
+                }
+                Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
+            }));
+        }
+        found
+    }
+
     fn own_items(self) -> impl Iterator<Item = &'a Item> {
         self.files
             .first()

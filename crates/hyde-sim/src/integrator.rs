@@ -150,10 +150,15 @@ impl<'a> Integrator<'a> {
             self.set_tolerances(1)?;
         }
         self.steps = 0;
-        if let Solver::Ida(ida) = &mut self.solver
-            && let Err(error) = ida.reinit(self.t, &self.y, &self.yp, Some(first_step_s))
-        {
-            return Err(self.failure(&error));
+        if let Solver::Ida(ida) = &mut self.solver {
+            // States chosen anew are the ones whose errors count from here.
+            let differential = ida.system().differential.clone();
+            let started = ida
+                .set_differential(&differential)
+                .and_then(|()| ida.reinit(self.t, &self.y, &self.yp, Some(first_step_s)));
+            if let Err(error) = started {
+                return Err(self.failure(&error));
+            }
         }
         Ok(())
     }

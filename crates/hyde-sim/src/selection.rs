@@ -6,13 +6,17 @@
 
 use crate::state::State;
 use hyde_program::{Function, InitialCondition, Selection, Wrt};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// The choice is changed when another one is better by this factor.
 const WORTH_A_CHANGE: f64 = 5.0;
 
-/// Chooses at the start: variables with a fixed start value stay states where the constraints allow it.
-pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) {
+/// Steps to the constraints at most.
+const MAX_STEPS_TO_CONSTRAINTS: usize = 30;
+
+/// Chooses at the start: variables with a fixed start value stay states where the constraints allow it. States keep their
+/// start values; what the constraints determine gets a first value.
+pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &mut [f64], yp: &[f64]) {
     let mut fixed = vec![false; y.len()];
     for condition in &state.program.initial {
         if let InitialCondition::Fixed {
@@ -26,6 +30,8 @@ pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f6
                 .for_each(|flag| *flag = true);
         }
     }
+    let start = y.to_vec();
+    meet_constraints(state, t, y, yp, &fixed);
     for selection in &state.program.selections {
         let mut jacobian = jacobian(state, selection, t, y, yp);
         for (column, &candidate) in selection.candidates.iter().enumerate() {
@@ -35,6 +41,48 @@ pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f6
         }
         let determined = best(&jacobian);
         set(state, selection, &determined);
+    }
+    for selection in &state.program.selections {
+        for &candidate in &selection.candidates {
+            if state.differential[candidate] {
+                y[candidate] = start[candidate];
+            }
+        }
+    }
+}
+
+/// Moves what is not fixed to the constraints, as little as possible: Gauss-Newton steps of least norm (Golub and Van Loan,
+/// §5.5). The constraints' Jacobian at bare start values can be singular: a motion that is prescribed has none.
+fn meet_constraints(state: &mut State<'_>, t: f64, y: &mut [f64], yp: &[f64], fixed: &[bool]) {
+    let mut residual = vec![0.0; y.len()];
+    for _ in 0..MAX_STEPS_TO_CONSTRAINTS {
+        let mut moved = false;
+        for selection in &state.program.selections {
+            state.evaluate(Function::Residual, t, y, yp, &mut residual);
+            let mut jacobian = jacobian(state, selection, t, y, yp);
+            for (column, &candidate) in selection.candidates.iter().enumerate() {
+                if fixed[candidate] {
+                    jacobian.column_mut(column).fill(0.0);
+                }
+            }
+            let rows = selection.constraints.iter().map(|&row| residual[row]);
+            let right = DVector::from_iterator(selection.constraints.len(), rows);
+            let finite = |values: &[f64]| values.iter().all(|value| value.is_finite());
+            if !finite(jacobian.as_slice()) || !finite(right.as_slice()) {
+                return;
+            }
+            let least = 1e-10 * jacobian.amax();
+            let Ok(step) = jacobian.svd(true, true).solve(&right, least) else {
+                return;
+            };
+            for (&candidate, step) in selection.candidates.iter().zip(step.iter()) {
+                y[candidate] -= step;
+                moved |= step.abs() > 1e-10 * (1e-3 + y[candidate].abs());
+            }
+        }
+        if !moved {
+            return;
+        }
     }
 }
 

@@ -15,6 +15,8 @@ use hyde_program::{Function, Program};
 
 /// So many events within a billionth of the run are no solution any more.
 const MAX_EVENTS_AT_ONCE: u64 = 2000;
+/// Relations that are not settled after so many solutions of the initial equations contradict them.
+const MAX_ROUNDS_AT_START: usize = 20;
 
 /// A run under way.
 pub(crate) struct Simulation<'a> {
@@ -189,19 +191,18 @@ impl<'a> Simulation<'a> {
             let changed = self.iterate(&scheduled, true)?;
             let same_modes = modes(&self.integrator.state().z) == initial_modes;
             if !changed || !same_modes || self.program.rows(Function::Initial) == 0 {
-                break;
+                return Ok(());
             }
             let (mut y, mut yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
-            initial::solve(
-                self.integrator.state_mut(),
-                &mut self.consistent,
-                t,
-                &mut y,
-                &mut yp,
-            )?;
+            let state = self.integrator.state_mut();
+            initial::solve(state, &mut self.consistent, t, &mut y, &mut yp)?;
             (self.integrator.y, self.integrator.yp) = (y, yp);
         }
-        Ok(())
+        let kind = FailureKind::Inconsistent {
+            singular: None,
+            at_start: true,
+        };
+        Err(Failure::new(kind, t))
     }
 
     /// Steps until `target` or the first crossing; rows on the way are taken. Returns whether there was a crossing; the

@@ -2,11 +2,7 @@
 //! where there is none of that name.
 
 use hyde_tests::figures::{FIGURES, Figure, Session};
-use std::path::PathBuf;
 use std::process::ExitCode;
-
-/// The folder of the records that are not shipped; `shared/data` beside the project without it.
-const DATA: &str = "HYDE_DATA";
 
 #[allow(
     clippy::print_stdout,
@@ -32,7 +28,7 @@ fn main() -> ExitCode {
     if names.is_empty() {
         chosen = FIGURES.iter().collect();
     }
-    let session = Session::new(data());
+    let session = Session::new(hyde_tests::data());
     let mut any_short = false;
     for figure in chosen {
         let (line, short) = figure.line(&(figure.measure)(&session));
@@ -40,9 +36,4 @@ fn main() -> ExitCode {
         any_short |= short;
     }
     ExitCode::from(u8::from(any_short))
-}
-
-#[allow(clippy::disallowed_methods, reason = "the one setting of this command")]
-fn data() -> PathBuf {
-    std::env::var(DATA).map_or_else(|_| hyde_tests::root().join("../shared/data"), PathBuf::from)
 }

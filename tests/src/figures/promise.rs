@@ -11,6 +11,8 @@ pub enum Promise {
     Exactly(f64),
     /// This number or less.
     AtMost(f64),
+    /// This number or more.
+    AtLeast(f64),
     /// Less than this number.
     Below(f64),
     /// Between two numbers or one of them.
@@ -25,6 +27,7 @@ impl Promise {
         match self {
             Self::Exactly(bound) => value == bound,
             Self::AtMost(bound) => value <= bound,
+            Self::AtLeast(bound) => value >= bound,
             Self::Below(bound) => value < bound,
             Self::Within(low, high) => (low..=high).contains(&value),
         }
@@ -36,6 +39,7 @@ impl fmt::Display for Promise {
         match self {
             Self::Exactly(bound) => write!(f, "= {bound}"),
             Self::AtMost(bound) => write!(f, "<= {}", hyde_units::significant(*bound, 4)),
+            Self::AtLeast(bound) => write!(f, ">= {bound}"),
             Self::Below(bound) => write!(f, "< {bound}"),
             Self::Within(low, high) => write!(f, "within {low}..{high}"),
         }

@@ -57,12 +57,7 @@ fn each(args: &ModelArgs) -> Result<Vec<ModelArgs>, Exit> {
         .map_err(|reason| project::complain(args, Exit::CommandLine, &reason))?;
     let mut sources = hyde_diag::Sources::new();
     let mut diagnostics = hyde_diag::Diagnostics::new();
-    let file = hyde_compiler::load(
-        &mut sources,
-        &args.file.to_string_lossy(),
-        &text,
-        &mut diagnostics,
-    );
+    let file = project::loaded(args, &mut sources, &text, &mut diagnostics);
     let names: Vec<String> = file
         .experiments()
         .map(|experiment| experiment.name.text.clone())

@@ -1,4 +1,4 @@
-//! `chirp`: a sine of rising frequency.
+//! `chirp`: a sine whose frequency rises linearly, by its closed form, so that it has derivatives.
 
 use crate::dimension::Dim;
 use crate::instance::{Scope, Typed};

@@ -1,4 +1,9 @@
-//! `der` and `partial`: derivatives by the time and by a variable.
+//! `der` and `partial`: derivatives by the time and by a variable, taken by the chain rule as the call is read.
+//!
+//! ```text
+//! der(x*y)                         der(x)*y + x*der(y)
+//! partial(e, x)  with Real e = x*x      x + x
+//! ```
 
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};

@@ -1,4 +1,4 @@
-//! `min`, `max` of two and `clamp`.
+//! `min` and `max` of two values, and `clamp`: in a continuous equation the change from one to the other is an event.
 
 use crate::instance::{Scope, Setting, Typed};
 use crate::lower::sum_dim;

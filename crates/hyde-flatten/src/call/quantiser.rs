@@ -1,4 +1,4 @@
-//! `floor`, `ceil`, `mod` and their kin.
+//! `floor`, `ceil`, `integer`, `mod`, `floor_to`, `round_to`: steps, allowed where values are sampled or measured (C5).
 
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};

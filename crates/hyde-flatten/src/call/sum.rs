@@ -1,4 +1,4 @@
-//! `sum` of an array.
+//! `sum` of an array: `sum(x)` becomes `x[1] + x[2] + …`.
 
 use crate::instance::{Scope, Typed};
 use crate::model::Model;

@@ -16,6 +16,7 @@ use crate::model::Model;
 use crate::names::FileIndex;
 use crate::wrap::Wrap;
 use hyde_diag::{Code, Diagnostic, InstancePath, MadeBy};
+use hyde_ir::flat::Fit;
 use hyde_ir::{Expr as Ir, Index};
 use hyde_syntax::ast::{
     Change, Class, ClassBody, ClassKind, EffectUse, Element, Prefix, Reference,
@@ -94,7 +95,7 @@ impl<'a> Model<'a, '_> {
             scope,
             ..
         } = self.hooks[number];
-        if !self.fits(host, file, class) {
+        if !self.fits_on(host, file, class) {
             let own = self.instances[host].class;
             let wanted = host_of(class).map_or_else(String::new, Reference::dotted);
             self.report(
@@ -215,8 +216,29 @@ impl<'a> Model<'a, '_> {
         self.instances[id].elements = all.map(|item| (item.file, item.element)).collect();
     }
 
+    /// Every effect known with the instances it fits on.
+    pub(crate) fn fits(&self) -> Vec<Fit> {
+        let mut found = Vec::new();
+        for (file, package, class) in self.names.effects() {
+            let sites = (0..self.instances.len()).filter(|&host| {
+                self.instances[host].class.kind != ClassKind::Effect
+                    && self.fits_on(host, file, class)
+            });
+            let name = &class.name.text;
+            found.push(Fit {
+                effect: package.map_or_else(|| name.clone(), |package| format!("{package}.{name}")),
+                host: host_of(class).map_or_else(String::new, Reference::dotted),
+                doc: class.doc.clone().unwrap_or_default(),
+                sites: sites
+                    .map(|host| self.instances[host].path.as_str().to_owned())
+                    .collect(),
+            });
+        }
+        found
+    }
+
     /// Whether an instance is of the type that an effect is for, or of one that extends it.
-    fn fits(&self, host: InstanceId, file: FileIndex, effect: &'a Class) -> bool {
+    fn fits_on(&self, host: InstanceId, file: FileIndex, effect: &'a Class) -> bool {
         let Some(wanted) = host_of(effect).and_then(|host| self.names.class(file, host)) else {
             return false;
         };

@@ -1,0 +1,105 @@
+//! `hyde params`: all parameters with value, unit, prior and source; those without a source are marked.
+
+use crate::args::ParamsArgs;
+use crate::exit::Exit;
+use crate::figures::shown;
+use crate::project::{self, Records, complain, print_output};
+use crate::records;
+use hyde_experiment::parameters;
+use hyde_program::{Parameter, Prior};
+use hyde_units::significant;
+use serde_json::json;
+use std::fmt::Write as _;
+
+/// Lists parameters.
+pub(crate) fn params(args: &ParamsArgs) -> Exit {
+    match listed(args) {
+        Ok(text) => {
+            print_output(&text);
+            Exit::Done
+        }
+        Err(exit) => exit,
+    }
+}
+
+fn listed(args: &ParamsArgs) -> Result<String, Exit> {
+    let mut project = project::load(&args.model, Records::IfThere)?;
+    let alone = project.experiment.is_none();
+    let compiled = project.compile(&args.model, alone)?;
+    let program = &compiled.program;
+    let tables = records::tables(&project.records);
+    let values = parameters(program, &tables, &project.set())
+        .map_err(|_| complain(&args.model, Exit::CommandLine, "a parameter cannot be set"))?;
+    let wanted: Vec<&Parameter> = program
+        .parameters
+        .iter()
+        .filter(|parameter| !args.unsourced || parameter.source.is_none())
+        .collect();
+    let value = |parameter: &Parameter| {
+        let list = &values[parameter.place..parameter.place + parameter.len];
+        let texts: Vec<String> = list
+            .iter()
+            .map(|value| significant(parameter.unit.unit().from_si(*value), 6))
+            .collect();
+        texts.join(", ")
+    };
+    if args.model.json {
+        let list: Vec<_> = wanted
+            .iter()
+            .map(|parameter| {
+                json!({
+                    "name": parameter.name,
+                    "si": values[parameter.place..parameter.place + parameter.len],
+                    "value": value(parameter),
+                    "unit": parameter.unit.text(),
+                    "prior": prior(parameter),
+                    "source": parameter.source,
+                    "structural": parameter.structural,
+                    "place": project.sources.place(parameter.origin.span),
+                })
+            })
+            .collect();
+        return Ok(format!("{:#}", json!({ "ok": true, "parameters": list })));
+    }
+    let width = wanted
+        .iter()
+        .map(|p| p.name.chars().count())
+        .max()
+        .unwrap_or(0);
+    let width = width.min(36);
+    let mut text = String::new();
+    for parameter in &wanted {
+        let unit = shown(parameter.unit.text());
+        let source = parameter
+            .source
+            .as_ref()
+            .map_or_else(String::new, |source| format!("from {source}"));
+        let line = format!(
+            "{:<width$} {:>12} {unit:<12} {:>6} {source}",
+            parameter.name,
+            value(parameter),
+            prior(parameter).unwrap_or_default(),
+        );
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    let without = program
+        .parameters
+        .iter()
+        .filter(|p| p.source.is_none())
+        .count();
+    let _ = writeln!(
+        text,
+        "{} parameters, {without} without a source",
+        program.parameters.len()
+    );
+    Ok(text)
+}
+
+fn prior(parameter: &Parameter) -> Option<String> {
+    Some(match parameter.prior? {
+        Prior::Relative(part) => format!("±{}%", significant(100.0 * part, 3)),
+        Prior::Absolute(spread) => {
+            format!("±{}", significant(parameter.unit.unit().from_si(spread), 3))
+        }
+    })
+}
