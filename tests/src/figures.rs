@@ -5,6 +5,7 @@ mod bench;
 mod clif_growth;
 mod emps;
 mod energy;
+mod ivp;
 mod msl;
 mod promise;
 mod residual_cost;
@@ -29,4 +30,6 @@ pub const FIGURES: &[Figure] = &[
     energy::FIGURE,
     backends::FIGURE,
     msl::FIGURE,
+    ivp::PROBLEMS,
+    ivp::MIN_DIGITS,
 ];

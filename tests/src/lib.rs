@@ -3,6 +3,7 @@
 mod data;
 mod example;
 pub mod figures;
+pub mod ivp;
 pub mod msl;
 
 pub use data::data;

@@ -199,6 +199,7 @@ fn shifted(index: Index, by: i32) -> Index {
 /// Makes one differentiated variable explicit, if an equation allows: `der(v)` becomes the derivative of its value.
 fn expand_one(system: &mut System) -> bool {
     let differentiated = differentiated(system);
+    let wanted = differentiated_at_start(system);
     let pinned = pinned(system);
     for number in 0..system.equations.len() {
         if system.equations[number].range != Range::SCALAR {
@@ -211,7 +212,8 @@ fn expand_one(system: &mut System) -> bool {
         let mut candidates: Vec<Cell> = leaves
             .into_iter()
             .filter(|cell| {
-                differentiated.contains(cell) && system.flat.variables[cell.0].len.is_none()
+                (differentiated.contains(cell) || wanted.contains(cell))
+                    && system.flat.variables[cell.0].len.is_none()
             })
             .collect();
         let is_left = |system: &System, cell: Cell| matches!(system.flat.exprs[lhs], Expr::Var(var, _) if var == cell.0);
@@ -271,6 +273,19 @@ fn differentiated(system: &System) -> BTreeSet<Cell> {
         }
     }
     found
+}
+
+/// The cells under `der` in initial equations: `der(slip) = 0` needs the derivative of what `slip` is.
+fn differentiated_at_start(system: &System) -> BTreeSet<Cell> {
+    let equations = system.flat.initial_equations.iter();
+    let sides: Vec<ExprId> = equations.flat_map(|e| [e.lhs, e.rhs]).collect();
+    let below = system.flat.exprs.below(&sides).into_iter();
+    below
+        .filter_map(|id| {
+            let (var, index, derivative) = system.flat.exprs[id].access()?;
+            System::cell(var, index).filter(|_| derivative)
+        })
+        .collect()
 }
 
 /// The cells that modes fix to a constant.

@@ -3,14 +3,15 @@
 //! States and their derivatives count as known, so `a.tau = J*der(w)` is explicit too. The definitions are ordered by
 //! Tarjan's algorithm; of a loop one variable after the other is torn (kept in the vector with its equation as the
 //! residual) until the rest is explicit. Array variables are kept or taken whole. The unknown of a `modes` block stays in
-//! the vector where a mode fixes a state (its row changes place then) or does not give it explicitly.
+//! the vector where a mode fixes a state (its row changes place then) or does not give it explicitly without a division by
+//! parameters.
 
 use crate::graph::strongly_connected_components;
 use crate::matching::{Matched, Node, sides};
 use crate::segments::Segment;
 use crate::solve::solve_for;
 use crate::system::System;
-use hyde_ir::{Expr, ExprId, Index, Range};
+use hyde_ir::{Expr, ExprArena, ExprId, Index, Range};
 
 /// What becomes of the unknowns.
 pub(crate) struct Order {
@@ -150,6 +151,9 @@ fn solve(system: &mut System, matched: &Matched, number: usize) -> Option<Explic
             let mut value: Option<ExprId> = None;
             for (mode, branch) in branches.iter().enumerate().rev() {
                 let solution = solve_for(&mut system.flat.exprs, branch.lhs, branch.rhs, leaf)?;
+                if divides_by_parameters(&mut system.flat.exprs, branch.lhs, branch.rhs, leaf) {
+                    return None;
+                }
                 value = Some(match value {
                     None => solution,
                     Some(others) => {
@@ -167,6 +171,19 @@ fn solve(system: &mut System, matched: &Matched, number: usize) -> Option<Explic
             })
         }
     }
+}
+
+/// Whether the solution for a leaf divides by parameters. One mode may need it where it is 0: a diode without resistance
+/// fixes the voltage, blocking without conductance the current.
+fn divides_by_parameters(arena: &mut ExprArena, lhs: ExprId, rhs: ExprId, leaf: Expr) -> bool {
+    if arena[lhs] == leaf || arena[rhs] == leaf {
+        return false;
+    }
+    let residual = arena.minus(lhs, rhs);
+    let gradient = arena.gradient(residual, |expr| expr == leaf);
+    gradient
+        .iter()
+        .any(|(_, factor)| arena.as_constant(*factor).is_none())
 }
 
 /// An array of which a piece stays in the vector stays there whole; so does one in several pieces.

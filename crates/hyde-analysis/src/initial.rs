@@ -3,7 +3,7 @@
 //! One condition is needed for each state that no initial mode fixes. Fixed start values and initial equations come
 //! first; what is missing is filled from the start values of states, what is too much is reported.
 
-use crate::graph::Bipartite;
+use crate::graph::{Bipartite, Matching};
 use crate::system::{Cell, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_ir::dae::{Dae, InitialCondition, Reason, Space};
@@ -66,10 +66,17 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
             (equation.range, value, equation.origin.clone())
         })
         .collect();
+    let mut equations = equations;
     let needed: usize = equations.iter().map(|(range, ..)| range.len()).sum();
     if needed > free.len() {
         too_many(dae, &equations, &fixed, free.len(), diagnostics);
         return;
+    }
+    for equation in starts_of_algebraic(dae, system) {
+        equations.push(equation);
+        if unplaced(dae, &equations, &free) > 0 {
+            equations.pop();
+        }
     }
     let filled = fill(dae, &equations, &free);
     for (state, len) in fixed {
@@ -95,35 +102,34 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
     }
 }
 
+/// Fixed start values of variables that are no states: each is an equation, if it determines a state that is still free.
+fn starts_of_algebraic(dae: &mut Dae, system: &System) -> Vec<(Range, ExprId, hyde_diag::Origin)> {
+    let mut found = Vec::new();
+    for (&(var, element), starts) in &system.starts {
+        let is_state = dae.unknowns.iter().any(|block| {
+            block.differential
+                && block.var == var
+                && (block.first..block.first + block.len).contains(&element)
+        });
+        let Some((start, ..)) = starts.iter().find(|(_, fixed, _)| *fixed) else {
+            continue;
+        };
+        if is_state || dae.places[var].is_none() {
+            continue;
+        }
+        let value = dae
+            .exprs
+            .add(Expr::Var(var, System::cell_index((var, element))));
+        let value = dae.exprs.minus(value, *start);
+        found.push((Range::SCALAR, value, dae.variables[var].origin.clone()));
+    }
+    found
+}
+
 /// The free states that no initial equation takes: those keep their start values.
 fn fill(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usize]) -> Vec<usize> {
-    let mut edges = Vec::new();
-    for (range, value, _) in equations {
-        let mut own = Vec::new();
-        for id in dae.exprs.below(&[*value]) {
-            let (Expr::Var(var, index) | Expr::Der(var, index)) = dae.exprs[id] else {
-                continue;
-            };
-            let Some(place) = dae.places[var].filter(|place| place.space == Space::Unknown) else {
-                continue;
-            };
-            let (first, last) = System::interval(index, *range);
-            let cells = place.base + first..=place.base + last;
-            own.extend((0..free.len()).filter(|&number| cells.contains(&free[number])));
-        }
-        // An equation over a range takes as many states as it has values.
-        edges.extend(std::iter::repeat_n(own, range.len()));
-    }
-    let matching = Bipartite {
-        edges,
-        n_right: free.len(),
-    }
-    .maximum_matching();
-    let unplaced = matching
-        .of_left
-        .iter()
-        .filter(|right| right.is_none())
-        .count();
+    let matching = take(dae, equations, free);
+    let unplaced = unmatched(&matching);
     let mut left: Vec<usize> = (0..free.len())
         .filter(|&number| matching.of_right[number].is_none())
         .map(|number| free[number])
@@ -131,6 +137,55 @@ fn fill(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usi
     // Equations that name no free state directly determine some through the others: take the last ones declared.
     left.truncate(left.len().saturating_sub(unplaced));
     left
+}
+
+/// How many initial equations determine no free state of their own.
+fn unplaced(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usize]) -> usize {
+    unmatched(&take(dae, equations, free))
+}
+
+fn unmatched(matching: &Matching) -> usize {
+    matching
+        .of_left
+        .iter()
+        .filter(|state| state.is_none())
+        .count()
+}
+
+/// Which free state each initial equation takes, of those it reads itself or through definitions.
+fn take(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usize]) -> Matching {
+    let mut edges = Vec::new();
+    for (range, value, _) in equations {
+        let mut own = Vec::new();
+        let mut pending = vec![*value];
+        let mut read = Vec::new();
+        while let Some(root) = pending.pop() {
+            for id in dae.exprs.below(&[root]) {
+                let (Expr::Var(var, index) | Expr::Der(var, index)) = dae.exprs[id] else {
+                    continue;
+                };
+                if !read.contains(&var) {
+                    read.push(var);
+                    let of = dae.definitions.iter().filter(|d| d.var == var);
+                    pending.extend(of.map(|definition| definition.value));
+                }
+                let Some(place) = dae.places[var].filter(|place| place.space == Space::Unknown)
+                else {
+                    continue;
+                };
+                let (first, last) = System::interval(index, *range);
+                let cells = place.base + first..=place.base + last;
+                own.extend((0..free.len()).filter(|&number| cells.contains(&free[number])));
+            }
+        }
+        // An equation over a range takes as many states as it has values.
+        edges.extend(std::iter::repeat_n(own, range.len()));
+    }
+    let graph = Bipartite {
+        edges,
+        n_right: free.len(),
+    };
+    graph.maximum_matching()
 }
 
 fn too_many(

@@ -31,6 +31,14 @@ pub const PACKAGES: &[Package] = &[
         text: include_str!("../models/Translational.hyde"),
     },
     Package {
+        name: "Thermal",
+        text: include_str!("../models/Thermal.hyde"),
+    },
+    Package {
+        name: "Planar",
+        text: include_str!("../models/Planar.hyde"),
+    },
+    Package {
         name: "Electrical",
         text: include_str!("../models/Electrical.hyde"),
     },

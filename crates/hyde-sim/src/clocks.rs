@@ -78,6 +78,12 @@ impl Schedule {
         })
     }
 
+    /// The period of the fastest clock; infinite if there is none.
+    pub(crate) fn shortest_period(&self) -> f64 {
+        let periods = self.clocks.iter().map(|times| times.period);
+        periods.fold(f64::INFINITY, f64::min)
+    }
+
     /// The next instant at which something is known to happen after `t`.
     pub(crate) fn next(&self, t: f64) -> f64 {
         let ticks = self.clocks.iter().map(Times::at);

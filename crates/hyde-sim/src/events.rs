@@ -15,7 +15,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::guards::{current_mode, is_active};
 use crate::results::{Event, EventKind};
 use crate::state::State;
-use hyde_program::{Function, InitialCondition, Program, ReactionKind, RelationUse, Target, Wrt};
+use hyde_program::{Function, ReactionKind, RelationUse, Target, Wrt};
 
 const MAX_ROUNDS: usize = 50;
 
@@ -316,138 +316,6 @@ impl Instant<'_, '_> {
         }
         failure
     }
-}
-
-/// Leaves initial modes that fix a state whose fixed start value is another one: by the first exit to a mode in which
-/// the model can be. A guide that moves at the start slips.
-pub(crate) fn leave_impossible_modes(
-    state: &mut State<'_>,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-) -> Result<(), Box<Failure>> {
-    let program: &Program = state.program;
-    let declared = |position: usize| {
-        program.initial.iter().any(|condition| match condition {
-            InitialCondition::Fixed {
-                state,
-                len,
-                declared,
-            } => *declared && (*state..*state + *len).contains(&position),
-            InitialCondition::Equation { .. } => false,
-        })
-    };
-    for automaton in 0..program.automata.len() {
-        let Some((pin, value)) = violated(state, automaton, t, y, yp, &declared) else {
-            continue;
-        };
-        let here = current_mode(program, &state.z, automaton);
-        let before = state.z.clone();
-        let mut found = false;
-        for reaction in &program.reactions {
-            let ReactionKind::Transition {
-                automaton: of,
-                from,
-                to,
-                ..
-            } = reaction.kind
-            else {
-                continue;
-            };
-            if of != automaton || from != here {
-                continue;
-            }
-            let mut values = vec![0.0; program.rows(Function::Assignments)];
-            state.evaluate(Function::Assignments, t, y, yp, &mut values);
-            for index in reaction.assignments.clone() {
-                if let Target::Memory(position) = program.assignments[index].target {
-                    state.z[position] = values[index];
-                }
-            }
-            state.z[program.automata[automaton].place] = to as f64;
-            if violated(state, automaton, t, y, yp, &declared).is_none()
-                && !leaves_at_once(state, automaton, to, t, y, yp)
-            {
-                found = true;
-                break;
-            }
-            state.z.copy_from_slice(&before);
-        }
-        if !found {
-            let name = program.unknown_name(program.pins[pin].state);
-            let kind = FailureKind::Impact(name, y[program.pins[pin].state], value);
-            return Err(Failure::new(kind, t).at_origin(&program.pins[pin].origin));
-        }
-    }
-    Ok(())
-}
-
-/// The pin of an automaton's mode that a fixed start value contradicts, with its value.
-fn violated(
-    state: &mut State<'_>,
-    automaton: usize,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-    declared: &dyn Fn(usize) -> bool,
-) -> Option<(usize, f64)> {
-    let program = state.program;
-    let mode = current_mode(program, &state.z, automaton);
-    let mut values = vec![0.0; program.rows(Function::Assignments)];
-    state.evaluate(Function::Assignments, t, y, yp, &mut values);
-    program.pins.iter().enumerate().find_map(|(number, pin)| {
-        let value = values[program.assignments.len() + number];
-        let tolerance = 1e-9 * value.abs().max(y[pin.state].abs());
-        let other = (y[pin.state] - value).abs() > tolerance;
-        (pin.automaton == automaton && pin.mode == mode && other && declared(pin.state))
-            .then_some((number, value))
-    })
-}
-
-/// Whether an exit of a mode is true as soon as it is entered.
-fn leaves_at_once(
-    state: &mut State<'_>,
-    automaton: usize,
-    mode: usize,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-) -> bool {
-    let program = state.program;
-    let mut roots = vec![0.0; program.relations.len()];
-    state.evaluate(Function::Roots, t, y, yp, &mut roots);
-    for (number, root) in roots.into_iter().enumerate() {
-        if is_active(program, &state.z, number) {
-            state.z[number] = f64::from(u8::from(root > 0.0));
-        }
-    }
-    let conditions = state.conditions(t, y, yp);
-    program.reactions.iter().zip(conditions).any(|(reaction, now)| {
-        matches!(reaction.kind, ReactionKind::Transition { automaton: of, from, .. } if of == automaton && from == mode)
-            && now
-    })
-}
-
-/// The states that the modes in the memory fix, with their values.
-pub(crate) fn initial_pins(
-    state: &mut State<'_>,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-) -> Vec<(usize, f64)> {
-    let program: &Program = state.program;
-    if program.pins.is_empty() {
-        return Vec::new();
-    }
-    let mut values = vec![0.0; program.rows(Function::Assignments)];
-    state.evaluate(Function::Assignments, t, y, yp, &mut values);
-    program
-        .pins
-        .iter()
-        .enumerate()
-        .filter(|(_, pin)| current_mode(program, &state.z, pin.automaton) == pin.mode)
-        .map(|(number, pin)| (pin.state, values[program.assignments.len() + number]))
-        .collect()
 }
 
 /// In which direction each root function leaves zero along the flow: the mean of its derivative now and a moment later.

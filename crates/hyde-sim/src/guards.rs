@@ -1,7 +1,8 @@
 //! Watches the relations over a step and locates the first change (M8).
 //!
-//! After each step the root functions are evaluated at the end and at a few Chebyshev points of the step's interpolant;
-//! a change of sign between two of them brackets a crossing, which is located on the interpolant.
+//! After each step the root functions are evaluated at the end and at a few Chebyshev points of the step's interpolant,
+//! and in between where they bend enough to reach zero; a change of sign between two of them brackets a crossing, which
+//! is located on the interpolant.
 
 use crate::integrator::Integrator;
 use hyde_program::{Function, Program, RelationUse};
@@ -51,29 +52,103 @@ pub(crate) fn first_change(
         .iter()
         .map(|&relation| integrator.state().z[relation] != 0.0)
         .collect();
-    let mut probe = Probe::new(integrator);
-    let mut last = start;
-    for part in INSIDE.into_iter().chain([1.0]) {
-        let at = if part < 1.0 {
-            start + part * (end - start)
+    let mut search = Search {
+        probe: Probe::new(integrator),
+        watched,
+        truths: &truths,
+    };
+    let inside = INSIDE.map(|part| start + part * (end - start));
+    let points: Vec<(f64, Vec<f64>)> = [start]
+        .into_iter()
+        .chain(inside)
+        .chain([end])
+        .map(|t| (t, search.values(integrator, t)))
+        .collect();
+    for (number, pair) in points.windows(2).enumerate() {
+        let around = &points[number.saturating_sub(1)..(number + 3).min(points.len())];
+        let depth = if search.may_reach_zero(around) {
+            0
         } else {
-            end
+            MAX_HALVINGS + 1
         };
-        let roots = probe.roots(integrator, at);
-        let changed: Vec<usize> = (0..watched.len())
-            .filter(|&k| is_true(roots[watched[k]], truths[k]) != truths[k])
-            .collect();
-        if changed.is_empty() {
-            last = at;
-            continue;
+        let (a, b) = (&pair[0], &pair[1]);
+        let found = search.between(integrator, (a.0, &a.1), (b.0, &b.1), depth);
+        if found.is_some() {
+            return found;
         }
-        let relations: Vec<(usize, bool)> = changed
-            .into_iter()
-            .map(|k| (watched[k], truths[k]))
-            .collect();
-        return Some(locate(integrator, &mut probe, &relations, last, at));
     }
     None
+}
+
+/// Halvings of a piece of a step in which a root function may reach zero between two points.
+const MAX_HALVINGS: usize = 6;
+
+/// The search for the first change.
+struct Search<'s> {
+    probe: Probe,
+    watched: &'s [usize],
+    truths: &'s [bool],
+}
+
+impl Search<'_> {
+    /// The first change after `a` and up to `b`, halving where the curvature is large enough for an excursion to zero.
+    fn between(
+        &mut self,
+        integrator: &mut Integrator<'_>,
+        a: (f64, &[f64]),
+        b: (f64, &[f64]),
+        depth: usize,
+    ) -> Option<Crossing> {
+        let changed: Vec<(usize, bool)> = (0..self.watched.len())
+            .filter(|&k| is_true(b.1[k], self.truths[k]) != self.truths[k])
+            .map(|k| (self.watched[k], self.truths[k]))
+            .collect();
+        if changed.is_empty() && depth > MAX_HALVINGS {
+            return None;
+        }
+        let t = 0.5 * (a.0 + b.0);
+        if t > a.0 && t < b.0 && depth <= MAX_HALVINGS {
+            let middle = self.values(integrator, t);
+            let points = [
+                (a.0, a.1.to_vec()),
+                (t, middle.clone()),
+                (b.0, b.1.to_vec()),
+            ];
+            let turned = (0..self.watched.len())
+                .any(|k| is_true(middle[k], self.truths[k]) != self.truths[k]);
+            if turned || self.may_reach_zero(&points) {
+                let left = self.between(integrator, a, (t, &middle), depth + 1);
+                return left.or_else(|| self.between(integrator, (t, &middle), b, depth + 1));
+            }
+        }
+        if changed.is_empty() {
+            return None;
+        }
+        Some(locate(integrator, &mut self.probe, &changed, a.0, b.0))
+    }
+
+    /// Whether a root function bends so much between neighbouring points that it may touch zero between them.
+    fn may_reach_zero(&self, points: &[(f64, Vec<f64>)]) -> bool {
+        points.windows(3).any(|three| {
+            let [a, b, c] = three else { return false };
+            let part = (b.0 - a.0) / (c.0 - a.0);
+            (0..self.watched.len()).any(|k| {
+                let chord = a.1[k] + part * (c.1[k] - a.1[k]);
+                let bend = (b.1[k] - chord).abs();
+                let nearest = a.1[k].abs().min(b.1[k].abs()).min(c.1[k].abs());
+                nearest < 2.0 * bend && bend > 1e-9 * (a.1[k].abs() + c.1[k].abs())
+            })
+        })
+    }
+
+    /// The watched root functions at a time.
+    fn values(&mut self, integrator: &mut Integrator<'_>, t: f64) -> Vec<f64> {
+        let roots = self.probe.roots(integrator, t);
+        self.watched
+            .iter()
+            .map(|&relation| roots[relation])
+            .collect()
+    }
 }
 
 /// Truth by the sign of the root function; exactly zero keeps the truth it had.

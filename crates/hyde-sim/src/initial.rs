@@ -8,7 +8,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::selection;
 use crate::state::State;
 use hyde_ida::{LinearMethod, Pattern, SparseSolver};
-use hyde_program::{Function, InitialCondition, Wrt};
+use hyde_program::{Function, InitialCondition, RelationUse, Wrt};
 
 const MAX_ITERATIONS: usize = 100;
 const MAX_HALVINGS: usize = 20;
@@ -22,13 +22,15 @@ pub(crate) fn start(state: &mut State<'_>) -> (Vec<f64>, Vec<f64>) {
     (y, yp)
 }
 
-/// Solves the initial equations, if there are any; the states then have their values.
+/// Solves the initial equations, if there are any; the states then have their values. With `guess` the relations of
+/// equations are taken as they are at the first guess, else as they are.
 pub(crate) fn solve(
     state: &mut State<'_>,
     consistent: &mut Consistent,
     t: f64,
     y: &mut [f64],
     yp: &mut [f64],
+    guess: bool,
 ) -> Result<(), Box<Failure>> {
     let program = state.program;
     selection::choose_at_start(state, t, y, yp);
@@ -44,6 +46,9 @@ pub(crate) fn solve(
     {
         y.copy_from_slice(&guess_y);
         yp.copy_from_slice(&guess_yp);
+    }
+    if guess {
+        guess_relations(state, t, y, yp);
     }
     let n = program.n_unknowns;
     let states: Vec<usize> = (0..n).filter(|&i| state.differential[i]).collect();
@@ -142,6 +147,20 @@ pub(crate) fn solve(
         }
     }
     Err(failed(None))
+}
+
+/// The relations of equations as they are at the first guess: a limiter that is at no limit there must not begin at one,
+/// where its input determines nothing. Events at the start then settle them.
+fn guess_relations(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) {
+    let relations = &state.program.relations;
+    let mut roots = vec![0.0; relations.len()];
+    state.evaluate(Function::Roots, t, y, yp, &mut roots);
+    for (number, (relation, root)) in relations.iter().zip(roots).enumerate() {
+        if relation.used == RelationUse::Equation && root.is_finite() {
+            let truth = root > 0.0 || (root == 0.0 && relation.inclusive);
+            state.z[number] = f64::from(u8::from(truth));
+        }
+    }
 }
 
 /// Sparsity of the initial system, and where each value of the kernels goes: residual, initial equations, then ones.

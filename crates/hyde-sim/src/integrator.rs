@@ -15,6 +15,8 @@ pub(crate) struct Integrator<'a> {
     pub(crate) y: Vec<f64>,
     pub(crate) yp: Vec<f64>,
     tolerances: (f64, f64),
+    /// Factor of the tolerances that the solver gets.
+    share: f64,
     /// Steps since the last start.
     steps: u32,
 }
@@ -29,8 +31,8 @@ const LEAST_RTOL: f64 = 5e-11;
 const LEAST_ATOL: f64 = 1e-2 * LEAST_RTOL;
 
 enum Solver<'a> {
-    /// No continuous unknowns: time passes, nothing moves.
-    Nothing(Box<State<'a>>),
+    /// No continuous unknowns: time passes in strides, for guards may still move with it.
+    Nothing(Box<State<'a>>, f64),
     Ida(Box<Ida<State<'a>>>),
 }
 
@@ -47,20 +49,24 @@ impl<'a> Integrator<'a> {
         let program = state.program;
         if program.n_unknowns == 0 {
             return Ok(Self {
-                solver: Solver::Nothing(Box::new(state)),
+                solver: Solver::Nothing(Box::new(state), setup.max_step_s.min(setup.row_spacing())),
                 t,
                 y,
                 yp,
                 tolerances: (setup.rtol, setup.atol),
+                share: 1.0,
                 steps: 0,
             });
         }
+        let share = share_of_states(&state);
         let mut options = Options::new(
-            setup.rtol,
-            vec![setup.atol; program.n_unknowns],
+            share * setup.rtol,
+            vec![share * setup.atol; program.n_unknowns],
             state.differential.clone(),
         );
         options.max_step_s = setup.max_step_s.min(state.inputs.max_step_s());
+        // Without a state nothing else would bound the steps.
+        options.suppress_algebraic = false;
         options.first_step_s = Some(first_step_s);
         options.linear_method = LinearMethod::Auto;
         let failed = |error: Error| Failure::new(FailureKind::Solver(error.to_string()), t);
@@ -78,20 +84,21 @@ impl<'a> Integrator<'a> {
             y,
             yp,
             tolerances: (setup.rtol, setup.atol),
+            share,
             steps: 0,
         })
     }
 
     pub(crate) fn state(&self) -> &State<'a> {
         match &self.solver {
-            Solver::Nothing(state) => state,
+            Solver::Nothing(state, _) => state,
             Solver::Ida(ida) => ida.system(),
         }
     }
 
     pub(crate) fn state_mut(&mut self) -> &mut State<'a> {
         match &mut self.solver {
-            Solver::Nothing(state) => state,
+            Solver::Nothing(state, _) => state,
             Solver::Ida(ida) => ida.system_mut(),
         }
     }
@@ -109,7 +116,7 @@ impl<'a> Integrator<'a> {
             self.set_tolerances(part)?;
         }
         match &mut self.solver {
-            Solver::Nothing(_) => self.t = stop,
+            Solver::Nothing(_, stride) => self.t = stop.min(before + *stride),
             Solver::Ida(ida) => {
                 if let Err(error) = ida.step(stop) {
                     return Err(self.failure(&error));
@@ -135,7 +142,7 @@ impl<'a> Integrator<'a> {
                     yp.copy_from_slice(&self.yp);
                 }
             }
-            Solver::Ida(_) | Solver::Nothing(_) => {
+            Solver::Ida(_) | Solver::Nothing(..) => {
                 y.copy_from_slice(&self.y);
                 yp.copy_from_slice(&self.yp);
             }
@@ -166,7 +173,7 @@ impl<'a> Integrator<'a> {
     pub(crate) fn statistics(&self) -> hyde_ida::Statistics {
         match &self.solver {
             Solver::Ida(ida) => ida.statistics(),
-            Solver::Nothing(_) => hyde_ida::Statistics::default(),
+            Solver::Nothing(..) => hyde_ida::Statistics::default(),
         }
     }
 
@@ -175,8 +182,8 @@ impl<'a> Integrator<'a> {
         let part = f64::from(part);
         if let Solver::Ida(ida) = &mut self.solver {
             let least = atol.min(LEAST_ATOL);
-            let atol = vec![(atol / part).max(least); self.y.len()];
-            if let Err(error) = ida.set_tolerances(rtol / part, &atol) {
+            let atol = vec![self.share * (atol / part).max(least); self.y.len()];
+            if let Err(error) = ida.set_tolerances(self.share * rtol / part, &atol) {
                 return Err(self.failure(&error));
             }
         }
@@ -186,7 +193,7 @@ impl<'a> Integrator<'a> {
     fn apply_pins(&mut self) {
         let Self { solver, y, yp, .. } = self;
         let state: &State<'_> = match solver {
-            Solver::Nothing(state) => state,
+            Solver::Nothing(state, _) => state,
             Solver::Ida(ida) => ida.system(),
         };
         state.apply_pins(y, yp);
@@ -232,4 +239,14 @@ impl<'a> Integrator<'a> {
         }
         failure
     }
+}
+
+/// Where the run chooses states, most of the variables that have errors are no states: IDA leaves them out of the norm of
+/// the error, but divides by the number of all unknowns. The factor undoes that: the norm is the mean over the states.
+fn share_of_states(state: &State<'_>) -> f64 {
+    let states = state.differential.iter().filter(|&&is| is).count();
+    if state.program.selections.is_empty() || states == 0 {
+        return 1.0;
+    }
+    (states as f64 / state.differential.len() as f64).sqrt()
 }

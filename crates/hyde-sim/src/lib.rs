@@ -16,6 +16,7 @@ mod consistent;
 mod events;
 mod failure;
 mod guards;
+mod hurry;
 mod initial;
 mod inputs;
 mod integrator;
@@ -24,6 +25,7 @@ mod results;
 mod selection;
 mod setup;
 mod simulation;
+mod start_modes;
 mod state;
 
 pub use failure::{Failure, FailureKind};

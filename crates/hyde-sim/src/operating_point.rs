@@ -1,10 +1,10 @@
 //! A point to linearise about: the start of the model in chosen modes, with consistent values.
 
 use crate::consistent::Consistent;
-use crate::events::initial_pins;
 use crate::failure::Failure;
 use crate::initial;
 use crate::setup::Setup;
+use crate::start_modes::initial_pins;
 use crate::state::State;
 use hyde_program::{Program, ReactionKind};
 use hyde_signal::Table;
@@ -37,7 +37,7 @@ pub fn operating_point(
     let mut consistent = Consistent::new(&state);
     let (mut y, mut yp) = initial::start(&mut state);
     state.pinned = initial_pins(&mut state, 0.0, &y, &yp);
-    initial::solve(&mut state, &mut consistent, 0.0, &mut y, &mut yp)?;
+    initial::solve(&mut state, &mut consistent, 0.0, &mut y, &mut yp, true)?;
     for (number, automaton) in program.automata.iter().enumerate() {
         let current = crate::guards::current_mode(program, &state.z, number);
         let chosen = modes

@@ -43,6 +43,14 @@ impl<'a> Setup<'a> {
         }
     }
 
+    /// The mean time between rows in s; infinite if there are none between.
+    pub(crate) fn row_spacing(&self) -> f64 {
+        match self.rows_s.as_slice() {
+            [first, .., last] => (last - first) / (self.rows_s.len() - 1) as f64,
+            _ => f64::INFINITY,
+        }
+    }
+
     /// Times from `start_s` to `stop_s`, `step_s` apart, the stop included.
     #[must_use]
     pub fn rows_every(start_s: f64, stop_s: f64, step_s: f64) -> Vec<f64> {

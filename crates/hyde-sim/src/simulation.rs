@@ -2,14 +2,16 @@
 
 use crate::clocks::Schedule;
 use crate::consistent::Consistent;
-use crate::events::{Instant, initial_pins, leave_impossible_modes};
+use crate::events::Instant;
 use crate::failure::{Failure, FailureKind};
 use crate::guards;
+use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
 use crate::results::{Event, Results};
 use crate::selection;
 use crate::setup::{Setup, same_instant};
+use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
 use hyde_program::{Function, Program};
 
@@ -32,31 +34,6 @@ pub(crate) struct Simulation<'a> {
     /// Start of the window in which events are counted, and their number.
     crowd: (f64, u64),
     hurry: Hurry,
-}
-
-/// Events that follow each other faster and faster.
-#[derive(Default)]
-struct Hurry {
-    /// Time of the last event in s.
-    last: f64,
-    /// The first interval of the run of ever shorter ones, the latest, and their number.
-    first: f64,
-    interval: f64,
-    count: u64,
-}
-
-impl Hurry {
-    /// Takes note of an event; whether a long run of ever shorter intervals has come down to nothing.
-    fn no_end(&mut self, t: f64) -> bool {
-        let interval = t - self.last;
-        if interval < self.interval {
-            self.count += 1;
-        } else {
-            (self.first, self.count) = (interval, 0);
-        }
-        (self.last, self.interval) = (t, interval);
-        self.count >= 12 && interval < 1e-4 * self.first
-    }
 }
 
 /// Values at an instant, from one side of it.
@@ -82,7 +59,7 @@ impl<'a> Simulation<'a> {
         })?;
         leave_impossible_modes(&mut state, t, &y, &yp)?;
         state.pinned = initial_pins(&mut state, t, &y, &yp);
-        initial::solve(&mut state, &mut consistent, t, &mut y, &mut yp)?;
+        initial::solve(&mut state, &mut consistent, t, &mut y, &mut yp, true)?;
         let keep = setup
             .keep
             .clone()
@@ -195,7 +172,7 @@ impl<'a> Simulation<'a> {
             }
             let (mut y, mut yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
             let state = self.integrator.state_mut();
-            initial::solve(state, &mut self.consistent, t, &mut y, &mut yp)?;
+            initial::solve(state, &mut self.consistent, t, &mut y, &mut yp, false)?;
             (self.integrator.y, self.integrator.yp) = (y, yp);
         }
         let kind = FailureKind::Inconsistent {
@@ -286,7 +263,9 @@ impl<'a> Simulation<'a> {
             .iter()
             .zip(&self.integrator.state().z)
             .any(|(a, b)| a.to_bits() != b.to_bits());
-        if happened || (on_grid && ticked && moved) {
+        // Where rows are finer than ticks, what a clock holds is a staircase; coarser rows would be multiplied.
+        let step_shows = on_grid || self.setup.row_spacing() < self.schedule.shortest_period();
+        if happened || (step_shows && ticked && moved) {
             self.push_row(left);
             self.row();
         } else if on_grid {
@@ -367,7 +346,13 @@ impl<'a> Simulation<'a> {
             .consistent
             .flow(self.integrator.state_mut(), t, &y, &yp);
         let mut step = 1e-2 * span;
-        if let Some((_, dyp)) = flow {
+        if let Some((dy, dyp)) = flow {
+            // The solver's first guess of an algebraic variable goes along its slope as well.
+            for (index, slope) in dy.iter().enumerate() {
+                if !self.integrator.state().differential[index] && slope.is_finite() {
+                    self.integrator.yp[index] = *slope;
+                }
+            }
             // The first step is of order 1: its error is half the square of the step times the second derivative.
             let mut square = 0.0;
             for (value, rate) in y.iter().zip(&dyp) {

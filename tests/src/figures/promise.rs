@@ -108,6 +108,7 @@ pub struct Session {
     pub data: PathBuf,
     pub(crate) emps: OnceCell<Result<Vec<Measured>, String>>,
     pub(crate) bench: OnceCell<Result<Vec<Measured>, String>>,
+    pub(crate) ivp: OnceCell<Result<Option<Vec<f64>>, String>>,
 }
 
 impl Session {
@@ -118,6 +119,7 @@ impl Session {
             data,
             emps: OnceCell::new(),
             bench: OnceCell::new(),
+            ivp: OnceCell::new(),
         }
     }
 }

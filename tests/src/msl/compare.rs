@@ -198,6 +198,7 @@ mod tests {
     }
 
     #[test]
+    #[expect(clippy::float_cmp, reason = "a row's time is kept as it is")]
     fn the_distance_counts_by_the_range() {
         // 0.1 % and 0.3 % of the range.
         assert!(fit(&ramp(10.0), &ramp(10.01), 1.0).worst <= 1.0);

@@ -24,7 +24,7 @@ fn every_example_responds_as_it_did() {
     for case in examples::all() {
         let options = Options {
             stop_s: Some(stop_s(&case.example)),
-            rtol: Some(1e-10),
+            rtol: Some(1e-9),
             atol: Some(1e-12),
             ..Options::default()
         };

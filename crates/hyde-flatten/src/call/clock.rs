@@ -22,7 +22,7 @@ impl<'a> Model<'a, '_> {
             );
             return self.poison(span);
         };
-        let inner = self.value(a, &scope.with(Setting::Report));
+        let inner = self.lower(a, &scope.with(Setting::Report));
         let Ir::Var(var, index) = self.flat.exprs[inner.id] else {
             return self.poison(span);
         };
@@ -44,7 +44,10 @@ impl<'a> Model<'a, '_> {
             );
         }
         let id = self.flat.exprs.add(Ir::Pre(var, index));
-        self.typed(id, inner.dim, span)
+        Typed {
+            truth: inner.truth,
+            ..self.typed(id, inner.dim, span)
+        }
     }
 
     /// `sample(e)`: a continuous expression read at the tick.
