@@ -3,8 +3,11 @@
 mod backends;
 mod bench;
 mod clif_growth;
+mod compile;
 mod emps;
 mod energy;
+mod events;
+mod fixtures;
 mod ivp;
 mod msl;
 mod promise;
@@ -32,4 +35,9 @@ pub const FIGURES: &[Figure] = &[
     msl::FIGURE,
     ivp::PROBLEMS,
     ivp::MIN_DIGITS,
+    compile::Y_AXIS,
+    compile::GROWTH,
+    fixtures::FIGURE,
+    events::P2,
+    events::P3,
 ];

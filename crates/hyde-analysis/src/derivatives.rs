@@ -28,11 +28,12 @@ struct Rate {
 
 /// Eliminates aliases and derivatives of explicit variables.
 pub(crate) fn simplify(system: &mut System, diagnostics: &mut Diagnostics) {
+    let declared = system.declared_values();
     // Each round eliminates at least one variable or derivative.
     for _ in 0..10_000 {
         let aliased = alias::eliminate(system);
         let named = name_derivatives(system);
-        let expanded = expand_one(system);
+        let expanded = expand_one(system, &declared);
         if !aliased && !named && !expanded {
             break;
         }
@@ -197,7 +198,7 @@ fn shifted(index: Index, by: i32) -> Index {
 }
 
 /// Makes one differentiated variable explicit, if an equation allows: `der(v)` becomes the derivative of its value.
-fn expand_one(system: &mut System) -> bool {
+fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
     let differentiated = differentiated(system);
     let wanted = differentiated_at_start(system);
     let pinned = pinned(system);
@@ -236,6 +237,9 @@ fn expand_one(system: &mut System) -> bool {
             let Some(value) = solve_for(&mut system.flat.exprs, lhs, rhs, leaf) else {
                 continue;
             };
+            if system.divides_by_zero(declared, lhs, rhs, leaf) {
+                continue;
+            }
             let Some(rate) = derivative(system, value, cell, &differentiated, 0) else {
                 continue;
             };

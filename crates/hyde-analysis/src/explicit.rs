@@ -9,9 +9,9 @@
 use crate::graph::strongly_connected_components;
 use crate::matching::{Matched, Node, sides};
 use crate::segments::Segment;
-use crate::solve::solve_for;
+use crate::solve::{divisor, solve_for};
 use crate::system::System;
-use hyde_ir::{Expr, ExprArena, ExprId, Index, Range};
+use hyde_ir::{Expr, ExprId, Index, Range};
 
 /// What becomes of the unknowns.
 pub(crate) struct Order {
@@ -37,12 +37,13 @@ pub(crate) fn choose(system: &mut System, matched: &Matched) -> Order {
         .iter()
         .map(|unknown| unknown.state)
         .collect();
+    let declared = system.declared_values();
     let mut explicit: Vec<Option<Explicit>> = (0..count).map(|_| None).collect();
     for number in 0..count {
         if in_vector[number] {
             continue;
         }
-        explicit[number] = solve(system, matched, number);
+        explicit[number] = solve(system, matched, number, &declared);
         in_vector[number] = explicit[number].is_none();
     }
     keep_arrays_together(matched, &mut in_vector);
@@ -120,7 +121,12 @@ pub(crate) fn access(system: &System, matched: &Matched, number: usize) -> Optio
     None
 }
 
-fn solve(system: &mut System, matched: &Matched, number: usize) -> Option<Explicit> {
+fn solve(
+    system: &mut System,
+    matched: &Matched,
+    number: usize,
+    declared: &[Vec<f64>],
+) -> Option<Explicit> {
     let unknown = matched.unknowns[number];
     let (range, index) = access(system, matched, number)?;
     let leaf = Expr::Var(unknown.var, index);
@@ -131,6 +137,9 @@ fn solve(system: &mut System, matched: &Matched, number: usize) -> Option<Explic
                 system.equations[equation].rhs,
             );
             let value = solve_for(&mut system.flat.exprs, lhs, rhs, leaf)?;
+            if system.divides_by_zero(declared, lhs, rhs, leaf) {
+                return None;
+            }
             let itself = system.flat.exprs.any(
                 value,
                 |expr| matches!(expr, Expr::Var(var, _) if var == unknown.var),
@@ -151,7 +160,10 @@ fn solve(system: &mut System, matched: &Matched, number: usize) -> Option<Explic
             let mut value: Option<ExprId> = None;
             for (mode, branch) in branches.iter().enumerate().rev() {
                 let solution = solve_for(&mut system.flat.exprs, branch.lhs, branch.rhs, leaf)?;
-                if divides_by_parameters(&mut system.flat.exprs, branch.lhs, branch.rhs, leaf) {
+                // A diode without resistance fixes its voltage, blocking without conductance its current: no mode may divide
+                // by what can be 0 there.
+                let divisor = divisor(&mut system.flat.exprs, branch.lhs, branch.rhs, leaf);
+                if divisor.is_some_and(|divisor| system.flat.exprs.as_constant(divisor).is_none()) {
                     return None;
                 }
                 value = Some(match value {
@@ -171,19 +183,6 @@ fn solve(system: &mut System, matched: &Matched, number: usize) -> Option<Explic
             })
         }
     }
-}
-
-/// Whether the solution for a leaf divides by parameters. One mode may need it where it is 0: a diode without resistance
-/// fixes the voltage, blocking without conductance the current.
-fn divides_by_parameters(arena: &mut ExprArena, lhs: ExprId, rhs: ExprId, leaf: Expr) -> bool {
-    if arena[lhs] == leaf || arena[rhs] == leaf {
-        return false;
-    }
-    let residual = arena.minus(lhs, rhs);
-    let gradient = arena.gradient(residual, |expr| expr == leaf);
-    gradient
-        .iter()
-        .any(|(_, factor)| arena.as_constant(*factor).is_none())
 }
 
 /// An array of which a piece stays in the vector stays there whole; so does one in several pieces.

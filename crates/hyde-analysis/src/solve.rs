@@ -40,6 +40,22 @@ pub(crate) fn solve_for(
     Some(arena.over(above, *factor))
 }
 
+/// What [`solve_for`] divides by to get `leaf` from `lhs = rhs`; `None` if by nothing.
+pub(crate) fn divisor(
+    arena: &mut ExprArena,
+    lhs: ExprId,
+    rhs: ExprId,
+    leaf: Expr,
+) -> Option<ExprId> {
+    if arena[lhs] == leaf || arena[rhs] == leaf {
+        return None;
+    }
+    let residual = arena.minus(lhs, rhs);
+    let gradient = arena.gradient(residual, |expr| expr == leaf);
+    let (_, factor) = *gradient.first()?;
+    Some(factor)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,6 +1,7 @@
 //! The model while it is analysed: its equations as one list, those of modes in slots.
 
 use crate::reduce::Group;
+use crate::solve::divisor;
 use hyde_diag::{InstancePath, Origin, Span};
 use hyde_ir::dae::Alias;
 use hyde_ir::flat::{Action, FlatModel};
@@ -251,6 +252,19 @@ impl System {
             values[param.index()] = list.unwrap_or_default();
         }
         values
+    }
+
+    /// Whether `lhs = rhs` solved for a leaf divides by parameters that are declared 0 together: a slide along y has no
+    /// component along x.
+    pub(crate) fn divides_by_zero(
+        &mut self,
+        declared: &[Vec<f64>],
+        lhs: ExprId,
+        rhs: ExprId,
+        leaf: Expr,
+    ) -> bool {
+        let divisor = divisor(&mut self.flat.exprs, lhs, rhs, leaf);
+        divisor.is_some_and(|divisor| self.value_with(declared, divisor) == Some(0.0))
     }
 
     /// The value of an expression of parameters with the values given; `None` if it is not one.

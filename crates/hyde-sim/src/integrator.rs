@@ -17,8 +17,12 @@ pub(crate) struct Integrator<'a> {
     tolerances: (f64, f64),
     /// Factor of the tolerances that the solver gets.
     share: f64,
-    /// Steps since the last start.
+    /// Steps since the last start, and the part of the tolerances that a step is given.
     steps: u32,
+    part: u32,
+    /// The largest value of each unknown so far, and those that the tolerances were made with.
+    largest: Vec<f64>,
+    allowed: Vec<f64>,
 }
 
 /// The solver bounds the error of a step; over a long smooth stretch the errors of many steps add up, an oscillation
@@ -56,6 +60,9 @@ impl<'a> Integrator<'a> {
                 tolerances: (setup.rtol, setup.atol),
                 share: 1.0,
                 steps: 0,
+                part: 1,
+                largest: Vec::new(),
+                allowed: Vec::new(),
             });
         }
         let share = share_of_states(&state);
@@ -65,8 +72,8 @@ impl<'a> Integrator<'a> {
             state.differential.clone(),
         );
         options.max_step_s = setup.max_step_s.min(state.inputs.max_step_s());
-        // Without a state nothing else would bound the steps.
-        options.suppress_algebraic = false;
+        // A force that holds a state still must bound the steps, or its guards are stepped over.
+        options.suppress_algebraic = !program.selections.is_empty();
         options.first_step_s = Some(first_step_s);
         options.linear_method = LinearMethod::Auto;
         let failed = |error: Error| Failure::new(FailureKind::Solver(error.to_string()), t);
@@ -86,6 +93,9 @@ impl<'a> Integrator<'a> {
             tolerances: (setup.rtol, setup.atol),
             share,
             steps: 0,
+            part: 1,
+            largest: vec![0.0; program.n_unknowns],
+            allowed: vec![0.0; program.n_unknowns],
         })
     }
 
@@ -114,6 +124,8 @@ impl<'a> Integrator<'a> {
             && self.tolerances.0 >= LEAST_RTOL * f64::from(part)
         {
             self.set_tolerances(part)?;
+        } else if self.has_grown() {
+            self.set_tolerances(self.part)?;
         }
         match &mut self.solver {
             Solver::Nothing(_, stride) => self.t = stop.min(before + *stride),
@@ -127,6 +139,9 @@ impl<'a> Integrator<'a> {
             }
         }
         self.apply_pins();
+        for (largest, value) in self.largest.iter_mut().zip(&self.y) {
+            *largest = largest.max(value.abs());
+        }
         Ok(before)
     }
 
@@ -153,7 +168,7 @@ impl<'a> Integrator<'a> {
     /// Starts anew after an event.
     pub(crate) fn restart(&mut self, first_step_s: f64) -> Result<(), Box<Failure>> {
         self.apply_pins();
-        if self.steps >= 2 * SMOOTH_AFTER {
+        if self.steps >= 2 * SMOOTH_AFTER || self.has_grown() {
             self.set_tolerances(1)?;
         }
         self.steps = 0;
@@ -177,12 +192,36 @@ impl<'a> Integrator<'a> {
         }
     }
 
+    /// Whether an algebraic variable is twice as large as the tolerances know.
+    fn has_grown(&self) -> bool {
+        let mut pairs = self.largest.iter().zip(&self.allowed);
+        let atol = self.tolerances.1 / self.tolerances.0;
+        pairs.any(|(largest, allowed)| *largest > 2.0 * allowed.max(atol))
+    }
+
+    /// The tolerances of a step. A force is the difference of large ones wherever it passes zero, so that an absolute
+    /// tolerance made for states would ask for less than rounding: algebraic variables are measured by the largest value
+    /// they had.
     fn set_tolerances(&mut self, part: u32) -> Result<(), Box<Failure>> {
         let (rtol, atol) = self.tolerances;
+        self.part = part;
         let part = f64::from(part);
         if let Solver::Ida(ida) = &mut self.solver {
             let least = atol.min(LEAST_ATOL);
-            let atol = vec![self.share * (atol / part).max(least); self.y.len()];
+            self.allowed.copy_from_slice(&self.largest);
+            let differential = &ida.system().differential;
+            let atol: Vec<f64> = differential
+                .iter()
+                .zip(&self.allowed)
+                .map(|(state, largest)| {
+                    let own = if *state {
+                        atol
+                    } else {
+                        atol.max(rtol * largest)
+                    };
+                    self.share * (own / part).max(least)
+                })
+                .collect();
             if let Err(error) = ida.set_tolerances(self.share * rtol / part, &atol) {
                 return Err(self.failure(&error));
             }

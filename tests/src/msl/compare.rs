@@ -211,8 +211,18 @@ mod tests {
     #[test]
     fn events_may_be_shifted_a_little() {
         assert!(fit(&step(0.5), &step(0.500_09), 1.0).worst <= 1.0);
-        // The rows of the reference that tell are those at its jump.
-        assert!(fit(&step(0.5), &step(0.500_2), 1.0).worst > 1.0);
+        // The next row of the reference tells that the jump is not there yet.
+        let rows = Curve::new(
+            vec![0.0, 0.5, 0.5, 0.5005, 1.0],
+            vec![0.0, 0.0, 1.0, 1.0, 1.0],
+        );
+        assert!(fit(&rows, &step(0.500_7), 1.0).worst > 1.0);
+        // A pulse shorter than the shift is none.
+        let pulse = Curve::new(
+            vec![0.0, 0.5, 0.5, 0.500_01, 0.500_01, 1.0],
+            vec![0.0, 0.0, 1.0, 1.0, 0.0, 0.0],
+        );
+        assert!(fit(&pulse, &Curve::constant(0.0, 1.0), 1.0).worst <= 1.0);
         // Far from events no shift is allowed: 1e-4 s at a slope of 100 ranges a second.
         let steep = Curve::new(vec![0.0, 0.5, 0.51, 1.0], vec![0.0, 0.0, 1.0, 1.0]);
         let late = Curve::new(vec![0.0, 0.5001, 0.5101, 1.0], vec![0.0, 0.0, 1.0, 1.0]);
