@@ -9,7 +9,7 @@
 
 use crate::{Example, root};
 use hyde_compiler::Backend;
-use hyde_experiment::Options;
+use hyde_experiment::{Options, RunError};
 use hyde_program::{Constant, Program};
 use hyde_sim::{Results, Statistics};
 use std::collections::BTreeMap;
@@ -24,6 +24,9 @@ pub const RTOL: f64 = 1e-8;
 
 /// The digits that a problem needs to count as solved.
 pub const ENOUGH_DIGITS: f64 = 6.0;
+
+/// The end in s and the components there, by the name of the problem.
+pub type Reference = BTreeMap<String, (f64, Vec<f64>)>;
 
 /// A problem with what it is set beside.
 #[derive(Clone, Debug)]
@@ -47,8 +50,7 @@ pub struct Solved {
     pub work: Statistics,
 }
 
-/// The reference end values below the data folder: time and components by the name of the problem. `None` if the file is
-/// not there.
+/// The reference end values below the data folder; `None` if the file is not there.
 ///
 /// # Errors
 /// The file is there and cannot be read.
@@ -56,14 +58,14 @@ pub struct Solved {
     clippy::disallowed_methods,
     reason = "tests open the reference's files"
 )]
-pub fn reference(data: &Path) -> Result<Option<BTreeMap<String, (f64, Vec<f64>)>>, String> {
+pub fn reference(data: &Path) -> Result<Option<Reference>, String> {
     let path = data.join("ivp_testset/reference_end_values.csv");
     if !path.is_file() {
         return Ok(None);
     }
     let text =
         std::fs::read_to_string(&path).map_err(|error| format!("{}: {error}", path.display()))?;
-    let mut found: BTreeMap<String, (f64, Vec<f64>)> = BTreeMap::new();
+    let mut found: Reference = BTreeMap::new();
     for line in text.lines().skip(1) {
         let cells: Vec<&str> = line.split(',').collect();
         let [name, _, _, end, component, value, ..] = cells.as_slice() else {
@@ -122,11 +124,7 @@ impl Problem {
     ///
     /// # Errors
     /// The model does not run, or its components or its stop are not those of the reference.
-    pub fn solve(
-        &self,
-        reference: &BTreeMap<String, (f64, Vec<f64>)>,
-        rtol: f64,
-    ) -> Result<Solved, String> {
+    pub fn solve(&self, reference: &Reference, rtol: f64) -> Result<Solved, String> {
         let (end, values) = reference
             .get(&self.name)
             .ok_or_else(|| format!("the reference has no problem `{}`", self.name))?;
@@ -141,8 +139,8 @@ impl Problem {
             atol: atol.map(|atol| atol * rtol / RTOL),
             ..Options::default()
         };
-        let run = hyde_experiment::run(&program, &records, &options)
-            .map_err(|error| format!("{error:?}"))?;
+        let run =
+            hyde_experiment::run(&program, &records, &options).map_err(|error| cause(&error))?;
         if (run.stop_s - end).abs() > 1e-12 * end {
             return Err(format!("it stops at {} s, not at {end} s", run.stop_s));
         }
@@ -151,8 +149,8 @@ impl Problem {
             let found = at_end(&program, &run.results, name)
                 .ok_or_else(|| format!("no output or unknown `{name}`"))?;
             let error = ((found - expected) / expected).abs();
-            // Not `max`: what is not a number must show.
-            if !(error <= largest) {
+            // What is not a number must show.
+            if error > largest || error.is_nan() {
                 (largest, worst) = (error, name.clone());
             }
         }
@@ -161,6 +159,14 @@ impl Problem {
             worst,
             work: run.results.statistics,
         })
+    }
+}
+
+/// Why there is no run, without its results.
+fn cause(error: &RunError) -> String {
+    match error {
+        RunError::Failed(failure) => format!("{:?} at {} s", failure.kind, failure.t),
+        other => format!("{other:?}"),
     }
 }
 

@@ -10,6 +10,7 @@
 //! [`crate::matching`] with the names of the constrained variables.
 
 use crate::alias;
+use crate::cells::Cells;
 use crate::solve::solve_for;
 use crate::system::{Cell, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics};
@@ -256,8 +257,8 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
 }
 
 /// The cells of continuous variables that stand under `der` anywhere in the equations.
-fn differentiated(system: &System) -> BTreeSet<Cell> {
-    let mut found = BTreeSet::new();
+fn differentiated(system: &System) -> Cells {
+    let mut found = Cells::default();
     let sides = system.equations.iter().map(|e| (e.range, [e.lhs, e.rhs]));
     let branches = system
         .slots
@@ -268,11 +269,7 @@ fn differentiated(system: &System) -> BTreeSet<Cell> {
         for id in system.flat.exprs.below(&sides) {
             if let Expr::Der(var, index) = system.flat.exprs[id] {
                 let (first, last) = System::interval(index, range);
-                // Arrays are states as a whole: their ends tell enough.
-                found.extend([(var, first), (var, last)]);
-                if system.flat.variables[var].len.is_some() {
-                    found.extend((first..=last).map(|element| (var, element)));
-                }
+                found.insert(var, first, last);
             }
         }
     }
@@ -304,12 +301,7 @@ fn pinned(system: &System) -> BTreeSet<Cell> {
 }
 
 /// The variables of an equation if it has no derivative and every variable in it can be differentiated.
-fn state_leaves(
-    system: &System,
-    lhs: ExprId,
-    rhs: ExprId,
-    states: &BTreeSet<Cell>,
-) -> Option<Vec<Cell>> {
+fn state_leaves(system: &System, lhs: ExprId, rhs: ExprId, states: &Cells) -> Option<Vec<Cell>> {
     let mut found = Vec::new();
     for id in system.flat.exprs.below(&[lhs, rhs]) {
         let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
@@ -336,7 +328,7 @@ fn state_leaves(
 }
 
 /// Whether a cell has an explicit value whose variables can all be differentiated.
-fn derivable(system: &System, cell: Cell, states: &BTreeSet<Cell>, depth: usize) -> bool {
+fn derivable(system: &System, cell: Cell, states: &Cells, depth: usize) -> bool {
     let Some((_, rhs)) = explicit_equation(system, cell) else {
         return false;
     };
@@ -375,7 +367,7 @@ fn derivative(
     system: &mut System,
     id: ExprId,
     of: Cell,
-    states: &BTreeSet<Cell>,
+    states: &Cells,
     depth: usize,
 ) -> Option<ExprId> {
     if depth > 50 {

@@ -45,18 +45,6 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
             free.push(block.offset);
         }
     }
-    // Constraints determine as many of a group as there are of them: those that are not fixed first.
-    for selection in &dae.selections {
-        let mut determined = selection.constraints.len();
-        let mut loose = selection.candidates.clone();
-        loose.sort_by_key(|candidate| !free.contains(candidate));
-        for candidate in loose {
-            if determined > 0 && free.contains(&candidate) {
-                free.retain(|&other| other != candidate);
-                determined -= 1;
-            }
-        }
-    }
     let equations: Vec<(Range, ExprId, hyde_diag::Origin)> = system
         .flat
         .initial_equations
@@ -68,15 +56,19 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
         .collect();
     let mut equations = equations;
     let needed: usize = equations.iter().map(|(range, ..)| range.len()).sum();
-    if needed > free.len() {
-        too_many(dae, &equations, &fixed, free.len(), diagnostics);
+    let open = free.len() - taken(&take(dae, &[], &free));
+    if needed > open {
+        too_many(dae, &equations, &fixed, open, diagnostics);
         return;
     }
+    let mut before = taken(&take(dae, &equations, &free));
     for equation in starts_of_algebraic(dae, system) {
         equations.push(equation);
-        if unplaced(dae, &equations, &free) > 0 {
+        let after = taken(&take(dae, &equations, &free));
+        if after == before {
             equations.pop();
         }
+        before = after;
     }
     let filled = fill(dae, &equations, &free);
     for (state, len) in fixed {
@@ -126,10 +118,12 @@ fn starts_of_algebraic(dae: &mut Dae, system: &System) -> Vec<(Range, ExprId, hy
     found
 }
 
-/// The free states that no initial equation takes: those keep their start values.
+/// The free states that no initial equation and no constraint takes: those keep their start values.
 fn fill(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usize]) -> Vec<usize> {
+    let needed: usize = equations.iter().map(|(range, ..)| range.len()).sum();
+    let constraints = taken(&take(dae, &[], free));
     let matching = take(dae, equations, free);
-    let unplaced = unmatched(&matching);
+    let unplaced = needed - (taken(&matching) - constraints).min(needed);
     let mut left: Vec<usize> = (0..free.len())
         .filter(|&number| matching.of_right[number].is_none())
         .map(|number| free[number])
@@ -139,22 +133,21 @@ fn fill(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usi
     left
 }
 
-/// How many initial equations determine no free state of their own.
-fn unplaced(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usize]) -> usize {
-    unmatched(&take(dae, equations, free))
+/// How many free states are taken.
+fn taken(matching: &Matching) -> usize {
+    matching.of_right.iter().flatten().count()
 }
 
-fn unmatched(matching: &Matching) -> usize {
-    matching
-        .of_left
-        .iter()
-        .filter(|state| state.is_none())
-        .count()
-}
-
-/// Which free state each initial equation takes, of those it reads itself or through definitions.
+/// Which free state each constraint between states takes, and each initial equation, of those it reads itself or through
+/// definitions.
 fn take(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usize]) -> Matching {
     let mut edges = Vec::new();
+    for selection in &dae.selections {
+        let own: Vec<usize> = (0..free.len())
+            .filter(|&number| selection.candidates.contains(&free[number]))
+            .collect();
+        edges.extend(std::iter::repeat_n(own, selection.constraints.len()));
+    }
     for (range, value, _) in equations {
         let mut own = Vec::new();
         let mut pending = vec![*value];

@@ -19,6 +19,7 @@
 //! 13. `hoist`: what depends on parameters alone is computed once a run.
 
 mod alias;
+mod cells;
 mod clocked;
 mod derivatives;
 mod events;

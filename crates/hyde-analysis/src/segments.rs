@@ -8,6 +8,7 @@
 //! component, then the access with the largest factor (the diagonal of a mass matrix). What cannot be tiled is
 //! reported by the caller, who unrolls it or gives up (F3).
 
+use crate::cells::Cells;
 use crate::system::System;
 use hyde_ir::{Expr, ExprId, Index, Range, VarId};
 use std::collections::{BTreeMap, BTreeSet};
@@ -119,8 +120,8 @@ fn used_variables(system: &System) -> BTreeSet<VarId> {
 }
 
 /// The elements whose derivative appears.
-pub(crate) fn state_cells(system: &System) -> BTreeSet<(VarId, usize)> {
-    let mut found = BTreeSet::new();
+pub(crate) fn state_cells(system: &System) -> Cells {
+    let mut found = Cells::default();
     let equations = system.equations.iter().map(|e| (e.range, [e.lhs, e.rhs]));
     let branches = system
         .slots
@@ -131,7 +132,7 @@ pub(crate) fn state_cells(system: &System) -> BTreeSet<(VarId, usize)> {
         for id in system.flat.exprs.below(&sides) {
             if let Expr::Der(var, index) = system.flat.exprs[id] {
                 let (first, last) = System::interval(index, range);
-                found.extend((first..=last).map(|element| (var, element)));
+                found.insert(var, first, last);
             }
         }
     }

@@ -196,6 +196,10 @@ impl Kernels for Compiled {
         self.run(&self.values[&function], at, workspace, out);
     }
 
+    fn entries(&self, function: Function) -> Vec<PartialEntry> {
+        entries(self.dae.partials(in_dae(function)))
+    }
+
     fn partials(
         &self,
         function: Function,

@@ -1,11 +1,11 @@
 //! The tables of a [`Program`], from the DAE.
 
-use crate::compiled::{Compiled, entries};
+use crate::compiled::Compiled;
 use hyde_ir::dae::{self, Dae};
 use hyde_ir::flat;
 use hyde_ir::{Id as _, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Bode, Clock, Column, Experiment, Function, Hold, InitialCondition,
+    Assignment, Automaton, Bode, Clock, Column, Derivatives, Experiment, Hold, InitialCondition,
     Measure, Measured, Output, Parameter, Pin, Preparation, Prior, Program, Reaction, ReactionKind,
     Reduction, ReductionKind, Relation, RelationUse, Selection, Stop, Target, UnknownBlock,
 };
@@ -14,16 +14,6 @@ use std::sync::Arc;
 /// The program of compiled kernels.
 pub(crate) fn program(kernels: Compiled) -> Program {
     let dae = &kernels.dae;
-    let partials: Vec<_> = Function::ALL
-        .into_iter()
-        .map(|function| {
-            (
-                function,
-                entries(dae.partials(crate::compiled::in_dae(function))),
-            )
-        })
-        .collect();
-    let jacobian = Program::jacobian_of(dae.n_unknowns, &partials[0].1);
     Program {
         name: dae.name.clone(),
         unknowns: unknowns(dae),
@@ -89,8 +79,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
             })
             .collect(),
         initial: dae.initial.iter().map(initial).collect(),
-        jacobian,
-        partials,
+        derivatives: Derivatives::default(),
         experiment: experiment(dae),
         notes: dae.notes.clone(),
         kernels: Arc::new(kernels),

@@ -125,7 +125,10 @@ pub trait Kernels: Send + Sync {
         out: &mut [f64],
     );
 
-    /// The derivatives of a function, in the order of [`crate::Program::partials`].
+    /// The places of a function's derivatives, in the order in which [`Kernels::partials`] writes them.
+    fn entries(&self, function: Function) -> Vec<PartialEntry>;
+
+    /// The derivatives of a function, in the order of [`Kernels::entries`].
     fn partials(
         &self,
         function: Function,

@@ -31,4 +31,6 @@ pub use experiment::{
 };
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Constant, Function, Kernels, Point, TickWrt, Workspace};
-pub use program::{Column, Output, Parameter, PartialEntry, Prior, Program, UnknownBlock, Wrt};
+pub use program::{
+    Column, Derivatives, Output, Parameter, PartialEntry, Prior, Program, UnknownBlock, Wrt,
+};

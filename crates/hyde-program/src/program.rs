@@ -8,7 +8,7 @@ use crate::jacobian::{Jacobian, JacobianEntry};
 use crate::kernels::{Function, Kernels};
 use hyde_diag::Origin;
 use hyde_units::{Dimension, NamedUnit};
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// A block of the solver's vector.
 #[derive(Clone, Debug)]
@@ -111,6 +111,14 @@ pub struct PartialEntry {
     pub wrt: Wrt,
 }
 
+/// The places of derivatives and the sparsity of the Jacobian: made when first asked for, because a model of many cells
+/// is compiled in no time and has long tables.
+#[derive(Clone, Default)]
+pub struct Derivatives {
+    entries: OnceLock<[Vec<PartialEntry>; 5]>,
+    jacobian: OnceLock<Jacobian>,
+}
+
 /// An executable hybrid DAE.
 #[derive(Clone)]
 pub struct Program {
@@ -154,10 +162,8 @@ pub struct Program {
     pub holds: Vec<Hold>,
     /// Conditions at the start.
     pub initial: Vec<InitialCondition>,
-    /// The sparsity of the Jacobian.
-    pub jacobian: Jacobian,
-    /// Derivatives of the functions in the order of [`Kernels::partials`].
-    pub partials: Vec<(Function, Vec<PartialEntry>)>,
+    /// What is known of the derivatives, once asked for.
+    pub derivatives: Derivatives,
     /// What the experiment asks.
     pub experiment: Experiment,
     /// What the compiler decided and a user may want to know.
@@ -170,10 +176,20 @@ impl Program {
     /// The derivatives of a function, in the order its kernel writes them.
     #[must_use]
     pub fn partials(&self, function: Function) -> &[PartialEntry] {
-        self.partials
-            .iter()
-            .find(|(known, _)| *known == function)
-            .map_or(&[], |(_, list)| list)
+        let all = self
+            .derivatives
+            .entries
+            .get_or_init(|| Function::ALL.map(|function| self.kernels.entries(function)));
+        let number = Function::ALL.iter().position(|known| *known == function);
+        number.map_or(&[], |number| &all[number])
+    }
+
+    /// The sparsity of the Jacobian.
+    #[must_use]
+    pub fn jacobian(&self) -> &Jacobian {
+        self.derivatives
+            .jacobian
+            .get_or_init(|| Self::jacobian_of(self.n_unknowns, self.partials(Function::Residual)))
     }
 
     /// Number of values of a function.
@@ -268,7 +284,7 @@ impl Program {
 
     /// The Jacobian's pattern from the derivatives of the residual, which are by unknowns and their derivatives only.
     #[must_use]
-    pub fn jacobian_of(n_unknowns: usize, partials: &[PartialEntry]) -> Jacobian {
+    fn jacobian_of(n_unknowns: usize, partials: &[PartialEntry]) -> Jacobian {
         let entries: Vec<JacobianEntry> = partials
             .iter()
             .filter_map(|entry| match entry.wrt {

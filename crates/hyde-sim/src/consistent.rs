@@ -13,6 +13,10 @@ use hyde_program::Function;
 /// Newton iterations at most; halvings of a step at most.
 const MAX_ITERATIONS: usize = 50;
 const MAX_HALVINGS: usize = 12;
+/// A step is small by these, relative and absolute; a thousand times them it may be rounding.
+const TOLERANCE: f64 = 1e-12;
+const LEAST_TOLERANCE: f64 = 1e-14;
+const ROUNDING: f64 = 1e3;
 
 /// The solver of consistent values; keeps its factors from call to call.
 pub(crate) struct Consistent {
@@ -24,7 +28,7 @@ pub(crate) struct Consistent {
 
 impl Consistent {
     pub(crate) fn new(state: &State<'_>) -> Self {
-        let jacobian = &state.program.jacobian;
+        let jacobian = state.program.jacobian();
         let n = state.program.n_unknowns;
         let pattern = Pattern::new(n, jacobian.column_starts.clone(), jacobian.rows.clone());
         let solver = pattern
@@ -53,14 +57,19 @@ impl Consistent {
         }
         state.apply_pins(y, yp);
         self.evaluate(state, t, y, yp)?;
+        let mut last = f64::INFINITY;
         for _ in 0..MAX_ITERATIONS {
             self.factor(state, t, y, yp, at_start)?;
             self.correction.copy_from_slice(&self.residual);
             if let Some(solver) = &mut self.solver {
                 solver.solve(&mut self.correction);
             }
-            let small = self.take_step(state, t, y, yp)?;
-            if small {
+            let size = self.take_step(state, t, y, yp)?;
+            // Steps that are small and become no smaller are rounding: a small inductance turns that of volts into amperes
+            // per second.
+            let rounding = size <= ROUNDING && size > 0.25 * last;
+            last = size;
+            if size <= 1.0 || rounding {
                 // States' rows that a mode fixes hold to the last bit.
                 state.apply_pins(y, yp);
                 return Ok(());
@@ -153,14 +162,15 @@ impl Consistent {
         })
     }
 
-    /// Takes the Newton step, halved until the residual does not grow; whether it was small.
+    /// Takes the Newton step, halved until the residual does not grow. Returns its size over the tolerance; of a halved one
+    /// infinity.
     fn take_step(
         &mut self,
         state: &mut State<'_>,
         t: f64,
         y: &mut [f64],
         yp: &mut [f64],
-    ) -> Result<bool, Box<Failure>> {
+    ) -> Result<f64, Box<Failure>> {
         let norm = |residual: &[f64]| residual.iter().map(|r| r * r).sum::<f64>().sqrt();
         let before = norm(&self.residual);
         let mut factor = 1.0;
@@ -185,7 +195,7 @@ impl Consistent {
                 && (after <= before
                     || after <= rounding
                     || halving == MAX_HALVINGS
-                    || self.is_small(&old, 1e-9))
+                    || self.size(&old) <= ROUNDING)
             {
                 whole = halving == 0;
                 break;
@@ -195,19 +205,23 @@ impl Consistent {
             }
             factor *= 0.5;
         }
-        Ok(whole && self.is_small(&old, 1e-12))
+        Ok(if whole {
+            self.size(&old)
+        } else {
+            f64::INFINITY
+        })
     }
 
-    fn is_small(&self, values: &[f64], tolerance: f64) -> bool {
+    /// The largest correction over its tolerance.
+    fn size(&self, values: &[f64]) -> f64 {
         let largest = values
             .iter()
             .fold(0.0_f64, |most, value| most.max(value.abs()));
-        values
-            .iter()
-            .zip(&self.correction)
-            .all(|(value, correction)| {
-                correction.abs() <= tolerance * (value.abs() + 1e-3 * largest) + 1e-14
-            })
+        let pairs = values.iter().zip(&self.correction);
+        pairs.fold(0.0_f64, |most, (value, correction)| {
+            let tolerance = TOLERANCE * (value.abs() + 1e-3 * largest) + LEAST_TOLERANCE;
+            most.max(correction.abs() / tolerance)
+        })
     }
 }
 

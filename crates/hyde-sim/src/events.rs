@@ -90,6 +90,7 @@ impl Instant<'_, '_> {
         let mut roots = vec![0.0; program.relations.len()];
         self.state
             .evaluate(Function::Roots, self.t, self.y, self.yp, &mut roots);
+        let rounding = rounding(self.state, self.t, self.y, self.yp);
         let mut rates: Option<Vec<f64>> = None;
         let mut truths = Vec::with_capacity(roots.len());
         for (number, &root) in roots.iter().enumerate() {
@@ -107,8 +108,9 @@ impl Instant<'_, '_> {
             let still_there = |(relation, value): &(usize, f64)| {
                 *relation == number && root.abs() <= 2.0 * value.abs()
             };
-            let zero =
-                root == 0.0 || scheduled.contains(&number) || located.iter().any(still_there);
+            let zero = root.abs() <= rounding[number]
+                || scheduled.contains(&number)
+                || located.iter().any(still_there);
             if !zero {
                 truths.push(root > 0.0);
                 continue;
@@ -316,6 +318,24 @@ impl Instant<'_, '_> {
         }
         failure
     }
+}
+
+/// How far from zero rounding of its arguments alone takes each root function: two modes that meet at a point, one with a
+/// guard `g > 0` and the other with `g < 0`, must not both see theirs true.
+fn rounding(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
+    let program = state.program;
+    let mut rounding = vec![0.0; program.relations.len()];
+    let partials = state.partials(Function::Roots, t, y, yp);
+    for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
+        let argument = match entry.wrt {
+            Wrt::Unknown(column) => y[column],
+            Wrt::Derivative(column) => yp[column],
+            Wrt::Time => t,
+            Wrt::Parameter(_) => 0.0,
+        };
+        rounding[entry.row] += 16.0 * f64::EPSILON * (value * argument).abs();
+    }
+    rounding
 }
 
 /// In which direction each root function leaves zero along the flow: the mean of its derivative now and a moment later.

@@ -72,12 +72,14 @@ impl<'a> Integrator<'a> {
             state.differential.clone(),
         );
         options.max_step_s = setup.max_step_s.min(state.inputs.max_step_s());
-        // A force that holds a state still must bound the steps, or its guards are stepped over.
-        options.suppress_algebraic = !program.selections.is_empty();
+        // A force that holds a state still must bound the steps, or its guards are stepped over; without guards it has
+        // no need to, and where states follow quickly (a transistor at its capacitor) costs many steps.
+        let guarded = program.relations.iter().any(|relation| !relation.scheduled);
+        options.suppress_algebraic = !guarded || !program.selections.is_empty();
         options.first_step_s = Some(first_step_s);
         options.linear_method = LinearMethod::Auto;
         let failed = |error: Error| Failure::new(FailureKind::Solver(error.to_string()), t);
-        let jacobian = &program.jacobian;
+        let jacobian = program.jacobian();
         let pattern = Pattern::new(
             program.n_unknowns,
             jacobian.column_starts.clone(),

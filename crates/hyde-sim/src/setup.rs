@@ -72,5 +72,19 @@ impl<'a> Setup<'a> {
 
 /// Whether two instants are one: closer than rounding of times computed in different ways.
 pub(crate) fn same_instant(a: f64, b: f64) -> bool {
-    (a - b).abs() <= 1e-12 + 1e-13 * a.abs().max(b.abs())
+    // The smaller magnitude: an instant that never comes, at infinity, is none.
+    (a - b).abs() <= 1e-12 + 1e-13 * a.abs().min(b.abs())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn instants_computed_in_different_ways_are_one_and_never_is_not_now() {
+        assert!(same_instant(0.1 * 3.0, 0.3));
+        assert!(!same_instant(1.0, 1.0 + 1e-9));
+        assert!(!same_instant(f64::INFINITY, 3.0));
+        assert!(!same_instant(3.0, f64::INFINITY));
+    }
 }

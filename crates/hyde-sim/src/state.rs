@@ -31,7 +31,7 @@ impl<'a> State<'a> {
             inputs: Inputs::new(program, setup)?,
             u: vec![0.0; 2 * program.columns.len()],
             workspace: Workspace::new(program.n_work),
-            partials: vec![0.0; program.jacobian.n_values()],
+            partials: vec![0.0; program.jacobian().n_values()],
             pinned: Vec::new(),
             differential: program.differential(&vec![0.0; program.n_memory]),
         };
@@ -93,7 +93,7 @@ impl<'a> State<'a> {
     pub(crate) fn consistent_matrix(&mut self, t: f64, y: &[f64], yp: &[f64], matrix: &mut [f64]) {
         self.residual_partials(t, y, yp);
         self.program
-            .jacobian
+            .jacobian()
             .assemble_consistent(&self.partials, &self.differential, matrix);
     }
 
@@ -178,7 +178,7 @@ impl System for State<'_> {
     ) -> Result<(), Recoverable> {
         self.residual_partials(t, y, yp);
         self.program
-            .jacobian
+            .jacobian()
             .assemble(&self.partials, 1.0, cj, values);
         Ok(())
     }

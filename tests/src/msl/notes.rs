@@ -22,7 +22,8 @@ pub(super) enum Source {
 }
 
 /// The numbers that the Modelica Standard Library gives the modes of friction.
-const MODES: [(&str, f64); 4] = [
+const MODES: [(&str, f64); 5] = [
+    ("undecided", 3.0),
     ("free", 2.0),
     ("forward", 1.0),
     ("stuck", 0.0),
@@ -115,7 +116,7 @@ mod tests {
         assert_eq!(notes.source("d"), Source::Mode("e".to_owned(), on));
         assert_eq!(notes.source("g.w"), Source::Output("g.w".to_owned(), 1.0));
         assert!(
-            matches!(notes.source("g.mode"), Source::Mode(name, modes) if name == "g" && modes.len() == 4)
+            matches!(notes.source("g.mode"), Source::Mode(name, modes) if name == "g" && modes.len() == 5)
         );
         assert_eq!(notes.without, [("f".to_owned(), "why".to_owned())]);
         assert!(Notes::read("// signal a = b").is_err());

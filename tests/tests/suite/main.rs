@@ -13,4 +13,6 @@ mod models;
 mod points;
 mod sampled;
 mod stages;
+mod starts;
 mod stick_slip;
+mod without_states;
