@@ -12,6 +12,7 @@
 use crate::alias;
 use crate::cells::Cells;
 use crate::solve::solve_for;
+use crate::split;
 use crate::system::{Cell, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_ir::{Expr, ExprId, Index, Range, VarId, VariableKind};
@@ -211,12 +212,10 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
         let Some(leaves) = state_leaves(system, lhs, rhs, &differentiated) else {
             continue;
         };
+        let in_array = |system: &System, cell: &Cell| system.flat.variables[cell.0].len.is_some();
         let mut candidates: Vec<Cell> = leaves
             .into_iter()
-            .filter(|cell| {
-                (differentiated.contains(cell) || wanted.contains(cell))
-                    && system.flat.variables[cell.0].len.is_none()
-            })
+            .filter(|cell| differentiated.contains(cell) || wanted.contains(cell))
             .collect();
         let is_left = |system: &System, cell: Cell| matches!(system.flat.exprs[lhs], Expr::Var(var, _) if var == cell.0);
         let fixed = |system: &System, cell: &Cell| {
@@ -228,6 +227,7 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
         candidates.sort_by_key(|cell| {
             (
                 pinned.contains(cell),
+                in_array(system, cell),
                 !is_left(system, *cell),
                 fixed(system, cell),
                 *cell,
@@ -244,6 +244,10 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
             let Some(rate) = derivative(system, value, cell, &differentiated, 0) else {
                 continue;
             };
+            // An element leaves the equations of its array that differentiate it.
+            if in_array(system, &cell) && !split::at_cell(system, cell) {
+                continue;
+            }
             let equation = &mut system.equations[number];
             equation.lhs = system.flat.exprs.add(leaf);
             equation.rhs = value;

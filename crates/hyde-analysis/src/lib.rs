@@ -29,6 +29,7 @@ mod hoist;
 mod initial;
 mod layout;
 mod matching;
+mod mode_constraints;
 mod outputs;
 mod partials;
 mod pins;
@@ -36,6 +37,7 @@ mod reduce;
 mod relations;
 mod segments;
 mod solve;
+mod split;
 mod system;
 mod unroll;
 

@@ -5,6 +5,7 @@
 //! other, equations too many or too few with the part of the system they conflict in (Dulmage and Mendelsohn).
 
 use crate::graph::{Bipartite, Matching};
+use crate::mode_constraints;
 use crate::segments::{self, Segment};
 use crate::system::{Cell, Equation, Slot, System};
 use crate::{pins, unroll};
@@ -41,6 +42,9 @@ pub(crate) fn match_equations(
     };
     pins::mark(system, &unknowns);
     unknowns.sort_unstable();
+    if mode_constraints::refuse(system, &unknowns, diagnostics) {
+        return None;
+    }
     let nodes: Vec<Node> = (0..system.equations.len())
         .map(Node::Equation)
         .chain((0..system.slots.len()).map(Node::Slot))

@@ -185,10 +185,9 @@ fn candidates(system: &mut System) -> BTreeMap<VarId, Vec<Candidate>> {
         }
     }
     // A state's value is known: only its derivative can be determined.
-    for list in found.values_mut() {
-        if list.iter().any(|candidate| candidate.derivative) {
-            list.retain(|candidate| candidate.derivative);
-        }
+    let states = state_cells(system);
+    for (&var, list) in &mut found {
+        list.retain(|candidate| candidate.derivative || !states.contains(&(var, candidate.first)));
     }
     found
 }

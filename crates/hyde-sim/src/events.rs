@@ -18,6 +18,8 @@ use crate::state::State;
 use hyde_program::{Function, ReactionKind, RelationUse, Target, Wrt};
 
 const MAX_ROUNDS: usize = 50;
+/// How deep guards may ask for each other.
+const MAX_NESTED: usize = 8;
 
 /// What an instant is worked on with.
 pub(crate) struct Instant<'s, 'a> {
@@ -48,10 +50,21 @@ impl Instant<'_, '_> {
         let mut causes: Vec<String> = Vec::new();
         // Guards that brought the run here, with their root functions' values: zero but for the location's rounding.
         let mut located: Vec<(usize, f64)> = Vec::new();
+        let (mut turned, mut looked_closer) = (Vec::new(), false);
         for _ in 0..MAX_ROUNDS {
             let (truths, roots) = self.truths(scheduled, &located)?;
+            let became_true = self.guards_that_became_true(&truths, &roots);
+            turned.extend(became_true.iter().map(|(relation, _)| *relation));
             if seen.is_empty() {
-                located = self.guards_that_became_true(&truths, &roots);
+                located = became_true;
+            }
+            if self.t > 0.058516 {
+                let rr = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
+                eprintln!(
+                    "DBG t {:e} modes {:?} roots {roots:?} truths {truths:?} rates {rr:?} located {located:?}",
+                    self.t,
+                    self.mode_key()
+                );
             }
             let flipped = self.flip(&truths);
             let conditions = self.state.conditions(self.t, self.y, self.yp);
@@ -70,18 +83,53 @@ impl Instant<'_, '_> {
             self.apply(&fired, &mut causes)?;
             let key: Vec<u64> = self.mode_key();
             let repeats = seen.contains(&key) && fired.iter().all(|&r| self.is_transition(r));
-            if repeats && !fired.is_empty() {
+            let again = repeats && !fired.is_empty();
+            if again && looked_closer {
                 return Err(self.chattering(&causes));
             }
             seen.push(key);
             self.consistent
                 .solve(self.state, self.t, self.y, self.yp, at_start)?;
+            if again {
+                looked_closer = true;
+                seen.drain(..seen.len() - 1);
+                located.extend(self.all_but_zero(&turned));
+            }
         }
         Err(self.chattering(&causes))
     }
 
-    /// The truth of every relation that matters; of the others as they were.
+    /// The truth of every relation that matters, with the root functions' values. A guard may ask for another relation,
+    /// `if a > 0 then …`: it is looked at again once that one is known.
     fn truths(
+        &mut self,
+        scheduled: &[usize],
+        located: &[(usize, f64)],
+    ) -> Result<(Vec<bool>, Vec<f64>), Box<Failure>> {
+        let program = self.state.program;
+        let before = self.state.z[..program.relations.len()].to_vec();
+        let mut found = self.truths_once(scheduled, located)?;
+        for _ in 0..MAX_NESTED {
+            for (number, relation) in program.relations.iter().enumerate() {
+                if relation.used != RelationUse::Equation {
+                    self.state.z[number] = f64::from(u8::from(found.0[number]));
+                }
+            }
+            let mut roots = vec![0.0; program.relations.len()];
+            self.state
+                .evaluate(Function::Roots, self.t, self.y, self.yp, &mut roots);
+            let same = roots.iter().zip(&found.1);
+            if same.into_iter().all(|(a, b)| a.to_bits() == b.to_bits()) {
+                break;
+            }
+            found = self.truths_once(scheduled, located)?;
+        }
+        self.state.z[..before.len()].copy_from_slice(&before);
+        Ok(found)
+    }
+
+    /// The truth of every relation that matters; of the others as they were.
+    fn truths_once(
         &mut self,
         scheduled: &[usize],
         located: &[(usize, f64)],
@@ -126,6 +174,17 @@ impl Instant<'_, '_> {
             });
         }
         Ok((truths, roots))
+    }
+
+    /// Guards that lead in a circle may do so by rounding alone: a diode's current is zero where its voltage is. Those that
+    /// cross zero within a moment of now count by the direction in which they do.
+    fn all_but_zero(&mut self, guards: &[usize]) -> Vec<(usize, f64)> {
+        let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
+        let moment = moment(self.t);
+        guards
+            .iter()
+            .map(|&guard| (guard, 0.5 * moment * rates[guard].abs()))
+            .collect()
     }
 
     /// The guards of current modes that are true now and were not: of these the root function is at its zero.
@@ -338,6 +397,11 @@ fn rounding(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
     rounding
 }
 
+/// How far the rounding of an instant may reach, in s.
+fn moment(t: f64) -> f64 {
+    1e-9 * (1.0 + t.abs())
+}
+
 /// In which direction each root function leaves zero along the flow: the mean of its derivative now and a moment later.
 ///
 /// A friction that breaks away does so where the acceleration is still zero, so the derivative alone would be rounding;
@@ -352,7 +416,7 @@ fn root_rates(
     let Some((now, dy)) = rates_at(state, consistent, t, y, yp) else {
         return vec![0.0; state.program.relations.len()];
     };
-    let moment = 1e-9 * (1.0 + t.abs());
+    let moment = moment(t);
     let mut y_later: Vec<f64> = y
         .iter()
         .zip(&dy)

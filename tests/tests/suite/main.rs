@@ -4,6 +4,7 @@
 mod backends;
 mod bar;
 mod bouncing_ball;
+mod clutch;
 mod derivatives;
 mod digests;
 mod energy;

@@ -1,0 +1,92 @@
+//! Modes that would need differentiations of their own are refused (M6): index reduction is done once for all modes.
+//!
+//! `phi1 = phi2` in one mode, both angles states, determines nothing that is unknown there. `w1 = 0` does: it is a pin.
+
+use crate::segments::Segment;
+use crate::system::{Branch, System};
+use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_ir::Expr;
+
+/// Reports every equation of a mode that relates states alone; whether there was one.
+pub(crate) fn refuse(system: &System, unknowns: &[Segment], diagnostics: &mut Diagnostics) -> bool {
+    let mut found = false;
+    for slot in &system.slots {
+        let several = slot
+            .branches
+            .iter()
+            .any(|branch| relates_unknowns(system, unknowns, branch));
+        for (mode, branch) in slot.branches.iter().enumerate() {
+            if branch.pin.is_some() || !several || relates_unknowns(system, unknowns, branch) {
+                continue;
+            }
+            let states = states(system, branch);
+            if states.is_empty() {
+                continue;
+            }
+            found = true;
+            let automaton = &system.flat.automata[slot.automaton];
+            let name = automaton
+                .modes
+                .get(mode)
+                .map_or("", |mode| mode.name.as_str());
+            let list: Vec<String> = states.iter().map(|state| format!("`{state}`")).collect();
+            let component = system.component(&branch.origin);
+            let diagnostic = Diagnostic::error(
+                Code::Constrained,
+                format!(
+                    "in the mode `{name}` {} are constrained to each other",
+                    list.join(" and ")
+                ),
+            )
+            .label(
+                branch.origin.span,
+                "this equation fixes one by the others, in this mode alone",
+            );
+            let diagnostic = match component {
+                Some((part, span)) => diagnostic.label(span, format!("in `{part}`")),
+                None => diagnostic,
+            };
+            diagnostics.push(
+                diagnostic
+                    .note("states are chosen for all modes at once; a mode may fix a state to a number, no more")
+                    .help("put a stiff spring and a damper in the mode's place, or make the relative motion a state and fix that"),
+            );
+        }
+    }
+    found
+}
+
+/// Whether an equation of a mode has anything in it that the mode can determine.
+fn relates_unknowns(system: &System, unknowns: &[Segment], branch: &Branch) -> bool {
+    let leaves = system.flat.exprs.below(&[branch.lhs, branch.rhs]);
+    leaves.into_iter().any(|id| {
+        let (var, index, derivative) = match system.flat.exprs[id] {
+            Expr::Var(var, index) => (var, index, false),
+            Expr::Der(var, index) => (var, index, true),
+            _ => return false,
+        };
+        let Some(cell) = System::cell(var, index) else {
+            return true;
+        };
+        unknowns.iter().any(|unknown| {
+            unknown.var == var && unknown.overlaps(cell.1, cell.1) && (!unknown.state || derivative)
+        })
+    })
+}
+
+/// The names of the continuous variables in an equation.
+fn states(system: &System, branch: &Branch) -> Vec<String> {
+    let mut names = Vec::new();
+    for id in system.flat.exprs.below(&[branch.lhs, branch.rhs]) {
+        if let Expr::Var(var, index) = system.flat.exprs[id]
+            && system.is_continuous(var)
+            && let Some(cell) = System::cell(var, index)
+        {
+            let name = system.cell_name(cell);
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+    }
+    names
+}

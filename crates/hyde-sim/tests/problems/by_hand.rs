@@ -1,0 +1,322 @@
+//! [`Equations`]: what a person writes of a problem, and the kernels and the program made of it.
+//!
+//! A derivative is written with its place, so that the order of [`Kernels::entries`] is that of [`Kernels::partials`].
+
+use hyde_diag::{InstancePath, Origin, Sources, Span};
+use hyde_program::{
+    Constant, Derivatives, Experiment, Function, InitialCondition, Kernels, Output, PartialEntry,
+    Point, Program, TickWrt, UnknownBlock, Workspace, Wrt,
+};
+use hyde_sim::{Failure, Results, Setup, simulate};
+use hyde_units::{Dimension, NamedUnit};
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The relative and the absolute tolerance of every run here.
+pub(crate) const RTOL: f64 = 1e-8;
+pub(crate) const ATOL: f64 = 1e-10;
+
+/// A derivative: row of the function, with respect to what, value. A place stands in the list in every mode.
+pub(crate) type Partial = (usize, Wrt, f64);
+
+/// The mathematics of a problem.
+pub(crate) trait Equations: Send + Sync + 'static {
+    /// The declared parameters.
+    fn declared(&self) -> Vec<f64>;
+
+    /// The parameters that follow from the declared ones; they stand behind them.
+    fn derived(&self, _declared: &[f64]) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// Start values; vectors come in as zeros.
+    fn start(&self, p: &[f64], y: &mut [f64], z: &mut [f64]);
+
+    /// A number that parameters alone determine.
+    fn constant(&self, _which: Constant, _p: &[f64]) -> Option<f64> {
+        None
+    }
+
+    /// The values of a function, as many as it has rows.
+    fn values(&self, function: Function, at: Point<'_>) -> Vec<f64>;
+
+    /// Its derivatives by unknowns, their derivatives and time.
+    fn partials(&self, function: Function, at: Point<'_>) -> Vec<Partial>;
+
+    /// Its derivatives by declared parameters, those by way of derived ones included.
+    fn parameter_partials(&self, _function: Function, _at: Point<'_>) -> Vec<Partial> {
+        Vec::new()
+    }
+
+    /// Truth of every reaction's condition.
+    fn conditions(&self, _z: &[f64]) -> Vec<f64> {
+        Vec::new()
+    }
+
+    /// What a tick writes to the memory.
+    fn tick(&self, _clock: usize, _at: Point<'_>, _after: &mut [f64]) {}
+
+    /// The derivatives of that.
+    fn tick_partials(&self, _clock: usize, _at: Point<'_>) -> Vec<(usize, TickWrt, f64)> {
+        Vec::new()
+    }
+}
+
+/// A program of the equations, its tables but for unknowns, outputs and initial conditions empty: every state starts at
+/// its start value.
+pub(crate) fn program(
+    equations: impl Equations,
+    unknowns: Vec<UnknownBlock>,
+    n_memory: usize,
+    outputs: &[&str],
+) -> Program {
+    let declared = equations.declared();
+    let states = unknowns.iter().filter(|block| block.differential);
+    let initial = states.map(|block| InitialCondition::Fixed {
+        state: block.offset,
+        len: block.len,
+        declared: true,
+    });
+    let n_unknowns = unknowns.iter().map(|block| block.len).sum();
+    Program {
+        name: String::new(),
+        initial: initial.collect(),
+        unknowns,
+        n_unknowns,
+        n_memory,
+        n_work: 0,
+        n_parameters: declared.len() + equations.derived(&declared).len(),
+        parameters: Vec::new(),
+        first_values: Vec::new(),
+        columns: Vec::new(),
+        outputs: outputs.iter().map(|name| output(name)).collect(),
+        relations: Vec::new(),
+        automata: Vec::new(),
+        reactions: Vec::new(),
+        assignments: Vec::new(),
+        pins: Vec::new(),
+        selections: Vec::new(),
+        clocks: Vec::new(),
+        clock_order: Vec::new(),
+        holds: Vec::new(),
+        derivatives: Derivatives::default(),
+        experiment: Experiment::default(),
+        notes: Vec::new(),
+        kernels: Arc::new(ByHand {
+            equations,
+            n_unknowns,
+            n_memory,
+        }),
+    }
+}
+
+/// A state at a position of the solver's vector; its equation comes from the instance of that name.
+pub(crate) fn state(name: &str, offset: usize, instance: &str) -> UnknownBlock {
+    UnknownBlock {
+        name: name.to_owned(),
+        first: None,
+        offset,
+        len: 1,
+        differential: true,
+        origins: vec![origin(instance)],
+    }
+}
+
+/// An algebraic variable, likewise.
+pub(crate) fn algebraic(name: &str, offset: usize, instance: &str) -> UnknownBlock {
+    UnknownBlock {
+        differential: false,
+        ..state(name, offset, instance)
+    }
+}
+
+/// Somewhere in the instance.
+pub(crate) fn origin(instance: &str) -> Origin {
+    let file = Sources::new().add("by hand", "");
+    Origin::source(Span::new(file, 0, 0), &InstancePath::root().child(instance))
+}
+
+/// Runs a program from 0 with some parameters set, rows at the times given.
+pub(crate) fn run(
+    program: &Program,
+    set: &[(usize, f64)],
+    rows_s: Vec<f64>,
+) -> Result<Results, Box<Failure>> {
+    let mut p = vec![0.0; program.n_parameters];
+    program.kernels.parameters(set, &mut p);
+    let records = BTreeMap::new();
+    let stop = rows_s.last().copied().unwrap();
+    let setup = Setup {
+        rtol: RTOL,
+        atol: ATOL,
+        rows_s,
+        ..Setup::new(p, &records, stop)
+    };
+    simulate(program, &setup)
+}
+
+/// The column of an output.
+pub(crate) fn column<'r>(program: &Program, results: &'r Results, name: &str) -> &'r [f64] {
+    results.column(program.output(name).unwrap()).unwrap()
+}
+
+/// Compares all derivatives by unknowns with central differences: a place that the entries do not name must be zero.
+pub(crate) fn assert_partials(program: &Program, y: &[f64], yp: &[f64], z: &[f64]) {
+    let mut p = vec![0.0; program.n_parameters];
+    program.kernels.parameters(&[], &mut p);
+    let workspace = &mut Workspace::new(program.n_work);
+    let n = program.n_unknowns;
+    for function in Function::ALL {
+        let rows = program.rows(function);
+        let entries = program.partials(function);
+        let mut values = vec![0.0; entries.len()];
+        let point = Point {
+            t: 0.3,
+            y,
+            yp,
+            z,
+            u: &[],
+            p: &p,
+        };
+        let kernels = &program.kernels;
+        kernels.partials(function, point, workspace, &mut values);
+        let mut evaluate = |y: &[f64], yp: &[f64]| {
+            let mut out = vec![f64::NAN; rows];
+            kernels.evaluate(function, Point { y, yp, ..point }, workspace, &mut out);
+            out
+        };
+        for column in 0..2 * n {
+            let wrt = match column.checked_sub(n) {
+                None => Wrt::Unknown(column),
+                Some(of) => Wrt::Derivative(of),
+            };
+            let mut moved = |by: f64| {
+                let (mut y, mut yp) = (y.to_vec(), yp.to_vec());
+                match column.checked_sub(n) {
+                    None => y[column] += by,
+                    Some(of) => yp[of] += by,
+                }
+                evaluate(&y, &yp)
+            };
+            let (up, down) = (moved(1e-5), moved(-1e-5));
+            for row in 0..rows {
+                let listed = entries.iter().zip(&values);
+                let written: f64 = listed
+                    .filter(|(entry, _)| entry.row == row && entry.wrt == wrt)
+                    .map(|(_, value)| value)
+                    .sum();
+                let difference = (up[row] - down[row]) / 2e-5;
+                // Rounding of values up to 1e3 over the step: 1e-8; the third derivative times its square: less.
+                assert!(
+                    (written - difference).abs() <= 1e-7 * (1.0 + difference.abs()),
+                    "{function:?}, row {row} by {wrt:?}: {written}, by differences {difference}"
+                );
+            }
+        }
+    }
+}
+
+fn output(name: &str) -> Output {
+    Output {
+        name: name.to_owned(),
+        dimension: Dimension::DIMENSIONLESS,
+        unit: NamedUnit::usual(Dimension::DIMENSIONLESS),
+        discrete: false,
+        auxiliary: false,
+    }
+}
+
+/// The kernels of equations written by hand.
+struct ByHand<E> {
+    equations: E,
+    n_unknowns: usize,
+    n_memory: usize,
+}
+
+impl<E: Equations> Kernels for ByHand<E> {
+    fn parameters(&self, set: &[(usize, f64)], p: &mut [f64]) {
+        let mut declared = self.equations.declared();
+        for &(position, value) in set {
+            declared[position] = value;
+        }
+        let derived = self.equations.derived(&declared);
+        p.copy_from_slice(&[declared, derived].concat());
+    }
+
+    fn start(&self, p: &[f64], y: &mut [f64], z: &mut [f64]) {
+        y.fill(0.0);
+        z.fill(0.0);
+        self.equations.start(p, y, z);
+    }
+
+    fn constant(&self, which: Constant, p: &[f64]) -> Option<f64> {
+        self.equations.constant(which, p)
+    }
+
+    fn evaluate(&self, function: Function, at: Point<'_>, _: &mut Workspace, out: &mut [f64]) {
+        out.copy_from_slice(&self.equations.values(function, at));
+    }
+
+    fn entries(&self, function: Function) -> Vec<PartialEntry> {
+        let mut p = self.equations.declared();
+        p.extend(self.equations.derived(&p));
+        let (y, z) = (vec![1.0; self.n_unknowns], vec![0.0; self.n_memory]);
+        let somewhere = Point {
+            t: 0.0,
+            y: &y,
+            yp: &y,
+            z: &z,
+            u: &[],
+            p: &p,
+        };
+        let partials = self.equations.partials(function, somewhere);
+        let places = partials.into_iter().map(|(row, wrt, _)| (row, wrt));
+        places.map(|(row, wrt)| PartialEntry { row, wrt }).collect()
+    }
+
+    fn partials(&self, function: Function, at: Point<'_>, _: &mut Workspace, out: &mut [f64]) {
+        let partials = self.equations.partials(function, at);
+        assert_eq!(partials.len(), out.len(), "as many values as entries");
+        for (value, (_, _, partial)) in out.iter_mut().zip(partials) {
+            *value = partial;
+        }
+    }
+
+    fn parameter_partials(
+        &self,
+        function: Function,
+        parameters: &[usize],
+        at: Point<'_>,
+        _: &mut Workspace,
+    ) -> Vec<(PartialEntry, f64)> {
+        let all = self.equations.parameter_partials(function, at);
+        let chosen = all.into_iter().filter(|(_, wrt, _)| {
+            let wanted = |&place: &usize| *wrt == Wrt::Parameter(place);
+            parameters.iter().any(wanted)
+        });
+        chosen
+            .map(|(row, wrt, value)| (PartialEntry { row, wrt }, value))
+            .collect()
+    }
+
+    fn conditions(&self, at: Point<'_>, _: &mut Workspace, out: &mut [f64]) {
+        out.copy_from_slice(&self.equations.conditions(at.z));
+    }
+
+    fn tick(&self, clock: usize, at: Point<'_>, _: &mut Workspace, after: &mut [f64]) {
+        self.equations.tick(clock, at, after);
+    }
+
+    fn tick_partials(
+        &self,
+        clock: usize,
+        at: Point<'_>,
+        _: &mut Workspace,
+    ) -> Vec<(usize, TickWrt, f64)> {
+        self.equations.tick_partials(clock, at)
+    }
+
+    fn measures(&self, _p: &[f64], _reductions: &[f64], out: &mut [f64]) {
+        assert!(out.is_empty(), "no problem here has an experiment");
+    }
+}
