@@ -15,6 +15,8 @@ pub(crate) enum Exit {
     Solver = 3,
     /// An `expect` did not hold.
     Expectation = 4,
+    /// Interrupted; what was finished is kept.
+    Interrupted = 130,
 }
 
 impl From<Exit> for ExitCode {

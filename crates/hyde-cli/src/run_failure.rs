@@ -44,7 +44,14 @@ pub(crate) fn diagnostic(
             };
             (diagnostic, Exit::Model)
         }
-        RunError::Failed(failure) => (failed(failure), Exit::Solver),
+        RunError::Failed(failure) => {
+            let exit = if failure.kind == FailureKind::Interrupted {
+                Exit::Interrupted
+            } else {
+                Exit::Solver
+            };
+            (failed(failure), exit)
+        }
     }
 }
 
@@ -132,6 +139,11 @@ fn failed(failure: &Failure) -> Diagnostic {
             format!("{message} ({at})"),
             "change the motion or the limit",
         ),
+        FailureKind::Interrupted => (
+            Code::SolverFailed,
+            format!("the run was interrupted {at}"),
+            "what was finished is kept",
+        ),
         FailureKind::Input(message) => (
             Code::NoColumn,
             message.clone(),
@@ -153,6 +165,7 @@ fn failed(failure: &Failure) -> Diagnostic {
             | FailureKind::Solver(_)
             | FailureKind::NotFinite
             | FailureKind::Impact(..)
+            | FailureKind::Interrupted
             | FailureKind::Input(_) => "this equation",
         };
         let text = if instance.is_empty() {

@@ -6,6 +6,8 @@ use hyde_program::{Constant, Parameter, Program, Reduction, ReductionKind, Stop}
 use hyde_signal::Table;
 use hyde_sim::{Failure, Results, Setup};
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// What the caller sets beside the experiment.
 #[derive(Clone, Debug, Default)]
@@ -20,6 +22,8 @@ pub struct Options {
     pub atol: Option<f64>,
     /// Time between rows of the results in s.
     pub every_s: Option<f64>,
+    /// Set from outside to end the run after the step under way.
+    pub interrupted: Arc<AtomicBool>,
 }
 
 /// A measure or an expectation.
@@ -114,6 +118,7 @@ pub fn run(
         }
     }
     let mut setup = Setup::new(parameters, records, stop_s);
+    setup.interrupted = Arc::clone(&options.interrupted);
     setup.rtol = rtol;
     setup.atol = atol;
     setup.max_step_s = max_step;

@@ -53,19 +53,10 @@ impl Instant<'_, '_> {
         let (mut turned, mut looked_closer) = (Vec::new(), false);
         for _ in 0..MAX_ROUNDS {
             let (truths, roots) = self.truths(scheduled, &located)?;
-            let became_true = self.guards_that_became_true(&truths, &roots);
-            turned.extend(became_true.iter().map(|(relation, _)| *relation));
             if seen.is_empty() {
-                located = became_true;
+                located = self.guards_that_became_true(&truths, &roots);
             }
-            if self.t > 0.058516 {
-                let rr = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
-                eprintln!(
-                    "DBG t {:e} modes {:?} roots {roots:?} truths {truths:?} rates {rr:?} located {located:?}",
-                    self.t,
-                    self.mode_key()
-                );
-            }
+            turned.extend(self.true_guards(&truths));
             let flipped = self.flip(&truths);
             let conditions = self.state.conditions(self.t, self.y, self.yp);
             let fired = self.fired(&conditions, at_start && seen.is_empty())?;
@@ -184,6 +175,18 @@ impl Instant<'_, '_> {
         guards
             .iter()
             .map(|&guard| (guard, 0.5 * moment * rates[guard].abs()))
+            .collect()
+    }
+
+    /// The guards of current modes that are true.
+    fn true_guards(&self, truths: &[bool]) -> Vec<usize> {
+        let program = self.state.program;
+        (0..truths.len())
+            .filter(|&number| {
+                matches!(program.relations[number].used, RelationUse::Exit(..))
+                    && truths[number]
+                    && is_active(program, &self.state.z, number)
+            })
             .collect()
     }
 

@@ -29,6 +29,8 @@ pub enum FailureKind {
     Assert(String),
     /// A record is missing or lacks a column.
     Input(String),
+    /// It was ended from outside.
+    Interrupted,
 }
 
 /// Why a run could not go on.

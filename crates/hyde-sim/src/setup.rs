@@ -2,6 +2,8 @@
 
 use hyde_signal::Table;
 use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// Parameters, records, times and tolerances of a run.
 #[derive(Clone, Debug)]
@@ -24,6 +26,8 @@ pub struct Setup<'a> {
     pub rows_s: Vec<f64>,
     /// The outputs to keep, by number, ascending; `None` for all.
     pub keep: Option<Vec<usize>>,
+    /// Set from outside to end the run after the step under way.
+    pub interrupted: Arc<AtomicBool>,
 }
 
 impl<'a> Setup<'a> {
@@ -40,6 +44,7 @@ impl<'a> Setup<'a> {
             max_step_s: f64::INFINITY,
             rows_s: Self::rows_every(0.0, stop_s, stop_s / 1000.0),
             keep: None,
+            interrupted: Arc::default(),
         }
     }
 

@@ -14,6 +14,7 @@ use crate::setup::{Setup, same_instant};
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
 use hyde_program::{Function, Program};
+use std::sync::atomic::Ordering;
 
 /// So many events within a billionth of the run are no solution any more.
 const MAX_EVENTS_AT_ONCE: u64 = 2000;
@@ -187,6 +188,9 @@ impl<'a> Simulation<'a> {
     fn advance(&mut self, target: f64) -> Result<bool, Box<Failure>> {
         let watched = guards::active(self.program, &self.integrator.state().z);
         loop {
+            if self.setup.interrupted.load(Ordering::Relaxed) {
+                return Err(Failure::new(FailureKind::Interrupted, self.integrator.t));
+            }
             let from = self.integrator.step(target)?;
             let crossing = guards::first_change(&mut self.integrator, &watched, from);
             let end = crossing

@@ -14,6 +14,8 @@ use hyde_sim::Results;
 use serde_json::{Map, Value, json};
 use std::io::IsTerminal as _;
 use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Runs an experiment, prints what happened, and leaves its files.
 pub(crate) fn run(args: &RunArgs) -> Exit {
@@ -40,6 +42,7 @@ pub(crate) fn solved(
         rtol: args.rtol,
         atol: args.atol,
         every_s: None,
+        interrupted: interrupted(),
     };
     let tables = records::tables(&project.records);
     let start = std::time::Instant::now();
@@ -50,6 +53,20 @@ pub(crate) fn solved(
         }
         Err(error) => Err(failed(args, project, &compiled, &error)),
     }
+}
+
+/// The flag that Ctrl-C sets; a second Ctrl-C ends the process at once.
+fn interrupted() -> Arc<AtomicBool> {
+    let flag = Arc::new(AtomicBool::new(false));
+    let set = Arc::clone(&flag);
+    // A process has one handler: a second run of it keeps the first one's, which ends it.
+    let handled = ctrlc::set_handler(move || {
+        if set.swap(true, Ordering::Relaxed) {
+            std::process::abort();
+        }
+    });
+    drop(handled);
+    flag
 }
 
 fn finish(
@@ -151,19 +168,11 @@ fn failed(args: &RunArgs, mut project: Project, compiled: &Compiled, error: &Run
     let mut experiments = project.file.experiments();
     let experiment = experiments.find(|known| name == Some(known.name.text.as_str()));
     let (diagnostic, exit) = run_failure::diagnostic(error, &compiled.program, experiment);
-    project.diagnostics.push(diagnostic);
-    if args.model.json {
-        let diagnostics = render::to_json(&project.diagnostics, &project.sources);
-        print_output(&format!(
-            "{:#}",
-            json!({ "ok": false, "diagnostics": diagnostics })
-        ));
+    if exit == Exit::Interrupted {
+        complain(&args.model, exit, &diagnostic.message);
     } else {
-        print_error(&render::render(
-            &project.diagnostics,
-            &project.sources,
-            std::io::stderr().is_terminal(),
-        ));
+        project.diagnostics.push(diagnostic);
+        tell(args, &project);
     }
     // What was finished is kept.
     if let (Some(folder), RunError::Failed(failure)) = (&args.out, error) {
@@ -181,4 +190,21 @@ fn failed(args: &RunArgs, mut project: Project, compiled: &Compiled, error: &Run
         }
     }
     exit
+}
+
+/// Prints the diagnostics of a run.
+fn tell(args: &RunArgs, project: &Project) {
+    if args.model.json {
+        let diagnostics = render::to_json(&project.diagnostics, &project.sources);
+        print_output(&format!(
+            "{:#}",
+            json!({ "ok": false, "diagnostics": diagnostics })
+        ));
+    } else {
+        print_error(&render::render(
+            &project.diagnostics,
+            &project.sources,
+            std::io::stderr().is_terminal(),
+        ));
+    }
 }

@@ -201,28 +201,3 @@ fn derivatives_are_those_of_differences_for_either_choice() {
         assert_partials(&pendulum(), &y, &yp, &z);
     }
 }
-
-#[test]
-fn scratch() {
-    let program = pendulum();
-    let stop = TURNS as f64 * turn_s();
-    let results = run(&program, &[], Setup::rows_every(0.0, stop, stop / 1000.0)).unwrap();
-    let of = |name| column(&program, &results, name);
-    let energy = 0.5 * SPEED * SPEED - G;
-    let mut last = 1.0;
-    println!("{:?}", results.statistics);
-    for row in 0..results.time.len() {
-        let (x, y, vx, vy) = (of("x")[row], of("y")[row], of("vx")[row], of("vy")[row]);
-        let now = 0.5 * (vx * vx + vy * vy) + G * y;
-        let c = of("x is a state")[row];
-        if c != last || row % 25 == 0 {
-            println!(
-                "{row} {:.4} E err {:.3e} len err {:.2e} x {x:.3} y {y:.3} {c}",
-                results.time[row],
-                (now - energy) / energy,
-                x.hypot(y) - 1.0
-            );
-        }
-        last = c;
-    }
-}

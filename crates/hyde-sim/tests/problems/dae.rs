@@ -155,22 +155,3 @@ fn a_solution_that_ends_is_a_failure_there_that_names_the_valve() {
 fn derivatives_are_those_of_differences() {
     assert_partials(&tank(), &[2.0, 1.5, 0.7], &[0.7, 2.0, 0.0], &[]);
 }
-
-#[test]
-fn scratch() {
-    let program = tank();
-    let results = run(&program, &[], Setup::rows_every(0.0, 5.0, 0.25)).unwrap();
-    let (x, q) = (
-        column(&program, &results, "x"),
-        column(&program, &results, "q"),
-    );
-    println!("{:?}", results.statistics);
-    for ((t, x), q) in results.time.iter().zip(x).zip(q) {
-        let expected = 1.5 * (1.0 - q * q) - q.ln();
-        println!(
-            "{t:.3} q {q:.6} terr {:.3e} alg {:.3e}",
-            expected - t,
-            q * q * q + q - x
-        );
-    }
-}

@@ -139,8 +139,8 @@ fn closed_form() -> (f64, f64, f64) {
 fn slip_and_stick_begin_at_their_times() {
     let program = stick_slip();
     let (slip, stick, period) = closed_form();
-    let results = run(&program, &[], vec![0.0, slip + 4.5 * period]).unwrap();
-    // Four whole periods and the slip that begins the fifth, which lasts less than half of a period.
+    let results = run(&program, &[], vec![0.0, stick + 4.1 * period]).unwrap();
+    // Four whole periods, then slip and stick of the fifth.
     assert_eq!(results.events.len(), 10);
     for (number, event) in results.events.iter().enumerate() {
         let begins_slip = number % 2 == 0;
