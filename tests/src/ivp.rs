@@ -164,10 +164,10 @@ impl Problem {
 
 /// Why there is no run, without its results.
 fn cause(error: &RunError) -> String {
-    match error {
-        RunError::Failed(failure) => format!("{:?} at {} s", failure.kind, failure.t),
-        other => format!("{other:?}"),
+    if let RunError::Failed(failure) = error {
+        return format!("{:?} at {} s", failure.kind, failure.t);
     }
+    format!("{error:?}")
 }
 
 /// The last value of an output, or of an unknown: long arrays are no outputs.

@@ -60,10 +60,8 @@ pub(crate) fn refuse(system: &System, unknowns: &[Segment], diagnostics: &mut Di
 fn relates_unknowns(system: &System, unknowns: &[Segment], branch: &Branch) -> bool {
     let leaves = system.flat.exprs.below(&[branch.lhs, branch.rhs]);
     leaves.into_iter().any(|id| {
-        let (var, index, derivative) = match system.flat.exprs[id] {
-            Expr::Var(var, index) => (var, index, false),
-            Expr::Der(var, index) => (var, index, true),
-            _ => return false,
+        let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
+            return false;
         };
         let Some(cell) = System::cell(var, index) else {
             return true;

@@ -12,6 +12,7 @@ mod examples;
 mod first_order;
 mod models;
 mod points;
+mod rectifier;
 mod sampled;
 mod stages;
 mod starts;

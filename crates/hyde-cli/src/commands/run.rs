@@ -33,6 +33,16 @@ pub(crate) fn run(args: &RunArgs) -> Exit {
 pub(crate) fn solved(
     args: &RunArgs,
 ) -> Result<(Project, Compiled, Run, std::time::Duration), Exit> {
+    for (option, value) in [
+        ("stop", args.stop),
+        ("rtol", args.rtol),
+        ("atol", args.atol),
+    ] {
+        if value.is_some_and(|value| value.is_nan() || value <= 0.0) {
+            let reason = format!("`--{option}` must be positive");
+            return Err(complain(&args.model, Exit::CommandLine, &reason));
+        }
+    }
     let mut project = project::load(&args.model, Records::Needed)?;
     let compiled = project.compile(&args.model, false)?;
     project.print_warnings(&args.model);
