@@ -130,10 +130,13 @@ fn links(text: &str) -> Vec<String> {
         .collect()
 }
 
-/// Checks a model in a file called as its package. Its records are those of the bench.
+/// Checks a model in a file called as its package, `lib/parts.hyde` for `lib.parts`, so that a later model of the book can
+/// import it. Its records are those of the bench.
 fn check(code: &str, folder: &Path) -> Output {
-    let name = format!("{}.hyde", package(code));
-    std::fs::write(folder.join(&name), code).unwrap();
+    let name = format!("{}.hyde", package(code).replace('.', "/"));
+    let place = folder.join(&name);
+    std::fs::create_dir_all(place.parent().unwrap()).unwrap();
+    std::fs::write(place, code).unwrap();
     Command::new(env!("CARGO_BIN_EXE_hyde-tested"))
         .current_dir(folder)
         .args(["check", &name, "--data"])
@@ -142,10 +145,10 @@ fn check(code: &str, folder: &Path) -> Output {
         .unwrap()
 }
 
-/// The name in `package name …`.
+/// The name in `package name …` or `package folder.name …`.
 fn package(code: &str) -> &str {
     let rest = code.strip_prefix("package ").unwrap_or("model");
-    let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_'));
+    let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == '.'));
     &rest[..end.unwrap_or(rest.len())]
 }
 

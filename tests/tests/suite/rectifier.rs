@@ -5,11 +5,11 @@ use crate::models::{close, solve};
 
 #[test]
 fn a_diode_of_modes_and_one_of_relations_rectify_alike() {
-    let modes = solve("rectifier", "modes");
-    let relations = solve("rectifier", "relations");
-    let count = |times: Vec<(f64, &str)>| times.len();
+    let modes = solve("rectifier", "by_modes");
+    let relations = solve("rectifier", "by_relations");
     // 6 diodes, on and off once in each of 5 periods, and the two that conduct at first.
-    assert_eq!(count(modes.events()), 62);
+    assert_eq!(modes.run.results.statistics.events, 62);
+    assert_eq!(relations.run.results.statistics.events, 62);
     let last = |column: &[f64]| column[column.len() - 1];
     for name in ["uDC", "L1.i", "L2.i"] {
         let (a, b) = (last(modes.column(name)), last(relations.column(name)));
