@@ -73,9 +73,10 @@ impl<'a> Integrator<'a> {
         );
         options.max_step_s = setup.max_step_s.min(state.inputs.max_step_s());
         // A force that holds a state still must bound the steps, or its guards are stepped over. Without guards it need
-        // not, and a transistor amplifier at rtol 1e-8 takes 47 times the steps with it.
+        // not, and a transistor amplifier at rtol 1e-8 takes 47 times the steps with it. Without states nothing else would.
         let guarded = program.relations.iter().any(|relation| !relation.scheduled);
-        options.suppress_algebraic = !guarded || !program.selections.is_empty();
+        let moves = state.differential.contains(&true);
+        options.suppress_algebraic = moves && (!guarded || !program.selections.is_empty());
         options.first_step_s = Some(first_step_s);
         options.linear_method = LinearMethod::Auto;
         let failed = |error: Error| Failure::new(FailureKind::Solver(error.to_string()), t);

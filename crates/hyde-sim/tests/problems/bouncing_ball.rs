@@ -1,6 +1,7 @@
 //! A ball that falls and bounces: a relation, a `when` that sets the velocity, and events without end.
 
-use crate::by_hand::{Equations, Partial, assert_partials, column, origin, program, run, state};
+use crate::by_hand::{Equations, Partial, column, origin, program, run, state};
+use crate::differences::assert_partials;
 use hyde_program::{
     Assignment, Function, Point, Program, Reaction, ReactionKind, Relation, RelationUse, Target,
     Wrt,

@@ -9,7 +9,8 @@
 //! 0 = ax + pull x,  0 = ay + pull y + g
 //! ```
 
-use crate::by_hand::{Equations, Partial, RTOL, algebraic, assert_partials, column, program, run};
+use crate::by_hand::{Equations, Partial, RTOL, algebraic, column, program, run};
+use crate::differences::assert_partials;
 use hyde_program::{Function, InitialCondition, Point, Program, Selection, Wrt};
 use hyde_sim::Setup;
 use std::f64::consts::FRAC_PI_2;

@@ -6,9 +6,8 @@
 //! x = cubic q^3 + square q^2 + linear q     valve
 //! ```
 
-use crate::by_hand::{
-    Equations, Partial, RTOL, algebraic, assert_partials, column, origin, program, run, state,
-};
+use crate::by_hand::{Equations, Partial, RTOL, algebraic, column, origin, program, run, state};
+use crate::differences::assert_partials;
 use hyde_program::{Function, Point, Program, Wrt};
 use hyde_sim::{FailureKind, Setup};
 
@@ -97,8 +96,9 @@ fn the_flow_is_that_of_the_closed_form() {
         let exact = 2.0 / 3.0_f64.sqrt() * ((1.5 * 3.0_f64.sqrt() * x).asinh() / 3.0).sinh();
         // From q' (3 q^2 + 1) = x' = -q, integrated from q = 1: the time at which the flow is q.
         let expected = 1.5 * (1.0 - exact * exact) - exact.ln();
-        // An error in x is over x' = -q one in time; ten times the tolerance for what steps add up to.
-        let tolerance = 10.0 * RTOL / exact;
+        // An error in x is over x' = -q one in time; thirty times rtol for what a hundred steps
+        // add up to.
+        let tolerance = 30.0 * RTOL / exact;
         assert!(
             (t - expected).abs() <= tolerance,
             "x = {x} at {t} s, not {expected} s"

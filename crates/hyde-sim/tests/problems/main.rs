@@ -11,6 +11,7 @@ mod bouncing_ball;
 mod by_hand;
 mod chosen_states;
 mod dae;
+mod differences;
 mod oscillator;
 mod sampled;
 mod stick_slip;

@@ -1,6 +1,7 @@
 //! x'' = -w^2 x as two states, against x = cos(w t).
 
-use crate::by_hand::{Equations, Partial, assert_partials, column, program, run, state};
+use crate::by_hand::{Equations, Partial, column, program, run, state};
+use crate::differences::assert_partials;
 use hyde_program::{Function, Point, Program, Workspace, Wrt};
 use hyde_sim::Setup;
 use std::f64::consts::TAU;

@@ -1,6 +1,7 @@
 //! An integrator under a sampled proportional controller, whose held output changes a delay after the tick.
 
-use crate::by_hand::{Equations, Partial, assert_partials, column, origin, program, run, state};
+use crate::by_hand::{Equations, Partial, column, origin, program, run, state};
+use crate::differences::assert_partials;
 use hyde_program::{Clock, Constant, Function, Hold, Point, Program, TickWrt, Workspace, Wrt};
 use hyde_sim::Results;
 
@@ -144,7 +145,7 @@ fn a_tick_that_changes_nothing_does_not_start_the_solver_anew() {
     assert_eq!(moving.ticks, TICKS as u64);
     let at_rest = run_ticks(&program, &[(START, 1.0)]).statistics;
     assert_eq!(at_rest.ticks, TICKS as u64);
-    // Every held value differs from the one before, but for the first it is at its place a delay after the tick.
+    // Every held value differs from the one before.
     assert_eq!(moving.restarts - at_rest.restarts, TICKS as u64);
     // That of the start.
     assert!(at_rest.restarts <= 1, "{} restarts", at_rest.restarts);
@@ -165,7 +166,6 @@ fn derivatives_are_those_of_differences() {
     assert_partials(&program, &[0.4], &[0.7], &[0.2, 0.5]);
     let mut p = vec![0.0; program.n_parameters];
     program.kernels.parameters(&[], &mut p);
-    let point = |x| [x];
     let tick = |y: &[f64]| {
         let mut after = vec![0.2, 0.5];
         let at = at(y, &p);
@@ -174,7 +174,7 @@ fn derivatives_are_those_of_differences() {
             .tick(0, at, &mut Workspace::default(), &mut after);
         after
     };
-    let (up, down) = (tick(&point(0.5)), tick(&point(0.3)));
+    let (up, down) = (tick(&[0.5]), tick(&[0.3]));
     let partials = program
         .kernels
         .tick_partials(0, at(&[0.4], &p), &mut Workspace::default());

@@ -1,9 +1,8 @@
 //! A mass with dry friction, pulled by a spring whose end moves at a constant speed: stick fixes the velocity by a pin,
 //! whose mode exchanges the rows of the velocity and the friction force.
 
-use crate::by_hand::{
-    Equations, Partial, RTOL, algebraic, assert_partials, column, origin, program, run, state,
-};
+use crate::by_hand::{Equations, Partial, RTOL, algebraic, column, origin, program, run, state};
+use crate::differences::assert_partials;
 use hyde_program::{
     Automaton, Function, Pin, Point, Program, Reaction, ReactionKind, Relation, RelationUse, Wrt,
 };
