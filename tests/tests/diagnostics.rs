@@ -28,7 +28,7 @@ fn every_fixture_says_what_its_snapshot_shows() {
             String::from_utf8_lossy(&output.stderr),
             output.status.code().unwrap()
         );
-        insta::assert_snapshot!(name, shown);
+        insta::assert_snapshot!(name, without_rounding(&shown));
     }
 }
 
@@ -81,6 +81,18 @@ fn every_page_explains_its_code_with_examples_that_are_true() {
             assert_eq!(codes(&output), quiet, "{code}, as right:\n{text}");
         }
     }
+}
+
+/// A run that fails near a singularity ends where rounding lets it: what it says of that place is left out.
+fn without_rounding(shown: &str) -> String {
+    let line = |line: &str| match (line.find("` is "), line.ends_with(" there")) {
+        (Some(at), true) => format!("{}` is … there\n", &line[..at]),
+        _ => match line.split_once("down to a step of ") {
+            Some((start, _)) => format!("{start}down to a step of …\n"),
+            None => format!("{line}\n"),
+        },
+    };
+    shown.lines().map(line).collect()
 }
 
 /// Every fixture, in the order of its name.
