@@ -4,14 +4,17 @@
 //! of the model: a boundary flux without a condition, an input that nothing drives, states that are constrained to each
 //! other, equations too many or too few with the part of the system they conflict in (Dulmage and Mendelsohn).
 
-use crate::graph::{Bipartite, Matching};
+mod mismatch;
+
+use crate::graph::Bipartite;
 use crate::mode_constraints;
 use crate::segments::{self, Segment};
-use crate::system::{Cell, Equation, Slot, System};
+use crate::system::{Equation, Slot, System};
 use crate::{pins, unroll};
-use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
-use hyde_ir::dae::Alias;
-use hyde_ir::{Expr, ExprId, Range};
+use hyde_diag::{Diagnostics, Origin};
+use hyde_ir::{ExprId, Range};
+pub(crate) use mismatch::{name, plural};
+use mismatch::{report, undetermined};
 
 /// An equation node: a number of the list of equations, or of the slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -37,7 +40,15 @@ pub(crate) fn match_equations(
         Ok(unknowns) => unknowns,
         Err(arrays) => {
             unroll::unroll(system, &arrays, diagnostics)?;
-            segments::segments(system).ok()?
+            match segments::segments(system) {
+                Ok(unknowns) => unknowns,
+                Err(arrays) => {
+                    for array in arrays {
+                        diagnostics.push(undetermined(system, array));
+                    }
+                    return None;
+                }
+            }
         }
     };
     pins::mark(system, &unknowns);
@@ -151,333 +162,5 @@ pub(crate) fn origin(system: &System, node: Node) -> Origin {
                 |b| b.origin.clone(),
             )
         }
-    }
-}
-
-fn report(
-    system: &System,
-    nodes: &[Node],
-    unknowns: &[Segment],
-    graph: &Bipartite,
-    matching: &Matching,
-    diagnostics: &mut Diagnostics,
-) {
-    let unmatched: Vec<usize> = (0..unknowns.len())
-        .filter(|&right| matching.of_right[right].is_none())
-        .collect();
-    let surplus: Vec<usize> = (0..nodes.len())
-        .filter(|&left| matching.of_left[left].is_none())
-        .collect();
-    let mut constraints = false;
-    for &left in &surplus {
-        let (lefts, rights) = graph.over_determined(matching, left);
-        let diagnostic = if rights.is_empty() {
-            constrained(system, nodes[left])
-        } else {
-            too_many(system, nodes, unknowns, &lefts, &rights)
-        };
-        constraints |= diagnostic.code == Code::Constrained;
-        diagnostics.push(diagnostic);
-    }
-    // Parts that are fixed to each other leave the force between them open: that is no second mistake.
-    let open = |right: usize| {
-        let flow = system.flat.variables[unknowns[right].var].flow;
-        surplus.len() >= unmatched.len() && (flow || constraints)
-    };
-    // A missing boundary condition often shows at a neighbour: look for the flux in the whole part.
-    for &right in unmatched.iter().filter(|&&right| !open(right)) {
-        let (_, part) = graph.under_determined(matching, right);
-        let trace = part
-            .iter()
-            .find(|&&right| system.flat.variables[unknowns[right].var].trace.is_some());
-        let input = part
-            .iter()
-            .find(|&&right| system.flat.variables[unknowns[right].var].input);
-        let diagnostic = match (trace, input) {
-            (Some(&trace), _) => missing_boundary(system, unknowns[trace]),
-            (None, Some(&input)) => unbound_input(system, unknowns[input]),
-            (None, None) => too_few(system, nodes, unknowns, graph, matching, right),
-        };
-        diagnostics.push(diagnostic);
-    }
-}
-
-fn missing_boundary(system: &System, unknown: Segment) -> Diagnostic {
-    let variable = &system.flat.variables[unknown.var];
-    let place = variable.trace.clone().unwrap_or_default();
-    let flux = crate::matching::short(&variable.name);
-    let flux = flux
-        .strip_suffix(".left")
-        .or_else(|| flux.strip_suffix(".right"))
-        .unwrap_or(flux);
-    Diagnostic::error(
-        Code::MissingBoundary,
-        format!("no boundary condition at `{place}`"),
-    )
-    .label(
-        variable.origin.span,
-        format!("its flux at `{place}` is not determined"),
-    )
-    .in_component(system, &variable.origin)
-    .note("each end needs one condition, and one more for each connector variable set there")
-    .help(format!(
-        "write `{flux} = 0 indomain {place};` for a free end, or give the value of the field there"
-    ))
-}
-
-fn unbound_input(system: &System, unknown: Segment) -> Diagnostic {
-    let variable = &system.flat.variables[unknown.var];
-    let name = &variable.name;
-    Diagnostic::error(
-        Code::UnboundInput,
-        format!("the input `{name}` has nothing to read"),
-    )
-    .placed(
-        system,
-        &variable.origin,
-        &format!("gives no `{}`", short(name)),
-        "declared here",
-    )
-    .help(format!(
-        "bind it where its component is declared: `({} = …)`, or write an equation: `{name} = …;`",
-        short(name)
-    ))
-}
-
-fn too_few(
-    system: &System,
-    nodes: &[Node],
-    unknowns: &[Segment],
-    graph: &Bipartite,
-    matching: &Matching,
-    right: usize,
-) -> Diagnostic {
-    let unknown = unknowns[right];
-    let variable = &system.flat.variables[unknown.var];
-    let what = name(system, unknown);
-    let (lefts, rights) = graph.under_determined(matching, right);
-    let mut diagnostic = Diagnostic::error(
-        Code::TooFewEquations,
-        format!("no equation determines `{what}`"),
-    )
-    .placed(
-        system,
-        &variable.origin,
-        "in this component",
-        "declared here",
-    );
-    if !lefts.is_empty() {
-        let others: Vec<String> = rights
-            .iter()
-            .take(6)
-            .map(|&right| format!("`{}`", name(system, unknowns[right])))
-            .collect();
-        let more = if rights.len() > 6 { ", …" } else { "" };
-        diagnostic = diagnostic.note(format!(
-            "{} for the {} unknowns {}{more}",
-            plural(lefts.len(), "equation"),
-            rights.len(),
-            others.join(", ")
-        ));
-        for &left in lefts.iter().take(3) {
-            let origin = origin(system, nodes[left]);
-            let text = match origin.instance.as_str() {
-                "" => "this equation is among them".to_owned(),
-                instance => format!("this equation of `{instance}` is among them"),
-            };
-            diagnostic = diagnostic.label(origin.span, text);
-        }
-    }
-    let help = match variable.flow {
-        true => "connect its connector, or give the force a law".to_owned(),
-        false => format!("add an equation for it: `{} = …;`", short(&variable.name)),
-    };
-    diagnostic.help(help)
-}
-
-/// An equation between states alone: they cannot all be states.
-fn constrained(system: &System, node: Node) -> Diagnostic {
-    let mut names: Vec<String> = Vec::new();
-    for (_, lhs, rhs) in sides(system, node) {
-        for id in system.flat.exprs.below(&[lhs, rhs]) {
-            if let Expr::Var(var, index) | Expr::Der(var, index) = system.flat.exprs[id] {
-                let text = match System::cell(var, index) {
-                    Some(cell) => system.cell_name(cell),
-                    None => system.flat.variables[var].name.clone(),
-                };
-                if !names.contains(&text) && system.is_continuous(var) {
-                    names.push(text);
-                }
-            }
-        }
-    }
-    let origin = origin(system, node);
-    if names.is_empty() {
-        return nothing_new(system, &origin);
-    }
-    let list: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-    Diagnostic::error(Code::Constrained, format!("{} are constrained to each other", list.join(" and ")))
-        .label(origin.span, "this equation fixes one by the others")
-        .note("each of them is a state with an equation for its derivative: the model needs index reduction")
-        .help("put a stiffness between the parts, or describe the joined parts by one of the states")
-}
-
-/// An equation of which everything is known: those that determined it before are the conflict.
-fn nothing_new(system: &System, origin: &Origin) -> Diagnostic {
-    let mut known: Vec<(Cell, &Origin)> = Vec::new();
-    let of_it = system.written.iter().filter(|(.., at)| at == origin);
-    for (lhs, rhs, _) in of_it {
-        for id in system.flat.exprs.below(&[*lhs, *rhs]) {
-            let Expr::Var(var, index) = system.flat.exprs[id] else {
-                continue;
-            };
-            let Some(cell) = System::cell(var, index) else {
-                continue;
-            };
-            if let Some(by) = value_given_by(system, cell)
-                && !known.iter().any(|(other, _)| *other == cell)
-            {
-                known.push((cell, by));
-            }
-        }
-    }
-    let names: Vec<String> = known
-        .iter()
-        .map(|(cell, _)| format!("`{}`", system.cell_name(*cell)))
-        .collect();
-    let message = match names.as_slice() {
-        [] => "this equation determines nothing new".to_owned(),
-        [only] => format!("{only} is determined twice"),
-        several => format!("{} are determined already", several.join(" and ")),
-    };
-    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message)
-        .label(origin.span, "all it names is known without it");
-    for ((_, by), name) in known.iter().zip(&names) {
-        let place = system.component(by).map_or(by.span, |(_, span)| span);
-        diagnostic = diagnostic.label(place, format!("{name} is determined here"));
-    }
-    let parts = known.iter().all(|(_, by)| system.component(by).is_some());
-    diagnostic.help(if parts && known.len() > 1 {
-        "take one of the parts away, or put something elastic between them"
-    } else {
-        "remove one of these"
-    })
-}
-
-/// The equation that gave an eliminated cell its value, through its aliases.
-fn value_given_by(system: &System, cell: Cell) -> Option<&Origin> {
-    let mut at = cell;
-    for _ in 0..=system.aliases.len() {
-        if let Some(origin) = system.valued.get(&at) {
-            return Some(origin);
-        }
-        match system.aliases.get(&at)? {
-            Alias::Of { var, element, .. } => at = (*var, *element),
-            Alias::Value(_) => return None,
-        }
-    }
-    None
-}
-
-/// Labels in the user's own file for what lies in a component of a library.
-trait Placed: Sized {
-    /// The declaration of the component first, then the place itself; at the top the place alone.
-    fn placed(self, system: &System, origin: &Origin, component: &str, here: &str) -> Self;
-    /// The declaration of the component after the other labels; nothing at the top.
-    fn in_component(self, system: &System, origin: &Origin) -> Self;
-}
-
-impl Placed for Diagnostic {
-    fn placed(self, system: &System, origin: &Origin, component: &str, here: &str) -> Self {
-        match system.component(origin) {
-            Some((_, span)) => self.label(span, component).label(origin.span, here),
-            None => self.label(origin.span, here),
-        }
-    }
-
-    fn in_component(self, system: &System, origin: &Origin) -> Self {
-        match system.component(origin) {
-            Some((_, span)) => self.label(span, format!("in `{}`", origin.instance)),
-            None => self,
-        }
-    }
-}
-
-fn too_many(
-    system: &System,
-    nodes: &[Node],
-    unknowns: &[Segment],
-    lefts: &[usize],
-    rights: &[usize],
-) -> Diagnostic {
-    let names: Vec<String> = rights
-        .iter()
-        .take(6)
-        .map(|&right| format!("`{}`", name(system, unknowns[right])))
-        .collect();
-    let more = if rights.len() > 6 { ", …" } else { "" };
-    let message = format!(
-        "{} for {}: {}{more}",
-        plural(lefts.len(), "equation"),
-        plural(rights.len(), "unknown"),
-        names.join(", ")
-    );
-    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message);
-    let mut instances: Vec<String> = Vec::new();
-    for &left in lefts.iter().take(8) {
-        let origin = origin(system, nodes[left]);
-        let text = match origin.instance.as_str() {
-            "" => "one of the equations".to_owned(),
-            instance => format!("one of the equations, of `{instance}`"),
-        };
-        diagnostic = diagnostic.label(origin.span, text);
-        let instance = origin.instance.as_str().to_owned();
-        if !instance.is_empty() && !instances.contains(&instance) {
-            instances.push(instance);
-        }
-    }
-    if !instances.is_empty() {
-        let list: Vec<String> = instances
-            .iter()
-            .map(|instance| format!("`{instance}`"))
-            .collect();
-        diagnostic = diagnostic.note(format!("in {}", list.join(", ")));
-    }
-    diagnostic.help("remove one of them, or put something elastic between the parts that both fix")
-}
-
-/// The name of an unknown: of a whole array with its bounds.
-pub(crate) fn name(system: &System, unknown: Segment) -> String {
-    let variable = &system.flat.variables[unknown.var];
-    let text = if unknown.len() == 1 {
-        variable.element_name(unknown.first)
-    } else {
-        format!(
-            "{}..{}",
-            variable.element_name(unknown.first).trim_end_matches(']'),
-            unknown.last + usize::try_from(variable.first).unwrap_or(0)
-        ) + "]"
-    };
-    if unknown.state {
-        format!("der({text})")
-    } else {
-        text
-    }
-}
-
-pub(crate) fn plural(count: usize, word: &str) -> String {
-    if count == 1 {
-        format!("1 {word}")
-    } else {
-        format!("{count} {word}s")
-    }
-}
-
-fn short(name: &str) -> &str {
-    // `screw.q.left` is shown as `q.left`.
-    match name.rsplit_once('.') {
-        Some((before, "left" | "right")) => &name[before.rfind('.').map_or(0, |at| at + 1)..],
-        Some((_, last)) => last,
-        None => name,
     }
 }

@@ -73,7 +73,7 @@ impl Instant<'_, '_> {
             }
             self.apply(&fired, &mut causes)?;
             let key: Vec<u64> = self.mode_key();
-            let repeats = seen.contains(&key) && fired.iter().all(|&r| self.is_transition(r));
+            let repeats = seen.contains(&key) && fired.iter().all(|&r| self.only_changes_mode(r));
             let again = repeats && !fired.is_empty();
             if again && looked_closer {
                 return Err(self.chattering(&causes));
@@ -332,11 +332,14 @@ impl Instant<'_, '_> {
         Ok(())
     }
 
-    fn is_transition(&self, reaction: usize) -> bool {
-        matches!(
-            self.state.program.reactions[reaction].kind,
-            ReactionKind::Transition { .. }
-        )
+    /// Whether a reaction leads to another mode and no more. One that lets a state jump, as an impact does, may come back to
+    /// its mode at the same instant: the next ball in the row is struck.
+    fn only_changes_mode(&self, reaction: usize) -> bool {
+        let program = self.state.program;
+        let reaction = &program.reactions[reaction];
+        let mut targets = program.assignments[reaction.assignments.clone()].iter();
+        matches!(reaction.kind, ReactionKind::Transition { .. })
+            && !targets.any(|assignment| matches!(assignment.target, Target::State(_)))
     }
 
     fn mode_key(&self) -> Vec<u64> {
