@@ -41,19 +41,18 @@ pub(crate) fn reduce(system: &mut System) {
         system.flat.variables.clone(),
         system.starts.clone(),
     );
-    loop {
+    // Every round differentiates an equation, and none more than a few times.
+    for _ in 0..usize::from(MAX_ORDER) * (equations.len() + 1) {
         match deficient(system) {
-            Some(set) if set.is_empty() => break,
+            Some(set) if set.is_empty() => return add_rows(system),
             Some(set) if differentiate(system, &set).is_some() => continue,
-            Some(_) | None => {}
+            Some(_) | None => break,
         }
-        system.equations = equations;
-        system.flat.variables = variables;
-        system.starts = starts;
-        system.groups.clear();
-        return;
     }
-    add_rows(system);
+    system.equations = equations;
+    system.flat.variables = variables;
+    system.starts = starts;
+    system.groups.clear();
 }
 
 /// The equations of which more are than unknowns in them: empty if there are none, `None` if the count alone is wrong.
@@ -174,6 +173,10 @@ fn name_rates(system: &mut System, number: usize) -> Option<()> {
     let mut derivatives: Vec<Cell> = Vec::new();
     for id in system.flat.exprs.below(&[equation.lhs, equation.rhs]) {
         if let Expr::Der(var, index) = system.flat.exprs[id] {
+            // A recorded column has no derivative.
+            if !system.is_continuous(var) {
+                return None;
+            }
             derivatives.push(System::cell(var, index)?);
         }
     }

@@ -1,9 +1,11 @@
 //! What is asked of a program beside one solution: a run with its record ([`read_record`]), measures and expectations ([`run`]); the
 //! system linearised about an operating point ([`linearize`]), its frequency response with the sampled loop closed
-//! ([`frequency_response`]) and its modes ([`modes`]); the response swept on the full hybrid model ([`swept_response`]).
+//! ([`frequency_response`]) and its modes ([`modes`]); the response swept on the full hybrid model ([`swept_response`]); the
+//! limit test of an effect ([`limit`]).
 
 mod bode;
 mod compare;
+mod limit;
 mod linearize;
 mod modes;
 mod record;
@@ -12,6 +14,7 @@ mod swept;
 
 pub use bode::{BodeError, frequency_response};
 pub use compare::{Channel, CompareError};
+pub use limit::{Answer, LIMIT_LEFT, LIMIT_PART, limit};
 pub use linearize::{Linear, LinearizeError, linearize};
 pub use modes::{NaturalMode, modes};
 pub use record::read_record;

@@ -5,9 +5,8 @@
 //! ```
 
 use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
-use crate::instantiate::{Replacement, written};
-use crate::model::{Model, listed};
-use hyde_diag::{Code, Diagnostic, Span};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic};
 use hyde_ir::VarId;
 use hyde_syntax::ast::{Element, Expr, Prefix, Reference};
 use std::collections::HashMap;
@@ -60,44 +59,23 @@ impl Model<'_, '_> {
                 self.wrap_equation(number);
             }
         }
-        let unused: Vec<(Span, String)> = self
+        let unused: Vec<(InstanceId, &Reference)> = self
             .hooks
             .iter()
             .filter(|hook| !hook.used)
-            .map(|hook| (hook.site.span, written(hook.site)))
+            .map(|hook| (hook.scope, hook.site))
             .collect();
-        for (span, site) in unused {
-            let known: Vec<&str> = self.instances[0].members.keys().copied().collect();
-            let help = format!("components here: {}", listed(&known));
-            self.report(
-                Diagnostic::error(
-                    Code::UnknownName,
-                    format!("there is no `{site}` to put the effect on"),
-                )
-                .label(span, "no such component or connector")
-                .help(help),
-            );
+        for (scope, site) in unused {
+            self.no_place(scope, site);
         }
-        for number in 0..self.replacements.len() {
-            let Replacement {
-                host,
-                component,
-                used,
-                ..
-            } = self.replacements[number];
-            if !used {
-                let class = self.instances[host].class.name.text.clone();
-                self.report(
-                    Diagnostic::error(
-                        Code::UnknownName,
-                        format!(
-                            "`{class}` has no component `{}` to replace",
-                            component.dotted()
-                        ),
-                    )
-                    .label(component.span, "not found in the host"),
-                );
-            }
+        let unused: Vec<(InstanceId, &Reference)> = self
+            .replacements
+            .iter()
+            .filter(|replacement| !replacement.used)
+            .map(|replacement| (replacement.host, replacement.component))
+            .collect();
+        for (host, component) in unused {
+            self.no_component(host, component);
         }
     }
 
@@ -122,19 +100,9 @@ impl Model<'_, '_> {
         if declared.is_some_and(|declaration| declaration.prefixes.iter().any(is_site)) {
             return;
         }
-        let class = self.instances[host].class.name.text.clone();
         self.wraps[number].used = true;
-        let diagnostic = Diagnostic::error(
-            Code::UnknownName,
-            format!("`{class}` has no site `{}`", site.dotted()),
-        )
-        .label(site.span, "only sites, inputs and outputs can be wrapped");
-        self.report(match declared {
-            Some(declaration) => diagnostic
-                .label(declaration.span, "declared here, not as a site")
-                .help("declare it `site`"),
-            None => diagnostic,
-        });
+        let declared = declared.map(|declaration| declaration.span);
+        self.no_site(host, site, declared);
     }
 
     /// `x = e`, written as an equation of the host, becomes `x = e2` with e for x.

@@ -8,7 +8,8 @@
 //! 3. all their assignments, from the values before; states that the new modes fix take their values (M3);
 //! 4. consistent values.
 //!
-//! Fifty rounds, or modes that were met before at this instant, end the run: the conditions would fire for ever.
+//! Fifty rounds, or modes that were met before at this instant without a state having jumped, end the run: the conditions
+//! would fire for ever.
 
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};

@@ -52,7 +52,7 @@ impl<'a> Model<'a, '_> {
         let name = declarator.name.text.as_str();
         let mut inner = self.modifiers_for(name, &item.modifiers);
         self.modifiers_of(&declarator.changes, id, &mut inner);
-        let by_effect = self.replaced(id, name, &mut inner);
+        let by_effect = self.replaced(id, declaration, declarator, &mut inner);
         let class = by_effect.unwrap_or((file, class));
         let Some((file, class)) = self.redeclared(declaration, declarator, &inner, class) else {
             self.undeclared.insert(name);

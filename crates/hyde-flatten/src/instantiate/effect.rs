@@ -19,7 +19,8 @@ use hyde_diag::{Code, Diagnostic, InstancePath, MadeBy};
 use hyde_ir::flat::Fit;
 use hyde_ir::{Expr as Ir, Index};
 use hyde_syntax::ast::{
-    Change, Class, ClassBody, ClassKind, EffectUse, Element, Prefix, Reference,
+    Change, Class, ClassBody, ClassKind, Declaration, Declarator, EffectUse, Element, Prefix,
+    Reference,
 };
 
 /// An effect to be put on an instance once that is made.
@@ -30,7 +31,7 @@ pub(crate) struct Hook<'a> {
     class: &'a Class,
     changes: &'a [Change],
     /// The model that uses the effect: its changes stand in its scope.
-    scope: InstanceId,
+    pub(crate) scope: InstanceId,
     pub(crate) used: bool,
 }
 
@@ -96,16 +97,7 @@ impl<'a> Model<'a, '_> {
             ..
         } = self.hooks[number];
         if !self.fits_on(host, file, class) {
-            let own = self.instances[host].class;
-            let wanted = host_of(class).map_or_else(String::new, Reference::dotted);
-            self.report(
-                Diagnostic::error(
-                    Code::WrongType,
-                    format!("`{}` does not fit on `{}`", class.name.text, written(site)),
-                )
-                .label(site.span, format!("this is a `{}`", own.name.text))
-                .help(format!("`{}` is for a `{wanted}`", class.name.text)),
-            );
+            self.does_not_fit(host, file, class, site);
             return;
         }
         let path = self.path(host);
@@ -155,7 +147,16 @@ impl<'a> Model<'a, '_> {
                 .push(format!("`{}` is neutral and left out", self.path(id)));
             return;
         }
+        let added = rest.iter().find_map(|item| match item.element {
+            Element::Add(equation) => Some(equation.span),
+            _ => None,
+        });
         let connector = self.instances[host].class.kind == ClassKind::Connector;
+        if let (false, Some(span)) = (connector, added) {
+            self.nothing_to_join(host, class, span);
+            self.instances[id].elements = Vec::new();
+            return;
+        }
         if connector {
             let (file, class) = (self.instances[host].file, self.instances[host].class);
             let place = Place {
@@ -220,10 +221,8 @@ impl<'a> Model<'a, '_> {
     pub(crate) fn fits(&self) -> Vec<Fit> {
         let mut found = Vec::new();
         for (file, package, class) in self.names.effects() {
-            let sites = (0..self.instances.len()).filter(|&host| {
-                self.instances[host].class.kind != ClassKind::Effect
-                    && self.fits_on(host, file, class)
-            });
+            let sites = (0..self.instances.len())
+                .filter(|&host| !self.is_of_effect(host) && self.fits_on(host, file, class));
             let name = &class.name.text;
             found.push(Fit {
                 effect: package.map_or_else(|| name.clone(), |package| format!("{package}.{name}")),
@@ -235,6 +234,12 @@ impl<'a> Model<'a, '_> {
             });
         }
         found
+    }
+
+    /// Whether an instance is an effect or a part of one.
+    fn is_of_effect(&self, id: InstanceId) -> bool {
+        std::iter::successors(Some(id), |&id| self.instances[id].parent)
+            .any(|id| self.instances[id].class.kind == ClassKind::Effect)
     }
 
     /// Whether an instance is of the type that an effect is for, or of one that extends it.
@@ -307,19 +312,34 @@ impl<'a> Model<'a, '_> {
     pub(super) fn replaced(
         &mut self,
         host: InstanceId,
-        component: &str,
+        declaration: &Declaration,
+        declarator: &Declarator,
         modifiers: &mut Vec<Modifier<'a>>,
     ) -> Option<(FileIndex, &'a Class)> {
+        let name = declarator.name.text.as_str();
         let number = self.replacements.iter().position(|replacement| {
-            replacement.host == host && replacement.component.as_word() == Some(component)
+            replacement.host == host && replacement.component.as_word() == Some(name)
         })?;
         self.replacements[number].used = true;
         let Replacement {
+            component,
             class,
             changes,
             effect,
             ..
         } = self.replacements[number];
+        if !declaration.prefixes.contains(&Prefix::Replaceable) {
+            self.report(
+                Diagnostic::error(Code::FinalModified, format!("`{name}` is not replaceable"))
+                    .label(component.span, "cannot be replaced")
+                    .label(declarator.name.span, "declared here, for good")
+                    .help(format!(
+                        "declare it `replaceable {} {name}`",
+                        declaration.type_name.dotted()
+                    )),
+            );
+            return None;
+        }
         let mut own = Vec::new();
         self.modifiers_of(changes, effect, &mut own);
         // The effect's own modifications come before those of the component it replaces.
@@ -329,7 +349,7 @@ impl<'a> Model<'a, '_> {
 }
 
 /// The type an effect is for.
-fn host_of(class: &Class) -> Option<&Reference> {
+pub(crate) fn host_of(class: &Class) -> Option<&Reference> {
     match &class.body {
         ClassBody::Long { host, .. } => host.as_ref(),
         ClassBody::Short { .. } => None,
