@@ -18,7 +18,7 @@ mod variable;
 use crate::instance::{Instance, InstanceId};
 use crate::model::{Model, listed};
 use crate::names::{FileIndex, nearest};
-pub(crate) use effect::{Hook, Replacement, written};
+pub(crate) use effect::{Hook, Replacement, host_of, written};
 use hyde_diag::{Code, Diagnostic, InstancePath, Span};
 use hyde_ir::ClockId;
 use hyde_syntax::ast::{

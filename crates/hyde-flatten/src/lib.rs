@@ -26,6 +26,7 @@ mod lower;
 mod model;
 mod modes;
 mod names;
+mod site;
 mod structural;
 mod wrap;
 

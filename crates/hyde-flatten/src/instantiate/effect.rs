@@ -147,9 +147,12 @@ impl<'a> Model<'a, '_> {
                 .push(format!("`{}` is neutral and left out", self.path(id)));
             return;
         }
-        let added = rest.iter().find_map(|item| match item.element {
-            Element::Add(equation) => Some(equation.span),
-            _ => None,
+        let added = rest.iter().find_map(|item| {
+            if let Element::Add(equation) = item.element {
+                Some(equation.span)
+            } else {
+                None
+            }
         });
         let connector = self.instances[host].class.kind == ClassKind::Connector;
         if let (false, Some(span)) = (connector, added) {
