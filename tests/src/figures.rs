@@ -6,6 +6,7 @@ mod clif_growth;
 mod compile;
 mod emps;
 mod energy;
+mod event_suite;
 mod events;
 mod fixtures;
 mod ivp;
@@ -38,6 +39,7 @@ pub const FIGURES: &[Figure] = &[
     compile::Y_AXIS,
     compile::GROWTH,
     fixtures::FIGURE,
+    event_suite::FIGURE,
     events::P2,
     events::P3,
 ];

@@ -1,6 +1,7 @@
 //! What the tests across crates and the figures share: the examples, compiled as the command line compiles them.
 
 mod data;
+pub mod events;
 mod example;
 pub mod figures;
 pub mod ivp;
