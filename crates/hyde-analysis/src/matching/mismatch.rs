@@ -227,8 +227,12 @@ fn nothing_new(system: &System, origin: &Origin) -> Diagnostic {
         [only] => format!("{only} is determined twice"),
         several => format!("{} are determined already", several.join(" and ")),
     };
-    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message)
-        .label(origin.span, "all it names is known without it");
+    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message).placed(
+        system,
+        origin,
+        "an equation too many in this component: is it connected?",
+        "all it names is known without it",
+    );
     for ((_, by), name) in known.iter().zip(&names) {
         let place = system.component(by).map_or(by.span, |(_, span)| span);
         diagnostic = diagnostic.label(place, format!("{name} is determined here"));
