@@ -15,6 +15,7 @@ mod promise;
 mod residual_cost;
 mod start;
 mod stick;
+mod travelling_nut;
 
 pub use promise::{Figure, Measured, Promise, Session};
 pub use start::{START, first_step};
@@ -42,4 +43,6 @@ pub const FIGURES: &[Figure] = &[
     event_suite::FIGURE,
     events::P2,
     events::P3,
+    travelling_nut::DRIFT,
+    travelling_nut::RIPPLE,
 ];

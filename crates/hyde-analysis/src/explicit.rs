@@ -2,7 +2,9 @@
 //!
 //! States and their derivatives count as known, so `a.tau = J*der(w)` is explicit too. The definitions are ordered by
 //! Tarjan's algorithm; of a loop one variable after the other is torn (kept in the vector with its equation as the
-//! residual) until the rest is explicit. Array variables are kept or taken whole. The unknown of a `modes` block stays in
+//! residual) until the rest is explicit. A variable that reads much of an array (a field at a place that moves) stays in
+//! the vector: in its place every equation that reads it would depend on all of that. Array variables are kept or taken
+//! whole. The unknown of a `modes` block stays in
 //! the vector where a mode fixes a state (its row changes place then) or does not give it explicitly without a division by
 //! parameters.
 
@@ -12,6 +14,9 @@ use crate::segments::Segment;
 use crate::solve::{divisor, solve_for};
 use crate::system::System;
 use hyde_ir::{Expr, ExprId, Index, Range};
+
+/// More values than the components of a drive have connectors, fewer than a field has nodes.
+const A_FEW: usize = 8;
 
 /// What becomes of the unknowns.
 pub(crate) struct Order {
@@ -44,7 +49,9 @@ pub(crate) fn choose(system: &mut System, matched: &Matched) -> Order {
             continue;
         }
         explicit[number] = solve(system, matched, number, &declared);
-        in_vector[number] = explicit[number].is_none();
+        in_vector[number] = explicit[number]
+            .as_ref()
+            .is_none_or(|solution| reads_much(system, solution));
     }
     keep_arrays_together(matched, &mut in_vector);
     loop {
@@ -183,6 +190,15 @@ fn solve(
             })
         }
     }
+}
+
+/// Whether a definition reads more than a few values.
+fn reads_much(system: &System, solution: &Explicit) -> bool {
+    let leaves = system.flat.exprs.below(&[solution.value]);
+    let read = leaves
+        .into_iter()
+        .filter(|&id| system.flat.exprs[id].access().is_some());
+    read.count() > A_FEW
 }
 
 /// An array of which a piece stays in the vector stays there whole; so does one in several pieces.

@@ -14,9 +14,11 @@
 //! stands beside the fluxes. `fv` takes it at the node. `fem` weights it by the mean of the consistent and the lumped
 //! mass matrix, 1/12, 10/12, 1/12 (5/6, 1/6 at an end), which raises the order of the frequencies from two to four
 //! (Goudreau and Taylor, Comp. Meth. Appl. Mech. Eng. 2, 1973); both conserve energy. `load(x, F)` adds F with the
-//! weights of the linear shape functions at x, the same with which `field.at(x)` reads (F4).
+//! same weights with which `field.at(x)` reads (F4): see `point`.
 
 mod equation;
+mod kernel;
 mod mesh;
+mod point;
 mod trace;
 mod value;

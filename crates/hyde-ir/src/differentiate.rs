@@ -31,6 +31,9 @@ impl ExprArena {
                         Some(self.if_else(c, da.unwrap_or(zero), db.unwrap_or(zero)))
                     }
                 }
+            } else if let Expr::NoEvent(inner) = expr {
+                // What makes no event has a derivative that makes none.
+                known[&inner].map(|derivative| self.no_event(derivative))
             } else {
                 let mut sum: Option<ExprId> = None;
                 for (position, child) in children.iter().enumerate() {

@@ -19,4 +19,5 @@ mod sampled;
 mod stages;
 mod starts;
 mod stick_slip;
+mod travelling_nut;
 mod without_states;

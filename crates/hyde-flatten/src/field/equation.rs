@@ -1,6 +1,7 @@
 //! Equations of fields: bindings, boundary equations, and equations at every node with their loads.
 
-use super::mesh::{Point, collapsed, counted_index, pieces, shifted};
+use super::mesh::{collapsed, counted_index, pieces, shifted};
+use super::point::Point;
 use crate::instance::{DomainId, Field, FieldPlace, Scope, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
@@ -135,14 +136,10 @@ impl<'a> Model<'a, '_> {
             let force = self.value(force, scope);
             loads.push((point, force));
         }
-        let mut loaded: Vec<i32> = Vec::new();
-        for (point, _) in &loads {
-            let node = i32::try_from(point.node).unwrap_or(i32::MAX);
-            loaded.push(node);
-            if !point.at_node {
-                loaded.push(node + 1);
-            }
-        }
+        let loaded: Vec<i32> = loads
+            .iter()
+            .flat_map(|(point, _)| point.single_nodes(n))
+            .collect();
         let origin = self
             .origin(scope.instance, span)
             .made_by(MadeBy::Discretization);
@@ -167,7 +164,7 @@ impl<'a> Model<'a, '_> {
             };
             let mut right = self.total(&fluxes, &at(0));
             for (point, force) in &loads {
-                right = self.with_load(right, point, force.id, range, n, domain);
+                right = self.with_load(right, point, force.id, index, n, domain);
             }
             let (lhs, rhs) = (
                 self.fix_counter(left, range),
@@ -221,39 +218,25 @@ impl<'a> Model<'a, '_> {
         sum
     }
 
-    /// Adds the share of a point load at a node: shape function over the node's length.
+    /// Adds the share of a point load at a node: its weight over the node's length.
     fn with_load(
         &mut self,
         sum: ExprId,
         point: &Point,
         force: ExprId,
-        range: Range,
+        node: Index,
         n: i32,
         domain: DomainId,
     ) -> ExprId {
-        let node = i32::try_from(point.node).unwrap_or(i32::MAX);
-        if range.first != range.last
-            || !(range.first == node || (!point.at_node && range.first == node + 1))
-        {
+        let Some(weight) = self.weight(point, node, n) else {
             return sum;
-        }
+        };
         let (_, h, _) = self.mesh(domain);
         let arena = &mut self.flat.exprs;
+        let at_end = node.stride == 0 && (node.offset == 0 || node.offset == n);
         let half = arena.constant(0.5);
-        let length = if range.first == 0 || range.first == n {
-            arena.times(half, h)
-        } else {
-            h
-        };
+        let length = if at_end { arena.times(half, h) } else { h };
         let density = arena.over(force, length);
-        let weight = if point.at_node {
-            arena.constant(1.0)
-        } else if range.first == node {
-            let one = arena.constant(1.0);
-            arena.minus(one, point.share)
-        } else {
-            point.share
-        };
         let share = arena.times(weight, density);
         arena.plus(sum, share)
     }

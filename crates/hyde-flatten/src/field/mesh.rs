@@ -1,18 +1,9 @@
 //! The mesh of a domain: cell length, places on it, and runs of nodes.
 
 use crate::dimension::Dim;
-use crate::instance::{DomainId, Scope, Setting, Typed};
+use crate::instance::{DomainId, Scope, Setting};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
 use hyde_ir::{ExprId, Index, Range};
-use hyde_syntax::ast::Expr;
-
-/// A point on the mesh: the node left of it, its cell's share left of it (of parameters), and whether it is the node.
-pub(super) struct Point {
-    pub(super) node: usize,
-    pub(super) share: ExprId,
-    pub(super) at_node: bool,
-}
 
 impl<'a> Model<'a, '_> {
     /// Lower end, cell length, and dimension of a domain.
@@ -34,58 +25,6 @@ impl<'a> Model<'a, '_> {
         let mesh = (from.id, h, to.dim);
         self.domains[domain].mesh = Some(mesh.clone());
         mesh
-    }
-
-    /// Where a place of parameters lies on the mesh: the cell is structural, the share within it is not.
-    pub(super) fn point(
-        &mut self,
-        domain: DomainId,
-        at: &'a Expr,
-        scope: &Scope<'a>,
-    ) -> Option<Point> {
-        let (from, h, dim) = self.mesh(domain);
-        let place = self.value(at, &scope.with(Setting::Parameter));
-        let along = Typed {
-            dim,
-            ..place.clone()
-        };
-        self.agree(
-            &place,
-            &along,
-            "the place and the coordinate are",
-            scope.instance,
-        );
-        let arena = &mut self.flat.exprs;
-        let distance = arena.minus(place.id, from);
-        let number = arena.over(distance, h);
-        let value = self.evaluate(number)?;
-        let cells = self.domains[domain].cells;
-        let outside = !(-1e-9..=cells as f64 + 1e-9).contains(&value);
-        if outside {
-            self.report(
-                Diagnostic::error(Code::FieldUse, "the place lies outside the domain")
-                    .label(
-                        at.span,
-                        format!("{:.3} cells from the start, of {cells}", value),
-                    )
-                    .label(self.domains[domain].span, "the domain"),
-            );
-            return None;
-        }
-        let nearest = value.round();
-        let at_node = (value - nearest).abs() < 1e-9;
-        let node = if at_node {
-            nearest as usize
-        } else {
-            value.floor() as usize
-        };
-        let first = self.flat.exprs.constant(node as f64);
-        let share = self.flat.exprs.minus(number, first);
-        Some(Point {
-            node,
-            share,
-            at_node,
-        })
     }
 
     pub(super) fn cells(&self, domain: DomainId) -> i32 {

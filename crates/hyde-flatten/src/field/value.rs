@@ -142,7 +142,7 @@ impl<'a> Model<'a, '_> {
         self.typed(id, dim, span)
     }
 
-    /// `th.at(x)`: a nodal field read at a place, with the weights that `load` uses.
+    /// `th.at(x)`: a nodal field read at a place.
     pub(crate) fn field_at(
         &mut self,
         function: &'a Reference,
@@ -171,18 +171,15 @@ impl<'a> Model<'a, '_> {
         let Some(point) = self.point(field.domain, at, scope) else {
             return self.poison(span);
         };
-        let at_index = |node: usize| Index::fixed(i32::try_from(node).unwrap_or(i32::MAX));
-        let arena = &mut self.flat.exprs;
-        let left = arena.add(Ir::Var(var, at_index(point.node)));
-        let id = if point.at_node {
-            left
-        } else {
-            let right = arena.add(Ir::Var(var, at_index(point.node + 1)));
-            let one = arena.constant(1.0);
-            let rest = arena.minus(one, point.share);
-            let (a, b) = (arena.times(rest, left), arena.times(point.share, right));
-            arena.plus(a, b)
-        };
+        let n = self.cells(field.domain);
+        let mut id = self.flat.exprs.constant(0.0);
+        for node in 0..=n {
+            if let Some(weight) = self.weight(&point, Index::fixed(node), n) {
+                let value = self.flat.exprs.add(Ir::Var(var, Index::fixed(node)));
+                let share = self.flat.exprs.times(weight, value);
+                id = self.flat.exprs.plus(id, share);
+            }
+        }
         let dim = self.dim(var);
         self.typed(id, dim, span)
     }

@@ -1,0 +1,185 @@
+//! A place on a mesh, fixed or moving, and the weights with which it reads and loads the nodes (F4).
+//!
+//! A place of parameters lies in one cell for good and has the weights of the linear shape functions there. A place that
+//! moves, a nut on its screw, has weights that change smoothly as it passes the nodes:
+//!
+//! ```text
+//! th.at(xn)                th[0]*weight(xn, 0) + … + th[n]*weight(xn, n)
+//! load(xn, F), node k      … + F*weight(xn, k)/h
+//! ```
+//!
+//! Reading and loading share the weights, so the power that leaves one side of the pair arrives at the other.
+
+use super::kernel::kernel;
+use crate::instance::{DomainId, Scope, Setting, Typed};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic};
+use hyde_ir::flat::Assert;
+use hyde_ir::{BinaryOp, Expr as Ir, ExprId, Index};
+use hyde_syntax::ast::{Expr, ExprKind};
+
+/// Fewer cells than this and the weights of a moving place would reach both ends at once.
+const LEAST_CELLS: usize = 4;
+
+/// A place on the mesh.
+pub(super) enum Point {
+    /// It is this node.
+    AtNode(i32),
+    /// It lies between this node and the next; the share of the cell left of it is made of parameters.
+    InCell(i32, ExprId),
+    /// It moves: its distance from the first node in cells.
+    Moving(ExprId),
+}
+
+impl Point {
+    /// The nodes whose equation differs from that of their neighbours because of this place.
+    pub(super) fn single_nodes(&self, n: i32) -> Vec<i32> {
+        match *self {
+            Self::AtNode(node) => vec![node],
+            Self::InCell(node, _) => vec![node, node + 1],
+            Self::Moving(_) => vec![1, n - 1],
+        }
+    }
+}
+
+impl<'a> Model<'a, '_> {
+    /// Where a place lies on the mesh. The cell of a place of parameters is structural, its share within it is not.
+    pub(super) fn point(
+        &mut self,
+        domain: DomainId,
+        at: &'a Expr,
+        scope: &Scope<'a>,
+    ) -> Option<Point> {
+        let (from, h, dim) = self.mesh(domain);
+        let mut place = self.value(at, scope);
+        let moves = !self.flat.exprs.is_parametric(place.id);
+        if !moves {
+            place = self.value(at, &scope.with(Setting::Parameter));
+        }
+        let along = Typed {
+            dim,
+            ..place.clone()
+        };
+        self.agree(
+            &place,
+            &along,
+            "the place and the coordinate are",
+            scope.instance,
+        );
+        let distance = self.flat.exprs.minus(place.id, from);
+        let number = self.flat.exprs.over(distance, h);
+        if moves {
+            self.moving(domain, number, at, scope)
+        } else {
+            self.fixed(domain, number, at)
+        }
+    }
+
+    fn fixed(&mut self, domain: DomainId, number: ExprId, at: &'a Expr) -> Option<Point> {
+        let value = self.evaluate(number)?;
+        let cells = self.domains[domain].cells;
+        let outside = !(-1e-9..=cells as f64 + 1e-9).contains(&value);
+        if outside {
+            self.report(
+                Diagnostic::error(Code::FieldUse, "the place lies outside the domain")
+                    .label(
+                        at.span,
+                        format!("{value:.3} cells from the start, of {cells}"),
+                    )
+                    .label(self.domains[domain].span, "the domain"),
+            );
+            return None;
+        }
+        let nearest = value.round();
+        if (value - nearest).abs() < 1e-9 {
+            return Some(Point::AtNode(nearest as i32));
+        }
+        let first = self.flat.exprs.constant(value.floor());
+        let share = self.flat.exprs.minus(number, first);
+        Some(Point::InCell(value.floor() as i32, share))
+    }
+
+    /// A place that moves must stay on the domain: an assertion watches it.
+    fn moving(
+        &mut self,
+        domain: DomainId,
+        number: ExprId,
+        at: &'a Expr,
+        scope: &Scope<'a>,
+    ) -> Option<Point> {
+        let cells = self.domains[domain].cells;
+        if cells < LEAST_CELLS {
+            self.report(
+                Diagnostic::error(Code::FieldUse, "too few cells for a place that moves")
+                    .label(at.span, "moves along the domain")
+                    .label(self.domains[domain].span, format!("has {cells}"))
+                    .help(format!("discretize it with `n = {LEAST_CELLS}` or more")),
+            );
+            return None;
+        }
+        let arena = &mut self.flat.exprs;
+        let (first, last) = (arena.constant(0.0), arena.constant(cells as f64));
+        let behind = arena.binary(BinaryOp::Ge, number, first);
+        let before = arena.binary(BinaryOp::Le, number, last);
+        let condition = arena.binary(BinaryOp::And, behind, before);
+        if !self
+            .flat
+            .asserts
+            .iter()
+            .any(|known| known.condition == condition)
+        {
+            let path = self.instances[scope.instance].path.clone();
+            let place = if let ExprKind::Reference(name) = &at.kind {
+                format!("`{}`", path.member(&name.dotted()))
+            } else {
+                "the place".to_owned()
+            };
+            let domain = path.member(self.domains[domain].name);
+            let message = format!("{place} has left the domain `{domain}`");
+            let origin = self.origin(scope.instance, at.span);
+            self.flat.asserts.push(Assert {
+                condition,
+                message,
+                origin,
+            });
+        }
+        Some(Point::Moving(number))
+    }
+
+    /// The weight of a node in what is read or loaded at a place; `None` where it has none.
+    ///
+    /// `node` counts along where the equation does, between the nodes that [`Point::single_nodes`] and the ends are.
+    pub(super) fn weight(&mut self, point: &Point, node: Index, n: i32) -> Option<ExprId> {
+        let single = (node.stride == 0).then_some(node.offset);
+        let arena = &mut self.flat.exprs;
+        match *point {
+            Point::AtNode(at) => (single == Some(at)).then(|| arena.constant(1.0)),
+            Point::InCell(left, share) if single == Some(left) => {
+                let one = arena.constant(1.0);
+                Some(arena.minus(one, share))
+            }
+            Point::InCell(left, share) => (single == Some(left + 1)).then_some(share),
+            Point::Moving(number) => {
+                let counter = arena.add(Ir::Counter);
+                let stride = arena.constant(f64::from(node.stride));
+                let offset = arena.constant(f64::from(node.offset));
+                let counted = arena.times(stride, counter);
+                let place = arena.plus(counted, offset);
+                let own = kernel(arena, number, place);
+                // The nodes beyond an end go on in a straight line: th[-1] = 2*th[0] - th[1].
+                let (beyond, factor) = match single {
+                    Some(0) => (-1, 2.0),
+                    Some(1) => (-1, -1.0),
+                    Some(at) if at == n - 1 => (n + 1, -1.0),
+                    Some(at) if at == n => (n + 1, 2.0),
+                    Some(_) | None => return Some(own),
+                };
+                let beyond = arena.constant(f64::from(beyond));
+                let ghost = kernel(arena, number, beyond);
+                let factor = arena.constant(factor);
+                let share = arena.times(factor, ghost);
+                Some(arena.plus(own, share))
+            }
+        }
+    }
+}
