@@ -24,6 +24,7 @@ pub struct Example {
     files: BTreeMap<String, PathBuf>,
     data: Option<PathBuf>,
     free_inputs: bool,
+    ledger: bool,
     set: BTreeMap<String, f64>,
     model: Option<String>,
 }
@@ -57,6 +58,7 @@ impl Example {
             files: BTreeMap::new(),
             data: None,
             free_inputs: false,
+            ledger: false,
             set: BTreeMap::new(),
             model: None,
         })
@@ -66,6 +68,13 @@ impl Example {
     #[must_use]
     pub fn model(mut self, name: &str) -> Self {
         self.model = Some(name.to_owned());
+        self
+    }
+
+    /// Makes the energy ledger.
+    #[must_use]
+    pub fn ledger(mut self) -> Self {
+        self.ledger = true;
         self
     }
 
@@ -245,6 +254,7 @@ impl Loaded {
             settings: &example.set,
             records: headers,
             free_inputs: example.free_inputs,
+            ledger: example.ledger,
             backend,
         }
     }

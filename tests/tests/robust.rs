@@ -113,6 +113,7 @@ fn compiled(text: &str) -> Option<String> {
             settings: &settings,
             records: &records,
             free_inputs: true,
+            ledger: true,
             backend: Backend::Interpreter,
         };
         let mut own = diagnostics.clone();

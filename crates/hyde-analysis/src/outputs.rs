@@ -122,4 +122,23 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
         dae.outputs
             .push(single(format!("response {name}"), *value, quantity, false));
     }
+    let plain = Quantity::usual(hyde_units::Dimension::DIMENSIONLESS);
+    for account in &experiment.ledger.accounts {
+        let name = account.component.member(&account.name);
+        for (range, value) in &account.pieces {
+            dae.outputs.push(Output {
+                names: range.iter().map(|_| format!("account {name}")).collect(),
+                range: *range,
+                value: *value,
+                quantity: plain.clone(),
+                discrete: false,
+            });
+        }
+    }
+    for port in &experiment.ledger.ports {
+        let name = format!("port {}", port.component);
+        for value in [port.flow, port.potential] {
+            dae.outputs.push(single(name.clone(), value, &plain, false));
+        }
+    }
 }

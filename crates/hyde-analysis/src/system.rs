@@ -203,6 +203,14 @@ impl System {
         {
             each(arena, value);
         }
+        let ledger = &mut flat.experiment.ledger;
+        for (_, value) in ledger.accounts.iter_mut().flat_map(|a| &mut a.pieces) {
+            each(arena, value);
+        }
+        for port in &mut ledger.ports {
+            each(arena, &mut port.flow);
+            each(arena, &mut port.potential);
+        }
     }
 
     /// The cells an access reaches over a range: first, last, and stride.

@@ -91,6 +91,9 @@ pub(crate) struct RunArgs {
     /// Form of the results
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     pub(crate) format: Format,
+    /// Tell where every joule came from and where it went
+    #[arg(long)]
+    pub(crate) ledger: bool,
 }
 
 /// Form of results.

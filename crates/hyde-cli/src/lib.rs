@@ -8,6 +8,7 @@ mod commands;
 mod exit;
 mod figures;
 mod files;
+mod ledger;
 mod project;
 mod records;
 pub mod render;

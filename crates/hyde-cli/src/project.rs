@@ -108,13 +108,20 @@ pub(crate) fn loaded(
     hyde_compiler::load(sources, &name, text, &packages, diagnostics)
 }
 
+/// What a program is for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Aim {
+    /// A run.
+    Run,
+    /// A run with the energy ledger, and to check everything that is written.
+    Ledger,
+    /// The linearised model, its inputs free, with the energies of its parts.
+    Linearize,
+}
+
 impl Project {
     /// Compiles; reports and ends with the errors otherwise. Warnings are printed.
-    pub(crate) fn compile(
-        &mut self,
-        args: &ModelArgs,
-        free_inputs: bool,
-    ) -> Result<Compiled, Exit> {
+    pub(crate) fn compile(&mut self, args: &ModelArgs, aim: Aim) -> Result<Compiled, Exit> {
         let settings = self
             .settings
             .iter()
@@ -128,7 +135,8 @@ impl Project {
             experiment: self.experiment.as_deref(),
             settings: &settings,
             records: &headers,
-            free_inputs,
+            free_inputs: aim == Aim::Linearize,
+            ledger: aim != Aim::Run,
             backend: Backend::Native,
         };
         let compiled = hyde_compiler::compile(&request, &mut self.diagnostics);
@@ -162,6 +170,7 @@ impl Project {
             settings: &BTreeMap::new(),
             records: &BTreeMap::new(),
             free_inputs: true,
+            ledger: false,
             backend: Backend::Native,
         };
         let found = hyde_compiler::fits(&request, &mut self.diagnostics);

@@ -1,5 +1,6 @@
 //! What a run was, in a few lines for people and as JSON for programs.
 
+use crate::ledger;
 use crate::project::Project;
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
@@ -84,6 +85,9 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
             let value = engineering(measure.value, known.unit.unit().dimension);
             let _ = writeln!(out, "  {} = {value}", measure.name);
         }
+    }
+    if let Some(ledger) = ledger::of(compiled, run) {
+        out.push_str(&ledger::text(&ledger));
     }
     out
 }
@@ -173,6 +177,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         "channels": channels,
         "measures": measures,
         "expectations": expectations,
+        "ledger": ledger::of(compiled, run).map(|ledger| ledger::json(&ledger)),
         "parameters": parameters,
         "notes": program.notes,
     })

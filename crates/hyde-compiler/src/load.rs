@@ -139,7 +139,7 @@ fn types_named(elements: &[Element], add: &mut impl FnMut(&Reference)) {
             Element::Extends(base, _) => add(base),
             Element::Clocked(clocked) => types_named(&clocked.elements, add),
             Element::Replace(_, by, _) => add(by),
-            Element::Measure(measure) => add(&measure.type_name),
+            Element::Measure(measure) | Element::Account(_, measure) => add(&measure.type_name),
             Element::Domain(_)
             | Element::Discretize(_)
             | Element::Modes(_)

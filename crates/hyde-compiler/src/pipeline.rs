@@ -25,6 +25,8 @@ pub struct Request<'a> {
     pub records: &'a BTreeMap<String, Header>,
     /// Free inputs become parameters and stimuli are left out: for linearisation.
     pub free_inputs: bool,
+    /// Make the energy ledger.
+    pub ledger: bool,
     /// How numbers are made.
     pub backend: Backend,
 }
@@ -71,6 +73,7 @@ pub(crate) fn flatten(request: &Request<'_>, diagnostics: &mut Diagnostics) -> O
         settings: request.settings,
         records: request.records,
         free_inputs: request.free_inputs,
+        ledger: request.ledger,
     };
     let flat = hyde_flatten::flatten(&input, diagnostics)?;
     if cfg!(debug_assertions) {

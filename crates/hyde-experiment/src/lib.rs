@@ -5,8 +5,10 @@
 
 mod bode;
 mod compare;
+mod ledger;
 mod limit;
 mod linearize;
+mod mode_shape;
 mod modes;
 mod record;
 mod run;
@@ -14,8 +16,10 @@ mod swept;
 
 pub use bode::{BodeError, frequency_response};
 pub use compare::{Channel, CompareError};
+pub use ledger::{EnergyLedger, LedgerEntry};
 pub use limit::{Answer, LIMIT_LEFT, LIMIT_PART, limit};
 pub use linearize::{Linear, LinearizeError, linearize};
+pub use mode_shape::{ModeShape, mode_shape};
 pub use modes::{NaturalMode, modes};
 pub use record::read_record;
 pub use run::{MeasureValue, Options, Run, RunError, parameters, run};

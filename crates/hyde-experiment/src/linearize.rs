@@ -6,7 +6,7 @@
 
 use hyde_program::{Function, Point, Program, TickWrt, Workspace, Wrt};
 use hyde_signal::Table;
-use hyde_sim::Failure;
+use hyde_sim::{Failure, OperatingPoint};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
@@ -32,6 +32,10 @@ pub struct Linear {
     pub d_held: DMatrix<f64>,
     /// The clocked part, if there is one.
     pub sampled: Option<Sampled>,
+    /// The whole solver's vector by states.
+    pub unknowns: DMatrix<f64>,
+    /// About what it is linearised.
+    pub point: OperatingPoint,
 }
 
 /// The linearised clocked part: memory m after a tick is `memory*m_before + (by_state*x + by_input*u + by_held*h)`.
@@ -154,8 +158,10 @@ pub fn linearize(
         c,
         d_input,
         d_held,
+        unknowns: parts.unknowns(n),
         states,
         sampled,
+        point,
     })
 }
 
@@ -169,6 +175,20 @@ struct Parts<'a> {
 }
 
 impl Parts<'_> {
+    /// The whole solver's vector by states.
+    fn unknowns(&self, n: usize) -> DMatrix<f64> {
+        let nx = self.states.len();
+        let mut all = DMatrix::zeros(n, nx);
+        for (number, &state) in self.states.iter().enumerate() {
+            all[(state, number)] = 1.0;
+        }
+        for (number, &unknown) in self.algebraic.iter().enumerate() {
+            let row = self.solved.view((nx + number, 0), (1, nx));
+            all.row_mut(unknown).copy_from(&row);
+        }
+        all
+    }
+
     /// A function of unknowns and their derivatives, by states, inputs and held values.
     fn through(&self, dense: &Dense) -> (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>) {
         let (nx, rows) = (self.states.len(), dense.by_unknown.nrows());

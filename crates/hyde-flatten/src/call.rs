@@ -40,7 +40,7 @@ const OF_ANGLE: [(&str, UnaryOp); 3] = [
 ];
 
 /// Every function name, for near misses.
-const ALL: [&str; 45] = [
+const ALL: [&str; 46] = [
     "der",
     "pre",
     "sample",
@@ -73,6 +73,7 @@ const ALL: [&str; 45] = [
     "noEvent",
     "smooth",
     "pder",
+    "integral",
     "partial",
     "sum",
     "chirp",
@@ -109,6 +110,7 @@ fn usage(name: &str) -> Option<&'static str> {
         "atan2" => "atan2(y, x)",
         "chirp" => "chirp(time, from, to, duration)",
         "pder" => "pder(field, x)",
+        "integral" => "integral(expression, domain)",
         "partial" => "partial(expression, variable)",
         "table" => "table(x, {0, 1, 2}, {0, 1, 4})",
         "smooth_table" => "smooth_table(x, {0, 1, 2}, {0, 1, 4})",
@@ -227,6 +229,17 @@ impl<'a> Model<'a, '_> {
             "chirp" => self.chirp(&args, scope, span),
             "pder" => self.pder(&args, scope, span),
             "partial" => self.partial(&args, scope, span),
+            "integral" => {
+                self.report(
+                    Diagnostic::error(
+                        Code::FieldUse,
+                        "an integral stands in an account of the energy ledger, as a term of its own",
+                    )
+                    .label(span, "no term of an account")
+                    .help("write `stored Energy kinetic = integral(rho*A*v^2/2, bar);`"),
+                );
+                self.poison(span)
+            }
             _ => {
                 let diagnostic = Diagnostic::error(
                     Code::UnknownFunction,

@@ -50,6 +50,7 @@ impl<'a> Model<'a, '_> {
                         self.measure(measure, id)
                     }
                     Element::Measure(_)
+                    | Element::Account(..)
                     | Element::Extends(..)
                     | Element::Declaration(_)
                     | Element::Domain(_)

@@ -17,6 +17,7 @@
 //! same weights with which `field.at(x)` reads (F4): see `point`.
 
 mod equation;
+mod integral;
 mod kernel;
 mod mesh;
 mod point;

@@ -208,7 +208,8 @@ impl<'a> Model<'a, '_> {
                 | Element::Replace(..)
                 | Element::Signature(_)
                 | Element::Confounds(_)
-                | Element::Measure(_) => {}
+                | Element::Measure(_)
+                | Element::Account(..) => {}
             }
         }
         self.instances[id].elements = collected

@@ -22,6 +22,7 @@ mod field;
 mod finish;
 mod instance;
 mod instantiate;
+mod ledger;
 mod lower;
 mod model;
 mod modes;
@@ -59,6 +60,8 @@ pub struct Input<'a> {
     pub records: &'a BTreeMap<String, Header>,
     /// Free inputs become parameters and stimuli are left out: for linearisation.
     pub free_inputs: bool,
+    /// Make the energy ledger.
+    pub ledger: bool,
 }
 
 /// Flattens a model with its experiment.
@@ -74,7 +77,9 @@ pub fn flatten(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<FlatM
     model.connect();
     model.free_inputs(root);
     model.experiment(root);
+    model.accounts();
     model.finish();
+    model.ports();
     let flat = model.flat;
     (diagnostics.error_count() == before).then_some(flat)
 }

@@ -189,6 +189,63 @@ pub struct Measure {
     pub origin: Origin,
 }
 
+/// What an account of the energy ledger says of its component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AccountKind {
+    /// An energy that it has.
+    Stored,
+    /// A power that it turns into heat.
+    Dissipated,
+    /// A power that it has from outside the model.
+    Supplied,
+}
+
+/// `stored Energy kinetic = e`, or `dissipated` or `supplied Power p = e`: the sum of its pieces.
+#[derive(Clone, Debug)]
+pub struct Account {
+    /// The instance.
+    pub component: InstancePath,
+    /// Its name there.
+    pub name: String,
+    /// What it says.
+    pub kind: AccountKind,
+    /// Each summed over its counter: a scalar, or a share a cell of a field.
+    pub pieces: Vec<(Range, ExprId)>,
+}
+
+/// How the variables of a connector make the power that enters its component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum PortKind {
+    /// Flow times the derivative of the potential: force and position.
+    Work,
+    /// Flow times potential: current and voltage.
+    Power,
+    /// The flow itself: heat.
+    Heat,
+}
+
+/// A pair of variables of a connector through which energy enters its component.
+#[derive(Clone, Debug)]
+pub struct Port {
+    /// The component that has the connector.
+    pub component: InstancePath,
+    /// How they make a power.
+    pub kind: PortKind,
+    /// The flow into the component.
+    pub flow: ExprId,
+    /// The potential.
+    pub potential: ExprId,
+}
+
+/// What the energy ledger adds up; empty unless it was asked for.
+#[derive(Clone, Debug, Default)]
+pub struct Ledger {
+    /// What components say of themselves.
+    pub accounts: Vec<Account>,
+    /// Where energy goes from one component to another.
+    pub ports: Vec<Port>,
+}
+
 /// When a run ends.
 #[derive(Clone, Debug)]
 pub enum Stop {
@@ -228,6 +285,8 @@ pub struct Experiment {
     pub measures: Vec<Measure>,
     /// Frequency responses asked for.
     pub bodes: Vec<Bode>,
+    /// The energy ledger.
+    pub ledger: Ledger,
     /// When it ends.
     pub stop: Option<Stop>,
     /// Time between rows of the results in s, of parameters alone.

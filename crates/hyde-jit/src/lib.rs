@@ -12,6 +12,7 @@ mod compiled;
 mod emit;
 mod host;
 mod interpret;
+mod ledger;
 mod lower;
 mod native;
 mod routine;

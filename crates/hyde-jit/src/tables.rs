@@ -1,6 +1,7 @@
 //! The tables of a [`Program`], from the DAE.
 
 use crate::compiled::Compiled;
+use crate::ledger;
 use hyde_ir::dae::{self, Dae};
 use hyde_ir::flat;
 use hyde_ir::{Id as _, VariableKind};
@@ -192,7 +193,8 @@ fn outputs(dae: &Dae) -> Vec<Output> {
             .bodes
             .iter()
             .map(|bode| bode.outputs.len())
-            .sum::<usize>();
+            .sum::<usize>()
+        - ledger::outputs(&dae.experiment.ledger);
     let mut found = Vec::new();
     for (number, output) in dae.outputs.iter().enumerate() {
         for name in &output.names {
@@ -277,7 +279,8 @@ fn experiment(dae: &Dae) -> Experiment {
     let known = &dae.experiment;
     let columns: usize = dae.outputs.iter().map(|output| output.names.len()).sum();
     let responses: usize = known.bodes.iter().map(|bode| bode.outputs.len()).sum();
-    let first_measured = columns - known.measured.len() - known.reductions.len() - responses;
+    let first_account = columns - ledger::columns(&known.ledger);
+    let first_measured = first_account - known.measured.len() - known.reductions.len() - responses;
     let first_reduction = first_measured + known.measured.len();
     let mut next_response = first_reduction + known.reductions.len();
     Experiment {
@@ -369,6 +372,7 @@ fn experiment(dae: &Dae) -> Experiment {
                 }
             })
             .collect(),
+        ledger: ledger::ledger(&known.ledger, first_account),
         stop: known.stop.as_ref().map(|stop| match stop {
             flat::Stop::At(_) => Stop::At,
             flat::Stop::EndOf(record) => Stop::EndOf(record.clone()),

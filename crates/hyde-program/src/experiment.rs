@@ -1,5 +1,6 @@
 //! What an experiment asks of a run, as plain data.
 
+use crate::ledger::Ledger;
 use hyde_diag::Origin;
 use hyde_units::NamedUnit;
 
@@ -111,6 +112,8 @@ pub struct Experiment {
     pub measures: Vec<Measure>,
     /// Frequency responses.
     pub bodes: Vec<Bode>,
+    /// The energy ledger; empty unless it was asked for.
+    pub ledger: Ledger,
     /// When it ends.
     pub stop: Option<Stop>,
 }

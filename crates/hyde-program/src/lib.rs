@@ -20,6 +20,7 @@ mod event;
 mod experiment;
 mod jacobian;
 mod kernels;
+mod ledger;
 mod program;
 
 pub use event::{
@@ -31,6 +32,7 @@ pub use experiment::{
 };
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Constant, Function, Kernels, Point, TickWrt, Workspace};
+pub use ledger::{Account, AccountKind, Ledger, Port, PortKind};
 pub use program::{
     Column, Derivatives, Output, Parameter, PartialEntry, Prior, Program, UnknownBlock, Wrt,
 };

@@ -38,7 +38,7 @@ pub struct Output {
     pub unit: NamedUnit,
     /// Changes at events only.
     pub discrete: bool,
-    /// Made for the experiment (measured, reduced, response), not a variable of the model.
+    /// Made for the experiment (measured, reduced, response) or the energy ledger, not a variable of the model.
     pub auxiliary: bool,
 }
 

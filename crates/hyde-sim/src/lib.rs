@@ -20,6 +20,7 @@ mod hurry;
 mod initial;
 mod inputs;
 mod integrator;
+mod meter;
 mod operating_point;
 mod results;
 mod selection;
@@ -31,7 +32,7 @@ mod state;
 pub use failure::{Failure, FailureKind};
 pub use inputs::InputError;
 pub use operating_point::{OperatingPoint, operating_point};
-pub use results::{Event, EventKind, Results, Statistics};
+pub use results::{Energies, Event, EventKind, Results, Statistics};
 pub use setup::Setup;
 
 use hyde_program::Program;

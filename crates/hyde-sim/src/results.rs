@@ -56,6 +56,19 @@ pub struct Statistics {
     pub ticks: u64,
 }
 
+/// What the energy ledger adds up, in J.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Energies {
+    /// What entered through each port.
+    pub received: Vec<f64>,
+    /// Of each account the change of a stored energy between events, or the energy of a power.
+    pub accounts: Vec<f64>,
+    /// What a stored energy jumped by at events.
+    pub jumps: Vec<f64>,
+    /// What went through all ports, without regard to sign.
+    pub passed: f64,
+}
+
 /// What a run leaves.
 #[derive(Clone, Debug, Default)]
 pub struct Results {
@@ -71,6 +84,8 @@ pub struct Results {
     pub statistics: Statistics,
     /// Time each automaton spent in each mode, in s.
     pub mode_times: Vec<Vec<f64>>,
+    /// The sums of the energy ledger, if it was asked for.
+    pub energies: Option<Energies>,
     /// Final solver's vector and memory.
     pub last: (Vec<f64>, Vec<f64>),
 }

@@ -1,5 +1,7 @@
 //! The run itself: start, steps, events, rows.
 
+mod rows;
+
 use crate::clocks::Schedule;
 use crate::consistent::Consistent;
 use crate::events::Instant;
@@ -8,6 +10,7 @@ use crate::guards;
 use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
+use crate::meter::Meter;
 use crate::results::{Event, Results};
 use crate::selection;
 use crate::setup::{Setup, same_instant};
@@ -35,6 +38,7 @@ pub(crate) struct Simulation<'a> {
     /// Start of the window in which events are counted, and their number.
     crowd: (f64, u64),
     hurry: Hurry,
+    meter: Option<Meter<'a>>,
 }
 
 /// Values at an instant, from one side of it.
@@ -88,6 +92,7 @@ impl<'a> Simulation<'a> {
             outputs: vec![0.0; program.outputs.len()],
             crowd: (t, 0),
             hurry: Hurry::default(),
+            meter: Meter::new(&program.experiment.ledger),
         })
     }
 
@@ -196,6 +201,7 @@ impl<'a> Simulation<'a> {
             let end = crossing
                 .as_ref()
                 .map_or(self.integrator.t, |crossing| crossing.t);
+            self.measure_energy(from, end);
             self.rows_until(end);
             self.count_modes(from, end);
             if let Some(crossing) = crossing {
@@ -248,6 +254,7 @@ impl<'a> Simulation<'a> {
     fn instant(&mut self, scheduled: &[usize], restart: bool) -> Result<(), Box<Failure>> {
         let limit = self.limit();
         let left = self.row_values();
+        let before = self.meter.as_ref().map(|_| self.outputs.clone());
         let events = self.results.events.len();
         let mut changed = self.iterate(scheduled, false)?;
         let mut ticked = false;
@@ -260,6 +267,12 @@ impl<'a> Simulation<'a> {
         if happened {
             self.results.statistics.events += 1;
             self.not_too_many()?;
+        }
+        if let Some(before) = before {
+            self.row_values();
+            if let Some(meter) = &mut self.meter {
+                meter.instant(&before, &self.outputs);
+            }
         }
         let on_grid = self.row_is_due();
         let moved = limit
@@ -372,77 +385,20 @@ impl<'a> Simulation<'a> {
         self.integrator.restart(step.max(least))
     }
 
-    /// Rows of the results up to and including `end`, from the interpolant; one at the end itself waits for its events.
-    fn rows_until(&mut self, end: f64) {
-        while let Some(&t) = self.setup.rows_s.get(self.next_row) {
-            if t > end || same_instant(t, end) && self.waits(end) {
-                return;
-            }
-            let t = t.min(end);
-            let n = self.program.n_unknowns;
-            let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-            self.integrator.interpolate(t, &mut y, &mut yp);
-            let values = self.values_at(t, &y, &yp);
-            self.push_row((t, values));
-            self.next_row += 1;
+    /// Adds a stretch of the last step to the energy ledger.
+    fn measure_energy(&mut self, from: f64, to: f64) {
+        if self.meter.is_none() || to <= from {
+            return;
         }
-    }
-
-    /// Whether something happens at this instant that a row must show from both sides.
-    fn waits(&self, t: f64) -> bool {
-        self.schedule.due(t)
-            || !self.schedule.relations_at(t).is_empty()
-            || same_instant(
-                self.integrator
-                    .state()
-                    .inputs
-                    .next_jump(t - 1e-9 * (1.0 + t.abs())),
-                t,
-            )
-            || t < self.integrator.t
-    }
-
-    fn row_is_due(&self) -> bool {
-        self.setup
-            .rows_s
-            .get(self.next_row)
-            .is_some_and(|&row| same_instant(row, self.integrator.t))
-    }
-
-    fn row(&mut self) {
-        let values = self.row_values();
-        self.push_row(values);
-    }
-
-    fn row_values(&mut self) -> (f64, Vec<f64>) {
-        let (t, y, yp) = (
-            self.integrator.t,
-            self.integrator.y.clone(),
-            self.integrator.yp.clone(),
-        );
-        let values = self.values_at(t, &y, &yp);
-        (t, values)
-    }
-
-    fn values_at(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
-        let mut outputs = std::mem::take(&mut self.outputs);
-        self.integrator
-            .state_mut()
-            .evaluate(Function::Outputs, t, y, yp, &mut outputs);
-        let values = self
-            .results
-            .outputs
-            .iter()
-            .map(|&output| outputs[output])
-            .collect();
-        self.outputs = outputs;
-        values
-    }
-
-    fn push_row(&mut self, (t, values): (f64, Vec<f64>)) {
-        self.results.time.push(t);
-        for (column, value) in self.results.columns.iter_mut().zip(values) {
-            column.push(value);
+        let n = self.program.n_unknowns;
+        let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
+        let outputs = Meter::times(from, to).map(|t| {
+            self.integrator.interpolate(t, &mut y, &mut yp);
+            self.values_at(t, &y, &yp);
+            self.outputs.clone()
+        });
+        if let Some(meter) = &mut self.meter {
+            meter.stretch(to - from, &outputs);
         }
     }
 
@@ -484,6 +440,7 @@ impl<'a> Simulation<'a> {
         statistics.error_test_failures = solver.error_test_failures;
         statistics.nonlinear_failures = solver.nonlinear_failures;
         statistics.restarts = solver.restarts;
+        self.results.energies = self.meter.as_ref().map(Meter::sums);
         self.results.last = (self.integrator.y.clone(), self.integrator.state().z.clone());
     }
 }

@@ -14,7 +14,8 @@ mod name;
 mod study;
 
 pub use class::{
-    Class, ClassBody, ClassKind, Clocked, Discretize, Domain, EffectUse, Element, Measure,
+    AccountKind, Class, ClassBody, ClassKind, Clocked, Discretize, Domain, EffectUse, Element,
+    Measure,
 };
 pub use declaration::{Change, Declaration, Declarator, Prefix, Prior};
 pub use equation::{Equation, EquationKind, Place};

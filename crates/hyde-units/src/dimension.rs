@@ -44,6 +44,17 @@ impl Dimension {
     pub const TIME: Self = Self::si([0, 0, 0, 1, 0, 0, 0], 0);
     /// A length, in m.
     pub const LENGTH: Self = Self::si([0, 1, 0, 0, 0, 0, 0], 0);
+    /// An energy, in J. Its angle is open: torque times angle is one, and so is force times length.
+    pub const ENERGY: Self = Self::neutral([1, 2, 0, -2, 0, 0, 0]);
+    /// A power, in W; its angle is open.
+    pub const POWER: Self = Self::neutral([1, 2, 0, -3, 0, 0, 0]);
+
+    const fn neutral(base: [i16; 7]) -> Self {
+        Self {
+            angle: AngleExponent::Neutral,
+            ..Self::si(base, 0)
+        }
+    }
 
     /// The dimension with whole exponents of kg, m, A, s, K, mol, cd, and of rad.
     #[must_use]

@@ -12,6 +12,7 @@ mod energy;
 mod event_suite;
 mod examples;
 mod first_order;
+mod ledger;
 mod models;
 mod points;
 mod rectifier;

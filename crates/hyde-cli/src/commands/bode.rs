@@ -5,7 +5,7 @@ use crate::commands::run;
 use crate::exit::Exit;
 use crate::figures::shown;
 use crate::files;
-use crate::project::{self, Records, complain, print_output};
+use crate::project::{self, Aim, Records, complain, print_output};
 use crate::records;
 use crate::summary;
 use hyde_experiment::{
@@ -38,7 +38,7 @@ pub(crate) fn bode(args: &BodeArgs) -> Exit {
 
 fn responses(args: &BodeArgs) -> Result<String, Exit> {
     let mut project = project::load(&args.model, Records::Needed)?;
-    let compiled = project.compile(&args.model, true)?;
+    let compiled = project.compile(&args.model, Aim::Linearize)?;
     project.print_warnings(&args.model);
     let program = &compiled.program;
     let wrong = |reason: String| complain(&args.model, Exit::CommandLine, &reason);
@@ -61,6 +61,7 @@ fn responses(args: &BodeArgs) -> Result<String, Exit> {
             atol: None,
             out: None,
             format: Format::Csv,
+            ledger: false,
         };
         Some(run::solved(&run_args)?)
     };

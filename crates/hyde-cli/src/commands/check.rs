@@ -2,7 +2,7 @@
 
 use crate::args::{CheckArgs, ModelArgs};
 use crate::exit::Exit;
-use crate::project::{self, Records, print_output};
+use crate::project::{self, Aim, Records, print_output};
 use crate::render;
 use serde_json::{Value, json};
 
@@ -34,7 +34,7 @@ fn checked(args: &CheckArgs) -> Result<(Vec<String>, Vec<Value>), Exit> {
     for args in each(&args.model)? {
         let mut project = project::load(&args, Records::IfThere)?;
         let alone = project.experiment.is_none();
-        let compiled = project.compile(&args, alone)?;
+        let compiled = project.compile(&args, if alone { Aim::Linearize } else { Aim::Ledger })?;
         project.print_warnings(&args);
         if let Value::Array(list) = render::to_json(&project.diagnostics, &project.sources) {
             warnings.extend(list);

@@ -22,6 +22,7 @@ pub(crate) fn emit(args: &EmitArgs) -> Exit {
         settings: &settings,
         records: &headers,
         free_inputs: false,
+        ledger: false,
         backend: Backend::Native,
     };
     let stage = match args.stage {

@@ -2,13 +2,19 @@
 
 use crate::args::ModesArgs;
 use crate::exit::Exit;
-use crate::project::{self, Records, complain, print_output};
+use crate::project::{self, Aim, Records, complain, print_output};
 use crate::records;
-use hyde_experiment::{linearize, modes as natural_modes, parameters};
+use hyde_experiment::{
+    Linear, ModeShape, NaturalMode, linearize, mode_shape, modes as natural_modes, parameters,
+};
 use hyde_program::Program;
 use hyde_units::significant;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
+
+/// So many shares of the energy are printed, and none below this.
+const SHARES: usize = 3;
+const LEAST_SHARE: f64 = 0.01;
 
 /// Prints the modes of vibration.
 pub(crate) fn modes(args: &ModesArgs) -> Exit {
@@ -23,7 +29,7 @@ pub(crate) fn modes(args: &ModesArgs) -> Exit {
 
 fn table(args: &ModesArgs) -> Result<String, Exit> {
     let mut project = project::load(&args.model, Records::Needed)?;
-    let compiled = project.compile(&args.model, true)?;
+    let compiled = project.compile(&args.model, Aim::Linearize)?;
     project.print_warnings(&args.model);
     let program = &compiled.program;
     let wrong = |reason: String| complain(&args.model, Exit::CommandLine, &reason);
@@ -45,23 +51,75 @@ fn table(args: &ModesArgs) -> Result<String, Exit> {
         .into_iter()
         .filter(|mode| args.below.is_none_or(|limit| mode.frequency_hz < limit))
         .collect();
+    let shapes: Vec<_> = found
+        .iter()
+        .map(|mode| mode_shape(program, &p, &linear, mode))
+        .collect();
     if args.model.json {
         let list: Vec<_> = found
             .iter()
-            .map(|mode| json!({ "frequency_hz": mode.frequency_hz, "damping": mode.damping }))
+            .zip(&shapes)
+            .map(|(mode, shape)| json(program, &linear, mode, shape.as_ref()))
             .collect();
         return Ok(format!("{:#}", json!({ "ok": true, "modes": list })));
     }
-    let mut text = format!("{:>12} {:>10}\n", "f [Hz]", "damping");
-    for mode in found {
-        let _ = writeln!(
-            text,
-            "{:>12} {:>10}",
+    let mut text = format!("{:>12} {:>10}   energy\n", "f [Hz]", "damping");
+    for (mode, shape) in found.iter().zip(&shapes) {
+        let line = format!(
+            "{:>12} {:>10}   {}",
             significant(mode.frequency_hz, 5),
-            significant(mode.damping, 3)
+            significant(mode.damping, 3),
+            shape.as_ref().map_or_else(String::new, shares)
         );
+        let _ = writeln!(text, "{}", line.trim_end());
     }
     Ok(text)
+}
+
+/// Where the energy is, the largest shares first: `97 % table.rocking`.
+fn shares(shape: &ModeShape) -> String {
+    let mut sorted: Vec<_> = shape
+        .shares
+        .iter()
+        .filter(|share| share.2 > LEAST_SHARE)
+        .collect();
+    sorted.sort_by(|a, b| b.2.total_cmp(&a.2));
+    let parts = sorted
+        .iter()
+        .take(SHARES)
+        .map(|(component, account, share)| {
+            let percent = significant(100.0 * share, 2);
+            if component.is_empty() {
+                format!("{percent} % {account}")
+            } else {
+                format!("{percent} % {component}.{account}")
+            }
+        });
+    parts.collect::<Vec<_>>().join(", ")
+}
+
+fn json(
+    program: &Program,
+    linear: &Linear,
+    mode: &NaturalMode,
+    shape: Option<&ModeShape>,
+) -> Value {
+    let mut found = json!({ "frequency_hz": mode.frequency_hz, "damping": mode.damping });
+    if let Some(shape) = shape {
+        let states: Map<String, Value> = linear
+            .states
+            .iter()
+            .zip(&shape.states)
+            .map(|(&state, x)| (program.unknown_name(state), json!([x.re, x.im])))
+            .collect();
+        found["shape"] = Value::Object(states);
+        found["energy"] = shape
+            .shares
+            .iter()
+            .map(|(component, account, share)| json!({ "component": component, "account": account, "share": share }))
+            .collect();
+    }
+    found
 }
 
 /// `guide=slip`

@@ -3,7 +3,7 @@
 use crate::args::ParamsArgs;
 use crate::exit::Exit;
 use crate::figures::shown;
-use crate::project::{self, Records, complain, print_output};
+use crate::project::{self, Aim, Records, complain, print_output};
 use crate::records;
 use hyde_experiment::parameters;
 use hyde_program::{Parameter, Prior};
@@ -25,7 +25,7 @@ pub(crate) fn params(args: &ParamsArgs) -> Exit {
 fn listed(args: &ParamsArgs) -> Result<String, Exit> {
     let mut project = project::load(&args.model, Records::IfThere)?;
     let alone = project.experiment.is_none();
-    let compiled = project.compile(&args.model, alone)?;
+    let compiled = project.compile(&args.model, if alone { Aim::Linearize } else { Aim::Run })?;
     let program = &compiled.program;
     let tables = records::tables(&project.records);
     let values = parameters(program, &tables, &project.set())

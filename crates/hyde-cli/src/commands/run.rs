@@ -3,7 +3,7 @@
 use crate::args::{Format, RunArgs};
 use crate::exit::Exit;
 use crate::files;
-use crate::project::{self, Project, Records, complain, print_error, print_output};
+use crate::project::{self, Aim, Project, Records, complain, print_error, print_output};
 use crate::records;
 use crate::{render, report, run_failure, summary};
 use hyde_compiler::Compiled;
@@ -44,7 +44,10 @@ pub(crate) fn solved(
         }
     }
     let mut project = project::load(&args.model, Records::Needed)?;
-    let compiled = project.compile(&args.model, false)?;
+    let compiled = project.compile(
+        &args.model,
+        if args.ledger { Aim::Ledger } else { Aim::Run },
+    )?;
     project.print_warnings(&args.model);
     let options = Options {
         set: project.set(),

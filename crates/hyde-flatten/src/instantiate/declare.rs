@@ -172,7 +172,8 @@ fn element_uses_member(element: &Element, name: &str) -> bool {
         | Element::Replace(..)
         | Element::Signature(_)
         | Element::Confounds(_)
-        | Element::Measure(_) => false,
+        | Element::Measure(_)
+        | Element::Account(..) => false,
     }
 }
 

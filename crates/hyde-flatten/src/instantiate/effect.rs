@@ -212,7 +212,8 @@ impl<'a> Model<'a, '_> {
                 | Element::Add(_)
                 | Element::Signature(_)
                 | Element::Confounds(_)
-                | Element::Measure(_) => {}
+                | Element::Measure(_)
+                | Element::Account(..) => {}
             }
         }
         self.members(id, &rest);

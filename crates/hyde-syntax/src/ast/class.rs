@@ -94,6 +94,19 @@ pub enum Element {
     Confounds(Vec<Reference>),
     /// `measure Length peak = max(abs(e));`
     Measure(Measure),
+    /// `stored Energy kinetic = M*v^2/2;`
+    Account(AccountKind, Measure),
+}
+
+/// What an entry of the energy ledger says of its component.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum AccountKind {
+    /// `stored`: an energy that it has.
+    Stored,
+    /// `dissipated`: a power that it turns into heat.
+    Dissipated,
+    /// `supplied`: a power that it has from outside the model.
+    Supplied,
 }
 
 /// `domain bar(x in 0 .. len);`

@@ -4,7 +4,7 @@ use super::declaration::{declaration_text, measure_text, modification};
 use super::expression::{call_arguments, optional_arguments, range};
 use super::name::{doc, reference};
 use super::{Printer, expression};
-use crate::ast::{Class, ClassBody, ClassKind, Element};
+use crate::ast::{AccountKind, Class, ClassBody, ClassKind, Element};
 use std::fmt::Write as _;
 
 impl Printer {
@@ -138,7 +138,15 @@ impl Printer {
                 let names: Vec<String> = names.iter().map(reference).collect();
                 self.line(&format!("confounds {};", names.join(", ")));
             }
-            Element::Measure(measure) => self.line(&measure_text(measure)),
+            Element::Measure(measure) => self.line(&measure_text("measure", measure)),
+            Element::Account(kind, measure) => {
+                let word = match kind {
+                    AccountKind::Stored => "stored",
+                    AccountKind::Dissipated => "dissipated",
+                    AccountKind::Supplied => "supplied",
+                };
+                self.line(&measure_text(word, measure));
+            }
         }
     }
 }

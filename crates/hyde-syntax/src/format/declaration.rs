@@ -44,11 +44,11 @@ fn declarator_text(item: &Declarator) -> String {
     text
 }
 
-pub(super) fn measure_text(measure: &Measure) -> String {
+pub(super) fn measure_text(word: &str, measure: &Measure) -> String {
     let value = expression(&measure.value);
     let text = doc(measure.doc.as_deref());
     format!(
-        "measure {} {} = {value}{text};",
+        "{word} {} {} = {value}{text};",
         reference(&measure.type_name),
         measure.name.text
     )

@@ -82,7 +82,7 @@ impl Printer {
             ExperimentItem::Expect(condition, text) => {
                 format!("expect {}{};", expression(condition), doc(text.as_deref()))
             }
-            ExperimentItem::Measure(measure) => measure_text(measure),
+            ExperimentItem::Measure(measure) => measure_text("measure", measure),
             ExperimentItem::Solve(method, arguments) => {
                 let arguments = optional_arguments(arguments);
                 format!("solve {}{arguments};", method.text)

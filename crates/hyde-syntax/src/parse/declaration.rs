@@ -2,8 +2,8 @@
 
 use super::build::{Builder, Node, has, parts};
 use crate::ast::{
-    Change, Declaration, Declarator, Discretize, Domain, Element, Exit, Measure, Mode, Modes,
-    Prefix, Prior,
+    AccountKind, Change, Declaration, Declarator, Discretize, Domain, Element, Exit, Measure, Mode,
+    Modes, Prefix, Prior,
 };
 use crate::grammar::Rule;
 
@@ -80,14 +80,25 @@ impl Builder<'_> {
             Rule::confounds => {
                 Element::Confounds(parts(node).map(|part| self.reference(part)).collect())
             }
-            Rule::measure => Element::Measure(self.measure(node)?),
+            Rule::measure => Element::Measure(self.measure(parts(node))?),
+            Rule::account => {
+                let mut inner = parts(node);
+                let kind = match inner.next()?.as_str().trim() {
+                    "stored" => AccountKind::Stored,
+                    "dissipated" => AccountKind::Dissipated,
+                    _ => AccountKind::Supplied,
+                };
+                Element::Account(kind, self.measure(inner)?)
+            }
             _ => Element::Equation(self.equation(node)?),
         })
     }
 
-    /// From a `measure` node.
-    pub(super) fn measure(&mut self, node: Node<'_>) -> Option<Measure> {
-        let mut inner = parts(node);
+    /// From the parts of a `measure` node.
+    pub(super) fn measure<'n>(
+        &mut self,
+        mut inner: impl Iterator<Item = Node<'n>>,
+    ) -> Option<Measure> {
         let type_name = self.reference(inner.next()?);
         let name = self.name(&inner.next()?);
         let value = self.expression(inner.next()?);

@@ -149,7 +149,7 @@ impl Builder<'_> {
                     ));
                 }
             }
-            Rule::measure => items.extend(self.measure(node).map(ExperimentItem::Measure)),
+            Rule::measure => items.extend(self.measure(parts(node)).map(ExperimentItem::Measure)),
             Rule::bode => items.extend(self.bode(node)),
             _ => {
                 for part in parts(node) {
