@@ -1,7 +1,7 @@
 //! The models of the README and the book: each compiles, or is wrong in just the way the book shows.
 //!
 //! A block marked `hyde` is a whole file, and `hyde check` finds nothing to say against it. One marked `hyde wrong` is
-//! followed by what the command says of it, word by word. The pages of the diagnostics have a test of their own. Links to
+//! followed by what the command says of it, word by word. A block marked `console` shows commands and what they print. The pages of the diagnostics have a test of their own. Links to
 //! files, those of ARCHITECTURE.md too, lead somewhere.
 #![allow(
     clippy::disallowed_methods,
@@ -52,6 +52,55 @@ fn what_is_wrong_is_told_as_shown() {
         }
     }
     assert!(found > 0, "no wrong models were found");
+}
+
+#[test]
+fn commands_print_what_is_shown() {
+    let scratch = tempfile::tempdir().unwrap();
+    let here = scratch.path();
+    std::os::unix::fs::symlink(root().join("examples"), here.join("examples")).unwrap();
+    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_hyde-tested"), here.join("hyde")).unwrap();
+    let mut pages = pages();
+    // What the first steps leave, later pages plot.
+    pages.sort_by_key(|(path, _)| {
+        let first = ["README.md", "getting-started.md"];
+        first
+            .iter()
+            .position(|name| path.ends_with(name))
+            .unwrap_or(first.len())
+    });
+    for (_, text) in &pages {
+        for block in blocks(text, "```hyde\n") {
+            keep(&block.code, here);
+        }
+    }
+    let mut found = 0;
+    let mut wrong = Vec::new();
+    for (page, text) in &pages {
+        for block in blocks(text, "```console\n") {
+            let mut status = 0;
+            for command in block.code.split("$ ").skip(1) {
+                let (line, shown) = command.split_once('\n').unwrap();
+                found += 1;
+                let printed = printed(line, here, &mut status);
+                let (printed, shown) = (timeless(&printed), timeless(shown));
+                // A command shown without what it prints must succeed.
+                let as_shown = if shown.is_empty() {
+                    status == 0
+                } else {
+                    printed == shown
+                };
+                if !as_shown {
+                    let page = page.display();
+                    wrong.push(format!(
+                        "{page}: {line}\n{printed}\n--- instead of\n{shown}\n"
+                    ));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(found > 20, "only {found} commands were found");
 }
 
 #[test]
@@ -130,19 +179,55 @@ fn links(text: &str) -> Vec<String> {
         .collect()
 }
 
+/// What a command of the book prints on both streams, and its exit status, given that of the command before it.
+fn printed(line: &str, folder: &Path, status: &mut i32) -> String {
+    let script = format!("PATH=.:$PATH; (exit {status}); {{ {line}; }} 2>&1");
+    let shell = Command::new("sh")
+        .args(["-c", &script])
+        .current_dir(folder)
+        .output();
+    let output = shell.unwrap();
+    *status = output.status.code().unwrap_or(-1);
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// Without what differs from run to run or is the solver's business: times, its counts, and what rounding leaves.
+fn timeless(text: &str) -> String {
+    let masked = |line: &str| {
+        if line.ends_with(" times real time") {
+            return line.split(" s in ").next().unwrap().to_owned();
+        }
+        if let Some((unknowns, counts)) = line.split_once(" unknowns, ")
+            && counts.contains(" steps, ")
+        {
+            return unknowns.to_owned();
+        }
+        let line = line.split("; the remainders are ").next().unwrap();
+        line.trim_end().to_owned()
+    };
+    let lines: Vec<String> = text.lines().map(masked).collect();
+    lines.join("\n").trim_end().to_owned()
+}
+
 /// Checks a model in a file called as its package, `lib/parts.hyde` for `lib.parts`, so that a later model of the book can
 /// import it. Its records are those of the bench.
 fn check(code: &str, folder: &Path) -> Output {
-    let name = format!("{}.hyde", package(code).replace('.', "/"));
-    let place = folder.join(&name);
-    std::fs::create_dir_all(place.parent().unwrap()).unwrap();
-    std::fs::write(place, code).unwrap();
+    let name = keep(code, folder);
     Command::new(env!("CARGO_BIN_EXE_hyde-tested"))
         .current_dir(folder)
         .args(["check", &name, "--data"])
         .arg(root().join("examples/bench_axis"))
         .output()
         .unwrap()
+}
+
+/// Keeps a model in its file.
+fn keep(code: &str, folder: &Path) -> String {
+    let name = format!("{}.hyde", package(code).replace('.', "/"));
+    let place = folder.join(&name);
+    std::fs::create_dir_all(place.parent().unwrap()).unwrap();
+    std::fs::write(place, code).unwrap();
+    name
 }
 
 /// The name in `package name …` or `package folder.name …`.

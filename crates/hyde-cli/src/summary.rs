@@ -150,7 +150,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
             (automaton.name.clone(), Value::Object(times))
         })
         .collect();
-    json!({
+    let mut summary = json!({
         "ok": true,
         "hyde": env!("CARGO_PKG_VERSION"),
         "sundials": hyde_ida::sundials_version(),
@@ -177,10 +177,13 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         "channels": channels,
         "measures": measures,
         "expectations": expectations,
-        "ledger": ledger::of(compiled, run).map(|ledger| ledger::json(&ledger)),
         "parameters": parameters,
         "notes": program.notes,
-    })
+    });
+    if let Some(ledger) = ledger::of(compiled, run) {
+        summary["ledger"] = ledger::json(&ledger);
+    }
+    summary
 }
 
 /// The event log as CSV.
