@@ -273,6 +273,7 @@ fn holds(dae: &mut Dae) {
         .map(|residual| residual.value)
         .chain(dae.definitions.iter().map(|definition| definition.value))
         .chain(dae.relations.iter().map(|relation| relation.root))
+        .chain(dae.delays.iter().map(|delay| delay.value))
         .collect();
     let read: Vec<VarId> = dae
         .exprs

@@ -40,7 +40,7 @@ pub(crate) fn simplify(system: &mut System, diagnostics: &mut Diagnostics) {
             break;
         }
     }
-    refuse_derivatives_of_records(system, diagnostics);
+    refuse_derivatives_of_inputs(system, diagnostics);
 }
 
 /// Replaces `der(x)` by the variable that an equation `v = der(x)` names, everywhere else.
@@ -323,7 +323,10 @@ fn state_leaves(system: &System, lhs: ExprId, rhs: ExprId, states: &Cells) -> Op
                 found.push(cell);
             }
             VariableKind::Discrete | VariableKind::Held(..) => {}
-            VariableKind::Clocked(_) | VariableKind::Column(..) | VariableKind::Reduction(_) => {
+            VariableKind::Clocked(_)
+            | VariableKind::Column(..)
+            | VariableKind::Delayed(_)
+            | VariableKind::Reduction(_) => {
                 return None;
             }
         }
@@ -350,9 +353,10 @@ fn derivable(system: &System, cell: Cell, states: &Cells, depth: usize) -> bool 
                     && (states.contains(&inner) || derivable(system, inner, states, depth + 1))
             }),
             VariableKind::Discrete | VariableKind::Held(..) => true,
-            VariableKind::Clocked(_) | VariableKind::Column(..) | VariableKind::Reduction(_) => {
-                false
-            }
+            VariableKind::Clocked(_)
+            | VariableKind::Column(..)
+            | VariableKind::Delayed(_)
+            | VariableKind::Reduction(_) => false,
         }
     })
 }
@@ -421,20 +425,36 @@ pub(crate) fn by_rates(system: &mut System, id: ExprId, rates: &BTreeMap<Cell, E
     })
 }
 
-fn refuse_derivatives_of_records(system: &System, diagnostics: &mut Diagnostics) {
+fn refuse_derivatives_of_inputs(system: &System, diagnostics: &mut Diagnostics) {
     for equation in &system.equations {
         for id in system.flat.exprs.below(&[equation.lhs, equation.rhs]) {
             let Expr::Der(var, _) = system.flat.exprs[id] else {
                 continue;
             };
-            if let VariableKind::Column(..) = system.flat.variables[var].kind {
-                let name = &system.flat.variables[var].name;
-                diagnostics.push(
-                    Diagnostic::error(Code::Constrained, format!("the derivative of the recorded column `{name}` is needed"))
-                        .label(equation.origin.span, "by this equation")
-                        .help("drive the model by a force or through a spring, or give the velocity as a stimulus too"),
-                );
-            }
+            let name = &system.flat.variables[var].name;
+            let (what, help) = match system.flat.variables[var].kind {
+                VariableKind::Column(..) => (
+                    format!("the recorded column `{name}`"),
+                    "drive the model by a force or through a spring, or give the velocity as a stimulus too",
+                ),
+                VariableKind::Delayed(_) => (
+                    format!("`{name}`"),
+                    "drive the model by a force or through a spring: what is delayed may jump, and has no derivative there",
+                ),
+                VariableKind::Continuous
+                | VariableKind::Discrete
+                | VariableKind::Clocked(_)
+                | VariableKind::Held(..)
+                | VariableKind::Reduction(_) => continue,
+            };
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::Constrained,
+                    format!("the derivative of {what} is needed"),
+                )
+                .label(equation.origin.span, "by this equation")
+                .help(help),
+            );
         }
     }
 }

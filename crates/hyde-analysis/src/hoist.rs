@@ -37,6 +37,11 @@ pub(crate) fn hoist(dae: &mut Dae) {
         hoisting.apply(dae, &mut assignment.value);
     }
     dae.ticks = ticks;
+    let mut delays = std::mem::take(&mut dae.delays);
+    delays
+        .iter_mut()
+        .for_each(|delay| hoisting.apply(dae, &mut delay.value));
+    dae.delays = delays;
     let mut outputs = std::mem::take(&mut dae.outputs);
     outputs
         .iter_mut()

@@ -1,6 +1,7 @@
 //! What a run reports: every variable of the model, then what the experiment measures and reduces.
 
 use crate::system::System;
+use hyde_diag::MadeBy;
 use hyde_ir::dae::{Alias, Dae, Output};
 use hyde_ir::{Expr, Index, Quantity, Range, VariableKind};
 
@@ -16,14 +17,17 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
         .filter_map(|group| group.factors)
         .collect();
     for id in dae.variables.ids().collect::<Vec<_>>() {
-        if hidden.contains(&id) {
+        let variable = dae.variables[id].clone();
+        if hidden.contains(&id) || variable.origin.made_by == MadeBy::Delay {
             continue;
         }
-        let variable = dae.variables[id].clone();
         let discrete = match variable.kind {
             VariableKind::Continuous => false,
             VariableKind::Discrete | VariableKind::Clocked(_) => true,
-            VariableKind::Held(..) | VariableKind::Column(..) | VariableKind::Reduction(_) => {
+            VariableKind::Held(..)
+            | VariableKind::Column(..)
+            | VariableKind::Delayed(_)
+            | VariableKind::Reduction(_) => {
                 continue;
             }
         };
@@ -61,7 +65,10 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
             }) => {
                 let index = Index::fixed(i32::try_from(element).unwrap_or(0));
                 let value = dae.exprs.add(Expr::Var(var, index));
-                let held = dae.variables[var].kind != VariableKind::Continuous;
+                let held = !matches!(
+                    dae.variables[var].kind,
+                    VariableKind::Continuous | VariableKind::Delayed(_)
+                );
                 (
                     if negated {
                         dae.exprs.negative(value)

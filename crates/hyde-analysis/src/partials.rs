@@ -1,10 +1,13 @@
-//! Derivatives of every function by the solver's vector, its derivative, and time; by parameters on request (S2).
+//! Derivatives of every function by the solver's vector, its derivative, delayed values and time; by parameters on
+//! request (S2).
 //!
 //! Explicit variables are replaced by their definitions first, shifted to the counter of the row that reads them, so the
 //! result is the total derivative. One reverse pass a row gives all its entries; an array row gives array entries.
 
 use hyde_ir::dae::{Dae, Definition, Function, InitialCondition, Partial, Space, Wrt};
-use hyde_ir::{ClockId, Expr, ExprArena, ExprId, Id as _, Index, ParamId, Range, VarId};
+use hyde_ir::{
+    ClockId, Expr, ExprArena, ExprId, Id as _, Index, ParamId, Range, VarId, VariableKind,
+};
 use std::collections::HashMap;
 
 /// Fills in the derivatives of the DAE's functions.
@@ -19,7 +22,7 @@ pub(crate) fn differentiate(dae: &mut Dae) {
             });
             for (leaf, derivative) in gradient {
                 let Some(wrt) = wrt(dae, leaf) else { continue };
-                // The residual's derivatives are the entries of the Jacobian and nothing else.
+                // Nothing asks for the residual's derivative by the time.
                 if function == Function::Residual && wrt == Wrt::Time {
                     continue;
                 }
@@ -31,6 +34,8 @@ pub(crate) fn differentiate(dae: &mut Dae) {
                 });
             }
         }
+        // Behind the others, which are the entries of the Jacobian.
+        list.sort_by_key(|partial| matches!(partial.wrt, Wrt::Delayed(_)));
         dae.partials.push((function, list));
     }
 }
@@ -228,6 +233,18 @@ pub fn rows(dae: &Dae, function: Function) -> Vec<(Range, Index, ExprId)> {
             }
             found
         }
+        Function::Delayed => dae
+            .delays
+            .enumerate()
+            .map(|(id, delay)| {
+                let offset = i32::try_from(dae.delay_offset(id)).unwrap_or(0);
+                let index = Index {
+                    stride: i32::from(delay.range.len() > 1),
+                    offset: offset - delay.range.first,
+                };
+                (delay.range, index, delay.value)
+            })
+            .collect(),
         Function::Initial => {
             let mut row = 0;
             let mut found = Vec::new();
@@ -249,6 +266,12 @@ pub fn rows(dae: &Dae, function: Function) -> Vec<(Range, Index, ExprId)> {
 }
 
 fn wrt(dae: &Dae, leaf: Expr) -> Option<Wrt> {
+    if let Expr::Var(var, index) = leaf
+        && let VariableKind::Delayed(delay) = dae.variables[var].kind
+    {
+        let offset = index.offset + i32::try_from(dae.delay_offset(delay)).ok()?;
+        return Some(Wrt::Delayed(Index { offset, ..index }));
+    }
     let in_vector = |var: VarId, index: Index| {
         let place = dae
             .place(var)

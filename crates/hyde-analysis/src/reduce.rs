@@ -213,7 +213,10 @@ fn highest(system: &System, equation: &Equation) -> Option<Vec<Cell>> {
                 }
             }
             VariableKind::Discrete | VariableKind::Held(..) => {}
-            VariableKind::Clocked(_) | VariableKind::Column(..) | VariableKind::Reduction(_) => {
+            VariableKind::Clocked(_)
+            | VariableKind::Column(..)
+            | VariableKind::Delayed(_)
+            | VariableKind::Reduction(_) => {
                 return None;
             }
         }

@@ -192,7 +192,13 @@ fn varies(system: &System, id: ExprId) -> bool {
         expr == Expr::Time
             || expr.access().is_some_and(|(var, _, derivative)| {
                 let kind = system.flat.variables[var].kind;
-                derivative || matches!(kind, VariableKind::Continuous | VariableKind::Column(..))
+                derivative
+                    || matches!(
+                        kind,
+                        VariableKind::Continuous
+                            | VariableKind::Column(..)
+                            | VariableKind::Delayed(_)
+                    )
             })
     })
 }

@@ -186,6 +186,9 @@ impl System {
                 each(arena, action_value(action));
             }
         }
+        for delay in flat.delays.iter_mut() {
+            each(arena, &mut delay.value);
+        }
         for assert in &mut flat.asserts {
             each(arena, &mut assert.condition);
         }

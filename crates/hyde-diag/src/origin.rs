@@ -63,6 +63,8 @@ pub enum MadeBy {
     Pin,
     /// Start value used as an initial condition.
     Start,
+    /// A name for an expression that is delayed.
+    Delay,
     /// The experiment: stimulus, measured, expect.
     Experiment,
 }

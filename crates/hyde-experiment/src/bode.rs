@@ -5,8 +5,11 @@
 //! plant's exact zero-order-hold equivalent (Franklin, Powell, Workman, Digital Control of Dynamic Systems, ch. 4). Of the
 //! staircase the fundamental, (1 - exp(-jwT))/(jwT) exp(-jwd), goes on through the continuous plant to the outputs. Above
 //! half the sampling rate a sampled sine has no frequency of its own: refused.
+//!
+//! A delay is exp(-jwT) between what it is the delay of and its value, exactly; delayed values are solved for with the
+//! states.
 
-use crate::linearize::{Linear, Sampled};
+use crate::linearize::{Delayed, Linear, Sampled};
 use nalgebra::{Complex, DMatrix};
 
 /// Why there is no response.
@@ -62,12 +65,41 @@ pub fn frequency_response(
                 .ok_or(BodeError::Singular(f))?;
             direct += complex(&linear.d_held) * &held;
         }
+        if let Some(delayed) = &linear.delayed {
+            let values = late(&plant, delayed, input, &state, s).ok_or(BodeError::Singular(f))?;
+            state += plant
+                .solve(&(complex(&delayed.b) * &values))
+                .ok_or(BodeError::Singular(f))?;
+            direct += complex(&delayed.d) * &values;
+        }
         for (list, &output) in found.iter_mut().zip(outputs) {
             let through = complex(&linear.c.rows(output, 1).into_owned()) * &state;
             list.push(through[(0, 0)] + direct[(output, 0)]);
         }
     }
     Ok(found)
+}
+
+/// The delayed values d, from the response of the states to the input alone: `d = exp(-sT) (now + by_delayed*d)`.
+fn late(
+    plant: &nalgebra::LU<Complex<f64>, nalgebra::Dyn, nalgebra::Dyn>,
+    delayed: &Delayed,
+    input: usize,
+    driven: &Matrix,
+    s: Complex<f64>,
+) -> Option<Matrix> {
+    let times = delayed.times.iter().map(|time| (-s * *time).exp());
+    let turn = Matrix::from_diagonal(&nalgebra::DVector::from_iterator(
+        delayed.times.len(),
+        times,
+    ));
+    let states = plant.solve(&complex(&delayed.b))?;
+    let back = complex(&delayed.by_state) * states + complex(&delayed.by_delayed);
+    let by_input = complex(&delayed.by_input.columns(input, 1).into_owned());
+    let open = complex(&delayed.by_state) * driven + by_input;
+    let size = delayed.times.len();
+    let closed = (Matrix::identity(size, size) - &turn * back).lu();
+    closed.solve(&(turn * open))
 }
 
 /// The plant between ticks: `x[k+1] = phi x[k] + late h[k-1] + early h[k]`.

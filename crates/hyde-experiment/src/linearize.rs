@@ -1,5 +1,7 @@
 //! The system linearised about its start, in chosen modes: `x' = A x + B_u u + B_h h`, outputs and samples beside it.
 //!
+//! With delays there are delayed values d beside the inputs, and what they are the delay of beside the outputs.
+//!
 //! The states x are those of the solver's vector; its algebraic variables are solved for. Inputs u are the free inputs of
 //! the model, h the values that clocks hold. The clocked parts are linearised as they are: what a tick writes depends on
 //! the memory before it and on the samples, with quantisers as the identity (S3).
@@ -36,6 +38,25 @@ pub struct Linear {
     pub unknowns: DMatrix<f64>,
     /// About what it is linearised.
     pub point: OperatingPoint,
+    /// The delays, if there are any.
+    pub delayed: Option<Delayed>,
+}
+
+/// The linearised delays: `d(t) = now(t - time)` with `now = by_state*x + by_input*u + by_delayed*d`.
+#[derive(Clone, Debug)]
+pub struct Delayed {
+    /// The time of each delay in s.
+    pub times: Vec<f64>,
+    /// States by delayed values.
+    pub b: DMatrix<f64>,
+    /// Outputs by delayed values.
+    pub d: DMatrix<f64>,
+    /// What is delayed, by states.
+    pub by_state: DMatrix<f64>,
+    /// What is delayed, by inputs.
+    pub by_input: DMatrix<f64>,
+    /// What is delayed, by delayed values.
+    pub by_delayed: DMatrix<f64>,
 }
 
 /// The linearised clocked part: memory m after a tick is `memory*m_before + (by_state*x + by_input*u + by_held*h)`.
@@ -66,6 +87,8 @@ pub enum LinearizeError {
     TooLarge(usize),
     /// Clocks of different periods.
     SeveralClocks,
+    /// A delay beside a clock: between ticks such a plant has no finite state.
+    DelayAndClock,
     /// The algebraic variables are not determined at the operating point.
     Singular,
     /// No operating point was found.
@@ -98,7 +121,8 @@ pub fn linearize(
     let point = hyde_sim::operating_point(program, records, parameters, modes)
         .map_err(LinearizeError::Failed)?;
     let mut work = Workspace::new(program.n_work);
-    let u = vec![0.0; 2 * program.columns.len()];
+    let mut u = vec![0.0; 2 * program.columns.len()];
+    u.extend(&point.delayed);
     let at = Point {
         t: 0.0,
         y: &point.y,
@@ -117,7 +141,7 @@ pub fn linearize(
         .collect();
 
     let residual = Dense::of(program, Function::Residual, at, &mut work, &places, &held);
-    // [dF/dx' | dF/dy_a] (x', y_a) = -(dF/dx x + dF/du u + dF/dh h)
+    // [dF/dx' | dF/dy_a] (x', y_a) = -(dF/dx x + dF/du u + dF/dh h + dF/dd d)
     let mut left = DMatrix::zeros(n, n);
     for (column, &state) in states.iter().enumerate() {
         left.set_column(column, &residual.by_derivative.column(state));
@@ -125,53 +149,78 @@ pub fn linearize(
     for (column, &unknown) in algebraic.iter().enumerate() {
         left.set_column(states.len() + column, &residual.by_unknown.column(unknown));
     }
-    let mut right = DMatrix::zeros(n, states.len() + places.len() + held.len());
+    let (nx, nu, nh, nd) = (states.len(), places.len(), held.len(), program.delays.len());
+    let mut right = DMatrix::zeros(n, nx + nu + nh + nd);
     for (column, &state) in states.iter().enumerate() {
         right.set_column(column, &(-residual.by_unknown.column(state)));
     }
-    for column in 0..places.len() {
-        right.set_column(states.len() + column, &(-residual.by_input.column(column)));
-    }
-    for column in 0..held.len() {
-        right.set_column(
-            states.len() + places.len() + column,
-            &(-residual.by_held.column(column)),
-        );
-    }
+    right.columns_mut(nx, nu).copy_from(&-&residual.by_input);
+    right
+        .columns_mut(nx + nu, nh)
+        .copy_from(&-&residual.by_held);
+    right
+        .columns_mut(nx + nu + nh, nd)
+        .copy_from(&-&residual.by_delayed);
     let solved = left.lu().solve(&right).ok_or(LinearizeError::Singular)?;
-    let (nx, nu, nh) = (states.len(), places.len(), held.len());
     let parts = Parts {
         solved: &solved,
         states: &states,
         algebraic: &algebraic,
         nu,
         nh,
+        nd,
     };
 
     let outputs = Dense::of(program, Function::Outputs, at, &mut work, &places, &held);
-    let (c, d_input, d_held) = parts.through(&outputs);
+    let outputs = parts.through(&outputs);
     let sampled = sampled(program, at, &mut work, &parts, parameters, &held)?;
+    let delayed = if nd == 0 {
+        None
+    } else if sampled.is_some() {
+        return Err(LinearizeError::DelayAndClock);
+    } else {
+        let now = Dense::of(program, Function::Delayed, at, &mut work, &places, &held);
+        let now = parts.through(&now);
+        Some(Delayed {
+            times: program.delays.iter().map(|delay| delay.time_s).collect(),
+            b: solved.view((0, nx + nu + nh), (nx, nd)).into_owned(),
+            d: outputs.by_delayed,
+            by_state: now.by_state,
+            by_input: now.by_input,
+            by_delayed: now.by_delayed,
+        })
+    };
     Ok(Linear {
         a: solved.view((0, 0), (nx, nx)).into_owned(),
         b_input: solved.view((0, nx), (nx, nu)).into_owned(),
         b_held: solved.view((0, nx + nu), (nx, nh)).into_owned(),
-        c,
-        d_input,
-        d_held,
+        c: outputs.by_state,
+        d_input: outputs.by_input,
+        d_held: outputs.by_held,
         unknowns: parts.unknowns(n),
         states,
         sampled,
+        delayed,
         point,
     })
 }
 
-/// How the unknowns depend on states, inputs and held values.
+/// How the unknowns depend on states, inputs, held and delayed values.
 struct Parts<'a> {
     solved: &'a DMatrix<f64>,
     states: &'a [usize],
     algebraic: &'a [usize],
     nu: usize,
     nh: usize,
+    nd: usize,
+}
+
+/// A function by states, inputs, held and delayed values.
+struct Through {
+    by_state: DMatrix<f64>,
+    by_input: DMatrix<f64>,
+    by_held: DMatrix<f64>,
+    by_delayed: DMatrix<f64>,
 }
 
 impl Parts<'_> {
@@ -189,10 +238,10 @@ impl Parts<'_> {
         all
     }
 
-    /// A function of unknowns and their derivatives, by states, inputs and held values.
-    fn through(&self, dense: &Dense) -> (DMatrix<f64>, DMatrix<f64>, DMatrix<f64>) {
+    /// A function of unknowns and their derivatives, by what these depend on.
+    fn through(&self, dense: &Dense) -> Through {
         let (nx, rows) = (self.states.len(), dense.by_unknown.nrows());
-        let mut total = DMatrix::zeros(rows, nx + self.nu + self.nh);
+        let mut total = DMatrix::zeros(rows, nx + self.nu + self.nh + self.nd);
         for (number, &state) in self.states.iter().enumerate() {
             let mut column = total.column_mut(number);
             column += dense.by_unknown.column(state);
@@ -201,11 +250,12 @@ impl Parts<'_> {
         for (number, &unknown) in self.algebraic.iter().enumerate() {
             total += dense.by_unknown.column(unknown) * self.solved.row(nx + number);
         }
-        let mut by_input = total.columns(nx, self.nu).into_owned();
-        by_input += &dense.by_input;
-        let mut by_held = total.columns(nx + self.nu, self.nh).into_owned();
-        by_held += &dense.by_held;
-        (total.columns(0, nx).into_owned(), by_input, by_held)
+        Through {
+            by_state: total.columns(0, nx).into_owned(),
+            by_input: total.columns(nx, self.nu) + &dense.by_input,
+            by_held: total.columns(nx + self.nu, self.nh) + &dense.by_held,
+            by_delayed: total.columns(nx + self.nu + self.nh, self.nd) + &dense.by_delayed,
+        }
     }
 }
 
@@ -215,15 +265,17 @@ struct Dense {
     by_derivative: DMatrix<f64>,
     by_input: DMatrix<f64>,
     by_held: DMatrix<f64>,
+    by_delayed: DMatrix<f64>,
 }
 
 impl Dense {
-    fn zeros(rows: usize, n: usize, inputs: usize, held: usize) -> Self {
+    fn zeros(rows: usize, n: usize, inputs: usize, held: usize, delayed: usize) -> Self {
         Self {
             by_unknown: DMatrix::zeros(rows, n),
             by_derivative: DMatrix::zeros(rows, n),
             by_input: DMatrix::zeros(rows, inputs),
             by_held: DMatrix::zeros(rows, held),
+            by_delayed: DMatrix::zeros(rows, delayed),
         }
     }
 
@@ -236,7 +288,8 @@ impl Dense {
         held: &[usize],
     ) -> Self {
         let rows = program.rows(function);
-        let mut dense = Self::zeros(rows, program.n_unknowns, inputs.len(), held.len());
+        let delayed = program.delays.len();
+        let mut dense = Self::zeros(rows, program.n_unknowns, inputs.len(), held.len(), delayed);
         let entries = program.partials(function);
         let mut values = vec![0.0; entries.len()];
         program.kernels.partials(function, at, work, &mut values);
@@ -244,6 +297,7 @@ impl Dense {
             match entry.wrt {
                 Wrt::Unknown(column) => dense.by_unknown[(entry.row, column)] += value,
                 Wrt::Derivative(column) => dense.by_derivative[(entry.row, column)] += value,
+                Wrt::Delayed(column) => dense.by_delayed[(entry.row, column)] += value,
                 Wrt::Parameter(_) | Wrt::Time => {}
             }
         }
@@ -307,10 +361,10 @@ fn sampled(
     }
     let size = program.n_memory;
     let mut memory = DMatrix::<f64>::identity(size, size);
-    let mut samples = Dense::zeros(size, program.n_unknowns, parts.nu, held.len());
+    let mut samples = Dense::zeros(size, program.n_unknowns, parts.nu, held.len(), parts.nd);
     for &clock in &program.clock_order {
         let mut step = DMatrix::<f64>::identity(size, size);
-        let mut own = Dense::zeros(size, program.n_unknowns, parts.nu, held.len());
+        let mut own = Dense::zeros(size, program.n_unknowns, parts.nu, held.len(), parts.nd);
         let partials = program.kernels.tick_partials(clock, at, work);
         for &(row, _, _) in &partials {
             step[(row, row)] = 0.0;
@@ -326,7 +380,12 @@ fn sampled(
         samples.by_unknown = &step * samples.by_unknown + own.by_unknown;
         samples.by_derivative = &step * samples.by_derivative + own.by_derivative;
     }
-    let (by_state, by_input, by_held) = parts.through(&samples);
+    let Through {
+        by_state,
+        by_input,
+        by_held,
+        by_delayed: _,
+    } = parts.through(&samples);
     // What a tick reads of a held value is its own past.
     let mut select = DMatrix::zeros(held.len(), size);
     let sources = program

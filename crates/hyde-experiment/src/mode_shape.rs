@@ -6,9 +6,9 @@
 //! about the operating point.
 
 use crate::linearize::Linear;
-use crate::modes::NaturalMode;
+use crate::modes::{NaturalMode, characteristic};
 use hyde_program::{AccountKind, Function, Point, Program, Workspace};
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::{Complex, DVector};
 
 /// The energy in J that a shape is scaled to: small against what a drive stores, large against rounding.
 const ENERGY: f64 = 1e-4;
@@ -30,7 +30,7 @@ pub fn mode_shape(
     linear: &Linear,
     mode: &NaturalMode,
 ) -> Option<ModeShape> {
-    let shape = eigenvector(&linear.a, mode.eigenvalue)?;
+    let shape = eigenvector(linear, mode.eigenvalue)?;
     let mut energies = Energies::new(program, parameters, linear);
     let parts = [shape.map(|x| x.re), shape.map(|x| x.im)];
     // The scale is found from the first look at a unit vector.
@@ -64,15 +64,11 @@ pub fn mode_shape(
 }
 
 /// Two steps of inverse iteration from a vector that no shape is perpendicular to.
-fn eigenvector(a: &DMatrix<f64>, eigenvalue: Complex<f64>) -> Option<DVector<Complex<f64>>> {
-    let n = a.nrows();
-    let mut shifted = a.map(|x| Complex::new(x, 0.0));
+fn eigenvector(linear: &Linear, eigenvalue: Complex<f64>) -> Option<DVector<Complex<f64>>> {
+    let n = linear.a.nrows();
     // Not quite the eigenvalue, or the matrix would be singular.
     let shift = eigenvalue * (1.0 + 1e-9);
-    for i in 0..n {
-        shifted[(i, i)] -= shift;
-    }
-    let factors = shifted.lu();
+    let factors = characteristic(linear, shift)?.lu();
     let mut vector = DVector::from_fn(n, |i, _| Complex::new(1.0, 0.1 * (1.0 + i as f64).sqrt()));
     for _ in 0..3 {
         vector = factors.solve(&vector)?;
@@ -125,7 +121,9 @@ impl<'a> Energies<'a> {
         for (&state, rate) in linear.states.iter().zip(&dyp) {
             yp[state] += sign * rate;
         }
-        let u = vec![0.0; 2 * self.program.columns.len()];
+        // Energies are of states: delayed values stay as they are.
+        let mut u = vec![0.0; 2 * self.program.columns.len()];
+        u.extend(&point.delayed);
         let at = Point {
             t: 0.0,
             y: &y,

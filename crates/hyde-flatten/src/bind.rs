@@ -278,6 +278,7 @@ impl<'a> Model<'a, '_> {
             | VariableKind::Discrete
             | VariableKind::Held(..)
             | VariableKind::Column(..)
+            | VariableKind::Delayed(_)
             | VariableKind::Reduction(_) => Setting::Equation,
         };
         let scope = binding.scope_for(setting);
@@ -356,6 +357,7 @@ impl<'a> Model<'a, '_> {
                 | VariableKind::Discrete
                 | VariableKind::Held(..)
                 | VariableKind::Column(..)
+                | VariableKind::Delayed(_)
                 | VariableKind::Reduction(_) => self.flat.equations.push(equation),
             }
         }

@@ -2,6 +2,7 @@
 
 mod chirp;
 mod clock;
+mod delay;
 mod derivative;
 mod extremum;
 mod function;
@@ -46,6 +47,7 @@ const ALL: [&str; 46] = [
     "sample",
     "hold",
     "interval",
+    "delay",
     "abs",
     "sign",
     "sqrt",
@@ -100,6 +102,7 @@ fn usage(name: &str) -> Option<&'static str> {
         "hold" => "hold(u)",
         "held" => "held(file.column)",
         "interval" => "interval()",
+        "delay" => "delay(u, T)",
         "smooth" => "smooth(order, expression)",
         "mod" => "mod(x, period)",
         "floor_to" => "floor_to(x, step)",
@@ -198,6 +201,7 @@ impl<'a> Model<'a, '_> {
             "hold" => self.hold(&args, scope, span),
             "held" => self.held_column(&args, scope, span),
             "interval" => self.interval(&args, scope, span),
+            "delay" => self.delay(&args, scope, span),
             "noEvent" => match self.exactly(name, &args, span) {
                 Some([a]) => self.without_events(a, scope, span),
                 None => self.poison(span),

@@ -41,6 +41,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) connections: Vec<crate::connect::Connection>,
     /// Held variables by clock and source.
     pub(crate) held: BTreeMap<(ClockId, VarId), VarId>,
+    /// Delayed variables by what is delayed and the bits of the time.
+    pub(crate) delayed: BTreeMap<(ExprId, u64), VarId>,
     /// Column variables: linear and held.
     pub(crate) column_variables: BTreeMap<ColumnId, (VarId, VarId)>,
     /// Parameters that stand for the first value of a column.
@@ -73,6 +75,7 @@ impl<'a, 'd> Model<'a, 'd> {
             joined: Vec::new(),
             connections: Vec::new(),
             held: BTreeMap::new(),
+            delayed: BTreeMap::new(),
             column_variables: BTreeMap::new(),
             column_firsts: BTreeMap::new(),
             undeclared: BTreeSet::new(),

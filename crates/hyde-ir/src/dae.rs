@@ -18,9 +18,9 @@ pub use place::{Alias, Place, Space, Unknown};
 pub use relation::{Relation, RelationUse};
 pub use selection::Selection;
 
-use crate::flat::Experiment;
+use crate::flat::{Delay, Experiment};
 use crate::id::{
-    AutomatonId, ClockId, ColumnId, ExprId, IdVec, ParamId, RelationId, UnknownId, VarId,
+    AutomatonId, ClockId, ColumnId, DelayId, ExprId, IdVec, ParamId, RelationId, UnknownId, VarId,
 };
 use crate::{Column, ExprArena, Parameter, Quantity, Range, Variable};
 
@@ -84,6 +84,8 @@ pub struct Dae {
     pub tick_order: Vec<ClockId>,
     /// Held values.
     pub holds: Vec<Hold>,
+    /// Delayed quantities; their values follow those of the columns among the inputs, delay after delay.
+    pub delays: IdVec<DelayId, Delay>,
     /// Conditions at the start.
     pub initial: Vec<InitialCondition>,
     /// Start values of unknowns and memory.
@@ -118,12 +120,29 @@ impl Dae {
                     base: 2 * crate::Id::index(column) + held,
                 })
             }
+            crate::VariableKind::Delayed(delay) => Some(Place {
+                space: Space::Input,
+                base: 2 * self.columns.len() + self.delay_offset(delay),
+            }),
             crate::VariableKind::Continuous
             | crate::VariableKind::Discrete
             | crate::VariableKind::Clocked(_)
             | crate::VariableKind::Held(..)
             | crate::VariableKind::Reduction(_) => self.places[var],
         }
+    }
+
+    /// Number of the first delayed value of a delay.
+    #[must_use]
+    pub fn delay_offset(&self, delay: DelayId) -> usize {
+        let before = self.delays.iter().take(crate::Id::index(delay));
+        before.map(|delay| delay.range.len()).sum()
+    }
+
+    /// Number of delayed values.
+    #[must_use]
+    pub fn n_delayed(&self) -> usize {
+        self.delays.iter().map(|delay| delay.range.len()).sum()
     }
 
     /// The derivatives of a function.
@@ -162,6 +181,7 @@ impl Dae {
             Function::Assignments => self.assignments.len() + self.pins.len(),
             Function::Outputs => self.n_outputs(),
             Function::Initial => self.n_initial_equations(),
+            Function::Delayed => self.n_delayed(),
         }
     }
 }

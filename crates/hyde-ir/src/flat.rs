@@ -1,6 +1,6 @@
 //! [`FlatModel`]: what flatten leaves. Every variable and equation of every instance; nothing solved yet.
 
-use crate::id::{AutomatonId, ClockId, ColumnId, ExprId, IdVec, ParamId, VarId};
+use crate::id::{AutomatonId, ClockId, ColumnId, DelayId, ExprId, IdVec, ParamId, VarId};
 use crate::{Column, ExprArena, Index, Parameter, Quantity, Range, Variable};
 use hyde_diag::{InstancePath, Origin, Span};
 use std::collections::BTreeMap;
@@ -101,6 +101,22 @@ pub struct ClockedEquation {
     pub clock: ClockId,
     /// The equation.
     pub equation: Equation,
+}
+
+/// `delay(u, T)`. The time is a number: the parameters it is made of are structural, for without a delay the equations
+/// are others.
+#[derive(Clone, Debug)]
+pub struct Delay {
+    /// Values of the counter: one an element of an array.
+    pub range: Range,
+    /// What is delayed.
+    pub value: ExprId,
+    /// By how much, in s, above 0.
+    pub time_s: f64,
+    /// The variable that stands for the result.
+    pub var: VarId,
+    /// Where it is written.
+    pub origin: Origin,
 }
 
 /// A condition that must hold during a run.
@@ -339,6 +355,8 @@ pub struct FlatModel {
     pub clocks: IdVec<ClockId, Clock>,
     /// The equations of clocked partitions.
     pub clocked_equations: Vec<ClockedEquation>,
+    /// The delayed quantities.
+    pub delays: IdVec<DelayId, Delay>,
     /// Conditions that must hold.
     pub asserts: Vec<Assert>,
     /// What the experiment adds.

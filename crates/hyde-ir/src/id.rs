@@ -38,6 +38,7 @@ ids! {
     AutomatonId "A `modes` block of an instance.";
     ClockId "A clocked partition.";
     ColumnId "A column of a record.";
+    DelayId "A delayed variable, `delay(u, T)`.";
     UnknownId "A block of the solver's vector.";
     DefinitionId "An explicit definition.";
 }

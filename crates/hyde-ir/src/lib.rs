@@ -45,7 +45,7 @@ pub use dae::Dae;
 pub use expr::{Expr, ExprArena, Index, Number, Range};
 pub use flat::FlatModel;
 pub use id::{
-    AutomatonId, ClockId, ColumnId, DefinitionId, ExprId, Id, IdVec, ParamId, RelationId,
+    AutomatonId, ClockId, ColumnId, DefinitionId, DelayId, ExprId, Id, IdVec, ParamId, RelationId,
     UnknownId, VarId,
 };
 pub use validate::{validate_dae, validate_flat};

@@ -33,6 +33,9 @@ pub fn validate_flat(flat: &FlatModel) -> Result<(), String> {
     {
         check.equation(equation)?;
     }
+    for delay in flat.delays.iter() {
+        check.expr(delay.value, delay.range)?;
+    }
     for automaton in flat.automata.iter() {
         let targets = automaton
             .modes

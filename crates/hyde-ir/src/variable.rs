@@ -1,6 +1,6 @@
 //! Variables, parameters and record columns, as both stages hold them.
 
-use crate::id::{ClockId, ColumnId, ExprId, VarId};
+use crate::id::{ClockId, ColumnId, DelayId, ExprId, VarId};
 use hyde_diag::Origin;
 use hyde_units::{Dimension, NamedUnit};
 
@@ -52,6 +52,8 @@ pub enum VariableKind {
     Held(ClockId, VarId),
     /// A column of a record.
     Column(ColumnId, Interpolation),
+    /// `delay(u, T)`: a continuous quantity as it was earlier.
+    Delayed(DelayId),
     /// A number known after the run: the reduction of that number.
     Reduction(usize),
 }

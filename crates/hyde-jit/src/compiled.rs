@@ -116,7 +116,7 @@ impl Compiled {
         let enough = at.y.len() >= dae.n_unknowns
             && at.yp.len() >= dae.n_unknowns
             && at.z.len() >= dae.n_memory
-            && at.u.len() >= 2 * dae.columns.len()
+            && at.u.len() >= 2 * dae.columns.len() + dae.n_delayed()
             && at.p.len() >= dae.n_parameters.1
             && workspace.work.len() >= dae.n_work;
         assert!(
@@ -353,6 +353,7 @@ pub(crate) fn entries(partials: &[dae::Partial]) -> Vec<PartialEntry> {
                 dae::Wrt::Unknown(index) => Wrt::Unknown(at(index)),
                 dae::Wrt::Derivative(index) => Wrt::Derivative(at(index)),
                 dae::Wrt::Parameter(position) => Wrt::Parameter(position),
+                dae::Wrt::Delayed(index) => Wrt::Delayed(at(index)),
                 dae::Wrt::Time => Wrt::Time,
             };
             found.push(PartialEntry {
@@ -371,6 +372,7 @@ pub(crate) fn in_dae(function: Function) -> dae::Function {
         Function::Assignments => dae::Function::Assignments,
         Function::Outputs => dae::Function::Outputs,
         Function::Initial => dae::Function::Initial,
+        Function::Delayed => dae::Function::Delayed,
     }
 }
 

@@ -258,5 +258,6 @@ fn name(function: Function) -> &'static str {
         Function::Assignments => "assignments",
         Function::Outputs => "outputs",
         Function::Initial => "initial",
+        Function::Delayed => "delayed",
     }
 }

@@ -6,9 +6,10 @@ use hyde_ir::dae::{self, Dae};
 use hyde_ir::flat;
 use hyde_ir::{Id as _, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Bode, Clock, Column, Derivatives, Experiment, Hold, InitialCondition,
-    Measure, Measured, Output, Parameter, Pin, Preparation, Prior, Program, Reaction, ReactionKind,
-    Reduction, ReductionKind, Relation, RelationUse, Selection, Stop, Target, UnknownBlock,
+    Assignment, Automaton, Bode, Clock, Column, Delay, Derivatives, Experiment, Hold,
+    InitialCondition, Measure, Measured, Output, Parameter, Pin, Preparation, Prior, Program,
+    Reaction, ReactionKind, Reduction, ReductionKind, Relation, RelationUse, Selection, Stop,
+    Target, UnknownBlock,
 };
 use std::sync::Arc;
 
@@ -79,6 +80,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
                 read: hold.read,
             })
             .collect(),
+        delays: delays(dae),
         initial: dae.initial.iter().map(initial).collect(),
         derivatives: Derivatives::default(),
         experiment: experiment(dae),
@@ -163,6 +165,7 @@ fn columns(dae: &Dae) -> Vec<Column> {
         .chain(dae.definitions.iter().map(|definition| definition.value))
         .chain(dae.relations.iter().map(|relation| relation.root))
         .chain(dae.outputs.iter().map(|output| output.value))
+        .chain(dae.delays.iter().map(|delay| delay.value))
         .collect();
     let mut read = vec![false; dae.columns.len()];
     for id in dae.exprs.below(&roots) {
@@ -182,6 +185,30 @@ fn columns(dae: &Dae) -> Vec<Column> {
             continuous,
         })
         .collect()
+}
+
+fn delays(dae: &Dae) -> Vec<Delay> {
+    let values: Vec<_> = dae
+        .residuals
+        .iter()
+        .map(|residual| residual.value)
+        .chain(dae.definitions.iter().map(|definition| definition.value))
+        .chain(dae.relations.iter().map(|relation| relation.root))
+        .collect();
+    let below = dae.exprs.below(&values);
+    let reads = |delay: &flat::Delay| {
+        let of = |id: &hyde_ir::ExprId| matches!(dae.exprs[*id], hyde_ir::Expr::Var(var, _) if var == delay.var);
+        below.iter().any(of)
+    };
+    let each = dae.delays.iter().flat_map(|delay| {
+        let read = reads(delay);
+        delay.range.iter().map(move |_| Delay {
+            time_s: delay.time_s,
+            read,
+            origin: delay.origin.clone(),
+        })
+    });
+    each.collect()
 }
 
 fn outputs(dae: &Dae) -> Vec<Output> {

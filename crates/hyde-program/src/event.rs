@@ -147,6 +147,17 @@ pub struct Hold {
     pub read: bool,
 }
 
+/// A quantity as it was earlier: its value now is of the same number in [`crate::Function::Delayed`].
+#[derive(Clone, Debug)]
+pub struct Delay {
+    /// By how much, in s, above 0.
+    pub time_s: f64,
+    /// Whether the continuous equations read it: a jump that arrives is an event.
+    pub read: bool,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
 /// A condition at the start, for one or more states.
 #[derive(Clone, Debug)]
 pub enum InitialCondition {

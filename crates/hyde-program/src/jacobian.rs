@@ -86,12 +86,6 @@ impl Jacobian {
         self.rows.is_empty()
     }
 
-    /// Number of values the kernel writes.
-    #[must_use]
-    pub fn n_values(&self) -> usize {
-        self.positions.len()
-    }
-
     /// `alpha*dF/dy + cj*dF/dy'` from the kernel's values.
     pub fn assemble(&self, values: &[f64], alpha: f64, cj: f64, matrix: &mut [f64]) {
         matrix.iter_mut().for_each(|entry| *entry = 0.0);

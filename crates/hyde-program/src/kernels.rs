@@ -13,7 +13,7 @@ pub struct Point<'a> {
     pub yp: &'a [f64],
     /// The memory.
     pub z: &'a [f64],
-    /// Record columns at this time.
+    /// Record columns at this time, two values each, then the delayed values.
     pub u: &'a [f64],
     /// Parameters, complete.
     pub p: &'a [f64],
@@ -47,16 +47,19 @@ pub enum Function {
     Outputs,
     /// Conditions at the start that are equations.
     Initial,
+    /// What is delayed, as it is now.
+    Delayed,
 }
 
 impl Function {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Residual,
         Self::Roots,
         Self::Assignments,
         Self::Outputs,
         Self::Initial,
+        Self::Delayed,
     ];
 }
 

@@ -24,8 +24,8 @@ mod ledger;
 mod program;
 
 pub use event::{
-    Assignment, Automaton, Clock, Hold, InitialCondition, Pin, Reaction, ReactionKind, Relation,
-    RelationUse, Selection, Target,
+    Assignment, Automaton, Clock, Delay, Hold, InitialCondition, Pin, Reaction, ReactionKind,
+    Relation, RelationUse, Selection, Target,
 };
 pub use experiment::{
     Bode, Experiment, Measure, Measured, Preparation, Reduction, ReductionKind, Stop,

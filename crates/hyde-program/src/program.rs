@@ -1,7 +1,7 @@
 //! [`Program`]: the kernels and everything that is to be known of their numbers.
 
 use crate::event::{
-    Assignment, Automaton, Clock, Hold, InitialCondition, Pin, Reaction, Relation, Selection,
+    Assignment, Automaton, Clock, Delay, Hold, InitialCondition, Pin, Reaction, Relation, Selection,
 };
 use crate::experiment::Experiment;
 use crate::jacobian::{Jacobian, JacobianEntry};
@@ -98,6 +98,8 @@ pub enum Wrt {
     Derivative(usize),
     /// A parameter, by its position.
     Parameter(usize),
+    /// A delayed value.
+    Delayed(usize),
     /// Time.
     Time,
 }
@@ -115,7 +117,7 @@ pub struct PartialEntry {
 /// is compiled in no time and has long tables.
 #[derive(Clone, Default)]
 pub struct Derivatives {
-    entries: OnceLock<[Vec<PartialEntry>; 5]>,
+    entries: OnceLock<[Vec<PartialEntry>; 6]>,
     jacobian: OnceLock<Jacobian>,
 }
 
@@ -160,6 +162,8 @@ pub struct Program {
     pub clock_order: Vec<usize>,
     /// The held values.
     pub holds: Vec<Hold>,
+    /// The delayed values, each on its own.
+    pub delays: Vec<Delay>,
     /// Conditions at the start.
     pub initial: Vec<InitialCondition>,
     /// What is known of the derivatives, once asked for.
@@ -208,6 +212,7 @@ impl Program {
                     InitialCondition::Fixed { .. } => 0,
                 })
                 .sum(),
+            Function::Delayed => self.delays.len(),
         }
     }
 
@@ -282,7 +287,8 @@ impl Program {
             .position(|output| output.name == name && !output.auxiliary)
     }
 
-    /// The Jacobian's pattern from the derivatives of the residual, which are by unknowns and their derivatives only.
+    /// The Jacobian's pattern from the derivatives of the residual: by unknowns and their derivatives, then by delayed
+    /// values, which are no entries.
     #[must_use]
     fn jacobian_of(n_unknowns: usize, partials: &[PartialEntry]) -> Jacobian {
         let entries: Vec<JacobianEntry> = partials
@@ -298,7 +304,7 @@ impl Program {
                     column,
                     by_derivative: true,
                 }),
-                Wrt::Parameter(_) | Wrt::Time => None,
+                Wrt::Parameter(_) | Wrt::Delayed(_) | Wrt::Time => None,
             })
             .collect();
         Jacobian::new(n_unknowns, &entries)

@@ -122,6 +122,7 @@ impl Schedule {
         t: f64,
         y: &[f64],
         yp: &[f64],
+        delayed: &[f64],
     ) -> (u64, bool) {
         let program = state.program;
         let mut ticks = 0;
@@ -129,7 +130,7 @@ impl Schedule {
             if !same_instant(self.clocks[clock].at(), t) {
                 continue;
             }
-            state.tick(clock, t, y, yp);
+            state.tick(clock, t, y, yp, delayed);
             self.clocks[clock].next += 1;
             ticks += 1;
             self.hold(program, state, clock, t);

@@ -392,10 +392,12 @@ fn rounding(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
     let program = state.program;
     let mut rounding = vec![0.0; program.relations.len()];
     let partials = state.partials(Function::Roots, t, y, yp);
+    let delayed = state.delayed();
     for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
         let argument = match entry.wrt {
             Wrt::Unknown(column) => y[column],
             Wrt::Derivative(column) => yp[column],
+            Wrt::Delayed(number) => delayed[number],
             Wrt::Time => t,
             Wrt::Parameter(_) => 0.0,
         };
@@ -420,7 +422,7 @@ fn root_rates(
     y: &[f64],
     yp: &[f64],
 ) -> Vec<f64> {
-    let Some((now, dy)) = rates_at(state, consistent, t, y, yp) else {
+    let Some((now, dy)) = rates_at(Function::Roots, state, consistent, t, y, yp) else {
         return vec![0.0; state.program.relations.len()];
     };
     let moment = moment(t);
@@ -436,7 +438,14 @@ fn root_rates(
     {
         return now;
     }
-    match rates_at(state, consistent, t + moment, &y_later, &yp_later) {
+    match rates_at(
+        Function::Roots,
+        state,
+        consistent,
+        t + moment,
+        &y_later,
+        &yp_later,
+    ) {
         Some((later, _)) => now
             .iter()
             .zip(later)
@@ -446,8 +455,9 @@ fn root_rates(
     }
 }
 
-/// The derivatives of all root functions along the flow at a point, and that of y.
-fn rates_at(
+/// The derivatives of a function along the flow at a point, and that of y.
+pub(crate) fn rates_at(
+    function: Function,
     state: &mut State<'_>,
     consistent: &mut Consistent,
     t: f64,
@@ -455,21 +465,21 @@ fn rates_at(
     yp: &[f64],
 ) -> Option<(Vec<f64>, Vec<f64>)> {
     let program = state.program;
-    let mut rates = vec![0.0; program.relations.len()];
+    let mut rates = vec![0.0; program.rows(function)];
     let (dy, dyp) = consistent.flow(state, t, y, yp)?;
-    let partials = state.partials(Function::Roots, t, y, yp);
-    for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
+    let partials = state.partials(function, t, y, yp);
+    for (entry, value) in program.partials(function).iter().zip(partials) {
         rates[entry.row] += match entry.wrt {
             Wrt::Unknown(column) => value * dy[column],
             Wrt::Derivative(column) => value * dyp[column],
-            Wrt::Time | Wrt::Parameter(_) => 0.0,
+            Wrt::Delayed(_) | Wrt::Time | Wrt::Parameter(_) => 0.0,
         };
     }
-    // The time itself, and record columns that move with it.
+    // The time itself, and record columns and delayed values that move with it.
     let step = 1e-7 * (1e-3 + t.abs());
     let (mut later, mut now) = (vec![0.0; rates.len()], vec![0.0; rates.len()]);
-    state.evaluate(Function::Roots, t + step, y, yp, &mut later);
-    state.evaluate(Function::Roots, t, y, yp, &mut now);
+    state.evaluate(function, t + step, y, yp, &mut later);
+    state.evaluate(function, t, y, yp, &mut now);
     for (rate, (later, now)) in rates.iter_mut().zip(later.iter().zip(&now)) {
         *rate += (later - now) / step;
     }

@@ -2,6 +2,7 @@
 //!
 //! Where every state starts at its start value only consistent values are left to solve. With initial equations, y and
 //! the states' y' are unknown together: F = 0, each fixed start value, each initial equation, by a damped Newton method.
+//! So are delayed values, which are at the start what they are the delay of.
 
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
@@ -14,28 +15,45 @@ const MAX_ITERATIONS: usize = 100;
 const MAX_HALVINGS: usize = 20;
 
 /// Start values of y and the memory, before anything is solved.
-pub(crate) fn start(state: &mut State<'_>) -> (Vec<f64>, Vec<f64>) {
+pub(crate) fn start(state: &mut State<'_>, t: f64) -> (Vec<f64>, Vec<f64>) {
     let n = state.program.n_unknowns;
     let (mut y, yp) = (vec![0.0; n], vec![0.0; n]);
     let p = state.p.clone();
     state.program.kernels.start(&p, &mut y, &mut state.z);
+    state.guess_past(t, &y, &yp);
     (y, yp)
 }
 
-/// Solves the initial equations, if there are any; the states then have their values. With `guess` the relations of
-/// equations are taken as they are at the first guess, else as they are.
+/// What the initial system is solved from.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Round {
+    /// From start values: relations of equations as they are at the first guess.
+    First,
+    /// From the solution before, with relations as they are now.
+    Again,
+    /// The same with the states as they are.
+    StatesKept,
+}
+
+/// Solves the initial equations, if there are any; the states then have their values.
 pub(crate) fn solve(
     state: &mut State<'_>,
     consistent: &mut Consistent,
     t: f64,
     y: &mut [f64],
     yp: &mut [f64],
-    guess: bool,
+    round: Round,
 ) -> Result<(), Box<Failure>> {
     let program = state.program;
-    selection::choose_at_start(state, t, y, yp);
-    let count = program.rows(Function::Initial);
-    if count == 0 {
+    if round != Round::StatesKept {
+        selection::choose_at_start(state, t, y, yp);
+    }
+    let count = match round {
+        Round::First | Round::Again => program.rows(Function::Initial),
+        Round::StatesKept => 0,
+    };
+    let delays = program.delays.len();
+    if count == 0 && delays == 0 {
         return consistent.solve(state, t, y, yp, true);
     }
     // A first guess for the rest from the states' start values; it need not exist.
@@ -47,7 +65,7 @@ pub(crate) fn solve(
         y.copy_from_slice(&guess_y);
         yp.copy_from_slice(&guess_yp);
     }
-    if guess {
+    if round == Round::First && count > 0 {
         guess_relations(state, t, y, yp);
     }
     let n = program.n_unknowns;
@@ -60,7 +78,7 @@ pub(crate) fn solve(
             .for_each(|(number, &i)| columns[i] = Some(n + number));
         columns
     };
-    let size = n + states.len();
+    let size = n + states.len() + delays;
     let mut fixed: Vec<usize> = state.pinned.iter().map(|(position, _)| *position).collect();
     for condition in &program.initial {
         if let InitialCondition::Fixed {
@@ -70,10 +88,13 @@ pub(crate) fn solve(
             fixed.extend((*first..*first + *len).filter(|&i| state.differential[i]));
         }
     }
+    if count == 0 {
+        fixed.clone_from(&states);
+    }
     fixed.sort_unstable();
     fixed.dedup();
     let targets: Vec<f64> = fixed.iter().map(|&i| y[i]).collect();
-    if n + count + fixed.len() != size {
+    if n + count + fixed.len() + delays != size {
         let kind = FailureKind::Inconsistent {
             singular: None,
             at_start: true,
@@ -81,6 +102,7 @@ pub(crate) fn solve(
         return Err(Failure::new(kind, t));
     }
     let (pattern, positions) = pattern(state, size, n, count, &fixed, &column_of_rate);
+    let mut past = state.delayed_at(t).to_vec();
     let failed = |singular: Option<String>| {
         let mut failure = Failure::new(
             FailureKind::Inconsistent {
@@ -97,8 +119,9 @@ pub(crate) fn solve(
         failure
     };
     let mut solver = SparseSolver::new(pattern, LinearMethod::Auto).map_err(|_| failed(None))?;
-    let residual = |state: &mut State<'_>, y: &[f64], yp: &[f64]| {
+    let residual = |state: &mut State<'_>, y: &[f64], yp: &[f64], past: &[f64]| {
         let mut out = vec![0.0; size];
+        state.delays.set_past(t, past);
         state.evaluate(Function::Residual, t, y, yp, &mut out[..n]);
         let mut equations = vec![0.0; count];
         state.evaluate(Function::Initial, t, y, yp, &mut equations);
@@ -106,24 +129,31 @@ pub(crate) fn solve(
         for (number, (&i, target)) in fixed.iter().zip(&targets).enumerate() {
             out[n + count + number] = y[i] - target;
         }
+        let mut now = vec![0.0; delays];
+        state.evaluate(Function::Delayed, t, y, yp, &mut now);
+        for ((out, past), now) in out[size - delays..].iter_mut().zip(past).zip(now) {
+            *out = past - now;
+        }
         out
     };
     let norm = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let mut r = residual(state, y, yp);
+    let mut r = residual(state, y, yp, &past);
     for _ in 0..MAX_ITERATIONS {
         let values = values(state, t, y, yp, &positions);
         if let Err(singular) = solver.factor(&values) {
             let column = singular.unknown;
-            let position = if column < n {
-                column
-            } else {
-                states[column - n]
+            let position = match column.checked_sub(n) {
+                None => Some(column),
+                Some(rate) => states.get(rate).copied(),
             };
-            return Err(failed(Some(program.unknown_name(position))));
+            return Err(failed(
+                position.map(|position| program.unknown_name(position)),
+            ));
         }
         let mut step = r.clone();
         solver.solve(&mut step);
         let (old_y, old_yp, before) = (y.to_vec(), yp.to_vec(), norm(&r));
+        let old_past = past.clone();
         let mut factor = 1.0;
         let mut whole = false;
         for halving in 0..=MAX_HALVINGS {
@@ -133,7 +163,10 @@ pub(crate) fn solve(
                     yp[i] = old_yp[i] - factor * step[column];
                 }
             }
-            r = residual(state, y, yp);
+            for (number, past) in past.iter_mut().enumerate() {
+                *past = old_past[number] - factor * step[n + states.len() + number];
+            }
+            r = residual(state, y, yp, &past);
             let after = norm(&r);
             if after.is_finite() && (after <= before || halving == MAX_HALVINGS || after < 1e-12) {
                 whole = halving == 0;
@@ -163,7 +196,8 @@ fn guess_relations(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) {
     }
 }
 
-/// Sparsity of the initial system, and where each value of the kernels goes: residual, initial equations, then ones.
+/// Sparsity of the initial system, and where each value of the kernels goes: residual, initial equations, ones of fixed
+/// states, ones of delayed values, and what these are the delay of.
 fn pattern(
     state: &State<'_>,
     size: usize,
@@ -173,9 +207,11 @@ fn pattern(
     column_of_rate: &[Option<usize>],
 ) -> (Pattern, Vec<Vec<Option<usize>>>) {
     let program = state.program;
+    let first_delayed = size - program.delays.len();
     let column = |wrt: Wrt| match wrt {
         Wrt::Unknown(column) => Some(column),
         Wrt::Derivative(column) => column_of_rate[column],
+        Wrt::Delayed(number) => Some(first_delayed + number),
         Wrt::Parameter(_) | Wrt::Time => None,
     };
     let lists: Vec<Vec<Option<(usize, usize)>>> = vec![
@@ -187,12 +223,19 @@ fn pattern(
         program
             .partials(Function::Initial)
             .iter()
+            .filter(|_| count > 0)
             .map(|e| Some((column(e.wrt)?, n + e.row)))
             .collect(),
         fixed
             .iter()
             .zip(n + count..)
             .map(|(&i, row)| Some((i, row)))
+            .collect(),
+        (first_delayed..size).map(|row| Some((row, row))).collect(),
+        program
+            .partials(Function::Delayed)
+            .iter()
+            .map(|e| Some((column(e.wrt)?, first_delayed + e.row)))
             .collect(),
     ];
     let mut cells: Vec<(usize, usize)> = lists.iter().flatten().flatten().copied().collect();
@@ -235,8 +278,12 @@ fn values(
     let mut values = vec![0.0; size];
     let residual = state.partials(Function::Residual, t, y, yp);
     let initial = state.partials(Function::Initial, t, y, yp);
-    let ones = vec![1.0; positions[2].len()];
-    for (list, numbers) in positions.iter().zip([residual, initial, ones]) {
+    let ones = |list: &[Option<usize>]| vec![1.0; list.len()];
+    let (fixed, past) = (ones(&positions[2]), ones(&positions[3]));
+    let delayed = state.partials(Function::Delayed, t, y, yp);
+    let delayed = delayed.into_iter().map(|value| -value).collect();
+    let lists = [residual, initial, fixed, past, delayed];
+    for (list, numbers) in positions.iter().zip(lists) {
         for (position, number) in list.iter().zip(numbers) {
             if let Some(position) = position {
                 values[*position] += number;

@@ -51,9 +51,13 @@ impl<'a> Integrator<'a> {
         first_step_s: f64,
     ) -> Result<Self, Box<Failure>> {
         let program = state.program;
+        let stride = state.delays.max_step_s();
         if program.n_unknowns == 0 {
             return Ok(Self {
-                solver: Solver::Nothing(Box::new(state), setup.max_step_s.min(setup.row_spacing())),
+                solver: Solver::Nothing(
+                    Box::new(state),
+                    setup.max_step_s.min(setup.row_spacing()).min(stride),
+                ),
                 t,
                 y,
                 yp,
@@ -80,7 +84,7 @@ impl<'a> Integrator<'a> {
             vec![share * setup.atol; program.n_unknowns],
             state.differential.clone(),
         );
-        options.max_step_s = setup.max_step_s.min(state.inputs.max_step_s());
+        options.max_step_s = setup.max_step_s.min(state.inputs.max_step_s()).min(stride);
         options.suppress_algebraic = states_alone;
         options.first_step_s = Some(first_step_s);
         options.linear_method = LinearMethod::Auto;
@@ -105,6 +109,11 @@ impl<'a> Integrator<'a> {
             largest: vec![0.0; program.n_unknowns],
             allowed: vec![0.0; program.n_unknowns],
         })
+    }
+
+    /// The relative and the absolute tolerance of the run.
+    pub(crate) fn tolerances(&self) -> (f64, f64) {
+        self.tolerances
     }
 
     pub(crate) fn state(&self) -> &State<'a> {

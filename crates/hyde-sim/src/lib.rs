@@ -7,15 +7,19 @@
 //!              guards checked on the step's interpolant; the first crossing located guards.rs
 //!              events: reactions, ticks, held values, until nothing fires           events.rs, clocks.rs
 //!              consistent values again, then on                                     consistent.rs
+//!              what is delayed kept as polynomials, jumps with their arrivals       delays.rs, history.rs
 //! ```
 //! The language is unknown here: a program could as well be written by hand, and the tests of this crate do that. What
 //! fails is a [`Failure`] with the time and the origin of the equation.
 
 mod clocks;
 mod consistent;
+mod delays;
 mod events;
 mod failure;
+mod first_step;
 mod guards;
+mod history;
 mod hurry;
 mod initial;
 mod inputs;

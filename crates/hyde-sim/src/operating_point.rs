@@ -19,6 +19,8 @@ pub struct OperatingPoint {
     pub yp: Vec<f64>,
     /// The memory.
     pub z: Vec<f64>,
+    /// The delayed values.
+    pub delayed: Vec<f64>,
 }
 
 /// The start of a program in the modes given (automaton and mode). Of the other automata, one whose first mode fixes a
@@ -35,9 +37,16 @@ pub fn operating_point(
     let setup = Setup::new(parameters.to_vec(), records, 1.0);
     let mut state = State::new(program, &setup)?;
     let mut consistent = Consistent::new(&state);
-    let (mut y, mut yp) = initial::start(&mut state);
+    let (mut y, mut yp) = initial::start(&mut state, 0.0);
     state.pinned = initial_pins(&mut state, 0.0, &y, &yp);
-    initial::solve(&mut state, &mut consistent, 0.0, &mut y, &mut yp, true)?;
+    initial::solve(
+        &mut state,
+        &mut consistent,
+        0.0,
+        &mut y,
+        &mut yp,
+        initial::Round::First,
+    )?;
     for (number, automaton) in program.automata.iter().enumerate() {
         let current = crate::guards::current_mode(program, &state.z, number);
         let chosen = modes
@@ -66,6 +75,19 @@ pub fn operating_point(
         state.z[automaton.place] = mode as f64;
     }
     state.pinned = initial_pins(&mut state, 0.0, &y, &yp);
-    consistent.solve(&mut state, 0.0, &mut y, &mut yp, true)?;
-    Ok(OperatingPoint { y, yp, z: state.z })
+    initial::solve(
+        &mut state,
+        &mut consistent,
+        0.0,
+        &mut y,
+        &mut yp,
+        initial::Round::StatesKept,
+    )?;
+    let delayed = state.delayed().to_vec();
+    Ok(OperatingPoint {
+        y,
+        yp,
+        z: state.z,
+        delayed,
+    })
 }

@@ -4,8 +4,10 @@ mod rows;
 
 use crate::clocks::Schedule;
 use crate::consistent::Consistent;
+use crate::delays;
 use crate::events::Instant;
 use crate::failure::{Failure, FailureKind};
+use crate::first_step::first_step;
 use crate::guards;
 use crate::hurry::Hurry;
 use crate::initial;
@@ -46,6 +48,7 @@ struct Limit {
     y: Vec<f64>,
     yp: Vec<f64>,
     z: Vec<f64>,
+    delayed: Vec<f64>,
 }
 
 impl<'a> Simulation<'a> {
@@ -54,7 +57,7 @@ impl<'a> Simulation<'a> {
         let t = setup.start_s;
         let mut state = State::new(program, setup)?;
         let mut consistent = Consistent::new(&state);
-        let (mut y, mut yp) = initial::start(&mut state);
+        let (mut y, mut yp) = initial::start(&mut state, t);
         let schedule = Schedule::new(&state, t).map_err(|clock| {
             let message = format!(
                 "the clock `{}` has no positive period",
@@ -64,7 +67,14 @@ impl<'a> Simulation<'a> {
         })?;
         leave_impossible_modes(&mut state, t, &y, &yp)?;
         state.pinned = initial_pins(&mut state, t, &y, &yp);
-        initial::solve(&mut state, &mut consistent, t, &mut y, &mut yp, true)?;
+        initial::solve(
+            &mut state,
+            &mut consistent,
+            t,
+            &mut y,
+            &mut yp,
+            initial::Round::First,
+        )?;
         let keep = setup
             .keep
             .clone()
@@ -117,7 +127,8 @@ impl<'a> Simulation<'a> {
         while self.integrator.t < stop && !same_instant(self.integrator.t, stop) {
             let t = self.integrator.t;
             let jump = self.integrator.state().inputs.next_jump(t);
-            let target = self.schedule.next(t).min(jump).min(stop);
+            let arrival = self.integrator.state().delays.next();
+            let target = self.schedule.next(t).min(jump).min(arrival).min(stop);
             // The solver is past a located crossing: it starts anew from there whatever happens.
             let behind = self.advance(target)?;
             let t = self.integrator.t;
@@ -127,7 +138,8 @@ impl<'a> Simulation<'a> {
             } else {
                 Vec::new()
             };
-            let due = at_target && (self.schedule.due(t) || same_instant(t, jump));
+            let arrives = self.integrator.state().delays.due(t);
+            let due = at_target && (self.schedule.due(t) || same_instant(t, jump) || arrives);
             if behind || !scheduled.is_empty() || due {
                 self.instant(&scheduled, behind || same_instant(t, jump))?;
             }
@@ -139,6 +151,7 @@ impl<'a> Simulation<'a> {
     fn begin(&mut self) -> Result<(), Box<Failure>> {
         let t = self.integrator.t;
         self.settle()?;
+        let left = delays::limits(&mut self.integrator, None);
         self.row();
         if self.schedule.due(t) {
             let start = self.limit();
@@ -154,6 +167,7 @@ impl<'a> Simulation<'a> {
         {
             self.next_row += 1;
         }
+        delays::mark(&mut self.integrator, &mut self.consistent, left);
         self.restart()
     }
 
@@ -173,12 +187,18 @@ impl<'a> Simulation<'a> {
         for _ in 0..MAX_ROUNDS_AT_START {
             let changed = self.iterate(&scheduled, true)?;
             let same_modes = modes(&self.integrator.state().z) == initial_modes;
-            if !changed || !same_modes || self.program.rows(Function::Initial) == 0 {
+            let states_kept = !same_modes || self.program.rows(Function::Initial) == 0;
+            if !changed || states_kept && self.program.delays.is_empty() {
                 return Ok(());
             }
+            let round = if states_kept {
+                initial::Round::StatesKept
+            } else {
+                initial::Round::Again
+            };
             let (mut y, mut yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
             let state = self.integrator.state_mut();
-            initial::solve(state, &mut self.consistent, t, &mut y, &mut yp, false)?;
+            initial::solve(state, &mut self.consistent, t, &mut y, &mut yp, round)?;
             (self.integrator.y, self.integrator.yp) = (y, yp);
         }
         let kind = FailureKind::Inconsistent {
@@ -204,6 +224,7 @@ impl<'a> Simulation<'a> {
             self.measure_energy(from, end);
             self.rows_until(end);
             self.count_modes(from, end);
+            delays::record(&mut self.integrator, from, end);
             if let Some(crossing) = crossing {
                 let n = self.program.n_unknowns;
                 let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
@@ -253,10 +274,13 @@ impl<'a> Simulation<'a> {
     /// Everything that happens at an instant: left limit, events, ticks, events, right limit (C1).
     fn instant(&mut self, scheduled: &[usize], restart: bool) -> Result<(), Box<Failure>> {
         let limit = self.limit();
+        let delayed = delays::limits(&mut self.integrator, Some(&mut self.consistent));
         let left = self.row_values();
         let before = self.meter.as_ref().map(|_| self.outputs.clone());
         let events = self.results.events.len();
-        let mut changed = self.iterate(scheduled, false)?;
+        let arrived = delays::arrive(&mut self.integrator, &mut self.consistent)?;
+        let mut changed = arrived.read;
+        changed |= self.iterate(scheduled, false)?;
         let mut ticked = false;
         if self.schedule.due(self.integrator.t) {
             ticked = true;
@@ -280,9 +304,10 @@ impl<'a> Simulation<'a> {
             .iter()
             .zip(&self.integrator.state().z)
             .any(|(a, b)| a.to_bits() != b.to_bits());
+        let stepped = arrived.jump || ticked && moved;
         // Where rows are finer than ticks, what a clock holds is a staircase; coarser rows would be multiplied.
         let step_shows = on_grid || self.setup.row_spacing() < self.schedule.shortest_period();
-        if happened || (step_shows && ticked && moved) {
+        if happened || (step_shows && stepped) {
             self.push_row(left);
             self.row();
         } else if on_grid {
@@ -291,6 +316,7 @@ impl<'a> Simulation<'a> {
         if on_grid {
             self.next_row += 1;
         }
+        delays::mark(&mut self.integrator, &mut self.consistent, delayed);
         if changed || restart {
             self.restart()?;
         }
@@ -319,11 +345,14 @@ impl<'a> Simulation<'a> {
     }
 
     /// The values now.
-    fn limit(&self) -> Limit {
+    fn limit(&mut self) -> Limit {
+        let t = self.integrator.t;
+        let delayed = self.integrator.state_mut().delayed_at(t).to_vec();
         Limit {
             y: self.integrator.y.clone(),
             yp: self.integrator.yp.clone(),
             z: self.integrator.state().z.clone(),
+            delayed,
         }
     }
 
@@ -337,7 +366,9 @@ impl<'a> Simulation<'a> {
         );
         let state = self.integrator.state_mut();
         let mut now = std::mem::replace(&mut state.z, left.z.clone());
-        let (ticks, changed) = self.schedule.run(state, t, &left.y, &left.yp);
+        let (ticks, changed) = self
+            .schedule
+            .run(state, t, &left.y, &left.yp, &left.delayed);
         for ((now, after), before) in now.iter_mut().zip(&state.z).zip(&left.z) {
             if after.to_bits() != before.to_bits() {
                 *now = *after;
@@ -356,33 +387,8 @@ impl<'a> Simulation<'a> {
 
     /// Starts the solver anew, with a first step that the curvature of the solution allows.
     fn restart(&mut self) -> Result<(), Box<Failure>> {
-        let t = self.integrator.t;
-        let span = (self.setup.stop_s - t).max(1e-12);
-        let (y, yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
-        let flow = self
-            .consistent
-            .flow(self.integrator.state_mut(), t, &y, &yp);
-        let mut step = 1e-2 * span;
-        if let Some((dy, dyp)) = flow {
-            // The solver's first guess of an algebraic variable goes along its slope as well.
-            for (index, slope) in dy.iter().enumerate() {
-                if !self.integrator.state().differential[index] && slope.is_finite() {
-                    self.integrator.yp[index] = *slope;
-                }
-            }
-            // The first step is of order 1: its error is half the square of the step times the second derivative.
-            let mut square = 0.0;
-            for (value, rate) in y.iter().zip(&dyp) {
-                let weighted = rate / (self.setup.rtol * value.abs() + self.setup.atol);
-                square += weighted * weighted;
-            }
-            let norm = (square / y.len().max(1) as f64).sqrt();
-            if norm.is_finite() && norm > 0.0 {
-                step = step.min((0.5 / norm).sqrt());
-            }
-        }
-        let least = 64.0 * f64::EPSILON * (1e-3 + t.abs());
-        self.integrator.restart(step.max(least))
+        let step = first_step(&mut self.integrator, &mut self.consistent, self.setup);
+        self.integrator.restart(step)
     }
 
     /// Adds a stretch of the last step to the energy ledger.

@@ -1,5 +1,6 @@
 //! [`State`]: the model where the run is, with everything a kernel needs. It is the system that IDA solves.
 
+use crate::delays::Delays;
 use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::setup::Setup;
@@ -13,6 +14,7 @@ pub(crate) struct State<'a> {
     /// The memory.
     pub(crate) z: Vec<f64>,
     pub(crate) inputs: Inputs<'a>,
+    pub(crate) delays: Delays,
     u: Vec<f64>,
     workspace: Workspace,
     /// Values of the residual's derivatives, before they are put in their places.
@@ -29,13 +31,15 @@ impl<'a> State<'a> {
             p: setup.parameters.clone(),
             z: vec![0.0; program.n_memory],
             inputs: Inputs::new(program, setup)?,
-            u: vec![0.0; 2 * program.columns.len()],
+            delays: Delays::new(program, setup.start_s),
+            u: vec![0.0; 2 * program.columns.len() + program.delays.len()],
             workspace: Workspace::new(program.n_work),
-            partials: vec![0.0; program.jacobian().n_values()],
+            partials: vec![0.0; program.partials(Function::Residual).len()],
             pinned: Vec::new(),
             differential: program.differential(&vec![0.0; program.n_memory]),
         };
         state.inputs.read(setup.start_s, &mut state.u);
+        state.read_delayed(setup.start_s);
         Ok(state)
     }
 
@@ -48,7 +52,7 @@ impl<'a> State<'a> {
         yp: &[f64],
         out: &mut [f64],
     ) {
-        self.inputs.read_continuous(t, &mut self.u);
+        self.read_continuous(t);
         let program = self.program;
         let (at, workspace) = self.at(t, y, yp);
         program.kernels.evaluate(function, at, workspace, out);
@@ -62,7 +66,7 @@ impl<'a> State<'a> {
         y: &[f64],
         yp: &[f64],
     ) -> Vec<f64> {
-        self.inputs.read_continuous(t, &mut self.u);
+        self.read_continuous(t);
         let mut out = vec![0.0; self.program.partials(function).len()];
         let program = self.program;
         let (at, workspace) = self.at(t, y, yp);
@@ -79,9 +83,10 @@ impl<'a> State<'a> {
         out.into_iter().map(|truth| truth != 0.0).collect()
     }
 
-    /// The memory after a tick, with every column read at `t`.
-    pub(crate) fn tick(&mut self, clock: usize, t: f64, y: &[f64], yp: &[f64]) {
+    /// The memory after a tick, with every column read at `t`, and delayed values as they were just before.
+    pub(crate) fn tick(&mut self, clock: usize, t: f64, y: &[f64], yp: &[f64], delayed: &[f64]) {
         self.inputs.read(t, &mut self.u);
+        self.delayed_mut().copy_from_slice(delayed);
         let mut after = self.z.clone();
         let program = self.program;
         let (at, workspace) = self.at(t, y, yp);
@@ -118,7 +123,9 @@ impl<'a> State<'a> {
             match entry.wrt {
                 hyde_program::Wrt::Unknown(column) => out[entry.row] += value * dy[column],
                 hyde_program::Wrt::Derivative(column) => out[entry.row] += value * dyp[column],
-                hyde_program::Wrt::Parameter(_) | hyde_program::Wrt::Time => {}
+                hyde_program::Wrt::Parameter(_)
+                | hyde_program::Wrt::Delayed(_)
+                | hyde_program::Wrt::Time => {}
             }
         }
     }
@@ -131,8 +138,43 @@ impl<'a> State<'a> {
         }
     }
 
-    fn residual_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+    /// The delayed values at a time.
+    pub(crate) fn delayed_at(&mut self, t: f64) -> &[f64] {
+        self.read_delayed(t);
+        self.delayed()
+    }
+
+    /// The delayed values as they were last read.
+    pub(crate) fn delayed(&self) -> &[f64] {
+        &self.u[2 * self.program.columns.len()..]
+    }
+
+    fn delayed_mut(&mut self) -> &mut [f64] {
+        &mut self.u[2 * self.program.columns.len()..]
+    }
+
+    /// What is delayed had the values at this point for ever before; where they are finite.
+    pub(crate) fn guess_past(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        let mut past = vec![0.0; self.program.delays.len()];
+        self.evaluate(Function::Delayed, t, y, yp, &mut past);
+        if past.iter().all(|value| value.is_finite()) {
+            self.delays.set_past(t, &past);
+        }
+    }
+
+    /// Reads what the continuous equations use of the world outside: columns and the past.
+    fn read_continuous(&mut self, t: f64) {
         self.inputs.read_continuous(t, &mut self.u);
+        self.read_delayed(t);
+    }
+
+    fn read_delayed(&mut self, t: f64) {
+        let first = 2 * self.program.columns.len();
+        self.delays.read(t, &mut self.u[first..]);
+    }
+
+    fn residual_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        self.read_continuous(t);
         let program = self.program;
         let mut values = std::mem::take(&mut self.partials);
         let (at, workspace) = self.at(t, y, yp);

@@ -206,6 +206,7 @@ fn size(
         size[row] += match wrt {
             Wrt::Unknown(k) => (value * at.y[k]).abs(),
             Wrt::Derivative(k) => (value * at.yp[k]).abs(),
+            Wrt::Delayed(k) => (value * at.u[at.u.len() - program.delays.len() + k]).abs(),
             Wrt::Parameter(_) | Wrt::Time => 0.0,
         };
     }

@@ -5,6 +5,7 @@ mod backends;
 mod bar;
 mod bouncing_ball;
 mod clutch;
+mod delays;
 mod derivatives;
 mod digests;
 mod effects;

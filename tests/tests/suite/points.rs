@@ -37,7 +37,8 @@ impl Values {
     pub(crate) fn of(program: &Program, random: &mut Random) -> Self {
         let mut some = |n: usize| (0..n).map(|_| random.next()).collect::<Vec<f64>>();
         let (t, y, yp) = (0.1, some(program.n_unknowns), some(program.n_unknowns));
-        let (mut z, u) = (some(program.n_memory), some(2 * program.columns.len()));
+        let n_inputs = 2 * program.columns.len() + program.delays.len();
+        let (mut z, u) = (some(program.n_memory), some(n_inputs));
         for truth in &mut z[..program.relations.len()] {
             *truth = f64::from(u8::from(*truth > 0.0));
         }

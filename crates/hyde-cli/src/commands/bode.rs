@@ -164,6 +164,9 @@ fn linear(
         LinearizeError::SeveralClocks => {
             "clocks of several periods have no common frequency response".to_owned()
         }
+        LinearizeError::DelayAndClock => {
+            "a model with both `delay` and a clocked part has no linearised response".to_owned()
+        }
         LinearizeError::Singular => {
             "the algebraic variables are not determined in these modes".to_owned()
         }

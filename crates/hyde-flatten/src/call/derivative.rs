@@ -42,13 +42,17 @@ impl<'a> Model<'a, '_> {
     }
 
     pub(crate) fn time_derivative(&mut self, id: ExprId, span: Span) -> ExprId {
-        let mut second = false;
+        let (mut second, mut delayed) = (false, false);
         let variables = &self.flat.variables;
         let arena = &mut self.flat.exprs;
         let result = arena.tangent(id, |arena, leaf| match leaf {
             Ir::Var(var, index) => match variables[var].kind {
                 VariableKind::Continuous | VariableKind::Column(..) => {
                     Some(arena.add(Ir::Der(var, index)))
+                }
+                VariableKind::Delayed(_) => {
+                    delayed = true;
+                    None
                 }
                 VariableKind::Discrete
                 | VariableKind::Clocked(_)
@@ -76,6 +80,13 @@ impl<'a> Model<'a, '_> {
                 Diagnostic::error(Code::BadArguments, "the derivative of a derivative")
                     .label(span, "needs a name for the first derivative")
                     .help("declare it: `Velocity v = der(s);` and write `der(v)`"),
+            );
+        }
+        if delayed {
+            self.report(
+                Diagnostic::error(Code::BadArguments, "the derivative of a delayed value")
+                    .label(span, "is not known here")
+                    .help("delay the derivative: `delay(der(u), T)`"),
             );
         }
         result

@@ -118,7 +118,8 @@ impl<'a> Model<'a, '_> {
                 VariableKind::Continuous
                 | VariableKind::Discrete
                 | VariableKind::Held(..)
-                | VariableKind::Column(..),
+                | VariableKind::Column(..)
+                | VariableKind::Delayed(_),
                 Setting::Clocked,
             ) => self.report(
                 Diagnostic::error(Code::ClockBorder, format!("`{name}` is continuous"))

@@ -12,6 +12,8 @@ pub enum Wrt {
     Derivative(Index),
     /// A parameter, by its position.
     Parameter(usize),
+    /// A delayed value: its number at a value of the counter.
+    Delayed(Index),
     /// Time.
     Time,
 }
@@ -42,15 +44,18 @@ pub enum Function {
     Outputs,
     /// Conditions at the start that are equations.
     Initial,
+    /// What is delayed, as it is now.
+    Delayed,
 }
 
 impl Function {
     /// All of them.
-    pub const ALL: [Self; 5] = [
+    pub const ALL: [Self; 6] = [
         Self::Residual,
         Self::Roots,
         Self::Assignments,
         Self::Outputs,
         Self::Initial,
+        Self::Delayed,
     ];
 }

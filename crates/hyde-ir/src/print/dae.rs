@@ -113,6 +113,7 @@ pub fn print_dae(dae: &Dae, sources: &Sources) -> String {
                 Wrt::Unknown(index) => by_unknown(dae, index, ""),
                 Wrt::Derivative(index) => by_unknown(dae, index, "der "),
                 Wrt::Parameter(position) => format!("p[{position}]"),
+                Wrt::Delayed(index) => format!("delayed {}", subscript(index, 0)),
                 Wrt::Time => "time".to_owned(),
             };
             let row = subscript(partial.row, 0);
@@ -256,5 +257,6 @@ fn function_name(function: Function) -> &'static str {
         Function::Assignments => "assignments",
         Function::Outputs => "outputs",
         Function::Initial => "initial equations",
+        Function::Delayed => "delayed values",
     }
 }

@@ -108,6 +108,14 @@ impl Printer<'_> {
                     let next = if column.next { ", next row" } else { "" };
                     format!("column {} of {}, {how}{next}", column.column, column.record)
                 }
+                VariableKind::Delayed(delay) => {
+                    let delay = &self.flat.delays[delay];
+                    format!(
+                        "delayed {} by {} s",
+                        self.names.expr(delay.value),
+                        delay.time_s
+                    )
+                }
                 VariableKind::Reduction(number) => format!("reduction {number}"),
             };
             let dims = variable.len.map_or_else(String::new, |_| {

@@ -24,6 +24,7 @@ impl Simulation<'_> {
     /// Whether something happens at this instant that a row must show from both sides.
     fn waits(&self, t: f64) -> bool {
         self.schedule.due(t)
+            || self.integrator.state().delays.due(t)
             || !self.schedule.relations_at(t).is_empty()
             || same_instant(
                 self.integrator

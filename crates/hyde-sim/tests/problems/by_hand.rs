@@ -99,6 +99,7 @@ pub(crate) fn program(
         clocks: Vec::new(),
         clock_order: Vec::new(),
         holds: Vec::new(),
+        delays: Vec::new(),
         derivatives: Derivatives::default(),
         experiment: Experiment::default(),
         notes: Vec::new(),

@@ -52,7 +52,9 @@ impl Equations for Pendulum {
                 vx * vx + vy * vy + x * ax + y * ay,
             ],
             Function::Outputs => vec![x, y, vx, vy, pull, at.z[0]],
-            Function::Roots | Function::Assignments | Function::Initial => vec![],
+            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+                vec![]
+            }
         }
     }
 
@@ -93,7 +95,9 @@ impl Equations for Pendulum {
                 .enumerate()
                 .map(|(row, unknown)| (row, Wrt::Unknown(unknown), 1.0))
                 .collect(),
-            Function::Roots | Function::Assignments | Function::Initial => vec![],
+            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+                vec![]
+            }
         }
     }
 }

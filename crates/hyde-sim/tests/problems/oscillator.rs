@@ -30,7 +30,9 @@ impl Equations for Oscillator {
         match function {
             Function::Residual => vec![yp[0] - y[1], yp[1] + at.p[W_SQUARED] * y[0]],
             Function::Outputs => y.to_vec(),
-            Function::Roots | Function::Assignments | Function::Initial => vec![],
+            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+                vec![]
+            }
         }
     }
 
@@ -43,14 +45,20 @@ impl Equations for Oscillator {
                 (1, Wrt::Unknown(0), at.p[W_SQUARED]),
             ],
             Function::Outputs => vec![(0, Wrt::Unknown(0), 1.0), (1, Wrt::Unknown(1), 1.0)],
-            Function::Roots | Function::Assignments | Function::Initial => vec![],
+            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {
+                vec![]
+            }
         }
     }
 
     fn parameter_partials(&self, function: Function, at: Point<'_>) -> Vec<Partial> {
         match function {
             Function::Residual => vec![(1, Wrt::Parameter(W), 2.0 * at.p[W] * at.y[0])],
-            Function::Outputs | Function::Roots | Function::Assignments | Function::Initial => {
+            Function::Outputs
+            | Function::Roots
+            | Function::Assignments
+            | Function::Initial
+            | Function::Delayed => {
                 vec![]
             }
         }

@@ -1,0 +1,214 @@
+//! `delay(u, T)`: a continuous quantity as it was a time T ago.
+//!
+//! ```text
+//! back = delay(v, 20 [ms])       back(t) = v(t - 20 ms), before that time v as it was at the start
+//! ```
+//! What is delayed is a variable; an expression gets one. T is structural: where it is 0, `delay(u, T)` is u itself, and
+//! the equations are others.
+
+use crate::dimension::Dim;
+use crate::instance::{Scope, Setting, Typed};
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, MadeBy, Span};
+use hyde_ir::flat::{Delay, Equation};
+use hyde_ir::{DelayId, Expr as Ir, ExprId, Id as _, Index, Range, VarId, VariableKind};
+use hyde_syntax::ast::Expr;
+use hyde_units::Dimension;
+
+impl<'a> Model<'a, '_> {
+    pub(super) fn delay(&mut self, args: &[&'a Expr], scope: &Scope<'a>, span: Span) -> Typed {
+        let Some([u, by]) = self.exactly("delay", args, span) else {
+            return self.poison(span);
+        };
+        if matches!(
+            scope.setting,
+            Setting::Clocked | Setting::Parameter | Setting::Measure
+        ) {
+            let diagnostic = if scope.setting == Setting::Clocked {
+                Diagnostic::error(Code::ClockBorder, "`delay` inside a clocked part")
+                    .label(span, "here time goes by ticks")
+                    .help("`pre(x)` is one tick ago; a continuous value is delayed outside: `sample(delay(u, T))`")
+            } else {
+                Diagnostic::error(Code::NotConstant, "`delay` has no meaning here")
+                    .label(span, "there is no time here")
+                    .help("declare a variable `v = delay(u, T)` and use that")
+            };
+            self.report(diagnostic);
+            return self.poison(span);
+        }
+        let Some(time_s) = self.delay_time(by, scope) else {
+            return self.poison(span);
+        };
+        let u = self.lower(u, &scope.with(Setting::Equation));
+        let fixed = self.flat.exprs.is_parametric(u.id);
+        let id = if time_s == 0.0 || fixed {
+            u.id
+        } else {
+            self.delayed(&u, time_s, scope, span)
+        };
+        Typed {
+            truth: u.truth,
+            ..self.typed(id, u.dim, span)
+        }
+    }
+
+    /// The time in s, known before the run and not negative.
+    fn delay_time(&mut self, by: &'a Expr, scope: &Scope<'a>) -> Option<f64> {
+        let in_seconds = Typed {
+            dim: Dim::known(Dimension::TIME),
+            ..self.poison(by.span)
+        };
+        let errors = self.diagnostics.error_count();
+        let given = self.lower(by, &scope.with(Setting::Parameter));
+        self.agree(
+            &in_seconds,
+            &given,
+            "a delay is a time, this relates",
+            scope.instance,
+        );
+        let value = self.evaluate(given.id);
+        if self.diagnostics.error_count() > errors {
+            return None;
+        }
+        let Some(value) = value else {
+            self.not_constant("the time of a delay", by.span);
+            return None;
+        };
+        if !(value >= 0.0 && value.is_finite()) {
+            self.report(
+                Diagnostic::error(Code::BadArguments, format!("a delay of {value} s"))
+                    .label(by.span, "is no time that has passed")
+                    .help("a delay is 0 or more: what will be is not known"),
+            );
+            return None;
+        }
+        Some(value)
+    }
+
+    /// The variable that is `u` a time ago; of an element that moves with a counter, that of the whole array.
+    fn delayed(&mut self, u: &Typed, time_s: f64, scope: &Scope<'a>, span: Span) -> ExprId {
+        let (source, index) = match self.flat.exprs[u.id] {
+            Ir::Var(var, index) if index.stride != 0 => (self.whole_array(var), index),
+            Ir::Var(..) => (u.id, Index::SCALAR),
+            _ if self.flat.exprs.any(u.id, moves_with_counter) => {
+                self.report(
+                    Diagnostic::error(
+                        Code::ArrayEquation,
+                        "an expression of whole arrays cannot be delayed",
+                    )
+                    .label(u.span, "has no name")
+                    .help("give it one: `Real u[n] = …;` and write `delay(u, T)`"),
+                );
+                return u.id;
+            }
+            _ => (self.named(u, scope), Index::SCALAR),
+        };
+        let key = (source, time_s.to_bits());
+        let var = match self.delayed.get(&key) {
+            Some(&known) => known,
+            None => {
+                let var = self.delayed_variable(source, u, time_s, scope, span);
+                self.delayed.insert(key, var);
+                var
+            }
+        };
+        self.flat.exprs.add(Ir::Var(var, index))
+    }
+
+    fn whole_array(&mut self, var: VarId) -> ExprId {
+        let whole = Index {
+            stride: 1,
+            offset: 0,
+        };
+        self.flat.exprs.add(Ir::Var(var, whole))
+    }
+
+    /// A variable for an expression that is delayed: its relations are events, and its derivatives are known.
+    fn named(&mut self, u: &Typed, scope: &Scope<'a>) -> ExprId {
+        let text = self.input.sources.text(u.span).to_owned();
+        let name = self.instances[scope.instance]
+            .path
+            .member(&format!("({text})"));
+        let var = self.add_variable(
+            scope.instance,
+            name,
+            VariableKind::Continuous,
+            u.dim.clone(),
+            u.span,
+            MadeBy::Delay,
+        );
+        self.flat.variables[var].boolean = u.truth;
+        let lhs = self.flat.exprs.var(var);
+        let origin = self.origin(scope.instance, u.span).made_by(MadeBy::Delay);
+        self.flat.equations.push(Equation {
+            range: Range::SCALAR,
+            lhs,
+            rhs: u.id,
+            origin,
+        });
+        lhs
+    }
+
+    fn delayed_variable(
+        &mut self,
+        source: ExprId,
+        u: &Typed,
+        time_s: f64,
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> VarId {
+        let (name, len) = match self.flat.exprs[source] {
+            Ir::Var(var, index) => {
+                let variable = &self.flat.variables[var];
+                let len = variable.len.filter(|_| index.stride != 0);
+                let element = usize::try_from(index.offset).unwrap_or(0);
+                let name = match len {
+                    Some(_) => variable.name.clone(),
+                    None => variable.element_name(element),
+                };
+                (name, len)
+            }
+            _ => (String::new(), None),
+        };
+        let kind = VariableKind::Delayed(DelayId::from_index(self.flat.delays.len()));
+        let name = format!("delay({name}, {time_s} s)");
+        let var = self.add_variable(
+            scope.instance,
+            name,
+            kind,
+            u.dim.clone(),
+            span,
+            MadeBy::Source,
+        );
+        self.flat.variables[var].len = len;
+        self.flat.variables[var].boolean = u.truth;
+        let last = i32::try_from(len.unwrap_or(1)).unwrap_or(i32::MAX) - 1;
+        let origin = self.origin(scope.instance, span);
+        self.flat.delays.push(Delay {
+            range: Range { first: 0, last },
+            value: source,
+            time_s,
+            var,
+            origin,
+        });
+        var
+    }
+}
+
+/// A leaf that is another one at every value of a counter.
+fn moves_with_counter(expr: Ir) -> bool {
+    match expr {
+        Ir::Counter => true,
+        Ir::Param(_, index) | Ir::Var(_, index) | Ir::Der(_, index) | Ir::Pre(_, index) => {
+            index.stride != 0
+        }
+        Ir::Const(_)
+        | Ir::Time
+        | Ir::Relation(_)
+        | Ir::InMode(..)
+        | Ir::Unary(..)
+        | Ir::Binary(..)
+        | Ir::If(..)
+        | Ir::NoEvent(_) => false,
+    }
+}
