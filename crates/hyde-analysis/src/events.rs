@@ -44,6 +44,19 @@ pub(crate) fn react(dae: &mut Dae, system: &mut System, diagnostics: &mut Diagno
             );
         }
     }
+    for edge in &system.flat.edges {
+        let place = dae.places[edge.var].map_or(0, |place| place.base);
+        let kind = ReactionKind::Edge(place);
+        add(
+            dae,
+            system,
+            edge.condition,
+            kind,
+            &[],
+            &edge.origin,
+            diagnostics,
+        );
+    }
     for assert in &system.flat.asserts {
         let failed = dae.exprs.unary(UnaryOp::Not, assert.condition);
         let kind = ReactionKind::Assert(assert.message.clone());

@@ -18,7 +18,7 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
         .collect();
     for id in dae.variables.ids().collect::<Vec<_>>() {
         let variable = dae.variables[id].clone();
-        if hidden.contains(&id) || variable.origin.made_by == MadeBy::Delay {
+        if hidden.contains(&id) || variable.origin.made_by == MadeBy::Expression {
             continue;
         }
         let discrete = match variable.kind {

@@ -78,6 +78,15 @@ pub(crate) fn extract(system: &mut System) {
             system.flat.whens[when].branches[branch].0 = condition;
         }
     }
+    for edge in 0..system.flat.edges.len() {
+        let (condition, origin) = (
+            system.flat.edges[edge].condition,
+            system.flat.edges[edge].origin.clone(),
+        );
+        let used = RelationUse::When;
+        let condition = replace(system, condition, used, &origin, &mut HashMap::new());
+        system.flat.edges[edge].condition = condition;
+    }
     for assert in 0..system.flat.asserts.len() {
         let (condition, origin) = (
             system.flat.asserts[assert].condition,

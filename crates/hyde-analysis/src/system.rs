@@ -189,6 +189,9 @@ impl System {
         for delay in flat.delays.iter_mut() {
             each(arena, &mut delay.value);
         }
+        for edge in &mut flat.edges {
+            each(arena, &mut edge.condition);
+        }
         for assert in &mut flat.asserts {
             each(arena, &mut assert.condition);
         }

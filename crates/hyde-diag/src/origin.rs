@@ -63,8 +63,8 @@ pub enum MadeBy {
     Pin,
     /// Start value used as an initial condition.
     Start,
-    /// A name for an expression that is delayed.
-    Delay,
+    /// A name for an expression that `delay` or `edge` takes.
+    Expression,
     /// The experiment: stimulus, measured, expect.
     Experiment,
 }

@@ -4,6 +4,7 @@ mod chirp;
 mod clock;
 mod delay;
 mod derivative;
+mod edge;
 mod extremum;
 mod function;
 mod quantiser;
@@ -41,13 +42,14 @@ const OF_ANGLE: [(&str, UnaryOp); 3] = [
 ];
 
 /// Every function name, for near misses.
-const ALL: [&str; 46] = [
+const ALL: [&str; 47] = [
     "der",
     "pre",
     "sample",
     "hold",
     "interval",
     "delay",
+    "edge",
     "abs",
     "sign",
     "sqrt",
@@ -103,6 +105,7 @@ fn usage(name: &str) -> Option<&'static str> {
         "held" => "held(file.column)",
         "interval" => "interval()",
         "delay" => "delay(u, T)",
+        "edge" => "edge(b)",
         "smooth" => "smooth(order, expression)",
         "mod" => "mod(x, period)",
         "floor_to" => "floor_to(x, step)",
@@ -202,6 +205,7 @@ impl<'a> Model<'a, '_> {
             "held" => self.held_column(&args, scope, span),
             "interval" => self.interval(&args, scope, span),
             "delay" => self.delay(&args, scope, span),
+            "edge" => self.edge(&args, scope, span),
             "noEvent" => match self.exactly(name, &args, span) {
                 Some([a]) => self.without_events(a, scope, span),
                 None => self.poison(span),

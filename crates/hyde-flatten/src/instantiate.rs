@@ -5,6 +5,7 @@
 //! modification of the `extends` clause, the declaration. Nothing is evaluated here but what decides the structure:
 //! dimensions of arrays and numbers of cells ([`crate::structural`]).
 
+mod assigned;
 mod clocked;
 mod component;
 mod declare;
@@ -21,9 +22,7 @@ use crate::names::{FileIndex, nearest};
 pub(crate) use effect::{Hook, Replacement, host_of, written};
 use hyde_diag::{Code, Diagnostic, InstancePath, Span};
 use hyde_ir::ClockId;
-use hyde_syntax::ast::{
-    Change, Class, ClassBody, Element, EquationKind, ExprKind, Prefix, Reference,
-};
+use hyde_syntax::ast::{Change, Class, ClassBody, Element, Prefix, Reference};
 use modification::Modifier;
 
 /// Elements of a class and its bases, each with the modifications of the `extends` clauses on the way.
@@ -163,7 +162,7 @@ impl<'a> Model<'a, '_> {
     fn members(&mut self, id: InstanceId, collected: &[Collected<'a>]) {
         let discrete: Vec<&'a str> = collected
             .iter()
-            .flat_map(|item| assigned_in_when(item.element))
+            .flat_map(|item| assigned::at_events(item.element))
             .collect();
         let is_parameter = |element: &Element| {
             matches!(element, Element::Declaration(d) if d.prefixes.iter().any(|p| {
@@ -276,25 +275,4 @@ impl<'a> Model<'a, '_> {
     fn depth(&self, id: InstanceId) -> usize {
         std::iter::successors(Some(id), |&id| self.instances[id].parent).count()
     }
-}
-
-/// The names that the `when` clauses of an element assign.
-fn assigned_in_when(element: &Element) -> Vec<&str> {
-    let Element::Equation(equation) = element else {
-        return Vec::new();
-    };
-    let EquationKind::When(branches) = &equation.kind else {
-        return Vec::new();
-    };
-    let equations = branches.iter().flat_map(|(_, list)| list);
-    let assigned = equations.filter_map(|equation| {
-        if let EquationKind::Equality { lhs, .. } = &equation.kind
-            && let ExprKind::Reference(name) = &lhs.kind
-        {
-            name.as_word()
-        } else {
-            None
-        }
-    });
-    assigned.collect()
 }

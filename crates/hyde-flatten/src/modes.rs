@@ -23,10 +23,10 @@ impl<'a> Model<'a, '_> {
         let parameters: Vec<Vec<(&'a str, VarId)>> = modes
             .modes
             .iter()
-            .map(|mode| self.mode_parameters(mode, id))
+            .map(|mode| self.mode_parameters(mode, modes.name.as_ref(), id))
             .collect();
         let mut list = Vec::new();
-        for (mode, own) in modes.modes.iter().zip(&parameters) {
+        for (from, (mode, own)) in modes.modes.iter().zip(&parameters).enumerate() {
             let scope = Scope {
                 locals: own.clone(),
                 ..Scope::new(id, Setting::Equation)
@@ -49,7 +49,7 @@ impl<'a> Model<'a, '_> {
             let exits = mode
                 .exits
                 .iter()
-                .filter_map(|exit| self.exit(exit, modes, &parameters, &scope))
+                .filter_map(|exit| self.exit(exit, from, modes, &parameters, &scope))
                 .collect();
             let origin = self.origin(id, mode.name.span);
             list.push(Mode {
@@ -85,7 +85,12 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The parameters of a mode are discrete variables that its entry sets.
-    fn mode_parameters(&mut self, mode: &'a ast::Mode, id: InstanceId) -> Vec<(&'a str, VarId)> {
+    fn mode_parameters(
+        &mut self,
+        mode: &'a ast::Mode,
+        block: Option<&ast::Name>,
+        id: InstanceId,
+    ) -> Vec<(&'a str, VarId)> {
         let file = self.instances[id].file;
         let mut found = Vec::new();
         for (type_name, name) in &mode.parameters {
@@ -109,9 +114,10 @@ impl<'a> Model<'a, '_> {
                     continue;
                 }
             };
+            let block = block.map_or(String::new(), |block| format!("{}.", block.text));
             let full = self.instances[id]
                 .path
-                .member(&format!("{}.{}", mode.name.text, name.text));
+                .member(&format!("{block}{}.{}", mode.name.text, name.text));
             let var = self.add_variable(
                 id,
                 full,
@@ -126,9 +132,12 @@ impl<'a> Model<'a, '_> {
         found
     }
 
+    /// An exit of the mode of that number. It sets what leaving that mode does, the parameters of the mode entered, what it
+    /// says itself, and what entering the other mode does, in this order.
     fn exit(
         &mut self,
         exit: &'a ast::Exit,
+        from: usize,
         modes: &'a ast::Modes,
         parameters: &[Vec<(&'a str, VarId)>],
         scope: &Scope<'a>,
@@ -136,17 +145,20 @@ impl<'a> Model<'a, '_> {
         let guard = self.truth(&exit.guard, &scope.with(Setting::Condition));
         let target = self.mode_named(modes, &exit.target)?;
         let at_event = scope.with(Setting::Action);
-        let mut actions = self.mode_arguments(
+        let from = &modes.modes[from];
+        let mut actions = self.actions(&from.leave, scope);
+        actions.extend(self.mode_arguments(
             &exit.arguments,
             &parameters[target],
             &exit.target,
             &at_event,
-        );
-        actions.extend(
-            exit.actions
-                .iter()
-                .filter_map(|equation| self.action(equation, scope)),
-        );
+        ));
+        actions.extend(self.actions(&exit.actions, scope));
+        let inside = Scope {
+            locals: parameters[target].clone(),
+            ..scope.clone()
+        };
+        actions.extend(self.actions(&modes.modes[target].enter, &inside));
         let reinits = actions
             .iter()
             .any(|action| matches!(action, Action::Reinit(..)));
@@ -158,6 +170,13 @@ impl<'a> Model<'a, '_> {
             impact: exit.impact || reinits,
             origin,
         })
+    }
+
+    fn actions(&mut self, actions: &'a [ast::Equation], scope: &Scope<'a>) -> Vec<Action> {
+        let lowered = actions
+            .iter()
+            .filter_map(|action| self.action(action, scope));
+        lowered.collect()
     }
 
     /// The values an entry gives to a mode's parameters.

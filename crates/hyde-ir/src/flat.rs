@@ -79,6 +79,17 @@ pub struct When {
     pub origin: Origin,
 }
 
+/// `edge(condition)`: true in the round of an event's iteration in which the condition became true.
+#[derive(Clone, Debug)]
+pub struct Edge {
+    /// What becomes true.
+    pub condition: ExprId,
+    /// The discrete variable that stands for it.
+    pub var: VarId,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
 /// A clocked partition: period, delay and phase in s, of parameters alone.
 #[derive(Clone, Debug)]
 pub struct Clock {
@@ -351,6 +362,8 @@ pub struct FlatModel {
     pub automata: IdVec<AutomatonId, Automaton>,
     /// The `when` clauses.
     pub whens: Vec<When>,
+    /// The edges of conditions.
+    pub edges: Vec<Edge>,
     /// The clocked partitions.
     pub clocks: IdVec<ClockId, Clock>,
     /// The equations of clocked partitions.

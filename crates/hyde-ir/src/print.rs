@@ -124,7 +124,7 @@ fn comment(origin: &Origin, sources: &Sources) -> String {
         MadeBy::Derivative => " derivative",
         MadeBy::Pin => " pin",
         MadeBy::Start => " start",
-        MadeBy::Delay => " delay",
+        MadeBy::Expression => " named",
         MadeBy::Experiment => " experiment",
     };
     let instance = if origin.instance.as_str().is_empty() {

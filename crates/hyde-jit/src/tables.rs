@@ -280,6 +280,7 @@ fn reaction(reaction: &dae::Reaction) -> Reaction {
                 impact: *impact,
             },
             dae::ReactionKind::When { clause } => ReactionKind::When { clause: *clause },
+            dae::ReactionKind::Edge(place) => ReactionKind::Edge(*place),
             dae::ReactionKind::Assert(message) => ReactionKind::Assert(message.clone()),
         },
         assignments: reaction.assignments.clone(),

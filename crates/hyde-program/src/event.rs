@@ -80,6 +80,8 @@ pub enum ReactionKind {
         /// Number of the clause.
         clause: usize,
     },
+    /// The position in the memory that is 1 in the round of the iteration in which the condition became true.
+    Edge(usize),
     /// A condition that must never hold: the message of an `assert`.
     Assert(String),
 }

@@ -59,10 +59,12 @@ impl Instant<'_, '_> {
             }
             turned.extend(self.true_guards(&truths));
             let flipped = self.flip(&truths);
-            let conditions = self.state.conditions(self.t, self.y, self.yp);
-            let fired = self.fired(&conditions, at_start && seen.is_empty())?;
+            let first_at_start = at_start && seen.is_empty();
+            let conditions = self.conditions_with_edges(first_at_start);
+            let fired = self.fired(&conditions, first_at_start)?;
             *self.conditions = conditions;
             if fired.is_empty() && flipped.is_empty() {
+                self.set_edges(|_, _| false);
                 return Ok(changed);
             }
             changed = true;
@@ -243,6 +245,7 @@ impl Instant<'_, '_> {
                         fired.push(number);
                     }
                 }
+                ReactionKind::Edge(_) => {}
                 ReactionKind::Assert(message) => {
                     if now {
                         let failure = Failure::new(FailureKind::Assert(message.clone()), self.t);
@@ -282,7 +285,7 @@ impl Instant<'_, '_> {
                 ReactionKind::When { .. } => {
                     self.note(EventKind::When, &reaction.text, &reaction.origin, false)
                 }
-                ReactionKind::Assert(_) => {}
+                ReactionKind::Edge(_) | ReactionKind::Assert(_) => {}
             }
             for index in reaction.assignments.clone() {
                 match program.assignments[index].target {

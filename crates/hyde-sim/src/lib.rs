@@ -15,6 +15,7 @@
 mod clocks;
 mod consistent;
 mod delays;
+mod edges;
 mod events;
 mod failure;
 mod first_step;

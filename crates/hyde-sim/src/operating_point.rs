@@ -69,6 +69,7 @@ pub fn operating_point(
                 } if automaton == number && from == current => Some(to),
                 ReactionKind::Transition { .. }
                 | ReactionKind::When { .. }
+                | ReactionKind::Edge(_)
                 | ReactionKind::Assert(_) => None,
             });
         let mode = chosen.or(first_exit.filter(|_| pins)).unwrap_or(current);

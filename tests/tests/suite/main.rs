@@ -4,6 +4,7 @@
 mod backends;
 mod bar;
 mod bouncing_ball;
+mod clocks;
 mod clutch;
 mod delays;
 mod derivatives;
@@ -16,6 +17,7 @@ mod first_order;
 mod ledger;
 mod models;
 mod points;
+mod reactions;
 mod rectifier;
 mod sampled;
 mod stages;

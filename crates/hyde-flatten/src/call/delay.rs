@@ -135,11 +135,13 @@ impl<'a> Model<'a, '_> {
             VariableKind::Continuous,
             u.dim.clone(),
             u.span,
-            MadeBy::Delay,
+            MadeBy::Expression,
         );
         self.flat.variables[var].boolean = u.truth;
         let lhs = self.flat.exprs.var(var);
-        let origin = self.origin(scope.instance, u.span).made_by(MadeBy::Delay);
+        let origin = self
+            .origin(scope.instance, u.span)
+            .made_by(MadeBy::Expression);
         self.flat.equations.push(Equation {
             range: Range::SCALAR,
             lhs,

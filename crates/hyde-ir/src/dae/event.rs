@@ -57,6 +57,8 @@ pub enum ReactionKind {
         /// Number of the clause.
         clause: usize,
     },
+    /// `edge(condition)`: the position in the memory of its truth.
+    Edge(usize),
     /// A condition that must never be false; its message.
     Assert(String),
 }

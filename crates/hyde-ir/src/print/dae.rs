@@ -228,6 +228,7 @@ fn events(out: &mut String, dae: &Dae, names: &Names<'_>, sources: &Sources) {
                 )
             }
             ReactionKind::When { clause } => format!("when {clause}"),
+            ReactionKind::Edge(place) => format!("edge in z[{place}]"),
             ReactionKind::Assert(message) => format!("assert {message:?}"),
         };
         let mut text = format!("  {what} on {}", names.expr(reaction.condition));

@@ -27,6 +27,10 @@ pub struct Mode {
     pub parameters: Vec<(Reference, Name)>,
     /// Its equations.
     pub equations: Vec<Equation>,
+    /// `enter { … }`: what every exit into it sets.
+    pub enter: Vec<Equation>,
+    /// `leave { … }`: what every exit from it sets.
+    pub leave: Vec<Equation>,
     /// Its exits.
     pub exits: Vec<Exit>,
 }

@@ -3,7 +3,7 @@
 use super::expression::optional_arguments;
 use super::name::reference;
 use super::{Printer, expression};
-use crate::ast::{Exit, Mode, Modes};
+use crate::ast::{Equation, Exit, Mode, Modes};
 
 impl Printer {
     pub(super) fn modes(&mut self, modes: &Modes) {
@@ -38,11 +38,22 @@ impl Printer {
             for equation in &mode.equations {
                 out.equation(equation, "");
             }
+            for (word, actions) in [("enter", &mode.enter), ("leave", &mode.leave)] {
+                out.actions(word, actions);
+            }
             for exit in &mode.exits {
                 out.exit(exit);
             }
         });
         self.line("}");
+    }
+
+    fn actions(&mut self, word: &str, actions: &[Equation]) {
+        if !actions.is_empty() {
+            self.line(&format!("{word} {{"));
+            self.indented(|out| actions.iter().for_each(|action| out.equation(action, "")));
+            self.line("}");
+        }
     }
 
     fn exit(&mut self, exit: &Exit) {

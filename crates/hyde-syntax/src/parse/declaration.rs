@@ -265,6 +265,8 @@ impl Builder<'_> {
             name: self.name(&inner.next()?),
             parameters: Vec::new(),
             equations: Vec::new(),
+            enter: Vec::new(),
+            leave: Vec::new(),
             exits: Vec::new(),
         };
         for part in inner {
@@ -276,6 +278,8 @@ impl Builder<'_> {
                         mode.parameters.push((type_name, self.name(&words.next()?)));
                     }
                 }
+                Rule::enter => mode.enter.extend(self.equations(parts(part))),
+                Rule::leave => mode.leave.extend(self.equations(parts(part))),
                 Rule::exit => mode.exits.push(self.exit(part)?),
                 _ => mode.equations.push(self.equation(part)?),
             }
