@@ -447,14 +447,16 @@ fn refuse_derivatives_of_inputs(system: &System, diagnostics: &mut Diagnostics) 
                 | VariableKind::Held(..)
                 | VariableKind::Reduction(_) => continue,
             };
-            diagnostics.push(
-                Diagnostic::error(
-                    Code::Constrained,
-                    format!("the derivative of {what} is needed"),
-                )
-                .label(equation.origin.span, "by this equation")
-                .help(help),
-            );
+            let mut diagnostic = Diagnostic::error(
+                Code::Constrained,
+                format!("the derivative of {what} is needed"),
+            )
+            .label(equation.origin.span, "by this equation");
+            if let VariableKind::Delayed(delay) = system.flat.variables[var].kind {
+                let span = system.flat.delays[delay].origin.span;
+                diagnostic = diagnostic.label(span, "delayed here");
+            }
+            diagnostics.push(diagnostic.help(help));
         }
     }
 }

@@ -52,6 +52,9 @@ use hyde_ir::{Dae, FlatModel};
 pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
     let mut system = system::System::new(flat);
     derivatives::simplify(&mut system, diagnostics);
+    if diagnostics.has_errors() {
+        return None;
+    }
     reduce::reduce(&mut system);
     relations::extract(&mut system);
     let matched = matching::match_equations(&mut system, diagnostics)?;

@@ -11,6 +11,8 @@ use nalgebra::{Complex, DMatrix, DVector};
 const POINTS: usize = 24;
 /// Newton iterations for a root.
 const MAX_ITERATIONS: usize = 30;
+/// How far a root may be from the eigenvalue that led to it, as a part of it: further off the eigenvalue is none of a root.
+const NEAR: f64 = 0.01;
 
 /// A mode of vibration.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -72,6 +74,9 @@ fn roots_with_delays(linear: &Linear, delayed: &Delayed) -> Vec<Complex<f64>> {
         let Some(root) = polished(linear, candidate) else {
             continue;
         };
+        if (root - candidate).norm() > NEAR * root.norm() {
+            continue;
+        }
         let known = |other: &Complex<f64>| (other - root).norm() <= 1e-7 * root.norm();
         if !roots.iter().any(known) {
             roots.push(root);
