@@ -191,13 +191,8 @@ pub(crate) fn record(integrator: &mut Integrator<'_>, from: f64, to: f64) {
 }
 
 fn record_part(integrator: &mut Integrator<'_>, from: f64, to: f64, depth: usize, before: f64) {
-    let at = |part: f64| {
-        if part == 1.0 {
-            to
-        } else {
-            from + part * (to - from)
-        }
-    };
+    // The last point is the end to the last bit.
+    let at = |part: f64| to - (1.0 - part) * (to - from);
     let values = PLACES.map(|part| now(integrator, at(part)));
     let (rtol, atol) = integrator.tolerances();
     let mut error = 0.0_f64;

@@ -169,6 +169,7 @@ impl History {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp, reason = "limits at a jump are exact")]
 mod tests {
     use super::*;
 

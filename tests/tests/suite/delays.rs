@@ -1,4 +1,5 @@
 //! `delay(u, T)` against closed forms: in time, in events, in the linearised model.
+#![allow(clippy::float_cmp, reason = "jumps and what stands still are exact")]
 
 use crate::models::{Solved, close, model, solve};
 use hyde_compiler::Backend;

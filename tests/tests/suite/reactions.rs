@@ -1,4 +1,5 @@
 //! Edges, branches of one `when`, and what modes set on entering and leaving, against what a person finds by hand.
+#![allow(clippy::float_cmp, reason = "what events set is exact")]
 
 use crate::models::{Solved, close, solve};
 

@@ -87,10 +87,9 @@ impl<'a> Model<'a, '_> {
 
     /// The variable that is `u` a time ago; of an element that moves with a counter, that of the whole array.
     fn delayed(&mut self, u: &Typed, time_s: f64, scope: &Scope<'a>, span: Span) -> ExprId {
-        let (source, index) = match self.flat.exprs[u.id] {
-            Ir::Var(var, index) if index.stride != 0 => (self.whole_array(var), index),
-            Ir::Var(..) => (u.id, Index::SCALAR),
-            _ if self.flat.exprs.any(u.id, moves_with_counter) => {
+        let (var, index) = match self.flat.exprs[u.id].access() {
+            Some((var, index, false)) => (var, index),
+            Some(_) | None if self.flat.exprs.any(u.id, moves_with_counter) => {
                 self.report(
                     Diagnostic::error(
                         Code::ArrayEquation,
@@ -101,30 +100,30 @@ impl<'a> Model<'a, '_> {
                 );
                 return u.id;
             }
-            _ => (self.named(u, scope), Index::SCALAR),
+            Some(_) | None => (self.named(u, scope), Index::SCALAR),
         };
-        let key = (source, time_s.to_bits());
-        let var = match self.delayed.get(&key) {
-            Some(&known) => known,
-            None => {
-                let var = self.delayed_variable(source, u, time_s, scope, span);
-                self.delayed.insert(key, var);
-                var
-            }
-        };
-        self.flat.exprs.add(Ir::Var(var, index))
-    }
-
-    fn whole_array(&mut self, var: VarId) -> ExprId {
         let whole = Index {
             stride: 1,
             offset: 0,
         };
-        self.flat.exprs.add(Ir::Var(var, whole))
+        let (of, read) = match index.stride {
+            0 => (index, Index::SCALAR),
+            _ => (whole, index),
+        };
+        let key = (self.flat.exprs.add(Ir::Var(var, of)), time_s.to_bits());
+        let delayed = match self.delayed.get(&key) {
+            Some(&known) => known,
+            None => {
+                let made = self.delayed_variable((var, of), u, time_s, scope, span);
+                self.delayed.insert(key, made);
+                made
+            }
+        };
+        self.flat.exprs.add(Ir::Var(delayed, read))
     }
 
     /// A variable for an expression that is delayed: its relations are events, and its derivatives are known.
-    fn named(&mut self, u: &Typed, scope: &Scope<'a>) -> ExprId {
+    fn named(&mut self, u: &Typed, scope: &Scope<'a>) -> VarId {
         let text = self.input.sources.text(u.span).to_owned();
         let name = self.instances[scope.instance]
             .path
@@ -148,29 +147,22 @@ impl<'a> Model<'a, '_> {
             rhs: u.id,
             origin,
         });
-        lhs
+        var
     }
 
     fn delayed_variable(
         &mut self,
-        source: ExprId,
+        (source, of): (VarId, Index),
         u: &Typed,
         time_s: f64,
         scope: &Scope<'a>,
         span: Span,
     ) -> VarId {
-        let (name, len) = match self.flat.exprs[source] {
-            Ir::Var(var, index) => {
-                let variable = &self.flat.variables[var];
-                let len = variable.len.filter(|_| index.stride != 0);
-                let element = usize::try_from(index.offset).unwrap_or(0);
-                let name = match len {
-                    Some(_) => variable.name.clone(),
-                    None => variable.element_name(element),
-                };
-                (name, len)
-            }
-            _ => (String::new(), None),
+        let variable = &self.flat.variables[source];
+        let len = variable.len.filter(|_| of.stride != 0);
+        let name = match len {
+            Some(_) => variable.name.clone(),
+            None => variable.element_name(usize::try_from(of.offset).unwrap_or(0)),
         };
         let kind = VariableKind::Delayed(DelayId::from_index(self.flat.delays.len()));
         let name = format!("delay({name}, {time_s} s)");
@@ -185,10 +177,11 @@ impl<'a> Model<'a, '_> {
         self.flat.variables[var].len = len;
         self.flat.variables[var].boolean = u.truth;
         let last = i32::try_from(len.unwrap_or(1)).unwrap_or(i32::MAX) - 1;
+        let value = self.flat.exprs.add(Ir::Var(source, of));
         let origin = self.origin(scope.instance, span);
         self.flat.delays.push(Delay {
             range: Range { first: 0, last },
-            value: source,
+            value,
             time_s,
             var,
             origin,

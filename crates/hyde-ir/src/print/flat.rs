@@ -108,14 +108,7 @@ impl Printer<'_> {
                     let next = if column.next { ", next row" } else { "" };
                     format!("column {} of {}, {how}{next}", column.column, column.record)
                 }
-                VariableKind::Delayed(delay) => {
-                    let delay = &self.flat.delays[delay];
-                    format!(
-                        "delayed {} by {} s",
-                        self.names.expr(delay.value),
-                        delay.time_s
-                    )
-                }
+                VariableKind::Delayed(_) => "delayed".to_owned(),
                 VariableKind::Reduction(number) => format!("reduction {number}"),
             };
             let dims = variable.len.map_or_else(String::new, |_| {
@@ -205,6 +198,12 @@ impl Printer<'_> {
                     self.actions(actions)
                 );
             }
+        }
+        for edge in &self.flat.edges {
+            let place = comment(&edge.origin, self.sources);
+            let name = &self.flat.variables[edge.var].name;
+            let condition = self.names.expr(edge.condition);
+            let _ = writeln!(out, "{name}: edge of {condition}{place}");
         }
         for assert in &self.flat.asserts {
             let place = comment(&assert.origin, self.sources);
