@@ -42,7 +42,7 @@ const OF_ANGLE: [(&str, UnaryOp); 3] = [
 ];
 
 /// Every function name, for near misses.
-const ALL: [&str; 47] = [
+const ALL: [&str; 48] = [
     "der",
     "pre",
     "sample",

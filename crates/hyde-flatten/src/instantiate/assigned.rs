@@ -26,7 +26,8 @@ pub(super) fn at_events(element: &Element) -> Vec<&str> {
         | Element::Replace(..)
         | Element::Signature(_)
         | Element::Confounds(_)
-        | Element::Measure(_) => Vec::new(),
+        | Element::Measure(_)
+        | Element::Account(..) => Vec::new(),
     }
 }
 
