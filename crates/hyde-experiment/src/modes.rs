@@ -7,8 +7,9 @@
 use crate::linearize::{Delayed, Linear};
 use nalgebra::{Complex, DMatrix, DVector};
 
-/// Chebyshev points of the past of a delayed quantity, that of now apart.
+/// Chebyshev points of the shortest past, that of now apart; longer ones have more in proportion, up to the other number.
 const POINTS: usize = 24;
+const MOST_POINTS: usize = 192;
 /// Newton iterations for a root.
 const MAX_ITERATIONS: usize = 30;
 /// How far a root may be from the eigenvalue that led to it, as a part of it: further off the eigenvalue is none of a root.
@@ -25,8 +26,8 @@ pub struct NaturalMode {
     pub eigenvalue: Complex<f64>,
 }
 
-/// The modes that oscillate, by ascending frequency. With delays those that 24 points of the past lead to: well beyond
-/// the frequency 1/T.
+/// The modes that oscillate, by ascending frequency. With delays those that the points of the past lead to: without a
+/// gap up to some times the frequency 1/T of the shortest, beyond that some.
 #[must_use]
 pub fn modes(linear: &Linear) -> Vec<NaturalMode> {
     let roots = match &linear.delayed {
@@ -89,19 +90,24 @@ fn roots_with_delays(linear: &Linear, delayed: &Delayed) -> Vec<Complex<f64>> {
 /// `-T .. 0`, where w(0) is the quantity now and w(-T) the delayed value d.
 fn with_past(linear: &Linear, delayed: &Delayed) -> DMatrix<f64> {
     let (nx, nd) = (linear.a.nrows(), delayed.times.len());
-    let derivative = chebyshev_derivative(POINTS);
-    let place = |line: usize, point: usize| nx + line * POINTS + point - 1;
-    let mut whole = DMatrix::zeros(nx + nd * POINTS, nx + nd * POINTS);
+    let shortest = delayed.times.iter().copied().fold(f64::INFINITY, f64::min);
+    let points =
+        |time: &f64| ((POINTS as f64 * time / shortest) as usize).clamp(POINTS, MOST_POINTS);
+    let points: Vec<usize> = delayed.times.iter().map(points).collect();
+    let before = |line: usize| points[..line].iter().sum::<usize>();
+    let place = |line: usize, point: usize| nx + before(line) + point - 1;
+    let size = nx + before(nd);
+    let mut whole = DMatrix::zeros(size, size);
     whole.view_mut((0, 0), (nx, nx)).copy_from(&linear.a);
     for line in 0..nd {
-        let last = place(line, POINTS);
+        let derivative = chebyshev_derivative(points[line]);
         whole
-            .view_mut((0, last), (nx, 1))
+            .view_mut((0, place(line, points[line])), (nx, 1))
             .copy_from(&delayed.b.column(line));
         let scale = 2.0 / delayed.times[line];
-        for point in 1..=POINTS {
+        for point in 1..=points[line] {
             let row = place(line, point);
-            for other in 1..=POINTS {
+            for other in 1..=points[line] {
                 whole[(row, place(line, other))] += scale * derivative[(point, other)];
             }
             // The value now is given by the states and the delayed values.
@@ -109,8 +115,9 @@ fn with_past(linear: &Linear, delayed: &Delayed) -> DMatrix<f64> {
             for state in 0..nx {
                 whole[(row, state)] += now * delayed.by_state[(line, state)];
             }
-            for other in 0..nd {
-                whole[(row, place(other, POINTS))] += now * delayed.by_delayed[(line, other)];
+            for (other, &last) in points.iter().enumerate() {
+                let late = place(other, last);
+                whole[(row, late)] += now * delayed.by_delayed[(line, other)];
             }
         }
     }

@@ -283,3 +283,43 @@ fn modes_of_a_delay_equation_are_roots_of_its_characteristic_equation() {
         close(size * (-mode.damping * size).exp(), 1.0, 1e-9);
     }
 }
+
+#[test]
+fn no_mode_is_missing_between_the_others() {
+    use nalgebra::Complex;
+    let example = model("delays", Some("closed")).free_inputs();
+    let program = example.compile(Backend::Native).unwrap().program;
+    let p = hyde_experiment::parameters(&program, &BTreeMap::new(), &[]).unwrap();
+    let linear = linearize(&program, &BTreeMap::new(), &p, &[], &[]).unwrap();
+    let equation = |s: Complex<f64>| {
+        let (back, echo) = ((-s * 0.02).exp(), (-s * 0.005).exp());
+        (s * 0.05 + 1.0) * (-echo * 0.3 + 1.0) + back * 2.0
+    };
+    let (left, right, top) = (-1500.0, 100.0, TAU * 900.0);
+    let inside = |s: &Complex<f64>| s.re > left && s.re < right && s.im < top;
+    let found: Vec<Complex<f64>> = modes(&linear)
+        .iter()
+        .map(|mode| mode.eigenvalue)
+        .filter(inside)
+        .collect();
+    for s in &found {
+        // A root to 1e-12 of |s| = 6e3, times the slope of the equation.
+        assert!(equation(*s).norm() < 1e-7, "{s}");
+    }
+    // As many as the equation turns round zero on the way round (the argument principle).
+    let corners = [
+        (left, 1.0),
+        (right, 1.0),
+        (right, top),
+        (left, top),
+        (left, 1.0),
+    ];
+    let corners = corners.map(|(re, im)| Complex::new(re, im));
+    let mut turns = 0.0;
+    for side in corners.windows(2) {
+        let at = |k: u32| equation(side[0] + (side[1] - side[0]) * (f64::from(k) / 1e5));
+        turns += (0..100_000).map(|k| (at(k + 1) / at(k)).arg()).sum::<f64>();
+    }
+    close(turns / TAU, found.len() as f64, 1e-6);
+    assert_eq!(found.len(), 18);
+}
