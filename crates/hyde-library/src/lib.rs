@@ -47,6 +47,34 @@ pub const PACKAGES: &[Package] = &[
         text: include_str!("../models/Drives.hyde"),
     },
     Package {
+        name: "Drives.Control",
+        text: include_str!("../models/Drives/Control.hyde"),
+    },
+    Package {
+        name: "Drives.Motors",
+        text: include_str!("../models/Drives/Motors.hyde"),
+    },
+    Package {
+        name: "Drives.Transmission",
+        text: include_str!("../models/Drives/Transmission.hyde"),
+    },
+    Package {
+        name: "Drives.Screws",
+        text: include_str!("../models/Drives/Screws.hyde"),
+    },
+    Package {
+        name: "Drives.Slides",
+        text: include_str!("../models/Drives/Slides.hyde"),
+    },
+    Package {
+        name: "Drives.FrictionLaws",
+        text: include_str!("../models/Drives/FrictionLaws.hyde"),
+    },
+    Package {
+        name: "Drives.FixedStep",
+        text: include_str!("../models/Drives/FixedStep.hyde"),
+    },
+    Package {
         name: "Effects",
         text: include_str!("../models/Effects.hyde"),
     },
