@@ -11,6 +11,7 @@ mod events;
 mod fixtures;
 mod ivp;
 mod msl;
+mod paper_rows;
 mod promise;
 mod residual_cost;
 mod start;
@@ -35,6 +36,7 @@ pub const FIGURES: &[Figure] = &[
     energy::FIGURE,
     backends::FIGURE,
     msl::FIGURE,
+    paper_rows::FIGURE,
     ivp::PROBLEMS,
     ivp::MIN_DIGITS,
     compile::Y_AXIS,

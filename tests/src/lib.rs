@@ -6,6 +6,7 @@ mod example;
 pub mod figures;
 pub mod ivp;
 pub mod msl;
+pub mod paper;
 pub mod stored_energy;
 
 pub use data::data;

@@ -48,7 +48,10 @@ pub fn load(
                 continue;
             }
             let found = match hyde_library::package(&name) {
-                Some(package) => Some((format!("{name}.hyde"), package.text.to_owned())),
+                Some(package) => Some((
+                    format!("{}.hyde", name.replace('.', "/")),
+                    package.text.to_owned(),
+                )),
                 None => (packages.find)(&name),
             };
             known.push(name);

@@ -1,4 +1,5 @@
-//! The packages shipped with the language, as text: quantity types, mechanics in rotation and translation, drives.
+//! The packages shipped with the language, as text: quantity types, mechanics in rotation and translation, drives. The
+//! package `A.B` is the file `A/B.hyde`.
 //!
 //! They are ordinary source files; nothing in them is known to the compiler. A model names what it uses:
 //! `import Rotational.*;`.

@@ -16,6 +16,7 @@ mod examples;
 mod first_order;
 mod ledger;
 mod models;
+mod paper;
 mod points;
 mod reactions;
 mod rectifier;
