@@ -10,37 +10,46 @@ mod experiment;
 mod table;
 
 pub use experiment::{Test, tests};
-pub use table::{Row, models, rows};
+pub use table::{Row, drives, rows};
 
 use std::collections::BTreeMap;
 
 /// How many rows the table has.
 pub const ROWS: usize = 50;
 
-/// Every row with what is wrong with it, in the order of the table. Each experiment runs once.
+/// A row and what came of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verdict {
+    /// The row.
+    pub row: Row,
+    /// What is wrong with it.
+    pub outcome: Result<(), String>,
+}
+
+/// Every row with what came of it, in the order of the table. Each experiment runs once.
 ///
 /// # Errors
 /// The table or a model file cannot be read.
-pub fn verdicts() -> Result<Vec<(Row, Result<(), String>)>, String> {
+pub fn verdicts() -> Result<Vec<Verdict>, String> {
     let mut outcomes: BTreeMap<String, Result<(), String>> = BTreeMap::new();
     let tests = tests()?;
     let mut verdicts = Vec::new();
     for row in rows()? {
-        let mut verdict = row.components_are_there();
+        let mut outcome = row.components_are_there();
         for name in &row.tests {
             let Some(test) = tests.iter().find(|test| test.name == *name) else {
-                verdict = verdict.and(Err(format!("there is no test `{name}`")));
+                outcome = outcome.and(Err(format!("there is no test `{name}`")));
                 continue;
             };
-            let outcome = outcomes
+            let passes = outcomes
                 .entry(name.clone())
                 .or_insert_with(|| test.passes());
-            verdict = verdict.and(outcome.clone());
+            outcome = outcome.and(passes.clone());
         }
         let text = |test: &&Test| row.tests.contains(&test.name);
         let texts: Vec<&str> = tests.iter().filter(text).map(|test| test.text()).collect();
-        verdict = verdict.and(row.components_are_used(&texts));
-        verdicts.push((row, verdict));
+        outcome = outcome.and(row.components_are_used(&texts));
+        verdicts.push(Verdict { row, outcome });
     }
     Ok(verdicts)
 }

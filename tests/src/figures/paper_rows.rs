@@ -10,7 +10,7 @@ pub(super) const FIGURE: Figure = Figure {
     promise: Promise::Exactly(paper::ROWS as f64),
     measure: |_| {
         let verdicts = paper::verdicts()?;
-        let passed = verdicts.iter().filter(|(_, verdict)| verdict.is_ok());
+        let passed = verdicts.iter().filter(|verdict| verdict.outcome.is_ok());
         Ok(Measured::Value(passed.count() as f64))
     },
 };

@@ -95,13 +95,27 @@ fn body<'t>(text: &'t str, name: &str) -> Option<&'t str> {
     Some(body)
 }
 
-/// The names of the models that a package declares.
-pub fn models(text: &str) -> impl Iterator<Item = &str> {
-    let items = text.lines().filter_map(|line| line.strip_prefix("model "));
-    items.filter_map(|rest| words(rest).next())
+/// Every model of the packages `Drives.…`, with its package.
+///
+/// # Errors
+/// The folder or a file cannot be read.
+#[allow(clippy::disallowed_methods, reason = "tests list the library")]
+pub fn drives() -> Result<Vec<String>, String> {
+    let folder = root().join("crates/hyde-library/models/Drives");
+    let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let mut found = Vec::new();
+    for path in entries.filter_map(|entry| Some(entry.ok()?.path())) {
+        let package = path.file_stem().unwrap_or_default().to_string_lossy();
+        let text = read(&path)?;
+        let models = text.lines().filter_map(|line| line.strip_prefix("model "));
+        let names = models.filter_map(|rest| words(rest).next());
+        found.extend(names.map(|name| format!("Drives.{package}.{name}")));
+    }
+    found.sort();
+    Ok(found)
 }
 
-/// Its models and functions.
+/// The models and functions that a package declares.
 fn declared(text: &str) -> impl Iterator<Item = &str> {
     let items = text.lines().filter_map(|line| {
         line.strip_prefix("model ")
