@@ -1,12 +1,16 @@
 //! Bindings: values of parameters, start values, `Real x = e`, and the times of clocked parts.
 
+mod elements;
+
+use elements::Elements;
+
 use crate::dimension::Dim;
 use crate::instance::{Binding, InstanceId, Lowering, Member, Scope, Setting, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy};
 use hyde_ir::flat::{ClockedEquation, Equation};
 use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, ParamId, Range, VarId, VariableKind};
-use hyde_syntax::ast::{Element, Expr, ExprKind, Reference};
+use hyde_syntax::ast::Element;
 use hyde_units::Dimension;
 
 impl<'a> Model<'a, '_> {
@@ -30,7 +34,7 @@ impl<'a> Model<'a, '_> {
     /// Lowers the value of a parameter, once.
     pub(crate) fn lower_parameter(&mut self, param: ParamId) {
         let notes = &self.parameters[param.index()];
-        let (state, binding) = (notes.state, notes.binding);
+        let (state, binding) = (notes.state, notes.binding.clone());
         let name = self.flat.parameters[param].name.clone();
         let span = self.flat.parameters[param].origin.span;
         match state {
@@ -58,7 +62,7 @@ impl<'a> Model<'a, '_> {
             self.parameters[param.index()].boolean,
         );
         let len = self.flat.parameters[param].len;
-        let values = self.values(binding, len, &dim, truth);
+        let values = self.values(&binding, len, &dim, truth);
         self.flat.parameters[param].value = values;
         self.parameters[param.index()].state = Lowering::Done;
     }
@@ -92,62 +96,17 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    /// The values of a binding of parameters: one a list item, or one for all elements.
+    /// The values of a binding of parameters: one an element, or one for all elements.
     fn values(
         &mut self,
-        binding: Binding<'a>,
+        binding: &Binding<'a>,
         len: Option<usize>,
         dim: &Dim,
         truth: bool,
     ) -> Vec<ExprId> {
-        let scope = binding.scope_for(Setting::Parameter);
-        let expr = self.element_expr(binding);
-        let items: Vec<Typed> = match (&expr.kind, len) {
-            (ExprKind::Array(items, unit), Some(len)) => {
-                if items.len() != len {
-                    self.report(
-                        Diagnostic::error(
-                            Code::BadShape,
-                            format!("{} values for {len} elements", items.len()),
-                        )
-                        .label(expr.span, format!("{} values", items.len()))
-                        .help("give a value for each element, or one value for all without braces"),
-                    );
-                }
-                let scale =
-                    unit.as_ref()
-                        .and_then(|unit| match hyde_units::NamedUnit::parse(&unit.text) {
-                            Ok(unit) => Some(unit),
-                            Err(error) => {
-                                self.bad_unit(unit, &error);
-                                None
-                            }
-                        });
-                items
-                    .iter()
-                    .map(|item| {
-                        let mut typed = self.value(item, &scope);
-                        if let (Some(unit), Some(value)) =
-                            (&scale, self.flat.exprs.as_constant(typed.id))
-                        {
-                            typed.id = self.flat.exprs.constant(unit.unit().to_si(value));
-                            typed.dim = Dim::known(unit.unit().dimension);
-                            typed.bare = false;
-                        }
-                        typed
-                    })
-                    .collect()
-            }
-            (_, Some(len)) if self.array_length(expr, &scope).is_some() => {
-                vec![self.lower(
-                    expr,
-                    &Scope {
-                        elementwise: Some(len),
-                        ..scope
-                    },
-                )]
-            }
-            _ => vec![self.lower(expr, &scope)],
+        let items = match self.elements(binding, len, Setting::Parameter) {
+            Elements::All(value) => vec![value],
+            Elements::Each(values) => values,
         };
         for item in &items {
             if item.truth != truth && item.dim != Dim::Any {
@@ -233,7 +192,7 @@ impl<'a> Model<'a, '_> {
     }
 
     fn lower_start(&mut self, var: VarId) {
-        let Some(start) = self.notes(var).start else {
+        let Some(start) = self.notes(var).start.clone() else {
             return;
         };
         let (dim, truth) = (self.dim(var), self.flat.variables[var].boolean);
@@ -248,11 +207,9 @@ impl<'a> Model<'a, '_> {
             } else {
                 crate::instance::FieldPlace::Node(field.domain, index)
             };
-            let scope = Scope {
-                place,
-                ..start.scope_for(Setting::Parameter)
-            };
-            let value = self.value(start.expr, &scope);
+            let (expr, unit, scope) = self.picked(&start, Setting::Parameter);
+            let value = self.value(expr, &scope.at(place));
+            let value = self.in_unit(value, unit);
             let declared = self.typed(value.id, dim, start.span);
             self.agree(
                 &declared,
@@ -263,13 +220,13 @@ impl<'a> Model<'a, '_> {
             self.flat.variables[var].start = vec![value.id];
             return;
         }
-        self.flat.variables[var].start = self.values(start, len, &dim, truth);
+        self.flat.variables[var].start = self.values(&start, len, &dim, truth);
     }
 
     /// `Real x = e` as an equation of x.
     fn lower_binding(&mut self, var: VarId) {
         let notes = self.notes(var);
-        let (binding, field) = (notes.binding, notes.field);
+        let (binding, field) = (notes.binding.clone(), notes.field);
         let Some(binding) = binding else { return };
         let kind = self.flat.variables[var].kind;
         let setting = match kind {
@@ -281,50 +238,32 @@ impl<'a> Model<'a, '_> {
             | VariableKind::Delayed(_)
             | VariableKind::Reduction(_) => Setting::Equation,
         };
-        let scope = binding.scope_for(setting);
         if let Some(field) = field {
-            self.field_binding(var, field, binding.expr, &scope, binding.span);
+            let (expr, _, scope) = self.picked(&binding, setting);
+            self.field_binding(var, field, expr, &scope, binding.span);
             return;
         }
-        let expr = self.element_expr(binding);
         let len = self.flat.variables[var].len;
         let origin = self
             .origin(self.notes(var).instance, binding.span)
             .made_by(MadeBy::Binding);
-        let list: Vec<(Range, Index, Typed)> = match (&expr.kind, len) {
-            (ExprKind::Array(items, None), Some(len)) if items.len() == len => (0..)
-                .zip(items)
-                .map(|(element, item)| {
-                    (
-                        Range::SCALAR,
-                        Index::fixed(element),
-                        self.lower(item, &scope),
-                    )
-                })
+        let list: Vec<(Range, Index, Typed)> = match (self.elements(&binding, len, setting), len) {
+            (Elements::Each(values), _) => (0..)
+                .zip(values)
+                .map(|(element, value)| (Range::SCALAR, Index::fixed(element), value))
                 .collect(),
-            (_, Some(len)) => {
+            (Elements::All(value), Some(len)) => {
                 let range = Range {
                     first: 0,
                     last: i32::try_from(len).unwrap_or(i32::MAX) - 1,
                 };
-                let value = self.lower(
-                    expr,
-                    &Scope {
-                        elementwise: Some(len),
-                        ..scope
-                    },
-                );
-                vec![(
-                    range,
-                    Index {
-                        stride: 1,
-                        offset: 0,
-                    },
-                    value,
-                )]
+                let index = Index {
+                    stride: 1,
+                    offset: 0,
+                };
+                vec![(range, index, value)]
             }
-            (_, None) => {
-                let value = self.lower(expr, &scope);
+            (Elements::All(value), None) => {
                 let value = self.wrapped(var, value, setting);
                 vec![(Range::SCALAR, Index::SCALAR, value)]
             }
@@ -360,81 +299,6 @@ impl<'a> Model<'a, '_> {
                 | VariableKind::Delayed(_)
                 | VariableKind::Reduction(_) => self.flat.equations.push(equation),
             }
-        }
-    }
-
-    /// The expression of a binding; of a list given to an array of components, the item meant.
-    fn element_expr(&self, binding: Binding<'a>) -> &'a Expr {
-        match (&binding.expr.kind, binding.element) {
-            (ExprKind::Array(items, None), Some(element)) => {
-                items.get(element).unwrap_or(binding.expr)
-            }
-            _ => binding.expr,
-        }
-    }
-
-    /// The length of the whole arrays an expression reads, if it reads any.
-    pub(crate) fn array_length(&self, expr: &'a Expr, scope: &Scope<'a>) -> Option<usize> {
-        match &expr.kind {
-            ExprKind::Reference(reference) => self.length_of(reference, scope),
-            ExprKind::Unary(_, inner) => self.array_length(inner, scope),
-            ExprKind::Binary(_, a, b) => self
-                .array_length(a, scope)
-                .or_else(|| self.array_length(b, scope)),
-            ExprKind::Call(function, arguments) => {
-                if function.as_word() == Some("sum") {
-                    return None;
-                }
-                arguments
-                    .iter()
-                    .find_map(|argument| self.array_length(&argument.value, scope))
-            }
-            ExprKind::If(branches, otherwise) => branches
-                .iter()
-                .find_map(|(c, v)| {
-                    self.array_length(c, scope)
-                        .or_else(|| self.array_length(v, scope))
-                })
-                .or_else(|| self.array_length(otherwise, scope)),
-            ExprKind::Array(..)
-            | ExprKind::Number(..)
-            | ExprKind::String(_)
-            | ExprKind::Boolean(_) => None,
-        }
-    }
-
-    fn length_of(&self, reference: &'a Reference, scope: &Scope<'a>) -> Option<usize> {
-        let mut at = scope.instance;
-        let mut parts = reference.parts.iter();
-        let mut part = parts.next()?;
-        let mut member = loop {
-            match (
-                self.instances[at].members.get(part.name.text.as_str()),
-                self.instances[at].outer,
-            ) {
-                (Some(member), _) => break member,
-                (None, Some(outer)) => at = outer,
-                (None, None) => return None,
-            }
-        };
-        loop {
-            match member {
-                Member::Variable(var) => {
-                    let whole = part.subscripts.is_empty() && self.notes(*var).field.is_none();
-                    return self.flat.variables[*var].len.filter(|_| whole);
-                }
-                Member::Parameter(param) => {
-                    return self.flat.parameters[*param]
-                        .len
-                        .filter(|_| part.subscripts.is_empty());
-                }
-                Member::Instance(inner) => at = *inner,
-                // Every element of an array of components has the same variables.
-                Member::Instances(list) => at = *list.first()?,
-                Member::Domain(_) => return None,
-            }
-            part = parts.next()?;
-            member = self.instances[at].members.get(part.name.text.as_str())?;
         }
     }
 }

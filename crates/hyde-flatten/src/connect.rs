@@ -4,12 +4,12 @@
 //! model (outside, flow out of it). `connect(a, b, c)` joins; of each set all potentials are equal, and the flows of the
 //! inside ones minus those of the outside ones sum to zero. A connector in no set has zero flow (U4).
 
-use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
+use crate::instance::{Elementwise, InstanceId, Member, Position, Scope, Setting, Typed};
 use crate::lower::Resolved;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy, Origin, Span};
 use hyde_ir::flat::Equation;
-use hyde_ir::{Range, VarId, VariableKind};
+use hyde_ir::{Expr as Ir, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{ClassKind, Reference};
 
 /// A `connect` of connectors, as written.
@@ -26,10 +26,54 @@ impl Connection {
 }
 
 impl<'a> Model<'a, '_> {
-    /// Lowers `connect(a, b, …)`: connectors are kept for the sets, signals are equated at once.
+    /// Lowers `connect(a, b, …)`; whole arrays are connected element by element.
     pub(crate) fn connection(&mut self, sides: &'a [Reference], scope: &Scope<'a>, span: Span) {
+        let errors = self.diagnostics.error_count();
+        let mut lengths = Vec::new();
+        for side in sides {
+            lengths.push((side, self.length_of(side, scope)));
+        }
+        if self.diagnostics.error_count() > errors {
+            return;
+        }
+        let array = lengths.iter().find_map(|&(side, len)| Some((side, len?)));
+        let Some((array, len)) = array else {
+            self.connect_one(sides, scope, span);
+            return;
+        };
+        if let Some((side, other)) = lengths.iter().find(|(_, other)| *other != Some(len)) {
+            let (what, label, help) = match other {
+                Some(other) => (
+                    "arrays of different lengths are connected".to_owned(),
+                    format!("has {other} elements"),
+                    "connect as many: `a[1:3]` means three elements of `a`",
+                ),
+                None => (
+                    "an array and a single one are connected".to_owned(),
+                    "one".to_owned(),
+                    "name an element, `a[1]`, or join each with it: `for i in 1:n loop connect(a[i], b); end for;`",
+                ),
+            };
+            self.report(
+                Diagnostic::error(Code::BadConnection, what)
+                    .label(side.span, label)
+                    .label(array.span, format!("has {len} elements"))
+                    .help(help),
+            );
+            return;
+        }
+        if self.can_unroll(len, span) {
+            for at in 0..len {
+                let one = Elementwise::One(Position { at, of: len });
+                self.connect_one(sides, &scope.elements(one), span);
+            }
+        }
+    }
+
+    /// Connectors are kept for the sets, signals are equated at once.
+    fn connect_one(&mut self, sides: &'a [Reference], scope: &Scope<'a>, span: Span) {
         let mut connectors = Vec::new();
-        let mut signals: Vec<(VarId, &'a Reference)> = Vec::new();
+        let mut signals: Vec<(VarId, Index, &'a Reference)> = Vec::new();
         for side in sides {
             match self.resolve(side, scope) {
                 Some(Resolved::Instance(instance))
@@ -55,7 +99,13 @@ impl<'a> Model<'a, '_> {
                     }
                     connectors.push((instance, !outside, side));
                 }
-                Some(Resolved::Variable(var, None)) => signals.push((var, side)),
+                Some(Resolved::Variable(var, index)) => {
+                    let len = self.flat.variables[var].len;
+                    let Some(index) = self.whole(index, len, scope, side.span) else {
+                        return;
+                    };
+                    signals.push((var, index, side));
+                }
                 Some(Resolved::Instance(instance)) => {
                     let class = self.instances[instance].class.name.text.clone();
                     let known: Vec<&str> = self.instances[instance]
@@ -94,7 +144,7 @@ impl<'a> Model<'a, '_> {
             }
         }
         match (connectors.first().copied(), signals.first().copied()) {
-            (Some((_, _, connector)), Some((_, signal))) => self.report(
+            (Some((_, _, connector)), Some((_, _, signal))) => self.report(
                 Diagnostic::error(
                     Code::BadConnection,
                     "a connector and a signal are connected",
@@ -135,11 +185,11 @@ impl<'a> Model<'a, '_> {
                     .made_by(MadeBy::Connection);
                 self.connections.push(Connection { sides, origin });
             }
-            (None, Some((first, written))) => {
+            (None, Some((first, of_first, written))) => {
                 let mut equations = Vec::new();
-                for &(other, side) in &signals[1..] {
-                    let lhs = self.flat.exprs.var(other);
-                    let rhs = self.flat.exprs.var(first);
+                for &(other, index, side) in &signals[1..] {
+                    let lhs = self.flat.exprs.add(Ir::Var(other, index));
+                    let rhs = self.flat.exprs.add(Ir::Var(first, of_first));
                     let left = Typed {
                         truth: self.flat.variables[other].boolean,
                         ..self.typed(lhs, self.dim(other), side.span)

@@ -9,7 +9,7 @@ mod branch;
 mod event;
 mod range;
 
-use crate::instance::{InstanceId, Scope, Setting};
+use crate::instance::{Counter, Elementwise, InstanceId, Position, Scope, Setting};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::Range;
@@ -106,7 +106,7 @@ impl<'a> Model<'a, '_> {
                 lhs,
                 rhs,
                 place: None,
-            } => self.equality(lhs, rhs, scope, span).into_iter().collect(),
+            } => self.equality(lhs, rhs, scope, span),
             EquationKind::Connect(sides) => {
                 self.connection(sides, scope, span);
                 Vec::new()
@@ -146,38 +146,57 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    /// `lhs = rhs`, of scalars or of whole arrays.
+    /// `lhs = rhs`, of scalars or of whole arrays: one equation over a range, or one an element where lists or components
+    /// are among them.
     fn equality(
         &mut self,
         lhs: &'a Expr,
         rhs: &'a Expr,
         scope: &Scope<'a>,
         span: Span,
-    ) -> Option<Equation> {
-        let len = self
-            .array_length(lhs, scope)
-            .or_else(|| self.array_length(rhs, scope));
-        let (range, scope) = match len {
-            Some(len) => {
-                let last = i32::try_from(len).unwrap_or(i32::MAX) - 1;
-                (
-                    Range { first: 0, last },
-                    Scope {
-                        elementwise: Some(len),
-                        ..scope.clone()
-                    },
-                )
-            }
-            None => (Range::SCALAR, scope.clone()),
+    ) -> Vec<Equation> {
+        let len = self.array_length(lhs, scope);
+        let Some(len) = len.or_else(|| self.array_length(rhs, scope)) else {
+            let equation = self.one_equality((lhs, rhs), Range::SCALAR, scope, span);
+            return equation.into_iter().collect();
         };
-        let (left, right) = (self.lower(lhs, &scope), self.lower(rhs, &scope));
+        let in_loop = self.needs_unrolling;
+        let range = Range {
+            first: 0,
+            last: i32::try_from(len).unwrap_or(i32::MAX) - 1,
+        };
+        let counted = scope.elements(Elementwise::Range(len));
+        let counts = |(_, counter): &(_, Counter)| matches!(counter, Counter::Symbolic);
+        if scope.counters.iter().any(counts) {
+            // One counter an equation: the loop around it is unrolled.
+            self.needs_unrolling = true;
+            return Vec::new();
+        }
+        let whole = self.one_equality((lhs, rhs), range, &counted, span);
+        if !std::mem::replace(&mut self.needs_unrolling, in_loop) {
+            return whole.into_iter().collect();
+        }
+        if !self.can_unroll(len, span) {
+            return Vec::new();
+        }
+        let one = |at| scope.elements(Elementwise::One(Position { at, of: len }));
+        (0..len)
+            .filter_map(|at| self.one_equality((lhs, rhs), Range::SCALAR, &one(at), span))
+            .collect()
+    }
+
+    fn one_equality(
+        &mut self,
+        (lhs, rhs): (&'a Expr, &'a Expr),
+        range: Range,
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Option<Equation> {
+        let (left, right) = (self.lower(lhs, scope), self.lower(rhs, scope));
         self.same_kind(&left, &right);
         self.agree(&left, &right, "`=` equates", scope.instance);
-        if self.needs_unrolling {
-            return None;
-        }
         let origin = self.origin(scope.instance, span);
-        Some(Equation {
+        (!self.needs_unrolling).then_some(Equation {
             range,
             lhs: left.id,
             rhs: right.id,

@@ -39,14 +39,14 @@ pub(crate) enum Member {
 }
 
 /// An expression with the instance in whose scope it stands.
-#[derive(Clone, Copy)]
+#[derive(Clone)]
 pub(crate) struct Binding<'a> {
     pub(crate) expr: &'a Expr,
     pub(crate) scope: InstanceId,
     /// It stands in the experiment, so that the records' columns can be read.
     pub(crate) records: bool,
-    /// The element meant, where an array is given to the elements of an array of components.
-    pub(crate) element: Option<usize>,
+    /// The elements of arrays of components that it is for, the outermost first.
+    pub(crate) elements: Vec<Position>,
     pub(crate) span: Span,
 }
 
@@ -56,6 +56,34 @@ impl<'a> Binding<'a> {
         Scope {
             records: self.records,
             ..Scope::new(self.scope, setting)
+        }
+    }
+}
+
+/// An element of an array of components.
+#[derive(Clone, Copy)]
+pub(crate) struct Position {
+    /// From 0.
+    pub(crate) at: usize,
+    /// How many there are.
+    pub(crate) of: usize,
+}
+
+/// For what whole arrays in an expression stand.
+#[derive(Clone, Copy)]
+pub(crate) enum Elementwise {
+    /// For all elements: that of the counter of a range equation, from 0; how many there are.
+    Range(usize),
+    /// For one of them.
+    One(Position),
+}
+
+impl Elementwise {
+    /// How many elements there are.
+    pub(crate) fn len(self) -> usize {
+        match self {
+            Self::Range(len) => len,
+            Self::One(position) => position.of,
         }
     }
 }
@@ -159,8 +187,8 @@ pub(crate) struct Scope<'a> {
     /// In a function: its inputs and variables, and nothing else.
     pub(crate) values: Option<Vec<(&'a str, Typed)>>,
     pub(crate) place: FieldPlace,
-    /// Whole arrays are read element by element, this many.
-    pub(crate) elementwise: Option<usize>,
+    /// Whole arrays are read element by element.
+    pub(crate) elementwise: Option<Elementwise>,
     /// The records of the experiment can be read.
     pub(crate) records: bool,
 }
@@ -182,6 +210,13 @@ impl Scope<'_> {
     pub(crate) fn at(&self, place: FieldPlace) -> Self {
         Self {
             place,
+            ..self.clone()
+        }
+    }
+
+    pub(crate) fn elements(&self, elementwise: Elementwise) -> Self {
+        Self {
+            elementwise: Some(elementwise),
             ..self.clone()
         }
     }

@@ -170,6 +170,8 @@ pub(crate) fn terms_of<'a>(expr: &'a Expr, positive: bool, terms: &mut Vec<(&'a 
         | ExprKind::Unary(..)
         | ExprKind::Binary(..)
         | ExprKind::If(..)
-        | ExprKind::Array(..) => terms.push((expr, positive)),
+        | ExprKind::Array(..)
+        | ExprKind::Comprehension(_)
+        | ExprKind::Slice(..) => terms.push((expr, positive)),
     }
 }

@@ -1,8 +1,10 @@
 //! Expressions to IR: names to what they stand for in scope, numbers to SI, every operation with its dimension.
 
+mod list;
 mod operation;
 mod read;
 mod resolve;
+mod shape;
 mod subscript;
 
 pub(crate) use resolve::Resolved;
@@ -57,13 +59,9 @@ impl<'a> Model<'a, '_> {
                 }
                 value
             }
-            ExprKind::Array(..) => {
-                self.report(
-                    Diagnostic::error(Code::BadShape, "a list stands where one value is expected")
-                        .label(span, "a list"),
-                );
-                self.poison(span)
-            }
+            ExprKind::Array(..) | ExprKind::Comprehension(_) => self.list(expr, scope),
+            // The grammar has slices in subscripts alone.
+            ExprKind::Slice(..) => self.poison(span),
         }
     }
 

@@ -96,11 +96,24 @@ fn split(symbol: &str) -> Option<String> {
 
 /// Symbols of three letters or more that one letter too many, too few, or wrong makes.
 fn one_slip(symbol: &str) -> Vec<String> {
+    // A letter too many at the end is told even of a symbol of two letters: `mHy` is `mH`.
+    let shorter: Vec<String> = spellings()
+        .filter(|text| {
+            text.len() >= 2 && symbol.strip_prefix(text.as_str()).is_some_and(one_letter)
+        })
+        .collect();
+    if !shorter.is_empty() {
+        return shorter;
+    }
     let candidates = spellings().filter(|text| text.chars().count() >= 3);
     candidates
         .filter(|text| is_one_slip(text, symbol))
         .take(3)
         .collect()
+}
+
+fn one_letter(text: &str) -> bool {
+    text.chars().count() == 1
 }
 
 fn is_one_slip(a: &str, b: &str) -> bool {
@@ -163,6 +176,7 @@ mod tests {
             ("RPM", "did you mean `rpm`?"),
             ("khz", "did you mean `kHz`?"),
             ("mpa", "did you mean `mPa` or `MPa`?"),
+            ("mHy", "did you mean `mH`?"),
             ("rda", "did you mean `rad`?"),
             ("arcsc", "did you mean `arcsec`?"),
             ("Nm", "write `N.m`"),

@@ -1,7 +1,7 @@
 //! `pre`, `sample`, `hold`, `held` and `interval`: values across the borders of clocked parts.
 
 use crate::dimension::Dim;
-use crate::instance::{Scope, Setting, Typed};
+use crate::instance::{Elementwise, Scope, Setting, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::flat::{ClockedEquation, Equation};
@@ -96,6 +96,11 @@ impl<'a> Model<'a, '_> {
             );
             return self.poison(span);
         }
+        if matches!(scope.elementwise, Some(Elementwise::Range(_))) {
+            // Each element is held apart.
+            self.needs_unrolling = true;
+            return self.poison(span);
+        }
         let inner = self.value(a, &scope.with(Setting::Clocked));
         let clocks = self.clocks_of(inner.id);
         let [clock] = clocks.as_slice() else {
@@ -147,8 +152,12 @@ impl<'a> Model<'a, '_> {
         scope: &Scope<'a>,
         span: Span,
     ) -> VarId {
+        let element = match scope.elementwise {
+            Some(Elementwise::One(position)) => format!("[{}]", position.at + 1),
+            Some(Elementwise::Range(_)) | None => String::new(),
+        };
         let name = format!(
-            "{}.({})",
+            "{}.({}){element}",
             self.flat.clocks[clock].name,
             hyde_syntax::format_expression(written)
         );

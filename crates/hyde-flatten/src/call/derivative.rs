@@ -136,14 +136,13 @@ impl<'a> Model<'a, '_> {
                 continue;
             };
             let notes = &self.variables[var.index()];
-            let Some(binding) = notes.binding else {
+            let Some(binding) = notes.binding.clone() else {
                 continue;
             };
             if var == keep || depth > 40 || self.flat.variables[var].len.is_some() {
                 continue;
             }
-            let scope = binding.scope_for(Setting::Equation);
-            let value = self.value(binding.expr, &scope);
+            let value = self.bound_value(&binding, Setting::Equation);
             let value = self.wrapped(var, value, Setting::Equation);
             let value = self.expand_bindings(value.id, keep, depth + 1);
             memo.insert(inner, value);

@@ -74,7 +74,7 @@ impl<'a> Model<'a, '_> {
                 locals: Vec::new(),
                 ..scope.clone()
             };
-            let value = match (given, &declarator.binding) {
+            let mut value = match (given, &declarator.binding) {
                 (Some(argument), _) => self.lower(&argument.value, scope),
                 (None, Some(binding)) => self.lower(binding, &inner),
                 (None, None) => {
@@ -93,12 +93,18 @@ impl<'a> Model<'a, '_> {
             if !value.truth {
                 let (dim, _) = self.quantity(kind, declarator.binding.as_ref());
                 let declared = self.typed(value.id, dim, declarator.name.span);
-                let what = if has(Prefix::Input) {
-                    "the input and its argument are"
+                if has(Prefix::Input) {
+                    let what = "the argument and its input are";
+                    self.agree(&value, &declared, what, scope.instance);
                 } else {
-                    "the declared type and the value are"
-                };
-                self.agree(&declared, &value, what, scope.instance);
+                    let what = "the declared type and the value are";
+                    self.agree(&declared, &value, what, scope.instance);
+                }
+                if declared.dim.as_known().is_some() {
+                    // A wrong argument is one mistake: the body is read as declared.
+                    value.dim = declared.dim;
+                    value.bare = false;
+                }
             }
             if has(Prefix::Output) {
                 output = Some(value.clone());

@@ -1,9 +1,9 @@
 //! `sum` of an array: `sum(x)` becomes `x[1] + x[2] + …`.
 
-use crate::instance::{Scope, Typed};
+use crate::dimension::Dim;
+use crate::instance::{Elementwise, Position, Scope, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
-use hyde_ir::ExprId;
 use hyde_syntax::ast::Expr;
 
 impl<'a> Model<'a, '_> {
@@ -28,24 +28,17 @@ impl<'a> Model<'a, '_> {
             );
             return self.poison(span);
         }
-        let inner = self.value(
-            a,
-            &Scope {
-                elementwise: Some(len),
-                ..scope.clone()
-            },
-        );
         let mut total = self.flat.exprs.constant(0.0);
-        for element in 0..len {
-            let term = self.element_of(inner.id, element);
-            total = self.flat.exprs.plus(total, term);
+        let mut sum: Option<Typed> = None;
+        for at in 0..len {
+            let one = Elementwise::One(Position { at, of: len });
+            let term = self.value(a, &scope.elements(one));
+            if let Some(sum) = &sum {
+                self.agree(sum, &term, "`sum` adds", scope.instance);
+            }
+            total = self.flat.exprs.plus(total, term.id);
+            sum.get_or_insert(term);
         }
-        self.typed(total, inner.dim, span)
-    }
-
-    /// An array expression at one value of its counter.
-    pub(crate) fn element_of(&mut self, id: ExprId, element: usize) -> ExprId {
-        let at = i32::try_from(element).unwrap_or(i32::MAX);
-        self.flat.exprs.at_counter(id, at)
+        self.typed(total, sum.map_or(Dim::Any, |sum| sum.dim), span)
     }
 }

@@ -8,13 +8,13 @@
 use crate::bind::short;
 use crate::instance::{Counter, Scope};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::flat::Equation;
 use hyde_ir::{Expr as Ir, Range};
 use hyde_syntax::ast::{self, EquationKind, Expr};
 
 /// Loops that cannot stay a range are unrolled up to this many turns.
-const MAX_UNROLLED: i64 = 10_000;
+const MAX_UNROLLED: usize = 10_000;
 
 impl<'a> Model<'a, '_> {
     pub(super) fn for_equation(
@@ -60,18 +60,7 @@ impl<'a> Model<'a, '_> {
                     .collect();
             }
         }
-        if last - first >= MAX_UNROLLED {
-            self.report(
-                Diagnostic::error(
-                    Code::ArrayEquation,
-                    format!("a loop over components of {} turns", last - first + 1),
-                )
-                .label(
-                    counter.span,
-                    format!("unrolled at most {MAX_UNROLLED} times"),
-                )
-                .help("use arrays of variables in one component: their equations are not unrolled"),
-            );
+        if !self.can_unroll(range.len(), counter.span) {
             return Vec::new();
         }
         let mut list = Vec::new();
@@ -83,6 +72,21 @@ impl<'a> Model<'a, '_> {
             }
         }
         list
+    }
+
+    /// Whether so many elements are not too many to have an equation each; reported if they are.
+    pub(crate) fn can_unroll(&mut self, turns: usize, span: Span) -> bool {
+        if turns > MAX_UNROLLED {
+            self.report(
+                Diagnostic::error(
+                    Code::ArrayEquation,
+                    format!("a loop over components of {turns} turns"),
+                )
+                .label(span, format!("unrolled at most {MAX_UNROLLED} times"))
+                .help("use arrays of variables in one component: their equations are not unrolled"),
+            );
+        }
+        turns <= MAX_UNROLLED
     }
 
     /// An array equation whose elements all exist; reported if not.

@@ -141,7 +141,9 @@ impl<'a> Model<'a, '_> {
             | ExprKind::Unary(..)
             | ExprKind::Binary(..)
             | ExprKind::If(..)
-            | ExprKind::Array(..) => {
+            | ExprKind::Array(..)
+            | ExprKind::Comprehension(_)
+            | ExprKind::Slice(..) => {
                 self.report(
                     Diagnostic::error(Code::NoColumn, "what was measured is a column of a record")
                         .label(expr.span, "no column")

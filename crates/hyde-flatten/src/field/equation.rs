@@ -290,7 +290,9 @@ pub(super) fn split<'a>(
         | ExprKind::Unary(..)
         | ExprKind::Binary(..)
         | ExprKind::If(..)
-        | ExprKind::Array(..) => {
+        | ExprKind::Array(..)
+        | ExprKind::Comprehension(_)
+        | ExprKind::Slice(..) => {
             if expr.calls("pder") {
                 fluxes.push((expr, !left));
             } else {

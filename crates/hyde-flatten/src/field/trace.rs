@@ -96,7 +96,9 @@ fn arguments_of_pder<'a>(expr: &'a Expr, found: &mut Vec<&'a Expr>) {
             arguments_of_pder(otherwise, found);
         }
         ExprKind::Array(items, _) => items.iter().for_each(|item| arguments_of_pder(item, found)),
-        ExprKind::Number(..)
+        ExprKind::Comprehension(list) => arguments_of_pder(&list.value, found),
+        ExprKind::Slice(..)
+        | ExprKind::Number(..)
         | ExprKind::String(_)
         | ExprKind::Boolean(_)
         | ExprKind::Reference(_) => {}

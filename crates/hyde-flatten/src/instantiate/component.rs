@@ -2,7 +2,7 @@
 
 use super::modification::Modifier;
 use super::{Collected, Place};
-use crate::instance::{InstanceId, Member};
+use crate::instance::{InstanceId, Member, Position};
 use crate::model::Model;
 use crate::names::FileIndex;
 use hyde_diag::{Code, Diagnostic, InstancePath};
@@ -77,8 +77,12 @@ impl<'a> Model<'a, '_> {
                 for index in 0..count {
                     let mut own = inner.clone();
                     for modifier in &mut own {
-                        if !modifier.change.each && modifier.element.is_none() {
-                            modifier.element = Some(index);
+                        match modifier.each {
+                            0 => modifier.elements.push(Position {
+                                at: index,
+                                of: count,
+                            }),
+                            each => modifier.each = each - 1,
                         }
                     }
                     let child = path.child(&format!("{name}[{}]", index + 1));

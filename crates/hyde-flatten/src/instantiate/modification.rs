@@ -1,6 +1,6 @@
 //! Modifications: each as a single change with the scope its value stands in, and what of them nothing used.
 
-use crate::instance::{Binding, InstanceId};
+use crate::instance::{Binding, InstanceId, Position};
 use crate::model::{Model, listed};
 use crate::names::nearest;
 use hyde_diag::{Code, Diagnostic, Span};
@@ -14,7 +14,10 @@ pub(super) struct Modifier<'a> {
     pub(super) scope: InstanceId,
     /// Given by the experiment, so that it can read the records' columns.
     pub(super) records: bool,
-    pub(super) element: Option<usize>,
+    /// The elements of arrays of components that it came to, the outermost first.
+    pub(super) elements: Vec<Position>,
+    /// For how many arrays of components on its way it holds whole: once for each `each`.
+    pub(super) each: usize,
     /// Index into the model's list of modifications, to tell which were used.
     pub(super) number: usize,
 }
@@ -48,14 +51,14 @@ impl<'a> Model<'a, '_> {
         scope: InstanceId,
         out: &mut Vec<Modifier<'a>>,
     ) {
-        self.modifiers_below(changes, scope, &[], out);
+        self.modifiers_below(changes, scope, (&[], 0), out);
     }
 
     fn modifiers_below(
         &mut self,
         changes: &'a [Change],
         scope: InstanceId,
-        above: &[&'a str],
+        (above, each): (&[&'a str], usize),
         out: &mut Vec<Modifier<'a>>,
     ) {
         for change in changes {
@@ -67,7 +70,8 @@ impl<'a> Model<'a, '_> {
                     .iter()
                     .map(|part| part.name.text.as_str()),
             );
-            self.modifiers_below(&change.changes, scope, &target, out);
+            let each = each + usize::from(change.each);
+            self.modifiers_below(&change.changes, scope, (&target, each), out);
             if change.redeclare.is_some()
                 || change.value.is_some()
                 || change.prior.is_some()
@@ -81,7 +85,8 @@ impl<'a> Model<'a, '_> {
                     change,
                     scope,
                     records: false,
-                    element: None,
+                    elements: Vec::new(),
+                    each,
                     number,
                 });
             }
@@ -137,7 +142,7 @@ impl<'a> Model<'a, '_> {
                     expr,
                     scope: modifier.scope,
                     records: modifier.records,
-                    element: modifier.element,
+                    elements: modifier.elements.clone(),
                     span: modifier.change.target.span,
                 })
             }
@@ -147,7 +152,7 @@ impl<'a> Model<'a, '_> {
                     expr,
                     scope: id,
                     records: false,
-                    element: None,
+                    elements: Vec::new(),
                     span: declarator.name.span,
                 })
             }
@@ -172,7 +177,7 @@ impl<'a> Model<'a, '_> {
                 expr,
                 scope: modifier.scope,
                 records: modifier.records,
-                element: modifier.element,
+                elements: modifier.elements.clone(),
                 span: expr.span,
             });
         }
@@ -185,7 +190,7 @@ impl<'a> Model<'a, '_> {
             expr,
             scope: id,
             records: false,
-            element: None,
+            elements: Vec::new(),
             span: expr.span,
         })
     }

@@ -59,9 +59,11 @@ impl<'a> Model<'a, '_> {
                 .or_else(|| declarator.source.clone());
             let binding = self.binding(id, declarator, &modifiers);
             self.check_attributes(declarator, &modifiers);
-            let (dim, quantity) = self.quantity(kind, binding.map(|binding| binding.expr));
+            let (dim, quantity) = self.quantity(kind, binding.as_ref().map(|binding| binding.expr));
             let len = self.length(id, &declaration.dims, &declarator.dims);
-            let span = binding.map_or(declarator.name.span, |binding| binding.span);
+            let span = binding
+                .as_ref()
+                .map_or(declarator.name.span, |binding| binding.span);
             let path = self.path(id);
             let is_final = has(Prefix::Final)
                 || has(Prefix::Constant)

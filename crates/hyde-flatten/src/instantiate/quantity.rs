@@ -80,11 +80,13 @@ fn literal_unit(expr: &Expr) -> Option<&ast::UnitText> {
         ExprKind::Array(items, unit) => unit
             .as_ref()
             .or_else(|| items.first().and_then(literal_unit)),
+        ExprKind::Comprehension(list) => list.unit.as_ref().or_else(|| literal_unit(&list.value)),
         ExprKind::String(_)
         | ExprKind::Boolean(_)
         | ExprKind::Reference(_)
         | ExprKind::Call(..)
         | ExprKind::Binary(..)
-        | ExprKind::If(..) => None,
+        | ExprKind::If(..)
+        | ExprKind::Slice(..) => None,
     }
 }

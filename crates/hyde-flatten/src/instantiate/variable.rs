@@ -1,7 +1,7 @@
 //! Variables with their kind, length and attributes.
 
 use super::Collected;
-use crate::instance::{InstanceId, Member, VariableNotes};
+use crate::instance::{InstanceId, Member, Setting, VariableNotes};
 use crate::model::Model;
 use crate::names::TypeName;
 use hyde_diag::{Code, Diagnostic};
@@ -27,8 +27,11 @@ impl<'a> Model<'a, '_> {
         let start = attribute(self, "start");
         let fixed = attribute(self, "fixed");
         self.check_attributes(declarator, &modifiers);
-        let fixed = fixed.is_some_and(|fixed| matches!(fixed.expr.kind, ExprKind::Boolean(true)));
-        let (dim, quantity) = self.quantity(kind, binding.map(|binding| binding.expr));
+        let fixed = fixed.is_some_and(|fixed| {
+            let (picked, ..) = self.picked(&fixed, Setting::Parameter);
+            matches!(picked.kind, ExprKind::Boolean(true))
+        });
+        let (dim, quantity) = self.quantity(kind, binding.as_ref().map(|binding| binding.expr));
         let clock = self.instances[id].clock;
         let variable_kind = match clock {
             Some(clock) => VariableKind::Clocked(clock),

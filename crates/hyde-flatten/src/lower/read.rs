@@ -35,7 +35,10 @@ impl<'a> Model<'a, '_> {
             }
             Resolved::Counter(Counter::Fixed(value)) => {
                 let id = self.flat.exprs.constant(f64::from(value));
-                self.typed(id, Dim::NUMBER, span)
+                Typed {
+                    bare: true,
+                    ..self.typed(id, Dim::NUMBER, span)
+                }
             }
             Resolved::Time => {
                 if scope.setting == Setting::Parameter {

@@ -1,11 +1,11 @@
 //! Names: what they stand for in scope.
 
-use super::subscript::mentions_counter;
-use crate::instance::{Counter, FieldPlace, InstanceId, Member, Scope, Typed};
+use super::subscript::{mentions_counter, without_elements};
+use crate::instance::{Counter, Elementwise, FieldPlace, InstanceId, Member, Scope, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{Index, ParamId, VarId};
-use hyde_syntax::ast::{Expr, Reference};
+use hyde_syntax::ast::{Expr, ExprKind, Reference};
 
 /// What a name stands for.
 pub(crate) enum Resolved {
@@ -149,7 +149,10 @@ impl<'a> Model<'a, '_> {
                     self.not_an_array(reference);
                     return None;
                 }
-                Member::Instances(list) => self.one_of(&list, subscript, scope, reference)?,
+                Member::Instances(list) => {
+                    let at = reference.parts.len() - 1 - parts.len();
+                    self.one_of(&list, (at, subscript), scope, reference)?
+                }
             };
             let Some(next) = parts.next() else {
                 return Some(Resolved::Instance(instance));
@@ -167,22 +170,37 @@ impl<'a> Model<'a, '_> {
     fn one_of(
         &mut self,
         list: &[InstanceId],
-        subscript: Option<&'a Expr>,
+        (at, subscript): (usize, Option<&'a Expr>),
         scope: &Scope<'a>,
         reference: &Reference,
     ) -> Option<InstanceId> {
-        let Some(subscript) = subscript else {
+        let slice = subscript.and_then(|subscript| {
+            if let ExprKind::Slice(first, _) = &subscript.kind {
+                Some((subscript, &**first))
+            } else {
+                None
+            }
+        });
+        if let (true, Some(elements)) = (subscript.is_none() || slice.is_some(), scope.elementwise)
+        {
+            return self.one_of_whole(list, slice, elements, scope, reference.span);
+        }
+        let Some(subscript) = subscript.filter(|_| slice.is_none()) else {
+            let words: Vec<&str> = reference
+                .parts
+                .iter()
+                .map(|part| part.name.text.as_str())
+                .collect();
+            let (array, rest) = words.split_at(at + 1);
+            let array = array.join(".");
+            let one: String = rest.iter().map(|word| format!(".{word}")).collect();
             self.report(
                 Diagnostic::error(
                     Code::BadShape,
-                    format!(
-                        "`{}` is an array of {} components",
-                        reference.dotted(),
-                        list.len()
-                    ),
+                    format!("`{array}` is an array of {} components", list.len()),
                 )
                 .label(reference.span, "which one?")
-                .help(format!("name one: `{}[1]`", reference.dotted())),
+                .help(format!("name one: `{array}[1]{one}`")),
             );
             return None;
         };
@@ -202,6 +220,50 @@ impl<'a> Model<'a, '_> {
                     format!("there are components 1 to {}", list.len()),
                 )
                 .label(subscript.span, format!("component {number}")),
+            );
+        }
+        found
+    }
+
+    /// The component of an array of them, or of a slice of it, that is meant where whole arrays stand for one element.
+    fn one_of_whole(
+        &mut self,
+        list: &[InstanceId],
+        slice: Option<(&'a Expr, &'a Expr)>,
+        elements: Elementwise,
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Option<InstanceId> {
+        let Elementwise::One(position) = elements else {
+            self.needs_unrolling = true;
+            return None;
+        };
+        let (start, count) = match slice {
+            None => (0, list.len()),
+            Some((slice, first)) => {
+                let count = self.slice_length(slice, scope)?;
+                let first = self.structural_integer_in(&without_elements(scope), first)?;
+                (usize::try_from(first - 1).unwrap_or(usize::MAX), count)
+            }
+        };
+        if count != position.of {
+            self.report(
+                Diagnostic::error(
+                    Code::BadShape,
+                    format!("{count} components stand beside arrays of {}", position.of),
+                )
+                .label(span, format!("{count} components")),
+            );
+            return None;
+        }
+        let found = list.get(start.saturating_add(position.at)).copied();
+        if found.is_none() {
+            self.report(
+                Diagnostic::error(
+                    Code::BadShape,
+                    format!("there are components 1 to {}", list.len()),
+                )
+                .label(span, "reaches beyond them"),
             );
         }
         found

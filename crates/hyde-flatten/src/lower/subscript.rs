@@ -1,6 +1,6 @@
 //! Subscripts: elements by number or affine in the counter of a `for` equation, and whole arrays.
 
-use crate::instance::{Counter, Scope};
+use crate::instance::{Counter, Elementwise, Scope};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::Index;
@@ -57,7 +57,9 @@ impl<'a> Model<'a, '_> {
             | ExprKind::Unary(..)
             | ExprKind::Binary(..)
             | ExprKind::If(..)
-            | ExprKind::Array(..) => {
+            | ExprKind::Array(..)
+            | ExprKind::Comprehension(_)
+            | ExprKind::Slice(..) => {
                 self.needs_unrolling = true;
                 None
             }
@@ -80,6 +82,11 @@ impl<'a> Model<'a, '_> {
             self.not_an_array(reference);
             return None;
         };
+        if let ExprKind::Slice(from, _) = &subscript.kind {
+            return self
+                .of_slice(subscript, from, (len, first), scope)
+                .map(Some);
+        }
         if len == 0 && self.diagnostics.has_errors() {
             return None; // Its length is the mistake.
         }
@@ -104,7 +111,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The element a whole array means in an array equation; an error where one value is expected.
-    pub(super) fn whole(
+    pub(crate) fn whole(
         &mut self,
         index: Option<Index>,
         len: Option<usize>,
@@ -114,11 +121,11 @@ impl<'a> Model<'a, '_> {
         match (index, len, scope.elementwise) {
             (Some(index), ..) => Some(index),
             (None, None, _) => Some(Index::SCALAR),
-            (None, Some(len), Some(expected)) if len == expected => Some(Index {
-                stride: 1,
-                offset: 0,
-            }),
-            (None, Some(len), Some(expected)) => {
+            (None, Some(len), Some(elements)) if len == elements.len() => {
+                Some(element_index(elements, 0))
+            }
+            (None, Some(len), Some(elements)) => {
+                let expected = elements.len();
                 self.report(
                     Diagnostic::error(
                         Code::BadShape,
@@ -142,6 +149,55 @@ impl<'a> Model<'a, '_> {
         }
     }
 
+    /// The element that a slice `from:to` of an array of `len` elements, counted from `first`, means in an array equation.
+    fn of_slice(
+        &mut self,
+        slice: &'a Expr,
+        from: &'a Expr,
+        (len, first): (usize, i32),
+        scope: &Scope<'a>,
+    ) -> Option<Index> {
+        let start = self.structural_integer_in(&without_elements(scope), from)? - i64::from(first);
+        let count = self.slice_length(slice, scope)?;
+        let Some(elements) = scope.elementwise else {
+            self.report(
+                Diagnostic::error(
+                    Code::BadShape,
+                    "an array stands where one value is expected",
+                )
+                .label(slice.span, format!("{count} elements"))
+                .help("name an element, `x[1]`, or sum them, `sum(x[1:2])`"),
+            );
+            return None;
+        };
+        let inside = usize::try_from(start).is_ok_and(|start| start + count <= len);
+        if !inside {
+            let last = i64::from(first) + i64::try_from(len).unwrap_or(0) - 1;
+            self.report(
+                Diagnostic::error(
+                    Code::BadShape,
+                    format!("the elements are {first} to {last}"),
+                )
+                .label(slice.span, "reaches beyond them"),
+            );
+            return None;
+        }
+        if count != elements.len() {
+            self.report(
+                Diagnostic::error(
+                    Code::BadShape,
+                    format!("{count} elements stand beside arrays of {}", elements.len()),
+                )
+                .label(slice.span, format!("has {count} elements")),
+            );
+            return None;
+        }
+        Some(element_index(
+            elements,
+            i32::try_from(start).unwrap_or(i32::MAX),
+        ))
+    }
+
     pub(super) fn not_an_array(&mut self, reference: &Reference) {
         self.report(
             Diagnostic::error(
@@ -150,6 +206,27 @@ impl<'a> Model<'a, '_> {
             )
             .label(reference.span, "has no elements"),
         );
+    }
+}
+
+/// The element that is meant of an array from its element `start` on.
+fn element_index(elements: Elementwise, start: i32) -> Index {
+    match elements {
+        Elementwise::Range(_) => Index {
+            stride: 1,
+            offset: start,
+        },
+        Elementwise::One(position) => {
+            Index::fixed(start + i32::try_from(position.at).unwrap_or(i32::MAX))
+        }
+    }
+}
+
+/// The scope for what counts elements itself.
+pub(super) fn without_elements<'a>(scope: &Scope<'a>) -> Scope<'a> {
+    Scope {
+        elementwise: None,
+        ..scope.clone()
     }
 }
 

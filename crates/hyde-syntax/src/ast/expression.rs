@@ -32,6 +32,8 @@ impl Expr {
                 .chain([&**otherwise])
                 .collect(),
             ExprKind::Array(items, _) => items.iter().collect(),
+            ExprKind::Comprehension(list) => vec![&list.value, &list.first, &list.last],
+            ExprKind::Slice(first, last) => vec![&**first, &**last],
         }
     }
 
@@ -112,6 +114,25 @@ pub enum ExprKind {
     If(Vec<(Expr, Expr)>, Box<Expr>),
     /// `{1, 2, 3} [mm]`
     Array(Vec<Expr>, Option<UnitText>),
+    /// `{i^2 for i in 1:n} [mm]`
+    Comprehension(Box<Comprehension>),
+    /// `2:n`, as a subscript: these elements of an array.
+    Slice(Box<Expr>, Box<Expr>),
+}
+
+/// `{value for counter in first:last} [unit]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Comprehension {
+    /// The value of an element.
+    pub value: Expr,
+    /// What counts the elements.
+    pub counter: Name,
+    /// Its first value.
+    pub first: Expr,
+    /// Its last value.
+    pub last: Expr,
+    /// The unit of the plain numbers among the values.
+    pub unit: Option<UnitText>,
 }
 
 /// An argument of a call, named or not.

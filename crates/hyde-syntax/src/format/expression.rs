@@ -60,6 +60,15 @@ pub fn expression(expr: &Expr) -> String {
             let items: Vec<String> = items.iter().map(expression).collect();
             format!("{{{}}}{}", items.join(", "), bracketed(unit.as_ref()))
         }
+        ExprKind::Comprehension(list) => format!(
+            "{{{} for {} in {}:{}}}{}",
+            expression(&list.value),
+            list.counter.text,
+            expression(&list.first),
+            expression(&list.last),
+            bracketed(list.unit.as_ref())
+        ),
+        ExprKind::Slice(first, last) => format!("{}:{}", expression(first), expression(last)),
     }
 }
 
@@ -134,7 +143,9 @@ fn level(expr: &Expr) -> u8 {
         | ExprKind::Boolean(_)
         | ExprKind::Reference(_)
         | ExprKind::Call(..)
-        | ExprKind::Array(..) => 9,
+        | ExprKind::Array(..)
+        | ExprKind::Comprehension(_)
+        | ExprKind::Slice(..) => 9,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Expressions, by precedence climbing.
 
 use super::build::{Builder, Node, parts};
-use crate::ast::{Argument, Binary, Expr, ExprKind, Part, Range, Reference, Unary};
+use crate::ast::{Argument, Binary, Comprehension, Expr, ExprKind, Part, Range, Reference, Unary};
 use crate::grammar::Rule;
 use hyde_diag::Span;
 use pest::pratt_parser::{Assoc, Op, PrattParser};
@@ -83,7 +83,7 @@ impl Builder<'_> {
             if let Some(name) = inner.next() {
                 let name = self.name(&name);
                 let subscripts = inner
-                    .flat_map(|subscript| self.expressions(subscript))
+                    .flat_map(|subscript| self.subscripts(subscript))
                     .collect();
                 list.push(Part { name, subscripts });
             }
@@ -100,6 +100,24 @@ impl Builder<'_> {
             .into_iter()
             .map(|part| self.expression(part))
             .collect()
+    }
+
+    /// From a `subscript` node: expressions and slices.
+    fn subscripts(&mut self, node: Node<'_>) -> Vec<Expr> {
+        let mut list = Vec::new();
+        for part in parts(node) {
+            let span = self.span(&part);
+            if part.as_rule() == Rule::expression {
+                list.push(self.expression(part));
+                continue;
+            }
+            let mut bounds = self.expressions(part).into_iter();
+            if let (Some(first), Some(last)) = (bounds.next(), bounds.next()) {
+                let kind = ExprKind::Slice(Box::new(first), Box::new(last));
+                list.push(Expr { kind, span });
+            }
+        }
+        list
     }
 
     /// From an `arguments` node.
@@ -133,6 +151,23 @@ impl Builder<'_> {
         Some(Range { from, to })
     }
 
+    fn comprehension(
+        &mut self,
+        node: Node<'_>,
+        unit: Option<crate::ast::UnitText>,
+    ) -> Option<Comprehension> {
+        let counter = parts(node.clone()).find(|part| part.as_rule() == Rule::ident)?;
+        let counter = self.name(&counter);
+        let mut list = self.expressions(node).into_iter();
+        Some(Comprehension {
+            value: list.next()?,
+            counter,
+            first: list.next()?,
+            last: list.next()?,
+            unit,
+        })
+    }
+
     fn primary(&mut self, node: Node<'_>) -> Expr {
         let span = self.span(&node);
         let kind = match node.as_rule() {
@@ -163,7 +198,12 @@ impl Builder<'_> {
             Rule::array => {
                 let unit = parts(node.clone()).find(|part| part.as_rule() == Rule::unit);
                 let unit = unit.map(|unit| self.unit(unit));
-                ExprKind::Array(self.expressions(node), unit)
+                let counted =
+                    parts(node.clone()).find(|part| part.as_rule() == Rule::comprehension);
+                match counted.and_then(|list| self.comprehension(list, unit.clone())) {
+                    Some(list) => ExprKind::Comprehension(Box::new(list)),
+                    None => ExprKind::Array(self.expressions(node), unit),
+                }
             }
             Rule::call => {
                 let mut inner = parts(node);
@@ -204,7 +244,9 @@ fn unit_of(expr: &Expr) -> Option<crate::ast::UnitText> {
         | ExprKind::Call(..)
         | ExprKind::Binary(..)
         | ExprKind::If(..)
-        | ExprKind::Array(..) => None,
+        | ExprKind::Array(..)
+        | ExprKind::Comprehension(_)
+        | ExprKind::Slice(..) => None,
     }
 }
 
@@ -218,7 +260,9 @@ fn missing_unit(expr: &mut Expr) -> Option<&mut Option<crate::ast::UnitText>> {
         | ExprKind::Call(..)
         | ExprKind::Binary(..)
         | ExprKind::If(..)
-        | ExprKind::Array(..) => None,
+        | ExprKind::Array(..)
+        | ExprKind::Comprehension(_)
+        | ExprKind::Slice(..) => None,
     }
 }
 
