@@ -17,6 +17,7 @@ fn every_model_compiles() {
     let scratch = tempfile::tempdir().unwrap();
     let mut found = 0;
     for (page, text) in pages() {
+        write_data(&text, scratch.path());
         for block in blocks(&text, "```hyde\n") {
             found += 1;
             let output = check(&block.code, scratch.path());
@@ -58,8 +59,7 @@ fn what_is_wrong_is_told_as_shown() {
 fn commands_print_what_is_shown() {
     let scratch = tempfile::tempdir().unwrap();
     let here = scratch.path();
-    std::os::unix::fs::symlink(root().join("examples"), here.join("examples")).unwrap();
-    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_hyde-tested"), here.join("hyde")).unwrap();
+    link_command(here);
     let mut pages = pages();
     // What the first steps leave, later pages plot.
     pages.sort_by_key(|(path, _)| {
@@ -77,6 +77,19 @@ fn commands_print_what_is_shown() {
     let mut found = 0;
     let mut wrong = Vec::new();
     for (page, text) in &pages {
+        // A page with a manifest is a package of its own.
+        let own = tempfile::tempdir().unwrap();
+        let here = match blocks(text, "```toml\n").first() {
+            Some(manifest) if page.ends_with("your-library.md") => {
+                link_command(own.path());
+                std::fs::write(own.path().join("hyde.toml"), &manifest.code).unwrap();
+                for block in blocks(text, "```hyde\n") {
+                    keep(&block.code, own.path());
+                }
+                own.path()
+            }
+            Some(_) | None => here,
+        };
         for block in blocks(text, "```console\n") {
             let mut status = 0;
             for command in block.code.split("$ ").skip(1) {
@@ -167,6 +180,15 @@ fn blocks(text: &str, fence: &str) -> Vec<Block> {
         .collect()
 }
 
+/// Writes the data of a page, blocks marked with the name of their file, where its models look for them.
+fn write_data(text: &str, folder: &Path) {
+    for block in text.split("\n```csv ").skip(1) {
+        let (name, rest) = block.split_once('\n').unwrap();
+        let content = rest.split("```").next().unwrap();
+        std::fs::write(folder.join(name), content).unwrap();
+    }
+}
+
 /// The targets of a page's links within the project, without the place on their page; brackets in code are no links.
 fn links(text: &str) -> Vec<String> {
     let prose = text.split("\n```").step_by(2);
@@ -189,6 +211,12 @@ fn printed(line: &str, folder: &Path, status: &mut i32) -> String {
     let output = shell.unwrap();
     *status = output.status.code().unwrap_or(-1);
     String::from_utf8(output.stdout).unwrap()
+}
+
+/// Puts the command and the examples into a folder.
+fn link_command(folder: &Path) {
+    std::os::unix::fs::symlink(root().join("examples"), folder.join("examples")).unwrap();
+    std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_hyde-tested"), folder.join("hyde")).unwrap();
 }
 
 /// Without what differs from run to run or is the solver's business: times, its counts, and what rounding leaves.

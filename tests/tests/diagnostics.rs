@@ -56,6 +56,7 @@ fn every_code_has_a_fixture() {
 #[test]
 fn every_page_explains_its_code_with_examples_that_are_true() {
     let scratch = tempfile::tempdir().unwrap();
+    copy(&folder().join("packages"), &scratch.path().join("packages"));
     for code in Code::ALL {
         let page = page(*code);
         let title = format!("# {code}: {}", code.title());
@@ -84,6 +85,16 @@ fn every_page_explains_its_code_with_examples_that_are_true() {
     }
 }
 
+#[test]
+fn a_failed_assert_tells_the_value_that_broke_it() {
+    let path = folder().join("E0704_over_the_end.hyde");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let output = hyde(&text, &path, &folder(), false);
+    let said = String::from_utf8_lossy(&output.stderr);
+    // At the crossing, not at the last row before it: 0.5 m/s for 1.2 s.
+    assert!(said.contains("`s` is 0.6 m there"), "{said}");
+}
+
 /// A run that fails near a singularity ends where rounding lets it: what it says of that place is left out.
 fn without_rounding(shown: &str) -> String {
     let line = |line: &str| match (line.find("` is "), line.ends_with(" there")) {
@@ -108,6 +119,20 @@ fn fixtures() -> Vec<PathBuf> {
         .collect();
     found.sort();
     found
+}
+
+/// Copies the packages of the fixtures beside an example of a page.
+fn copy(from: &Path, to: &Path) {
+    std::fs::create_dir_all(to).unwrap();
+    for entry in std::fs::read_dir(from).unwrap() {
+        let path = entry.unwrap().path();
+        let place = to.join(path.file_name().unwrap());
+        if path.is_dir() {
+            copy(&path, &place);
+        } else {
+            std::fs::copy(&path, &place).unwrap();
+        }
+    }
 }
 
 /// The page of a code, as the book has it.

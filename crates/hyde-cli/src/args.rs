@@ -16,7 +16,7 @@ const AFTER: &str = "Exit status: 0 done; 1 the model or its data are at fault; 
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Check a file: every experiment in it, or its last model, without running it
+    /// Check a file, or the files of a package: every experiment, or the last model, without running it
     Check(CheckArgs),
     /// Run an experiment, compare it with its records, and test its expectations
     Run(RunArgs),
@@ -32,6 +32,10 @@ pub(crate) enum Command {
     Params(ParamsArgs),
     /// List the effects of the library and of the file, and where on the model each fits
     Effects(EffectsArgs),
+    /// Run every experiment of a file or a package, and test what it expects and that its effects vanish
+    Test(TestArgs),
+    /// Write the pages of a package, of a file, or of the library
+    Doc(DocArgs),
     /// Explain a diagnostic code
     Explain(ExplainArgs),
 }
@@ -64,6 +68,23 @@ pub(crate) struct ModelArgs {
     /// Every package of the library is known, named or not.
     #[arg(skip)]
     pub(crate) whole_library: bool,
+}
+
+impl ModelArgs {
+    /// A file with nothing set from outside.
+    pub(crate) fn of_file(file: &std::path::Path) -> Self {
+        Self {
+            file: file.to_path_buf(),
+            experiment: None,
+            model: None,
+            settings: Vec::new(),
+            records: Vec::new(),
+            data: None,
+            json: false,
+            quiet: false,
+            whole_library: false,
+        }
+    }
 }
 
 #[derive(Debug, Args)]
@@ -197,6 +218,25 @@ pub(crate) struct ParamsArgs {
 pub(crate) struct EffectsArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct TestArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DocArgs {
+    /// A file, or a folder with a manifest
+    #[arg(required_unless_present = "library")]
+    pub(crate) path: Option<PathBuf>,
+    /// The packages of the library instead
+    #[arg(long, conflicts_with = "path")]
+    pub(crate) library: bool,
+    /// Leave the pages in this folder
+    #[arg(long, value_name = "DIR", default_value = "doc")]
+    pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Args)]

@@ -2,6 +2,7 @@
 
 pub(crate) mod bode;
 pub(crate) mod check;
+pub(crate) mod doc;
 pub(crate) mod effects;
 pub(crate) mod emit;
 pub(crate) mod explain;
@@ -9,3 +10,4 @@ pub(crate) mod modes;
 pub(crate) mod params;
 pub(crate) mod plot;
 pub(crate) mod run;
+pub(crate) mod test;

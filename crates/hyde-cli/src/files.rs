@@ -1,7 +1,7 @@
 //! Files: read whole, written whole or not at all.
 
 use std::io::{ErrorKind, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Reads a file; the error says which and why.
 #[allow(clippy::disallowed_methods, reason = "the command line opens files")]
@@ -13,6 +13,46 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
 pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     let bytes = read(path)?;
     String::from_utf8(bytes).map_err(|_| format!("`{}` is no UTF-8 text", path.display()))
+}
+
+/// Whether there is a file.
+pub(crate) fn is_file(path: &Path) -> bool {
+    path.is_file()
+}
+
+/// Whether there is a folder.
+pub(crate) fn is_folder(path: &Path) -> bool {
+    path.is_dir()
+}
+
+/// The path without links and dots, if there is something.
+#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
+pub(crate) fn real(path: &Path) -> Option<PathBuf> {
+    std::fs::canonicalize(path).ok()
+}
+
+/// The files with an ending below a folder, in the order of their names. Hidden folders, links to folders, and folders
+/// that have a file called `border` are not entered.
+#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
+pub(crate) fn below(folder: &Path, ending: &str, border: &str) -> Vec<PathBuf> {
+    let here = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    let mut found = Vec::new();
+    for entry in std::fs::read_dir(here).into_iter().flatten().flatten() {
+        let path = folder.join(entry.file_name());
+        let hidden = entry.file_name().to_string_lossy().starts_with('.');
+        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        if is_folder && !hidden && !path.join(border).is_file() {
+            found.extend(below(&path, ending, border));
+        } else if !is_folder && path.extension().is_some_and(|end| end == ending) {
+            found.push(path);
+        }
+    }
+    found.sort();
+    found
 }
 
 /// Makes a folder with all above it.

@@ -9,6 +9,9 @@ mod exit;
 mod figures;
 mod files;
 mod ledger;
+mod limits;
+mod package;
+mod pages;
 mod project;
 mod records;
 pub mod render;
@@ -16,6 +19,7 @@ mod report;
 mod run_failure;
 mod settings;
 mod summary;
+mod tables;
 
 use args::{Arguments, Command};
 use clap::Parser as _;
@@ -47,6 +51,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Modes(args) => commands::modes::modes(args),
         Command::Params(args) => commands::params::params(args),
         Command::Effects(args) => commands::effects::effects(args),
+        Command::Test(args) => commands::test::test(args),
+        Command::Doc(args) => commands::doc::doc(args),
         Command::Explain(args) => commands::explain::explain(args),
     };
     code.into()

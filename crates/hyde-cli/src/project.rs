@@ -3,10 +3,12 @@
 use crate::args::ModelArgs;
 use crate::exit::Exit;
 use crate::files;
+use crate::package::{MANIFEST, Roots};
 use crate::records::{self, Record};
 use crate::render;
 use crate::run_failure;
 use crate::settings::{self, Setting};
+use crate::tables::{self, Table};
 use hyde_compiler::{Backend, Compiled, File, Request};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::Experiment;
@@ -23,6 +25,7 @@ pub(crate) struct Project {
     pub(crate) model: String,
     pub(crate) experiment: Option<String>,
     pub(crate) records: BTreeMap<String, Record>,
+    pub(crate) tables: Vec<Table>,
     pub(crate) settings: Vec<Setting>,
     pub(crate) diagnostics: Diagnostics,
 }
@@ -38,6 +41,13 @@ pub(crate) enum Records {
 
 /// Loads what the arguments name.
 pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
+    if files::is_folder(&args.file) {
+        let reason = format!(
+            "`{}` is a folder: name a file in it; `hyde check` and `hyde test` take folders with a `{MANIFEST}`",
+            args.file.display()
+        );
+        return Err(complain(args, Exit::CommandLine, &reason));
+    }
     let text = files::read_text(&args.file)
         .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
     let settings: Result<Vec<Setting>, String> = args
@@ -48,13 +58,14 @@ pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
     let settings = settings.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
     let mut sources = Sources::new();
     let mut diagnostics = Diagnostics::new();
-    let file = loaded(args, &mut sources, &text, &mut diagnostics);
+    let (file, tables) = loaded(args, &mut sources, &text, &mut diagnostics);
     let mut project = Project {
         sources,
         hash: format!("{:x}", Sha256::digest(text.as_bytes())),
         model: String::new(),
         experiment: None,
         records: BTreeMap::new(),
+        tables,
         settings,
         diagnostics,
         file,
@@ -87,25 +98,63 @@ pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
     Ok(project)
 }
 
-/// Parses the model's file with the packages it names: of the library, or files beside it, `a/b.hyde` for `a.b`.
+/// The files that a command is about: the one named, or those of the package in the folder named.
+pub(crate) fn files_of(args: &ModelArgs) -> Result<Vec<ModelArgs>, Exit> {
+    if !files::is_folder(&args.file) {
+        return Ok(vec![args.clone()]);
+    }
+    if !files::is_file(&args.file.join(MANIFEST)) {
+        let reason = format!("the folder `{}` has no `{MANIFEST}`", args.file.display());
+        return Err(complain(args, Exit::CommandLine, &reason));
+    }
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let roots = Roots::at(&args.file, &mut sources, &mut diagnostics);
+    if diagnostics.has_errors() {
+        return Err(report_errors(args, &sources, &diagnostics));
+    }
+    let packages = roots.own_packages().into_iter();
+    Ok(packages
+        .map(|(_, file)| ModelArgs {
+            file,
+            ..args.clone()
+        })
+        .collect())
+}
+
+/// Parses the model's file with the packages and the tables it names: see [`crate::package`].
 pub(crate) fn loaded(
     args: &ModelArgs,
     sources: &mut Sources,
     text: &str,
     diagnostics: &mut Diagnostics,
-) -> File {
-    let beside = args.file.parent().unwrap_or(std::path::Path::new(""));
-    let find = |package: &str| {
-        let place = beside.join(format!("{}.hyde", package.replace('.', "/")));
-        let text = files::read_text(&place).ok()?;
-        Some((place.to_string_lossy().into_owned(), text))
+) -> (File, Vec<Table>) {
+    let roots = Roots::of(&args.file, sources, diagnostics);
+    let own = args.file.to_string_lossy();
+    let searched = match roots.roots.first().and_then(|root| root.manifest.as_ref()) {
+        Some(_) => "in this package or its dependencies",
+        None => "beside the file",
+    };
+    let all = || {
+        let packages = roots.own_packages().into_iter();
+        let others = packages.filter(|(_, place)| *place != args.file);
+        others
+            .filter_map(|(name, place)| Some((name, files::read_text(&place).ok()?)))
+            .collect()
     };
     let packages = hyde_compiler::Packages {
-        find: &find,
+        find: &|importer, package| roots.find(importer, package),
+        all: &all,
+        searched,
         whole_library: args.whole_library,
     };
-    let name = args.file.to_string_lossy();
-    hyde_compiler::load(sources, &name, text, &packages, diagnostics)
+    let mut file = hyde_compiler::load(sources, &own, text, &packages, diagnostics);
+    if let Some((id, tree)) = file.files.first()
+        && let Some(name) = roots.name_of(&args.file)
+    {
+        hyde_compiler::check_name(sources, *id, tree, &name, diagnostics);
+    }
+    let tables = tables::read(&mut file, &roots, sources, diagnostics);
+    (file, tables)
 }
 
 /// What a program is for.
@@ -198,31 +247,36 @@ impl Project {
 
     /// Prints the diagnostics of a model that is at fault.
     pub(crate) fn finish_with_errors(&self, args: &ModelArgs) -> Exit {
-        if args.json {
-            let diagnostics = render::to_json(&self.diagnostics, &self.sources);
-            print_output(&format!(
-                "{:#}",
-                json!({ "ok": false, "diagnostics": diagnostics })
-            ));
-        } else {
-            let text = render::render(
-                &self.diagnostics,
-                &self.sources,
-                std::io::stderr().is_terminal(),
-            );
-            let count = self.diagnostics.error_count();
-            let errors = if count == 1 {
-                "1 error".to_owned()
-            } else {
-                format!("{count} errors")
-            };
-            print_error(&format!(
-                "{text}{}: {errors}; `hyde explain CODE` tells more",
-                args.file.display()
-            ));
-        }
-        Exit::Model
+        report_errors(args, &self.sources, &self.diagnostics)
     }
+}
+
+/// Prints the diagnostics of what is at fault.
+pub(crate) fn report_errors(
+    args: &ModelArgs,
+    sources: &Sources,
+    diagnostics: &Diagnostics,
+) -> Exit {
+    if args.json {
+        let list = render::to_json(diagnostics, sources);
+        print_output(&format!(
+            "{:#}",
+            json!({ "ok": false, "diagnostics": list })
+        ));
+    } else {
+        let text = render::render(diagnostics, sources, std::io::stderr().is_terminal());
+        let count = diagnostics.error_count();
+        let errors = if count == 1 {
+            "1 error".to_owned()
+        } else {
+            format!("{count} errors")
+        };
+        print_error(&format!(
+            "{text}{}: {errors}; `hyde explain CODE` tells more",
+            args.file.display()
+        ));
+    }
+    Exit::Model
 }
 
 /// The experiment meant: the one named, or the file's only one.

@@ -50,7 +50,7 @@ pub(crate) fn diagnostic(
             } else {
                 Exit::Solver
             };
-            (failed(failure), exit)
+            (failed(failure, program), exit)
         }
     }
 }
@@ -80,7 +80,7 @@ fn no_stop(experiment: Option<&Experiment>) -> (Diagnostic, Exit) {
     }
 }
 
-fn failed(failure: &Failure) -> Diagnostic {
+fn failed(failure: &Failure, program: &Program) -> Diagnostic {
     let at = format!("at {} s", hyde_units::significant(failure.t, 7));
     let (code, message, help) = match &failure.kind {
         FailureKind::Inconsistent { singular, at_start } => {
@@ -176,10 +176,12 @@ fn failed(failure: &Failure) -> Diagnostic {
         diagnostic = diagnostic.label(origin.span, text);
     }
     for (name, value) in &failure.unknowns {
-        diagnostic = diagnostic.note(format!(
-            "`{name}` is {} there",
-            hyde_units::significant(*value, 6)
-        ));
+        let output = program.output(name).map(|number| &program.outputs[number]);
+        let value = match output {
+            Some(output) => hyde_units::engineering(*value, output.dimension),
+            None => hyde_units::significant(*value, 6),
+        };
+        diagnostic = diagnostic.note(format!("`{name}` is {} there", value.trim_end()));
     }
     if let Some(event) = failure.results.events.last() {
         diagnostic = diagnostic.note(format!(

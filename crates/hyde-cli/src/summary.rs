@@ -113,6 +113,11 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
             (name.clone(), json!({ "path": record.path.to_string_lossy(), "sha256": record.hash, "rows": record.table.rows() }))
         })
         .collect();
+    let tables: Vec<Value> = project
+        .tables
+        .iter()
+        .map(|table| json!({ "path": table.path.to_string_lossy(), "sha256": table.hash, "rows": table.rows }))
+        .collect();
     let channels: Vec<Value> = run
         .channels
         .iter()
@@ -158,6 +163,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         "experiment": project.experiment,
         "source_sha256": project.hash,
         "records": records,
+        "tables": tables,
         "stop_s": run.stop_s,
         "rtol": run.tolerances.0,
         "atol": run.tolerances.1,

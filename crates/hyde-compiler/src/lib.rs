@@ -5,11 +5,12 @@
 mod emit;
 mod fits;
 mod load;
+mod named;
 mod pipeline;
 
 pub use emit::{Stage, emit};
 pub use fits::{Fit, fits};
-pub use hyde_flatten::Header;
+pub use hyde_flatten::{Header, TableFile};
 pub use hyde_jit::Backend;
-pub use load::{File, Packages, load};
+pub use load::{File, Find, Packages, Place, check_name, load};
 pub use pipeline::{Compiled, Request, analyze, compile};

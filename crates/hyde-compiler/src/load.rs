@@ -1,18 +1,36 @@
-//! The user's file and the library packages it names.
+//! The user's file and the packages it names.
 
-use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources};
-use hyde_syntax::ast::{self, ClassBody, Element, Item, Reference};
+use crate::named::{packages_named, tables_named, words_named};
+use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+use hyde_flatten::TableFile;
+use hyde_syntax::ast::{self, Item};
+use std::collections::BTreeMap;
 
 /// Parsed files, the user's first, then every package that one of them names.
 pub struct File {
     /// Texts and trees.
     pub files: Vec<(FileId, ast::File)>,
+    /// Types and models that none of them declares, with the packages that do.
+    pub elsewhere: BTreeMap<String, Vec<String>>,
+    /// The files of tables by the source file that names them and the name there: put in by who reads files.
+    pub tables: BTreeMap<(FileId, String), TableFile>,
 }
+
+/// The place or the name of a package, and its text.
+pub type Place = (String, String);
+
+/// Finds a package for the file at a place, by its name.
+pub type Find<'a> = dyn Fn(&str, &str) -> Result<Option<Place>, Diagnostic> + 'a;
 
 /// Where packages come from besides the library.
 pub struct Packages<'a> {
-    /// The place and text of a package by its dotted name, if there is one.
-    pub find: &'a dyn Fn(&str) -> Option<(String, String)>,
+    /// The place and text of a package, if there is one: `find(place, name)` is asked for by the file at that place.
+    /// What keeps it from being read is an error without a place yet.
+    pub find: &'a Find<'a>,
+    /// The name and text of every package that could be found: looked at when a name is known to none that is loaded.
+    pub all: &'a dyn Fn() -> Vec<Place>,
+    /// Where else packages are looked for, as in "neither in the library nor …".
+    pub searched: &'a str,
     /// Every package of the library, whether named or not.
     pub whole_library: bool,
 }
@@ -20,12 +38,14 @@ pub struct Packages<'a> {
 impl Packages<'_> {
     /// The library alone.
     pub const LIBRARY: Self = Self {
-        find: &|_| None,
+        find: &|_, _| Ok(None),
+        all: &Vec::new,
+        searched: "beside the file",
         whole_library: false,
     };
 }
 
-/// Parses a file and the packages it names: `import a.b.*;` names the package `a.b`.
+/// Parses a file and the packages it names: `import a.b.*;` names the package `a.b`. Packages may import each other.
 pub fn load(
     sources: &mut Sources,
     name: &str,
@@ -36,35 +56,121 @@ pub fn load(
     let id = sources.add(name, text);
     let tree = hyde_syntax::parse(sources, id, diagnostics);
     let mut files = vec![(id, tree)];
-    let mut known: Vec<String> = Vec::new();
+    let own = files[0].1.package.as_ref();
+    let mut known: Vec<String> = own.map(|(path, _)| path.dotted()).into_iter().collect();
     let mut at = 0;
     while at < files.len() {
-        let mut wanted = packages_named(&files[at].1);
+        let (importer, mut wanted) = (files[at].0, packages_named(&files[at].1));
         if at == 0 && packages.whole_library {
-            wanted.extend(hyde_library::PACKAGES.iter().map(|p| p.name.to_owned()));
+            let whole = hyde_library::PACKAGES.iter();
+            wanted.extend(whole.map(|p| (p.name.to_owned(), Span::new(importer, 0, 0))));
         }
-        for name in wanted {
+        for (name, span) in wanted {
             if known.contains(&name) {
                 continue;
             }
-            let found = match hyde_library::package(&name) {
-                Some(package) => Some((
-                    format!("{}.hyde", name.replace('.', "/")),
-                    package.text.to_owned(),
-                )),
-                None => (packages.find)(&name),
+            known.push(name.clone());
+            let Some(found) = find(sources, (importer, &name, span), packages, diagnostics) else {
+                continue;
             };
-            known.push(name);
-            if let Some((place, text)) = found {
-                let id = sources.add(place, text);
-                let tree = hyde_syntax::parse(sources, id, diagnostics);
-                files.push((id, tree));
+            let id = sources.add(found.place, found.text);
+            let tree = hyde_syntax::parse(sources, id, diagnostics);
+            if !found.of_library {
+                check_name(sources, id, &tree, &name, diagnostics);
             }
+            files.push((id, tree));
         }
         at += 1;
     }
-    unknown_imports(&files, diagnostics);
-    File { files }
+    let mut file = File {
+        files,
+        elsewhere: BTreeMap::new(),
+        tables: BTreeMap::new(),
+    };
+    file.unknown_imports(packages, diagnostics);
+    file.look_elsewhere(packages);
+    file
+}
+
+/// A package that was found.
+struct Found {
+    place: String,
+    text: String,
+    of_library: bool,
+}
+
+/// The package that a file names; a name that the library has too is reported.
+fn find(
+    sources: &Sources,
+    (importer, name, span): (FileId, &str, Span),
+    packages: &Packages<'_>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Found> {
+    let of_library = hyde_library::package(name).map(|package| Found {
+        place: format!("{}.hyde", name.replace('.', "/")),
+        text: package.text.to_owned(),
+        of_library: true,
+    });
+    // Packages of the library import each other and nothing else.
+    let by_library = hyde_library::PACKAGES
+        .iter()
+        .any(|package| package.text == sources.get(importer).text);
+    if by_library {
+        return of_library;
+    }
+    match (
+        (packages.find)(&sources.get(importer).name, name),
+        of_library,
+    ) {
+        (Err(diagnostic), _) => {
+            diagnostics.push(diagnostic.label(span, "named here"));
+            None
+        }
+        (Ok(Some((place, _))), Some(_)) => {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::Duplicate,
+                    format!("the package `{name}` is in the library and in `{place}`"),
+                )
+                .label(span, "which of them?")
+                .help("call yours otherwise, and its file as well"),
+            );
+            None
+        }
+        (Ok(Some((place, text))), None) => Some(Found {
+            place,
+            text,
+            of_library: false,
+        }),
+        (Ok(None), of_library) => of_library,
+    }
+}
+
+/// Reports a package that is not called `name`, as the place of its file says.
+pub fn check_name(
+    sources: &Sources,
+    id: FileId,
+    tree: &ast::File,
+    name: &str,
+    diagnostics: &mut Diagnostics,
+) {
+    let place = &sources.get(id).name;
+    let diagnostic = match &tree.package {
+        Some((path, _)) if path.dotted() == name => return,
+        Some((path, _)) => Diagnostic::error(
+            Code::PackagePath,
+            format!("the package in `{place}` is called `{}`", path.dotted()),
+        )
+        .label(path.span, format!("its place says `{name}`")),
+        None => Diagnostic::error(
+            Code::PackagePath,
+            format!("`{place}` does not say which package it is"),
+        )
+        .label(Span::new(id, 0, 0), format!("its place says `{name}`")),
+    };
+    diagnostics.push(diagnostic.help(format!(
+        "write `package {name};`, or move the file: the package `a.b` is in `a/b.hyde`"
+    )));
 }
 
 impl File {
@@ -86,107 +192,104 @@ impl File {
         })
     }
 
+    /// The files of tables that are named, by source file and with where that is.
+    #[must_use]
+    pub fn tables_named(&self) -> Vec<(FileId, String, Span)> {
+        let of_file = |(id, tree): &(FileId, ast::File)| {
+            let id = *id;
+            let named = tables_named(tree).into_iter();
+            named.map(move |(path, span)| (id, path, span))
+        };
+        self.files.iter().flat_map(of_file).collect()
+    }
+
     fn items(&self) -> impl Iterator<Item = &Item> {
         self.files
             .first()
             .into_iter()
             .flat_map(|(_, file)| &file.items)
     }
-}
 
-/// The packages of imports and of dotted types.
-fn packages_named(file: &ast::File) -> Vec<String> {
-    let mut found: Vec<String> = Vec::new();
-    let mut named = |package: String| {
-        if !package.is_empty() && !found.contains(&package) {
-            found.push(package);
-        }
-    };
-    for import in &file.imports {
-        named(if import.everything {
-            import.path.dotted()
-        } else {
-            package_of(&import.path)
-        });
+    /// Whether one of the files is the package of that name.
+    fn has(&self, package: &str) -> bool {
+        let mut names = self
+            .files
+            .iter()
+            .filter_map(|(_, file)| file.package.as_ref());
+        names.any(|(path, _)| path.dotted() == package)
     }
-    let mut add = |reference: &Reference| named(package_of(reference));
-    for item in &file.items {
-        match item {
-            Item::Class(class) => match &class.body {
-                ClassBody::Short { base, effects, .. } => {
-                    add(base);
-                    effects.iter().for_each(|used| add(&used.effect));
+
+    fn unknown_imports(&self, packages: &Packages<'_>, diagnostics: &mut Diagnostics) {
+        if diagnostics.has_errors() {
+            return; // What could not be read is reported.
+        }
+        for (_, file) in &self.files {
+            for (package, span) in packages_named(file) {
+                let imported = file.imports.iter().any(|import| import.path.span == span);
+                if !imported || self.has(&package) {
+                    continue;
                 }
-                ClassBody::Long { elements, .. } => types_named(elements, &mut add),
-            },
-            Item::Experiment(experiment) => add(&experiment.model),
-            Item::Type(item) => add(&item.base),
-            Item::Study(_) => {}
-        }
-    }
-    found
-}
-
-/// What stands before the last dot.
-fn package_of(reference: &Reference) -> String {
-    let dotted = reference.dotted();
-    dotted
-        .rsplit_once('.')
-        .map_or_else(String::new, |(package, _)| package.to_owned())
-}
-
-fn types_named(elements: &[Element], add: &mut impl FnMut(&Reference)) {
-    for element in elements {
-        match element {
-            Element::Declaration(declaration) => add(&declaration.type_name),
-            Element::Extends(base, _) => add(base),
-            Element::Clocked(clocked) => types_named(&clocked.elements, add),
-            Element::Replace(_, by, _) => add(by),
-            Element::Measure(measure) | Element::Account(_, measure) => add(&measure.type_name),
-            Element::Domain(_)
-            | Element::Discretize(_)
-            | Element::Modes(_)
-            | Element::Equation(_)
-            | Element::InitialEquation(_)
-            | Element::Wrap(..)
-            | Element::Add(_)
-            | Element::Signature(_)
-            | Element::Confounds(_) => {}
-        }
-    }
-}
-
-fn unknown_imports(files: &[(FileId, ast::File)], diagnostics: &mut Diagnostics) {
-    let known: Vec<String> = files
-        .iter()
-        .filter_map(|(_, file)| file.package.as_ref().map(|(path, _)| path.dotted()))
-        .collect();
-    for (_, file) in files {
-        for import in &file.imports {
-            let path = import.path.dotted();
-            let package = if import.everything {
-                path.as_str()
-            } else {
-                path.rsplit_once('.').map_or("", |(p, _)| p)
-            };
-            if known.iter().any(|name| name == package) {
-                continue;
-            }
-            let names: Vec<String> = hyde_library::PACKAGES
-                .iter()
-                .map(|package| format!("`{}`", package.name))
-                .collect();
-            diagnostics.push(
-                Diagnostic::error(
+                let library = hyde_library::PACKAGES.iter();
+                let library: Vec<String> = library.map(|p| format!("`{}`", p.name)).collect();
+                let own: Vec<String> = (packages.all)()
+                    .iter()
+                    .map(|(name, _)| format!("`{name}`"))
+                    .collect();
+                let diagnostic = Diagnostic::error(
                     Code::UnknownType,
                     format!("no package is called `{package}`"),
                 )
                 .label(
-                    import.path.span,
-                    "neither in the library nor beside the file",
-                )
-                .help(format!("the library has {}", names.join(", "))),
-            );
+                    span,
+                    format!("neither in the library nor {}", packages.searched),
+                );
+                let help = format!("the library has {}", library.join(", "));
+                diagnostics.push(if own.is_empty() {
+                    diagnostic.help(help)
+                } else {
+                    diagnostic.help(format!("{help}; here are {}", own.join(", ")))
+                });
+            }
         }
     }
+
+    /// Finds the packages that have what the files name and none of them declares.
+    fn look_elsewhere(&mut self, packages: &Packages<'_>) {
+        let declared = |word: &str| {
+            ["Real", "Integer", "Boolean"].contains(&word)
+                || self.files.iter().any(|(_, file)| declares(file, word))
+        };
+        let mut missing: Vec<String> = Vec::new();
+        for word in self.files.iter().flat_map(|(_, file)| words_named(file)) {
+            if !declared(word) && !missing.iter().any(|known| known == word) {
+                missing.push(word.to_owned());
+            }
+        }
+        if missing.is_empty() {
+            return;
+        }
+        let library = hyde_library::PACKAGES.iter();
+        let library = library.map(|package| (package.name.to_owned(), package.text.to_owned()));
+        for (name, text) in library.chain((packages.all)()) {
+            if self.has(&name) {
+                continue;
+            }
+            let mut sources = Sources::new();
+            let id = sources.add(name.as_str(), text);
+            let tree = hyde_syntax::parse(&sources, id, &mut Diagnostics::new());
+            for word in missing.iter().filter(|word| declares(&tree, word)) {
+                let packages = self.elsewhere.entry(word.clone()).or_default();
+                packages.push(name.clone());
+            }
+        }
+    }
+}
+
+/// Whether a file declares a type, model, connector, effect or function of that name.
+fn declares(file: &ast::File, word: &str) -> bool {
+    file.items.iter().any(|item| match item {
+        Item::Class(class) => class.name.text == word,
+        Item::Type(item) => item.name.text == word,
+        Item::Experiment(_) | Item::Study(_) => false,
+    })
 }

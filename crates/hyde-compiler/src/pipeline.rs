@@ -68,6 +68,8 @@ pub(crate) fn flatten(request: &Request<'_>, diagnostics: &mut Diagnostics) -> O
     let input = hyde_flatten::Input {
         sources: request.sources,
         files: &request.file.files,
+        elsewhere: &request.file.elsewhere,
+        tables: &request.file.tables,
         model: request.model,
         experiment: request.experiment,
         settings: request.settings,

@@ -49,6 +49,9 @@ codes! {
     QuantiserOnContinuous "E0211" "a quantiser stands on a continuous variable";
     ClockBorder "E0212" "a variable crosses the border of a clocked part without sample or hold";
     NotYet "E0213" "a part of the language that this version parses but does not run";
+    PackagePath "E0214" "a package is not called as its file";
+    BadManifest "E0215" "a manifest cannot be used";
+    NotDeclared "E0216" "a file is not declared, or lies outside its folder";
     UnitMismatch "E0301" "two sides have different dimensions";
     BadUnit "E0302" "a unit cannot be read";
     AngleMismatch "E0303" "two sides differ in the angle only";

@@ -89,6 +89,17 @@ impl Sources {
             .unwrap_or("")
     }
 
+    /// The lines a span lies in, whole.
+    #[must_use]
+    pub fn lines(&self, span: Span) -> &str {
+        let text = self.get(span.file).text.as_str();
+        let (start, end) = (span.start as usize, span.end as usize);
+        let first = text.get(..start).and_then(|before| before.rfind('\n'));
+        let last = text.get(end..).and_then(|after| after.find('\n'));
+        let last = last.map_or(text.len(), |at| end + at);
+        text.get(first.map_or(0, |at| at + 1)..last).unwrap_or("")
+    }
+
     /// `name:line`, as event logs and failures print a place.
     #[must_use]
     pub fn place(&self, span: Span) -> String {

@@ -44,12 +44,23 @@ pub struct Header {
     pub columns: Vec<(String, Option<NamedUnit>)>,
 }
 
+/// The columns of a table's file.
+#[derive(Clone, Debug, Default)]
+pub struct TableFile {
+    /// Name, unit and values of each column; SI, or as written where there is no unit.
+    pub columns: Vec<(String, Option<NamedUnit>, Vec<f64>)>,
+}
+
 /// What is to be flattened.
 pub struct Input<'a> {
     /// The source texts, for messages.
     pub sources: &'a Sources,
     /// Every file that may be named, the user's file first.
     pub files: &'a [(FileId, ast::File)],
+    /// Names that no file here declares, with the packages that have them.
+    pub elsewhere: &'a BTreeMap<String, Vec<String>>,
+    /// The files of tables by the source file that names them and the name there.
+    pub tables: &'a BTreeMap<(FileId, String), TableFile>,
     /// The model, in the first file.
     pub model: &'a str,
     /// The experiment, in the first file.

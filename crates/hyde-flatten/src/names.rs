@@ -3,6 +3,7 @@
 use crate::Input;
 use hyde_diag::{Code, Diagnostic, FileId, Span};
 use hyde_syntax::ast::{self, Class, Item, Reference, TypeItem};
+use std::collections::BTreeMap;
 
 /// A file by its number in the input.
 pub(crate) type FileIndex = usize;
@@ -20,11 +21,15 @@ pub(crate) enum TypeName<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct Names<'a> {
     files: &'a [(FileId, ast::File)],
+    elsewhere: &'a BTreeMap<String, Vec<String>>,
 }
 
 impl<'a> Names<'a> {
     pub(crate) fn new(input: &Input<'a>) -> Self {
-        Self { files: input.files }
+        Self {
+            files: input.files,
+            elsewhere: input.elsewhere,
+        }
     }
 
     /// The file a span lies in.
@@ -92,6 +97,27 @@ impl<'a> Names<'a> {
             .label(name.span, "which of them?")
             .help(format!("write `{first}.{text}` or `{second}.{text}`"));
         }
+        let packages = self.packages_that_have(file, &text);
+        if !packages.is_empty() {
+            let imports: Vec<String> = packages
+                .iter()
+                .map(|package| format!("`import {package}.*;`"))
+                .collect();
+            let quoted: Vec<String> = packages.iter().map(|name| format!("`{name}`")).collect();
+            let which = match quoted.as_slice() {
+                [_] => "which is not imported",
+                _ => "and none of them is imported",
+            };
+            return Diagnostic::error(
+                Code::UnknownType,
+                format!("`{text}` is in {}, {which}", quoted.join(", ")),
+            )
+            .label(name.span, "not known in this file")
+            .help(format!(
+                "write {} at the top of the file",
+                imports.join(" or ")
+            ));
+        }
         let mut known: Vec<&str> = Vec::new();
         for (index, (_, tree)) in self.files.iter().enumerate() {
             if index == file || self.imports_everything(file, index) {
@@ -109,6 +135,26 @@ impl<'a> Names<'a> {
             None => diagnostic
                 .help("declare it, or import the package it is in: `import Rotational.*;`"),
         }
+    }
+
+    /// The packages that declare a name and that a file does not import, loaded or not.
+    fn packages_that_have(self, file: FileIndex, name: &str) -> Vec<String> {
+        let mut found: Vec<String> = Vec::new();
+        for (index, (_, tree)) in self.files.iter().enumerate() {
+            if index == file || self.imports_everything(file, index) {
+                continue;
+            }
+            if let Some((package, _)) = &tree.package
+                && tree
+                    .items
+                    .iter()
+                    .any(|item| declared_name(item) == Some(name))
+            {
+                found.push(package.dotted());
+            }
+        }
+        found.extend(self.elsewhere.get(name).into_iter().flatten().cloned());
+        found
     }
 
     /// The packages imported whole that have a model of that name.

@@ -1,7 +1,8 @@
 //! Text made safe between the tags and in the attributes of SVG and HTML.
 
 /// `text` with `& < > " '` as entities; control characters, which XML does not allow, become U+FFFD.
-pub(crate) fn escape(text: &str) -> String {
+#[must_use]
+pub fn escape(text: &str) -> String {
     let mut safe = String::with_capacity(text.len());
     for letter in text.chars() {
         match letter {

@@ -39,6 +39,7 @@ mod xy_plot;
 
 pub use axis::{Axis, Scale};
 pub use bode_plot::{BodeCurve, bode_plot};
+pub use escape::escape;
 pub use event_strip::{EventRow, EventStrip, Span};
 pub use figure::{Band, Direction, Figure, Line, LineStyle, Marker, Panel, Reference};
 pub use html::to_html;

@@ -222,7 +222,7 @@ impl Instant<'_, '_> {
     }
 
     /// The reactions that fire: exits of current modes, branches that became true.
-    fn fired(&self, conditions: &[bool], at_start: bool) -> Result<Vec<usize>, Box<Failure>> {
+    fn fired(&mut self, conditions: &[bool], at_start: bool) -> Result<Vec<usize>, Box<Failure>> {
         let program = self.state.program;
         let mut fired = Vec::new();
         let mut left: Vec<usize> = Vec::new();
@@ -249,12 +249,29 @@ impl Instant<'_, '_> {
                 ReactionKind::Assert(message) => {
                     if now {
                         let failure = Failure::new(FailureKind::Assert(message.clone()), self.t);
-                        return Err(failure.at_origin(&reaction.origin));
+                        let failure = failure.at_origin(&reaction.origin);
+                        return Err(self.with_values(failure, &reaction.text));
                     }
                 }
             }
         }
         Ok(fired)
+    }
+
+    /// A failure with the values of what a condition, as printed, reads.
+    fn with_values(&mut self, mut failure: Box<Failure>, condition: &str) -> Box<Failure> {
+        let program = self.state.program;
+        let mut values = vec![0.0; program.rows(Function::Outputs)];
+        self.state
+            .evaluate(Function::Outputs, self.t, self.y, self.yp, &mut values);
+        let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']');
+        for word in condition.split(|c| !is_name(c)) {
+            let known = failure.unknowns.iter().any(|(name, _)| name == word);
+            if let (false, Some(output)) = (known, program.output(word)) {
+                failure.unknowns.push((word.to_owned(), values[output]));
+            }
+        }
+        failure
     }
 
     /// Carries out the assignments of reactions, all from the values before; then modes, then pins.

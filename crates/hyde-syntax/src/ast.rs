@@ -12,6 +12,7 @@ mod file;
 mod modes;
 mod name;
 mod study;
+mod walk;
 
 pub use class::{
     AccountKind, Class, ClassBody, ClassKind, Clocked, Discretize, Domain, EffectUse, Element,

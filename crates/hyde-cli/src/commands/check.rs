@@ -1,37 +1,53 @@
-//! `hyde check`: compiles everything in a file, runs nothing.
+//! `hyde check`: compiles everything in a file, or in the files of a package, and runs nothing.
 
 use crate::args::{CheckArgs, ModelArgs};
 use crate::exit::Exit;
-use crate::project::{self, Aim, Records, print_output};
+use crate::files;
+use crate::project::{self, Aim, Records, complain, print_output, report_errors};
 use crate::render;
+use hyde_diag::{Diagnostics, Sources};
 use serde_json::{Value, json};
 
-/// Checks every experiment of a file (its records included), or its last model if it has none.
+/// Checks every experiment of a file (its records included), or its last model if it has none; all files of a folder.
 pub(crate) fn check(args: &CheckArgs) -> Exit {
-    match checked(args) {
-        Ok((names, warnings)) => {
-            if args.model.json {
-                print_output(&format!(
-                    "{:#}",
-                    json!({ "ok": true, "checked": names, "diagnostics": warnings })
-                ));
-            } else if !args.model.quiet {
-                print_output(&format!(
-                    "{}: {} in order",
-                    args.model.file.display(),
-                    names.join(", ")
-                ));
+    let folder = files::is_folder(&args.model.file);
+    let list = match project::files_of(&args.model) {
+        Ok(list) => list,
+        Err(exit) => return exit,
+    };
+    let (mut exit, mut all, mut warnings) = (Exit::Done, Vec::new(), Vec::new());
+    for args in &list {
+        match checked(args, folder) {
+            Ok((names, found)) => {
+                if !args.json && !args.quiet {
+                    let names = if names.is_empty() {
+                        "nothing to compile".to_owned()
+                    } else {
+                        names.join(", ")
+                    };
+                    print_output(&format!("{}: {names} in order", args.file.display()));
+                }
+                all.extend(names);
+                warnings.extend(found);
             }
-            Exit::Done
+            // One object on standard output: it is about the first file at fault.
+            Err(failed) if args.json => return failed,
+            Err(failed) => exit = exit.max(failed),
         }
-        Err(exit) => exit,
     }
+    if args.model.json {
+        print_output(&format!(
+            "{:#}",
+            json!({ "ok": true, "checked": all, "diagnostics": warnings })
+        ));
+    }
+    exit
 }
 
-/// What was checked, and the warnings of it as JSON.
-fn checked(args: &CheckArgs) -> Result<(Vec<String>, Vec<Value>), Exit> {
+/// What was checked, and the warnings of it as JSON. A file of a folder may have nothing but types and functions.
+fn checked(args: &ModelArgs, folder: bool) -> Result<(Vec<String>, Vec<Value>), Exit> {
     let (mut names, mut warnings) = (Vec::new(), Vec::new());
-    for args in each(&args.model)? {
+    for args in each(args, folder)? {
         let mut project = project::load(&args, Records::IfThere)?;
         let alone = project.experiment.is_none();
         let compiled = project.compile(&args, if alone { Aim::Linearize } else { Aim::Ledger })?;
@@ -49,21 +65,28 @@ fn checked(args: &CheckArgs) -> Result<(Vec<String>, Vec<Value>), Exit> {
 }
 
 /// The arguments for each experiment of the file, if none is named.
-fn each(args: &ModelArgs) -> Result<Vec<ModelArgs>, Exit> {
+pub(crate) fn each(args: &ModelArgs, folder: bool) -> Result<Vec<ModelArgs>, Exit> {
     if args.experiment.is_some() || args.model.is_some() {
         return Ok(vec![args.clone()]);
     }
-    let text = crate::files::read_text(&args.file)
-        .map_err(|reason| project::complain(args, Exit::CommandLine, &reason))?;
-    let mut sources = hyde_diag::Sources::new();
-    let mut diagnostics = hyde_diag::Diagnostics::new();
-    let file = project::loaded(args, &mut sources, &text, &mut diagnostics);
+    let text = files::read_text(&args.file)
+        .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let (file, _) = project::loaded(args, &mut sources, &text, &mut diagnostics);
     let names: Vec<String> = file
         .experiments()
         .map(|experiment| experiment.name.text.clone())
         .collect();
     if names.is_empty() {
-        return Ok(vec![args.clone()]);
+        let nothing = folder && file.models().next().is_none();
+        if nothing && diagnostics.has_errors() {
+            return Err(report_errors(args, &sources, &diagnostics));
+        }
+        return Ok(if nothing {
+            Vec::new()
+        } else {
+            vec![args.clone()]
+        });
     }
     Ok(names
         .into_iter()

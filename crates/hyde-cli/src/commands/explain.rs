@@ -80,6 +80,9 @@ pages! {
     QuantiserOnContinuous "E0211";
     ClockBorder "E0212";
     NotYet "E0213";
+    PackagePath "E0214";
+    BadManifest "E0215";
+    NotDeclared "E0216";
     UnitMismatch "E0301";
     BadUnit "E0302";
     AngleMismatch "E0303";

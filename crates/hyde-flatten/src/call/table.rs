@@ -1,9 +1,11 @@
-//! Lookup tables: `table(x, {0, 1, 2} [m], {0, 1, 4} [N])` linear between its points, `smooth_table` with a continuous
-//! derivative.
+//! Lookup tables: `table(x, {0, 1, 2} [m], {0, 1, 4} [N])` or `table(x, "grease.csv", "v", "F")` linear between its points,
+//! `smooth_table` with a continuous derivative.
 //!
 //! Beyond its ends a table goes on along its last straight line. The smooth one is the monotone cubic of Fritsch and
 //! Carlson (SIAM J. Numer. Anal. 17 (1980) 238) with the slopes of Fritsch and Butland: it does not overshoot its points.
 //! No events: a table is a measured curve, not a switch.
+
+mod file;
 
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
@@ -11,6 +13,9 @@ use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{BinaryOp, ExprArena, ExprId};
 use hyde_syntax::ast::{Expr, ExprKind};
+
+/// Numbers in SI with their dimension.
+type Points = (Vec<f64>, Dim);
 
 impl<'a> Model<'a, '_> {
     pub(super) fn table(
@@ -20,35 +25,19 @@ impl<'a> Model<'a, '_> {
         scope: &Scope<'a>,
         span: Span,
     ) -> Typed {
-        let Some([x, xs, ys]) = self.exactly(name, args, span) else {
+        let of_file = args
+            .get(1)
+            .is_some_and(|arg| matches!(arg.kind, ExprKind::String(_)));
+        let points = if of_file {
+            self.file_points(name, args, span)
+        } else {
+            self.exactly(name, args, span)
+                .and_then(|[_, xs, ys]| self.list_points(xs, ys, scope, span))
+        };
+        let (Some(((xs, x_dim), (ys, y_dim))), Some(x)) = (points, args.first()) else {
             return self.poison(span);
         };
         let x = self.value(x, scope);
-        let (Some((xs, x_dim)), Some((ys, y_dim))) =
-            (self.points(xs, scope), self.points(ys, scope))
-        else {
-            return self.poison(span);
-        };
-        if xs.len() != ys.len() || xs.len() < 2 {
-            self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    format!("{} places and {} values", xs.len(), ys.len()),
-                )
-                .label(
-                    span,
-                    "a table has a value at each of its places, and two at least",
-                ),
-            );
-            return self.poison(span);
-        }
-        if let Some(at) = xs.windows(2).position(|pair| pair[0] >= pair[1]) {
-            self.report(
-                Diagnostic::error(Code::BadShape, "the places of a table ascend")
-                    .label(span, format!("{} is followed by {}", xs[at], xs[at + 1])),
-            );
-            return self.poison(span);
-        }
         let place = self.typed(x.id, x_dim, span);
         self.agree(
             &x,
@@ -67,8 +56,42 @@ impl<'a> Model<'a, '_> {
         self.typed(id, y_dim, span)
     }
 
+    /// The points of two lists.
+    fn list_points(
+        &mut self,
+        xs: &'a Expr,
+        ys: &'a Expr,
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Option<(Points, Points)> {
+        let (xs, ys) = (self.points(xs, scope)?, self.points(ys, scope)?);
+        if xs.0.len() != ys.0.len() || xs.0.len() < 2 {
+            self.report(
+                Diagnostic::error(
+                    Code::BadShape,
+                    format!("{} places and {} values", xs.0.len(), ys.0.len()),
+                )
+                .label(
+                    span,
+                    "a table has a value at each of its places, and two at least",
+                ),
+            );
+            return None;
+        }
+        if let Some(at) = xs.0.windows(2).position(|pair| pair[0] >= pair[1]) {
+            self.report(
+                Diagnostic::error(Code::BadShape, "the places of a table ascend").label(
+                    span,
+                    format!("{} is followed by {}", xs.0[at], xs.0[at + 1]),
+                ),
+            );
+            return None;
+        }
+        Some((xs, ys))
+    }
+
     /// The numbers of a list, in SI, with their dimension.
-    fn points(&mut self, list: &'a Expr, scope: &Scope<'a>) -> Option<(Vec<f64>, Dim)> {
+    fn points(&mut self, list: &'a Expr, scope: &Scope<'a>) -> Option<Points> {
         let ExprKind::Array(items, unit) = &list.kind else {
             self.report(
                 Diagnostic::error(Code::BadShape, "a table is made of two lists")

@@ -1,0 +1,131 @@
+//! `hyde doc`: the pages of a package, of a file, or of the library.
+
+use crate::args::{DocArgs, ModelArgs};
+use crate::exit::Exit;
+use crate::files;
+use crate::package::{MANIFEST, Manifest, Roots};
+use crate::pages::{Library, pages};
+use crate::project::{complain, print_output, report_errors};
+use hyde_diag::{Diagnostics, FileId, Sources};
+use hyde_syntax::ast;
+use std::path::Path;
+
+/// Writes a page for each package and an index of them, each file whole or not at all.
+pub(crate) fn doc(args: &DocArgs) -> Exit {
+    match written(args) {
+        Ok(count) => {
+            let index = args.out.join("index.html");
+            print_output(&format!("{}: {count} packages", index.display()));
+            Exit::Done
+        }
+        Err(exit) => exit,
+    }
+}
+
+fn written(args: &DocArgs) -> Result<usize, Exit> {
+    let path = args.path.clone().unwrap_or_default();
+    let model = ModelArgs::of_file(&path);
+    let library = if args.library {
+        of_library(&model)?
+    } else {
+        of_path(&path, &model)?
+    };
+    let failed = |reason: String| complain(&model, Exit::CommandLine, &reason);
+    let pages = pages(&library);
+    files::make_folder(&args.out).map_err(failed)?;
+    for (name, html) in &pages {
+        files::write(&args.out.join(name), html.as_bytes()).map_err(failed)?;
+    }
+    Ok(library.files.len())
+}
+
+fn of_library(model: &ModelArgs) -> Result<Library, Exit> {
+    let packages = hyde_library::PACKAGES.iter();
+    let texts = packages.map(|p| (format!("{}.hyde", p.name), p.text.to_owned()));
+    let mut library = Library {
+        title: "The Hyde library".to_owned(),
+        text:
+            "Components, effects and quantities that come with Hyde. A model names what it uses: \
+               `import Translational.*;`."
+                .to_owned(),
+        facts: vec![("version", env!("CARGO_PKG_VERSION").to_owned())],
+        ..Library::default()
+    };
+    let (sources, files) = parsed(texts.collect(), model)?;
+    (library.sources, library.files) = (sources, files);
+    Ok(library)
+}
+
+/// A file, or the package of a folder.
+fn of_path(path: &Path, model: &ModelArgs) -> Result<Library, Exit> {
+    let failed = |reason: String| complain(model, Exit::CommandLine, &reason);
+    let mut library = Library::default();
+    let places = if files::is_folder(path) {
+        if !files::is_file(&path.join(MANIFEST)) {
+            return Err(failed(format!(
+                "the folder `{}` has no `{MANIFEST}`",
+                path.display()
+            )));
+        }
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let roots = Roots::at(path, &mut sources, &mut diagnostics);
+        let manifest = roots.roots.first().and_then(|root| root.manifest.as_ref());
+        let Some(manifest) = manifest.filter(|_| !diagnostics.has_errors()) else {
+            return Err(report_errors(model, &sources, &diagnostics));
+        };
+        library.title.clone_from(&manifest.name);
+        library.text.clone_from(&manifest.description);
+        library.facts = facts(manifest);
+        roots
+            .own_packages()
+            .into_iter()
+            .map(|(_, place)| place)
+            .collect()
+    } else {
+        library.title = path
+            .file_stem()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned();
+        vec![path.to_path_buf()]
+    };
+    let mut texts = Vec::new();
+    for place in places {
+        let text = files::read_text(&place).map_err(failed)?;
+        texts.push((place.to_string_lossy().into_owned(), text));
+    }
+    (library.sources, library.files) = parsed(texts, model)?;
+    Ok(library)
+}
+
+fn facts(manifest: &Manifest) -> Vec<(&'static str, String)> {
+    let needed: Vec<&str> = manifest
+        .dependencies
+        .iter()
+        .map(|dependency| dependency.name.as_str())
+        .collect();
+    let all = [
+        ("version", manifest.version.clone()),
+        ("licence", manifest.licence.clone()),
+        ("depends on", needed.join(", ")),
+        ("data", manifest.data.join(", ")),
+    ];
+    all.into_iter()
+        .filter(|(_, fact)| !fact.is_empty())
+        .collect()
+}
+
+type Parsed = (Sources, Vec<(FileId, ast::File)>);
+
+fn parsed(texts: Vec<(String, String)>, model: &ModelArgs) -> Result<Parsed, Exit> {
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let mut files = Vec::new();
+    for (place, text) in texts {
+        let id = sources.add(place, text);
+        files.push((id, hyde_syntax::parse(&sources, id, &mut diagnostics)));
+    }
+    if diagnostics.has_errors() {
+        return Err(report_errors(model, &sources, &diagnostics));
+    }
+    Ok((sources, files))
+}

@@ -1,0 +1,325 @@
+//! Packages beyond the library: files beside the model, or a folder with a manifest, and the packages it depends on.
+//!
+//! ```text
+//! seals/hyde.toml                 name, version, folders, data, dependencies: see `manifest`
+//! seals/models/lip/soft.hyde      package lip.soft;     with folders = ["models"]
+//! seals/data/grease.csv           table(v, "data/grease.csv")     with data = ["data/grease.csv"]
+//! ```
+//! Without a manifest a model's own folder is searched, and `table` reads files below it. No file is read but those that
+//! are named so, and none outside the folder it is declared below: a symbolic link that leads out is refused.
+
+mod manifest;
+
+use crate::files;
+use hyde_diag::{Code, Diagnostic, Diagnostics, Sources};
+pub(crate) use manifest::Manifest;
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::path::{Component, Path, PathBuf};
+
+/// The name of a manifest.
+pub(crate) const MANIFEST: &str = "hyde.toml";
+
+/// A folder that packages are found in, with what its manifest says.
+pub(crate) struct Root {
+    /// As printed.
+    pub(crate) folder: PathBuf,
+    /// `None` of a model without one.
+    pub(crate) manifest: Option<Manifest>,
+    /// The roots that it depends on, by the name of their manifest.
+    dependencies: Vec<usize>,
+}
+
+/// The packages that a model can import: its own root first, then all that it depends on, near or far.
+pub(crate) struct Roots {
+    pub(crate) roots: Vec<Root>,
+    /// The root of each file that was found, by its place.
+    owners: RefCell<BTreeMap<String, usize>>,
+}
+
+impl Roots {
+    /// The root of a model's file, found by the nearest manifest in its folder or above, and what it depends on. What is
+    /// wrong with a manifest is reported.
+    pub(crate) fn of(file: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
+        let beside = file.parent().unwrap_or(Path::new("")).to_path_buf();
+        match nearest_manifest(&beside) {
+            Some(folder) => Self::at(&folder, sources, diagnostics),
+            None => Self::new(vec![Root {
+                folder: beside,
+                manifest: None,
+                dependencies: Vec::new(),
+            }]),
+        }
+    }
+
+    /// The root of a folder with a manifest.
+    pub(crate) fn at(folder: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
+        let mut roots = vec![Root {
+            folder: lexical(folder),
+            manifest: manifest::read(folder, sources, diagnostics),
+            dependencies: Vec::new(),
+        }];
+        let mut at = 0;
+        while at < roots.len() {
+            let wanted = roots[at].manifest.iter();
+            let wanted: Vec<_> = wanted.flat_map(|m| m.dependencies.clone()).collect();
+            for dependency in wanted {
+                let folder = lexical(&roots[at].folder.join(&dependency.path));
+                let known = roots.iter().position(|root| same(&root.folder, &folder));
+                let number = match known {
+                    Some(number) => number,
+                    None if files::is_file(&folder.join(MANIFEST)) => {
+                        roots.push(Root {
+                            manifest: manifest::read(&folder, sources, diagnostics),
+                            folder,
+                            dependencies: Vec::new(),
+                        });
+                        roots.len() - 1
+                    }
+                    None => {
+                        diagnostics.push(dependency.missing(&folder));
+                        continue;
+                    }
+                };
+                if let Some(manifest) = &roots[number].manifest
+                    && manifest.name != dependency.name
+                {
+                    diagnostics.push(dependency.other_name(&manifest.name));
+                }
+                roots[at].dependencies.push(number);
+            }
+            at += 1;
+        }
+        Self::new(roots)
+    }
+
+    fn new(roots: Vec<Root>) -> Self {
+        Self {
+            roots,
+            owners: RefCell::default(),
+        }
+    }
+
+    /// The place and text of a package, as the file at `importer` may import it.
+    pub(crate) fn find(
+        &self,
+        importer: &str,
+        package: &str,
+    ) -> Result<Option<(String, String)>, Diagnostic> {
+        let own = self.owner(importer);
+        let mut found: Vec<(usize, PathBuf)> = Vec::new();
+        for number in std::iter::once(own).chain(self.roots[own].dependencies.iter().copied()) {
+            let places = self.roots[number].places(package)?;
+            found.extend(places.into_iter().map(|place| (number, place)));
+        }
+        match found.as_slice() {
+            [(number, place)] => {
+                let text = files::read_text(place)
+                    .map_err(|reason| Diagnostic::error(Code::NotDeclared, reason))?;
+                let place = place.to_string_lossy().into_owned();
+                self.owners.borrow_mut().insert(place.clone(), *number);
+                Ok(Some((place, text)))
+            }
+            [(_, first), (_, second), ..] => Err(Diagnostic::error(
+                Code::Duplicate,
+                format!(
+                    "the package `{package}` is in `{}` and in `{}`",
+                    first.display(),
+                    second.display()
+                ),
+            )
+            .help("call one of the two otherwise, and its file as well")),
+            [] => self.beyond(own, package),
+        }
+    }
+
+    /// A package that only a dependency of a dependency has: told, for it is not declared.
+    fn beyond(&self, own: usize, package: &str) -> Result<Option<(String, String)>, Diagnostic> {
+        for (number, root) in self.roots.iter().enumerate() {
+            let known = number == own || self.roots[own].dependencies.contains(&number);
+            if known || root.places(package)?.is_empty() {
+                continue;
+            }
+            let name = root.manifest.as_ref().map_or("", |m| m.name.as_str());
+            return Err(Diagnostic::error(
+                Code::NotDeclared,
+                format!("the package `{package}` is in `{name}`, which is no dependency here"),
+            )
+            .help(format!(
+                "add it to `{}`, below `[dependencies]`: `\"{name}\" = \"…/{name}\"`, the path to `{}`",
+                self.roots[own].folder.join(MANIFEST).display(),
+                root.folder.display()
+            )));
+        }
+        Ok(None)
+    }
+
+    /// The path of a data file that the file at `importer` names.
+    pub(crate) fn data(&self, importer: &str, path: &str) -> Result<PathBuf, Diagnostic> {
+        let root = &self.roots[self.owner(importer)];
+        if !is_inside(path) {
+            return Err(leaves(path, "the package's folder"));
+        }
+        let Some(manifest) = &root.manifest else {
+            let place = root.folder.join(path);
+            return match links_out(&root.folder, &place) {
+                true => Err(leaves(path, "the model's folder")),
+                false => Ok(place),
+            };
+        };
+        if !manifest.data.iter().any(|known| known == path) {
+            return Err(Diagnostic::error(
+                Code::NotDeclared,
+                format!(
+                    "`{path}` is not among the data of the package `{}`",
+                    manifest.name
+                ),
+            )
+            .help(format!(
+                "declare it in `{}`: `data = [\"{path}\"]`",
+                root.folder.join(MANIFEST).display()
+            )));
+        }
+        Ok(root.folder.join(path))
+    }
+
+    /// The packages of the model's own root, by name, each with its file; none without a manifest.
+    pub(crate) fn own_packages(&self) -> Vec<(String, PathBuf)> {
+        let root = &self.roots[0];
+        let Some(manifest) = &root.manifest else {
+            return Vec::new();
+        };
+        let mut found = Vec::new();
+        for folder in &manifest.folders {
+            let top = inside(&root.folder, folder);
+            for place in files::below(&top, "hyde", MANIFEST) {
+                if let Ok(name) = place.strip_prefix(&top)
+                    && !links_out(&top, &place)
+                {
+                    found.push((dotted(name), place));
+                }
+            }
+        }
+        found.sort();
+        found
+    }
+
+    /// The name that a file of the model's own root has by its place.
+    pub(crate) fn name_of(&self, file: &Path) -> Option<String> {
+        let packages = self.own_packages();
+        let found = packages.into_iter().find(|(_, place)| same(place, file));
+        found.map(|(name, _)| name)
+    }
+
+    fn owner(&self, place: &str) -> usize {
+        self.owners.borrow().get(place).copied().unwrap_or(0)
+    }
+}
+
+impl Root {
+    /// The files that a package may be in: one below each of the folders, where it is there.
+    fn places(&self, package: &str) -> Result<Vec<PathBuf>, Diagnostic> {
+        let file = format!("{}.hyde", package.replace('.', "/"));
+        let folders = match &self.manifest {
+            Some(manifest) => manifest.folders.clone(),
+            None => vec![".".to_owned()],
+        };
+        let mut found = Vec::new();
+        for folder in folders {
+            let top = inside(&self.folder, &folder);
+            let place = top.join(&file);
+            if !files::is_file(&place) {
+                continue;
+            }
+            if links_out(&top, &place) {
+                return Err(leaves(&place.to_string_lossy(), "its folder"));
+            }
+            found.push(place);
+        }
+        Ok(found)
+    }
+}
+
+/// Whether a path stays below where it starts, links apart.
+pub(crate) fn is_inside(path: &str) -> bool {
+    let mut parts = Path::new(path).components();
+    parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
+}
+
+/// Whether a path that is there leads out of a folder by a link.
+pub(crate) fn links_out(folder: &Path, path: &Path) -> bool {
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    match (files::real(folder), files::real(path)) {
+        (Some(folder), Some(path)) => !path.starts_with(folder),
+        _ => false,
+    }
+}
+
+fn leaves(path: &str, folder: &str) -> Diagnostic {
+    Diagnostic::error(Code::NotDeclared, format!("`{path}` leads out of {folder}"))
+        .help("put the file into the folder: nothing outside it is read")
+}
+
+fn same(a: &Path, b: &Path) -> bool {
+    files::real(a).is_some_and(|real| files::real(b) == Some(real))
+}
+
+/// A folder below another; `.` is that one itself.
+fn inside(folder: &Path, below: &str) -> PathBuf {
+    let below = Path::new(below).components();
+    let below = below.filter(|part| matches!(part, Component::Normal(_)));
+    below.fold(folder.to_path_buf(), |path, part| path.join(part))
+}
+
+/// `a/b.hyde` as `a.b`.
+fn dotted(file: &Path) -> String {
+    let parts = file.with_extension("");
+    let parts: Vec<String> = parts
+        .components()
+        .map(|part| part.as_os_str().to_string_lossy().into_owned())
+        .collect();
+    parts.join(".")
+}
+
+/// The nearest folder with a manifest, going up.
+fn nearest_manifest(start: &Path) -> Option<PathBuf> {
+    let here = if start.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        start
+    };
+    let depth = files::real(here)?.components().count();
+    let mut folder = start.to_path_buf();
+    for _ in 0..depth {
+        if files::is_file(&folder.join(MANIFEST)) {
+            return Some(folder);
+        }
+        folder = match folder.file_name() {
+            Some(_) => folder.parent()?.to_path_buf(),
+            None => folder.join(".."),
+        };
+    }
+    None
+}
+
+/// A path without `a/..`, as printed.
+fn lexical(path: &Path) -> PathBuf {
+    let mut found = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir if found.file_name().is_some() => {
+                found.pop();
+            }
+            Component::CurDir => {}
+            part @ (Component::ParentDir
+            | Component::Normal(_)
+            | Component::RootDir
+            | Component::Prefix(_)) => found.push(part),
+        }
+    }
+    found
+}

@@ -1,0 +1,234 @@
+//! `hyde.toml`: what a package is called, where its files are, and what it depends on.
+//!
+//! ```toml
+//! name = "seals"
+//! version = "0.2.0"
+//! description = "Seals and wipers of feed drives"
+//! licence = "MIT"
+//! folders = ["models"]              # where its files are; the manifest's own folder if left out
+//! data = ["data/grease.csv"]        # what `table` may read
+//!
+//! [dependencies]
+//! guides = "../guides"              # a folder with a manifest of that name
+//! ```
+
+use super::{MANIFEST, is_inside, links_out};
+use crate::files;
+use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+use serde::Deserialize;
+use std::collections::BTreeMap;
+use std::path::Path;
+use toml::Spanned;
+
+/// A manifest that was read.
+pub(crate) struct Manifest {
+    pub(crate) name: String,
+    pub(crate) version: String,
+    pub(crate) description: String,
+    pub(crate) licence: String,
+    /// Below the manifest's folder; `.` is that itself.
+    pub(crate) folders: Vec<String>,
+    /// Below the manifest's folder.
+    pub(crate) data: Vec<String>,
+    pub(crate) dependencies: Vec<Dependency>,
+}
+
+/// `name = "../path"`
+#[derive(Clone)]
+pub(crate) struct Dependency {
+    pub(crate) name: String,
+    pub(crate) path: String,
+    span: Span,
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Written {
+    name: Spanned<String>,
+    version: Spanned<String>,
+    #[serde(default)]
+    description: String,
+    #[serde(default)]
+    licence: String,
+    #[serde(default)]
+    folders: Vec<Spanned<String>>,
+    #[serde(default)]
+    data: Vec<Spanned<String>>,
+    #[serde(default)]
+    dependencies: BTreeMap<String, Spanned<String>>,
+}
+
+/// Reads the manifest of a folder; what is wrong with it is reported.
+pub(super) fn read(
+    folder: &Path,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Option<Manifest> {
+    let path = folder.join(MANIFEST);
+    let text = match files::read_text(&path) {
+        Ok(text) => text,
+        Err(reason) => {
+            diagnostics.push(Diagnostic::error(Code::BadManifest, reason));
+            return None;
+        }
+    };
+    let id = sources.add(path.to_string_lossy(), text.as_str());
+    let written: Written = match toml::from_str(&text) {
+        Ok(written) => written,
+        Err(error) => {
+            diagnostics.push(not_understood(id, &error));
+            return None;
+        }
+    };
+    let before = diagnostics.error_count();
+    let mut reader = Reader {
+        folder,
+        id,
+        diagnostics,
+    };
+    let manifest = reader.checked(written);
+    (diagnostics.error_count() == before).then_some(manifest)
+}
+
+struct Reader<'r> {
+    folder: &'r Path,
+    id: FileId,
+    diagnostics: &'r mut Diagnostics,
+}
+
+impl Reader<'_> {
+    fn checked(&mut self, written: Written) -> Manifest {
+        if !is_name(written.name.get_ref()) {
+            self.wrong(
+                &written.name,
+                format!("`{}` is no name", written.name.get_ref()),
+                "a name is made of letters, digits and `_`, with dots between words",
+            );
+        }
+        let version = written.version.get_ref().split('.');
+        let numbers = version.map(str::parse::<u32>).collect::<Vec<_>>();
+        if numbers.len() != 3 || numbers.iter().any(Result::is_err) {
+            self.wrong(
+                &written.version,
+                format!("`{}` is no version", written.version.get_ref()),
+                "a version is three numbers: `0.1.0`",
+            );
+        }
+        for folder in &written.folders {
+            self.below(folder, true);
+        }
+        for file in &written.data {
+            self.below(file, false);
+        }
+        let dependencies = written.dependencies.into_iter().map(|(name, path)| {
+            if Path::new(path.get_ref()).is_absolute() {
+                self.wrong(
+                    &path,
+                    format!("the path to `{name}` is absolute"),
+                    "write it relative to this manifest: it is another one on every machine",
+                );
+            }
+            Dependency {
+                name,
+                span: self.span(&path),
+                path: path.into_inner(),
+            }
+        });
+        let dependencies = dependencies.collect();
+        let plain = |list: Vec<Spanned<String>>| list.into_iter().map(Spanned::into_inner);
+        let folders: Vec<String> = plain(written.folders).collect();
+        Manifest {
+            name: written.name.into_inner(),
+            version: written.version.into_inner(),
+            description: written.description,
+            licence: written.licence,
+            folders: if folders.is_empty() {
+                vec![".".to_owned()]
+            } else {
+                folders
+            },
+            data: plain(written.data).collect(),
+            dependencies,
+        }
+    }
+
+    /// Reports a declared folder or file that is not there, or not below the manifest's folder.
+    fn below(&mut self, path: &Spanned<String>, folder: bool) {
+        let written = path.get_ref();
+        let place = self.folder.join(written);
+        if !is_inside(written) || links_out(self.folder, &place) {
+            let diagnostic = Diagnostic::error(
+                Code::NotDeclared,
+                format!("`{written}` leads out of the package's folder"),
+            )
+            .label(self.span(path), "outside")
+            .help("put it below the manifest; the packages of other folders are `[dependencies]`");
+            self.diagnostics.push(diagnostic);
+        } else if !(if folder {
+            files::is_folder
+        } else {
+            files::is_file
+        })(&place)
+        {
+            let what = if folder { "folder" } else { "file" };
+            self.wrong(
+                path,
+                format!("there is no {what} `{written}`"),
+                "paths are relative to the manifest's folder",
+            );
+        }
+    }
+
+    fn wrong(&mut self, at: &Spanned<String>, message: String, help: &str) {
+        let diagnostic = Diagnostic::error(Code::BadManifest, message)
+            .label(self.span(at), "in this manifest")
+            .help(help);
+        self.diagnostics.push(diagnostic);
+    }
+
+    fn span(&self, at: &Spanned<String>) -> Span {
+        Span::new(self.id, at.span().start, at.span().end)
+    }
+}
+
+impl Dependency {
+    /// There is no package where the dependency says.
+    pub(super) fn missing(&self, folder: &Path) -> Diagnostic {
+        Diagnostic::error(
+            Code::BadManifest,
+            format!("there is no `{}`", folder.join(MANIFEST).display()),
+        )
+        .label(
+            self.span,
+            format!("the package `{}` should be there", self.name),
+        )
+        .help("the path leads from this manifest's folder to the folder of the other manifest")
+    }
+
+    /// The package there has another name.
+    pub(super) fn other_name(&self, name: &str) -> Diagnostic {
+        Diagnostic::error(
+            Code::BadManifest,
+            format!("the package there is called `{name}`"),
+        )
+        .label(self.span, format!("not `{}`", self.name))
+        .help(format!("write `\"{name}\" = \"{}\"`", self.path))
+    }
+}
+
+fn not_understood(id: FileId, error: &toml::de::Error) -> Diagnostic {
+    let span = error.span().unwrap_or(0..0);
+    let message = error.message().lines().next().unwrap_or_default();
+    Diagnostic::error(Code::BadManifest, format!("the manifest cannot be read: {message}"))
+        .label(Span::new(id, span.start, span.end), "here")
+        .help(
+            "a manifest has `name`, `version`, and as needed `description`, `licence`, `folders`, `data`, `[dependencies]`",
+        )
+}
+
+fn is_name(name: &str) -> bool {
+    name.split('.').all(|word| {
+        let letters = word.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+        letters && word.starts_with(|c: char| c.is_ascii_alphabetic())
+    })
+}

@@ -1,0 +1,431 @@
+//! What stands on a page of a model, connector, effect or function; of the types and the experiments of a package.
+
+use super::Library;
+use super::html::{code, documentation, escaped, table};
+use super::links::Links;
+use hyde_diag::Span;
+use hyde_syntax::ast::{
+    self, Class, ClassBody, ClassKind, Declaration, Declarator, Element, Item, Prefix,
+};
+
+/// The section of a class.
+pub(super) fn class(class: &Class, number: usize, library: &Library, links: &Links<'_>) -> String {
+    let name = &class.name.text;
+    let word = match class.kind {
+        ClassKind::Model => "model",
+        ClassKind::Connector => "connector",
+        ClassKind::Effect => "effect",
+        ClassKind::Function => "function",
+    };
+    let mut html = format!("<section id=\"{name}\">\n<h3>{name} <small>{word}</small></h3>\n");
+    html += &documentation(class.doc.as_deref().unwrap_or_default());
+    match &class.body {
+        ClassBody::Short { base, .. } => {
+            html += &format!(
+                "<p class=\"note\">a short form of {}</p>\n",
+                links.to_class(number, base)
+            );
+            html += &written(&[library.sources.text(class.span)]);
+        }
+        ClassBody::Long { host, elements } => {
+            if let Some(host) = host {
+                let host = links.to_class(number, host);
+                html += &format!("<p class=\"note\">on {host}</p>\n");
+            }
+            let mut members = Members {
+                library,
+                links,
+                tables: Default::default(),
+            };
+            members.of_elements(elements, number, None, 0);
+            html += &members.html();
+            html += &written(&equations(elements, library));
+            html += &marks(elements);
+            html += &fits_on(class, number, library, links);
+        }
+    }
+    html + "</section>\n"
+}
+
+/// The table of a package's types.
+pub(super) fn types(file: &ast::File) -> String {
+    let rows: Vec<Vec<String>> = file
+        .items
+        .iter()
+        .filter_map(|item| match item {
+            Item::Type(item) => Some(vec![
+                format!("<span id=\"type-{0}\">{0}</span>", item.name.text),
+                item.unit
+                    .as_ref()
+                    .map_or_else(|| item.base.dotted(), |unit| escaped(&unit.text)),
+                code(item.doc.as_deref().unwrap_or_default()),
+            ]),
+            Item::Class(_) | Item::Experiment(_) | Item::Study(_) => None,
+        })
+        .collect();
+    table(&["type", "unit", ""], &rows)
+}
+
+/// The table of a package's experiments.
+pub(super) fn experiments(file: &ast::File, number: usize, links: &Links<'_>) -> String {
+    let rows: Vec<Vec<String>> = file
+        .items
+        .iter()
+        .filter_map(|item| match item {
+            Item::Experiment(item) => Some(vec![
+                item.name.text.clone(),
+                links.to_class(number, &item.model),
+                code(item.doc.as_deref().unwrap_or_default()),
+            ]),
+            Item::Class(_) | Item::Type(_) | Item::Study(_) => None,
+        })
+        .collect();
+    table(&["experiment", "of", ""], &rows)
+}
+
+/// The kinds of members in the order of a page.
+const TABLES: [(&str, [&str; 7]); 6] = [
+    ("Connectors", [""; 7]),
+    (
+        "Inputs and outputs",
+        ["name", "type", "unit", "", "value", "", ""],
+    ),
+    (
+        "Sizes and shapes",
+        ["name", "type", "unit", "", "value", "range", ""],
+    ),
+    (
+        "Parameters",
+        ["name", "type", "unit", "default", "spread", "source", ""],
+    ),
+    ("Parts", ["name", "model", "", "modified", "", "", ""]),
+    (
+        "Variables and sites",
+        ["name", "type", "unit", "", "value", "start", ""],
+    ),
+];
+
+struct Members<'l> {
+    library: &'l Library,
+    links: &'l Links<'l>,
+    tables: [Vec<Vec<String>>; 6],
+}
+
+impl<'l> Members<'l> {
+    fn of_elements(
+        &mut self,
+        elements: &'l [Element],
+        number: usize,
+        from: Option<&str>,
+        depth: usize,
+    ) {
+        for element in elements {
+            match element {
+                Element::Extends(base, _) if depth < 20 => {
+                    if let Some((number, class)) = self.links.class(number, base)
+                        && let ClassBody::Long { elements, .. } = &class.body
+                    {
+                        self.of_elements(elements, number, Some(&class.name.text), depth + 1);
+                    }
+                }
+                Element::Declaration(declaration) => self.declaration(declaration, number, from),
+                Element::Clocked(clocked) => {
+                    let name = format!("in `{}`", clocked.name.text);
+                    self.of_elements(&clocked.elements, number, Some(&name), depth + 1);
+                }
+                Element::Extends(..)
+                | Element::Domain(_)
+                | Element::Discretize(_)
+                | Element::Modes(_)
+                | Element::Equation(_)
+                | Element::InitialEquation(_)
+                | Element::Wrap(..)
+                | Element::Add(_)
+                | Element::Replace(..)
+                | Element::Signature(_)
+                | Element::Confounds(_)
+                | Element::Measure(_)
+                | Element::Account(..) => {}
+            }
+        }
+    }
+
+    fn declaration(&mut self, declaration: &'l Declaration, number: usize, from: Option<&str>) {
+        let has = |prefix| declaration.prefixes.contains(&prefix);
+        let class = self.links.class(number, &declaration.type_name);
+        let quantity = [Prefix::Flow, Prefix::Site, Prefix::Field];
+        for item in &declaration.declarators {
+            let part = class.filter(|_| item.binding.is_none() && !quantity.into_iter().any(has));
+            let kind = match part {
+                _ if has(Prefix::Size) || has(Prefix::Shape) => 2,
+                _ if has(Prefix::Parameter) || has(Prefix::Constant) => 3,
+                _ if has(Prefix::Input) || has(Prefix::Output) => 1,
+                Some((_, class)) if class.kind == ClassKind::Connector => 0,
+                Some(_) => 4,
+                None => 5,
+            };
+            let row = self.row(kind, declaration, item, number, from);
+            self.tables[kind].push(row);
+        }
+    }
+
+    fn row(
+        &self,
+        kind: usize,
+        declaration: &Declaration,
+        item: &Declarator,
+        number: usize,
+        from: Option<&str>,
+    ) -> Vec<String> {
+        let text =
+            |span: Span| format!("<code>{}</code>", escaped(self.library.sources.text(span)));
+        let expr = |expr: Option<&ast::Expr>| expr.map_or_else(String::new, |e| text(e.span));
+        let dims: Vec<&str> = item
+            .dims
+            .iter()
+            .chain(&declaration.dims)
+            .map(|dim| self.library.sources.text(dim.span))
+            .collect();
+        let dims = if dims.is_empty() {
+            String::new()
+        } else {
+            format!("[{}]", escaped(&dims.join(", ")))
+        };
+        let changes: Vec<String> = item
+            .changes
+            .iter()
+            .map(|change| {
+                let value = change.value.as_ref();
+                let value = value.map_or_else(String::new, |value| {
+                    format!(" = {}", self.library.sources.text(value.span))
+                });
+                let target = hyde_syntax::format_reference(&change.target);
+                format!("<code>{}</code>", escaped(&format!("{target}{value}")))
+            })
+            .collect();
+        let words: Vec<&str> = declaration
+            .prefixes
+            .iter()
+            .filter_map(|prefix| match prefix {
+                Prefix::Final => Some("final"),
+                Prefix::Constant => Some("constant"),
+                Prefix::Flow => Some("flow"),
+                Prefix::Input => Some("input"),
+                Prefix::Output => Some("output"),
+                Prefix::Replaceable => Some("replaceable"),
+                Prefix::Site => Some("site"),
+                Prefix::Field => Some("field"),
+                Prefix::Size => Some("size"),
+                Prefix::Shape => Some("shape"),
+                Prefix::Parameter => None,
+            })
+            .collect();
+        let name = format!(
+            "<b>{}</b>{dims}{}",
+            item.name.text,
+            words
+                .iter()
+                .map(|word| format!(" <i>{word}</i>"))
+                .collect::<String>()
+        );
+        let inherited = from.map_or_else(String::new, |from| {
+            let from = if from.starts_with("in ") {
+                from.to_owned()
+            } else {
+                format!("from `{from}`")
+            };
+            format!(" <i>{}</i>", code(&from))
+        });
+        let doc = code(item.doc.as_deref().unwrap_or_default()) + &inherited;
+        let kind_of = match kind {
+            0 | 4 => self.links.to_class(number, &declaration.type_name),
+            _ => self.links.to_quantity(number, &declaration.type_name),
+        };
+        let unit = self.links.unit(number, &declaration.type_name);
+        let none = String::new;
+        match kind {
+            0 => vec![name, kind_of, none(), none(), none(), none(), doc],
+            4 => vec![
+                name,
+                kind_of,
+                none(),
+                changes.join(", "),
+                none(),
+                none(),
+                doc,
+            ],
+            3 => vec![
+                name,
+                kind_of,
+                unit,
+                expr(item.binding.as_ref()),
+                item.prior.as_ref().map_or_else(none, |prior| {
+                    escaped(
+                        self.library
+                            .sources
+                            .text(prior.span)
+                            .trim_start_matches(['~', ' ']),
+                    )
+                }),
+                code(item.source.as_deref().unwrap_or_default()),
+                doc,
+            ],
+            2 => vec![
+                name,
+                kind_of,
+                unit,
+                none(),
+                expr(item.binding.as_ref()),
+                item.within.as_ref().map_or_else(none, |range| {
+                    format!("{} … {}", text(range.from.span), text(range.to.span))
+                }),
+                doc,
+            ],
+            _ => vec![
+                name,
+                kind_of,
+                unit,
+                none(),
+                expr(item.binding.as_ref()),
+                changes.join(", "),
+                doc,
+            ],
+        }
+    }
+
+    fn html(&self) -> String {
+        TABLES
+            .iter()
+            .zip(&self.tables)
+            .filter(|(_, rows)| !rows.is_empty())
+            .map(|((heading, heads), rows)| {
+                let list = match *heading {
+                    "Connectors" => format!("<p>{}</p>\n", inline(rows)),
+                    _ => table(heads, rows),
+                };
+                format!("<h4>{heading}</h4>\n{list}")
+            })
+            .collect()
+    }
+}
+
+/// `a` Rail (what it is), `b` Rail
+fn inline(rows: &[Vec<String>]) -> String {
+    let texts: Vec<String> = rows
+        .iter()
+        .map(|row| match (row.first(), row.get(1), row.last()) {
+            (Some(name), Some(kind), Some(doc)) if !doc.is_empty() => {
+                format!("{name} {kind} ({})", doc.trim())
+            }
+            (Some(name), Some(kind), _) => format!("{name} {kind}"),
+            _ => String::new(),
+        })
+        .collect();
+    texts.join(", ")
+}
+
+/// What an effect leaves in a record, and what it is easily taken for.
+fn marks(elements: &[Element]) -> String {
+    let mut html = String::new();
+    for element in elements {
+        let text = match element {
+            Element::Signature(marks) => {
+                let names: Vec<&str> = marks.iter().map(|(name, _)| name.text.as_str()).collect();
+                format!("leaves a mark over {}", names.join(", "))
+            }
+            Element::Confounds(names) => {
+                let names: Vec<String> = names.iter().map(ast::Reference::dotted).collect();
+                format!("easily taken for {}", names.join(", "))
+            }
+            Element::Extends(..)
+            | Element::Declaration(_)
+            | Element::Domain(_)
+            | Element::Discretize(_)
+            | Element::Modes(_)
+            | Element::Clocked(_)
+            | Element::Equation(_)
+            | Element::InitialEquation(_)
+            | Element::Wrap(..)
+            | Element::Add(_)
+            | Element::Replace(..)
+            | Element::Measure(_)
+            | Element::Account(..) => continue,
+        };
+        html += &format!("<p class=\"note\">{}</p>\n", escaped(&text));
+    }
+    html
+}
+
+/// Equations, modes and what an effect does, as written.
+fn equations<'l>(elements: &'l [Element], library: &'l Library) -> Vec<&'l str> {
+    let mut found = Vec::new();
+    for element in elements {
+        let span = match element {
+            Element::Equation(equation)
+            | Element::InitialEquation(equation)
+            | Element::Add(equation) => equation.span,
+            Element::Modes(modes) => modes.span,
+            Element::Clocked(clocked) => clocked.span,
+            Element::Wrap(site, value) => site.span.to(value.span),
+            Element::Replace(component, by, _) => component.span.to(by.span),
+            Element::Domain(domain) => domain.name.span.to(domain.range.to.span),
+            Element::Account(_, entry) => entry.type_name.span.to(entry.value.span),
+            Element::Signature(_)
+            | Element::Confounds(_)
+            | Element::Discretize(_)
+            | Element::Extends(..)
+            | Element::Declaration(_)
+            | Element::Measure(_) => continue,
+        };
+        found.push(library.sources.lines(span));
+    }
+    found
+}
+
+fn written(texts: &[&str]) -> String {
+    if texts.is_empty() {
+        return String::new();
+    }
+    let lines: Vec<String> = texts.iter().map(|text| outdented(text)).collect();
+    format!("<pre>{}</pre>\n", escaped(&lines.join("\n")))
+}
+
+/// Lines without the blanks that all of them begin with.
+fn outdented(text: &str) -> String {
+    let blanks = |line: &str| line.len() - line.trim_start().len();
+    let lines = || text.lines().filter(|line| !line.trim().is_empty());
+    let least = lines().map(blanks).min().unwrap_or(0);
+    let cut: Vec<&str> = text
+        .lines()
+        .map(|line| line.get(least..).unwrap_or(""))
+        .collect();
+    cut.join("\n").trim_end().to_owned()
+}
+
+/// The effects that are for a class.
+fn fits_on(class: &Class, number: usize, library: &Library, links: &Links<'_>) -> String {
+    let mut found = Vec::new();
+    for (of, (_, file)) in library.files.iter().enumerate() {
+        for item in &file.items {
+            let Item::Class(effect) = item else { continue };
+            if let ClassBody::Long {
+                host: Some(host), ..
+            } = &effect.body
+                && links
+                    .class(of, host)
+                    .is_some_and(|(of, known)| of == number && std::ptr::eq(known, class))
+            {
+                let (page, name) = (library.name(of), &effect.name.text);
+                found.push(format!("<a href=\"{page}.html#{name}\">{name}</a>"));
+            }
+        }
+    }
+    if found.is_empty() {
+        String::new()
+    } else {
+        format!(
+            "<p class=\"note\">effects for it: {}</p>\n",
+            found.join(", ")
+        )
+    }
+}

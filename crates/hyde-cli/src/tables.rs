@@ -1,0 +1,76 @@
+//! The files of tables: which they are, and their columns.
+
+use crate::files;
+use crate::package::Roots;
+use hyde_compiler::{File, TableFile};
+use hyde_diag::{Code, Diagnostic, Diagnostics, Sources, Span};
+use sha2::{Digest, Sha256};
+use std::path::PathBuf;
+
+/// A table's file that was read.
+pub(crate) struct Table {
+    pub(crate) path: PathBuf,
+    pub(crate) hash: String,
+    pub(crate) rows: usize,
+}
+
+/// Reads the files of every table into `file`. What is missing or wrong is reported.
+pub(crate) fn read(
+    file: &mut File,
+    roots: &Roots,
+    sources: &Sources,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Table> {
+    let mut found: Vec<Table> = Vec::new();
+    for (id, name, span) in file.tables_named() {
+        match of_file(roots, &sources.get(id).name, &name, span) {
+            Ok((table, columns)) => {
+                file.tables.insert((id, name), TableFile { columns });
+                if found.iter().all(|known| known.path != table.path) {
+                    found.push(table);
+                }
+            }
+            Err(diagnostic) => diagnostics.push(diagnostic),
+        }
+    }
+    found
+}
+
+type Columns = Vec<(String, Option<hyde_units::NamedUnit>, Vec<f64>)>;
+
+fn of_file(
+    roots: &Roots,
+    importer: &str,
+    name: &str,
+    span: Span,
+) -> Result<(Table, Columns), Diagnostic> {
+    let path = roots
+        .data(importer, name)
+        .map_err(|diagnostic| diagnostic.label(span, "named here"))?;
+    let content = files::read(&path).map_err(|reason| {
+        Diagnostic::error(Code::NotDeclared, format!("a table has no file: {reason}"))
+            .label(span, "named here")
+            .help("the path is relative to the manifest's folder, or to the model's without one")
+    })?;
+    // A table has no time: its rows are only counted.
+    let table = hyde_signal::csv::read(&content, Some(1.0)).map_err(|error| {
+        Diagnostic::error(Code::BadRecord, format!("`{}`: {error}", path.display()))
+            .label(span, "read for this table")
+            .help(error.repair())
+    })?;
+    let columns = table.columns().iter();
+    let columns = columns.map(|column| {
+        (
+            column.name().to_owned(),
+            column.unit().cloned(),
+            column.values().to_vec(),
+        )
+    });
+    let columns = columns.collect();
+    let read = Table {
+        path,
+        hash: format!("{:x}", Sha256::digest(&content)),
+        rows: table.rows(),
+    };
+    Ok((read, columns))
+}

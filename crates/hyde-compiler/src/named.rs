@@ -1,0 +1,100 @@
+//! The packages, the types and the tables' files that a source file names.
+
+use hyde_diag::Span;
+use hyde_syntax::ast::{self, ClassBody, Element, Expr, ExprKind, Item, Reference};
+
+/// The packages of imports and of dotted types, each with where it is named first.
+pub(crate) fn packages_named(file: &ast::File) -> Vec<(String, Span)> {
+    let mut found: Vec<(String, Span)> = Vec::new();
+    let mut named = |package: String, span: Span| {
+        if !package.is_empty() && found.iter().all(|(known, _)| *known != package) {
+            found.push((package, span));
+        }
+    };
+    for import in &file.imports {
+        let package = if import.everything {
+            import.path.dotted()
+        } else {
+            package_of(&import.path)
+        };
+        named(package, import.path.span);
+    }
+    each_type(file, &mut |reference| {
+        named(package_of(reference), reference.span)
+    });
+    found
+}
+
+/// The types, models and effects that are named without a package.
+pub(crate) fn words_named(file: &ast::File) -> Vec<&str> {
+    let mut found = Vec::new();
+    each_type(file, &mut |reference| found.extend(reference.as_word()));
+    found
+}
+
+/// The files of tables, `table(x, "grease.csv")`, each with where it is named first.
+pub(crate) fn tables_named(file: &ast::File) -> Vec<(String, Span)> {
+    let mut found: Vec<(String, Span)> = Vec::new();
+    file.each_expression(&mut |expr| in_expression(expr, &mut found));
+    found
+}
+
+fn in_expression(expr: &Expr, found: &mut Vec<(String, Span)>) {
+    if let ExprKind::Call(function, arguments) = &expr.kind
+        && matches!(function.as_word(), Some("table" | "smooth_table"))
+        && let Some(argument) = arguments.get(1)
+        && let ExprKind::String(path) = &argument.value.kind
+        && found.iter().all(|(known, _)| known != path)
+    {
+        found.push((path.clone(), argument.value.span));
+    }
+    for child in expr.children() {
+        in_expression(child, found);
+    }
+}
+
+/// What stands before the last dot.
+fn package_of(reference: &Reference) -> String {
+    let dotted = reference.dotted();
+    dotted
+        .rsplit_once('.')
+        .map_or_else(String::new, |(package, _)| package.to_owned())
+}
+
+fn each_type<'a>(file: &'a ast::File, add: &mut impl FnMut(&'a Reference)) {
+    for item in &file.items {
+        match item {
+            Item::Class(class) => match &class.body {
+                ClassBody::Short { base, effects, .. } => {
+                    add(base);
+                    effects.iter().for_each(|used| add(&used.effect));
+                }
+                ClassBody::Long { elements, .. } => types_named(elements, add),
+            },
+            Item::Experiment(experiment) => add(&experiment.model),
+            Item::Type(item) => add(&item.base),
+            Item::Study(_) => {}
+        }
+    }
+}
+
+fn types_named<'a>(elements: &'a [Element], add: &mut impl FnMut(&'a Reference)) {
+    for element in elements {
+        match element {
+            Element::Declaration(declaration) => add(&declaration.type_name),
+            Element::Extends(base, _) => add(base),
+            Element::Clocked(clocked) => types_named(&clocked.elements, add),
+            Element::Replace(_, by, _) => add(by),
+            Element::Measure(measure) | Element::Account(_, measure) => add(&measure.type_name),
+            Element::Domain(_)
+            | Element::Discretize(_)
+            | Element::Modes(_)
+            | Element::Equation(_)
+            | Element::InitialEquation(_)
+            | Element::Wrap(..)
+            | Element::Add(_)
+            | Element::Signature(_)
+            | Element::Confounds(_) => {}
+        }
+    }
+}
