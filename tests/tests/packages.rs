@@ -191,6 +191,8 @@ fn pages_link_to_each_other_and_need_nothing_else() {
     assert!(index.contains("href=\"lib.parts.html#Wiper\""), "{index}");
     for shown in [
         "the lip of a seal",
+        "<h4>Connectors</h4>\n<p><b>a</b> Rail</p>",
+        "<td>Force</td><td>N</td><td><code>40 [N]</code></td>",
         "±20%",
         "spring balance, 2026-03",
         "40 [N]",

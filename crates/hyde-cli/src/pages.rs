@@ -20,15 +20,17 @@ pub(crate) struct Library {
     pub(crate) facts: Vec<(&'static str, String)>,
     /// The texts.
     pub(crate) sources: Sources,
-    /// The packages.
+    /// The packages, those with a page first; of the others only the names are known.
     pub(crate) files: Vec<(FileId, ast::File)>,
+    /// How many have a page.
+    pub(crate) documented: usize,
 }
 
 /// Every page with the name of its file; the index first.
 pub(crate) fn pages(library: &Library) -> Vec<(String, String)> {
     let links = Links::new(library);
     let mut found = vec![("index.html".to_owned(), index(library))];
-    for number in 0..library.files.len() {
+    for number in 0..library.documented {
         let name = library.name(number);
         found.push((format!("{name}.html"), package(library, number, &links)));
     }
@@ -86,7 +88,7 @@ fn index(library: &Library) -> String {
     if !facts.is_empty() {
         body += &format!("<dl>{facts}</dl>\n");
     }
-    for (number, (_, file)) in library.files.iter().enumerate() {
+    for (number, (_, file)) in library.files[..library.documented].iter().enumerate() {
         let name = library.name(number);
         body += &format!("<h2><a href=\"{name}.html\">{name}</a></h2>\n");
         body += &documentation(library.doc(number));

@@ -255,14 +255,17 @@ impl File {
 
     /// Finds the packages that have what the files name and none of them declares.
     fn look_elsewhere(&mut self, packages: &Packages<'_>) {
-        let declared = |word: &str| {
+        let declared = |word: &str, model: bool| {
             ["Real", "Integer", "Boolean"].contains(&word)
-                || self.files.iter().any(|(_, file)| declares(file, word))
+                || self
+                    .files
+                    .iter()
+                    .any(|(_, file)| declares(file, word, model))
         };
-        let mut missing: Vec<String> = Vec::new();
-        for word in self.files.iter().flat_map(|(_, file)| words_named(file)) {
-            if !declared(word) && !missing.iter().any(|known| known == word) {
-                missing.push(word.to_owned());
+        let mut missing: Vec<(String, bool)> = Vec::new();
+        for (word, model) in self.files.iter().flat_map(|(_, file)| words_named(file)) {
+            if !declared(word, model) && !missing.iter().any(|(known, _)| known == word) {
+                missing.push((word.to_owned(), model));
             }
         }
         if missing.is_empty() {
@@ -277,19 +280,21 @@ impl File {
             let mut sources = Sources::new();
             let id = sources.add(name.as_str(), text);
             let tree = hyde_syntax::parse(&sources, id, &mut Diagnostics::new());
-            for word in missing.iter().filter(|word| declares(&tree, word)) {
-                let packages = self.elsewhere.entry(word.clone()).or_default();
-                packages.push(name.clone());
+            for (word, model) in &missing {
+                if declares(&tree, word, *model) {
+                    let packages = self.elsewhere.entry(word.clone()).or_default();
+                    packages.push(name.clone());
+                }
             }
         }
     }
 }
 
-/// Whether a file declares a type, model, connector, effect or function of that name.
-fn declares(file: &ast::File, word: &str) -> bool {
+/// Whether a file declares a class of that name, or a type where it need not be a model.
+fn declares(file: &ast::File, word: &str, model: bool) -> bool {
     file.items.iter().any(|item| match item {
         Item::Class(class) => class.name.text == word,
-        Item::Type(item) => item.name.text == word,
+        Item::Type(item) => !model && item.name.text == word,
         Item::Experiment(_) | Item::Study(_) => false,
     })
 }

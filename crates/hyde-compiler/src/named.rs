@@ -25,10 +25,28 @@ pub(crate) fn packages_named(file: &ast::File) -> Vec<(String, Span)> {
     found
 }
 
-/// The types, models and effects that are named without a package.
-pub(crate) fn words_named(file: &ast::File) -> Vec<&str> {
+/// The types, models and effects that are named without a package, and whether that can only be a model.
+pub(crate) fn words_named(file: &ast::File) -> Vec<(&str, bool)> {
     let mut found = Vec::new();
-    each_type(file, &mut |reference| found.extend(reference.as_word()));
+    each_type(file, &mut |reference| {
+        found.extend(reference.as_word().map(|word| (word, false)))
+    });
+    for item in &file.items {
+        if let Item::Class(class) = item
+            && let ClassBody::Long { elements, .. } = &class.body
+        {
+            for element in elements {
+                if let Element::Declaration(declaration) = element
+                    && declaration
+                        .declarators
+                        .iter()
+                        .any(|item| item.is_modified())
+                {
+                    found.extend(declaration.type_name.as_word().map(|word| (word, true)));
+                }
+            }
+        }
+    }
     found
 }
 

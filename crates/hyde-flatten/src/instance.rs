@@ -34,7 +34,7 @@ pub(crate) enum Member {
     Variable(VarId),
     Parameter(ParamId),
     Instance(InstanceId),
-    Instances(Vec<InstanceId>),
+    Instances(std::rc::Rc<[InstanceId]>),
     Domain(DomainId),
 }
 

@@ -97,26 +97,8 @@ impl<'a> Names<'a> {
             .label(name.span, "which of them?")
             .help(format!("write `{first}.{text}` or `{second}.{text}`"));
         }
-        let packages = self.packages_that_have(file, &text);
-        if !packages.is_empty() {
-            let imports: Vec<String> = packages
-                .iter()
-                .map(|package| format!("`import {package}.*;`"))
-                .collect();
-            let quoted: Vec<String> = packages.iter().map(|name| format!("`{name}`")).collect();
-            let which = match quoted.as_slice() {
-                [_] => "which is not imported",
-                _ => "and none of them is imported",
-            };
-            return Diagnostic::error(
-                Code::UnknownType,
-                format!("`{text}` is in {}, {which}", quoted.join(", ")),
-            )
-            .label(name.span, "not known in this file")
-            .help(format!(
-                "write {} at the top of the file",
-                imports.join(" or ")
-            ));
+        if let Some(diagnostic) = self.not_imported(file, name, declared_name) {
+            return diagnostic;
         }
         let mut known: Vec<&str> = Vec::new();
         for (index, (_, tree)) in self.files.iter().enumerate() {
@@ -137,9 +119,33 @@ impl<'a> Names<'a> {
         }
     }
 
-    /// The packages that declare a name and that a file does not import, loaded or not.
-    fn packages_that_have(self, file: FileIndex, name: &str) -> Vec<String> {
-        let mut found: Vec<String> = Vec::new();
+    /// A name that means a quantity here, and is used as the component of that name, which is not imported.
+    pub(crate) fn component_elsewhere(
+        self,
+        file: FileIndex,
+        name: &Reference,
+    ) -> Option<Diagnostic> {
+        let text = name.dotted();
+        let found = self.not_imported(file, name, |item| match item {
+            Item::Class(class) => Some(&class.name.text),
+            Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
+        });
+        found.map(|diagnostic| {
+            diagnostic.note(format!(
+                "the `{text}` known here is a quantity, which has no parts"
+            ))
+        })
+    }
+
+    /// "it is in a package that is not imported", if that is so.
+    fn not_imported(
+        self,
+        file: FileIndex,
+        name: &Reference,
+        declared: impl Fn(&Item) -> Option<&str>,
+    ) -> Option<Diagnostic> {
+        let text = name.dotted();
+        let mut packages: Vec<String> = Vec::new();
         for (index, (_, tree)) in self.files.iter().enumerate() {
             if index == file || self.imports_everything(file, index) {
                 continue;
@@ -148,13 +154,36 @@ impl<'a> Names<'a> {
                 && tree
                     .items
                     .iter()
-                    .any(|item| declared_name(item) == Some(name))
+                    .any(|item| declared(item) == Some(text.as_str()))
             {
-                found.push(package.dotted());
+                packages.push(package.dotted());
             }
         }
-        found.extend(self.elsewhere.get(name).into_iter().flatten().cloned());
-        found
+        packages.extend(self.elsewhere.get(&text).into_iter().flatten().cloned());
+        if packages.is_empty() {
+            return None;
+        }
+        let imports: Vec<String> = packages
+            .iter()
+            .map(|package| format!("`import {package}.*;`"))
+            .collect();
+        let quoted: Vec<String> = packages.iter().map(|name| format!("`{name}`")).collect();
+        let which = match quoted.as_slice() {
+            [_] => "which is not imported",
+            _ => "and none of them is imported",
+        };
+        let diagnostic = Diagnostic::error(
+            Code::UnknownType,
+            format!("`{text}` is in {}, {which}", quoted.join(", ")),
+        );
+        Some(
+            diagnostic
+                .label(name.span, "not known in this file")
+                .help(format!(
+                    "write {} at the top of the file",
+                    imports.join(" or ")
+                )),
+        )
     }
 
     /// The packages imported whole that have a model of that name.

@@ -36,12 +36,10 @@ fn written(args: &DocArgs) -> Result<usize, Exit> {
     for (name, html) in &pages {
         files::write(&args.out.join(name), html.as_bytes()).map_err(failed)?;
     }
-    Ok(library.files.len())
+    Ok(library.documented)
 }
 
 fn of_library(model: &ModelArgs) -> Result<Library, Exit> {
-    let packages = hyde_library::PACKAGES.iter();
-    let texts = packages.map(|p| (format!("{}.hyde", p.name), p.text.to_owned()));
     let mut library = Library {
         title: "The Hyde library".to_owned(),
         text:
@@ -51,8 +49,8 @@ fn of_library(model: &ModelArgs) -> Result<Library, Exit> {
         facts: vec![("version", env!("CARGO_PKG_VERSION").to_owned())],
         ..Library::default()
     };
-    let (sources, files) = parsed(texts.collect(), model)?;
-    (library.sources, library.files) = (sources, files);
+    (library.sources, library.files) = parsed(library_texts(), model)?;
+    library.documented = library.files.len();
     Ok(library)
 }
 
@@ -94,8 +92,18 @@ fn of_path(path: &Path, model: &ModelArgs) -> Result<Library, Exit> {
         let text = files::read_text(&place).map_err(failed)?;
         texts.push((place.to_string_lossy().into_owned(), text));
     }
+    library.documented = texts.len();
+    // What comes from the library has no page here, but a unit, and is a connector or not.
+    texts.extend(library_texts());
     (library.sources, library.files) = parsed(texts, model)?;
     Ok(library)
+}
+
+fn library_texts() -> Vec<(String, String)> {
+    let packages = hyde_library::PACKAGES.iter();
+    packages
+        .map(|package| (format!("{}.hyde", package.name), package.text.to_owned()))
+        .collect()
 }
 
 fn facts(manifest: &Manifest) -> Vec<(&'static str, String)> {

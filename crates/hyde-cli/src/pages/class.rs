@@ -405,7 +405,7 @@ fn outdented(text: &str) -> String {
 /// The effects that are for a class.
 fn fits_on(class: &Class, number: usize, library: &Library, links: &Links<'_>) -> String {
     let mut found = Vec::new();
-    for (of, (_, file)) in library.files.iter().enumerate() {
+    for (of, (_, file)) in library.files[..library.documented].iter().enumerate() {
         for item in &file.items {
             let Item::Class(effect) = item else { continue };
             if let ClassBody::Long {

@@ -4,7 +4,7 @@ use super::Library;
 use super::html::escaped;
 use hyde_syntax::ast::{Class, Import, Item, Reference, TypeItem};
 
-/// Every package that has a page.
+/// Every package, those without a page too.
 pub(super) struct Links<'l> {
     library: &'l Library,
 }
@@ -27,7 +27,7 @@ impl<'l> Links<'l> {
 
     /// The name of a package, as a link if it has a page.
     fn package(&self, name: &str) -> String {
-        let known = (0..self.library.files.len()).any(|number| self.library.name(number) == name);
+        let known = (0..self.library.documented).any(|number| self.library.name(number) == name);
         let text = escaped(name);
         if known {
             format!("<a href=\"{text}.html\">{text}</a>")
@@ -88,11 +88,11 @@ impl<'l> Links<'l> {
     fn link(&self, found: Option<(usize, &str, &str)>, name: &Reference) -> String {
         let text = escaped(&name.dotted());
         match found {
-            Some((number, word, lead)) => {
+            Some((number, word, lead)) if number < self.library.documented => {
                 let page = self.library.name(number);
                 format!("<a href=\"{page}.html#{lead}{word}\">{text}</a>")
             }
-            None => text,
+            Some(_) | None => text,
         }
     }
 

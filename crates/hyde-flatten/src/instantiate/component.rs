@@ -90,7 +90,7 @@ impl<'a> Model<'a, '_> {
                 }
                 self.instances[id]
                     .members
-                    .insert(name, Member::Instances(parts));
+                    .insert(name, Member::Instances(parts.into()));
             }
         }
     }

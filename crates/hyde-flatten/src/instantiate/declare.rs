@@ -37,6 +37,16 @@ impl<'a> Model<'a, '_> {
                     return;
                 }
             };
+            if class.is_none()
+                && declarator.is_modified()
+                && let Some(diagnostic) = self
+                    .names
+                    .component_elsewhere(item.file, &declaration.type_name)
+            {
+                self.report(diagnostic);
+                self.undeclared.insert(declarator.name.text.as_str());
+                continue;
+            }
             match (as_component, class, quantity) {
                 (true, Some((file, class)), _) => {
                     self.declare_component(id, item, declaration, declarator, file, class)
@@ -131,10 +141,7 @@ fn means_component(
         return false;
     }
     if !declarator.changes.is_empty() {
-        return declarator
-            .changes
-            .iter()
-            .any(|change| !matches!(change.target.as_word(), Some("start" | "fixed")));
+        return declarator.is_modified();
     }
     collected
         .iter()

@@ -68,6 +68,16 @@ pub struct Declarator {
     pub doc: Option<String>,
 }
 
+impl Declarator {
+    /// Whether something other than the attributes of a variable is modified: then it is a component.
+    #[must_use]
+    pub fn is_modified(&self) -> bool {
+        self.changes
+            .iter()
+            .any(|change| !matches!(change.target.as_word(), Some("start" | "fixed")))
+    }
+}
+
 /// `~ ±8%`, `~ ±0.1 [mm]`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Prior {
