@@ -250,28 +250,13 @@ impl Instant<'_, '_> {
                     if now {
                         let failure = Failure::new(FailureKind::Assert(message.clone()), self.t);
                         let failure = failure.at_origin(&reaction.origin);
-                        return Err(self.with_values(failure, &reaction.text));
+                        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+                        return Err(failure.with_values(self.state, at, &reaction.text));
                     }
                 }
             }
         }
         Ok(fired)
-    }
-
-    /// A failure with the values of what a condition, as printed, reads.
-    fn with_values(&mut self, mut failure: Box<Failure>, condition: &str) -> Box<Failure> {
-        let program = self.state.program;
-        let mut values = vec![0.0; program.rows(Function::Outputs)];
-        self.state
-            .evaluate(Function::Outputs, self.t, self.y, self.yp, &mut values);
-        let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']');
-        for word in condition.split(|c| !is_name(c)) {
-            let known = failure.unknowns.iter().any(|(name, _)| name == word);
-            if let (false, Some(output)) = (known, program.output(word)) {
-                failure.unknowns.push((word.to_owned(), values[output]));
-            }
-        }
-        failure
     }
 
     /// Carries out the assignments of reactions, all from the values before; then modes, then pins.

@@ -1,8 +1,9 @@
 //! [`Failure`]: why a run could not go on, in the words of the model.
 
 use crate::results::Results;
+use crate::state::State;
 use hyde_diag::Origin;
-use hyde_program::Program;
+use hyde_program::{Function, Program};
 
 /// The kinds of failures.
 #[derive(Clone, Debug, PartialEq)]
@@ -83,6 +84,26 @@ impl Failure {
         if !self.unknowns.iter().any(|(known, _)| *known == name) {
             self.unknowns
                 .push((name, y.get(position).copied().unwrap_or(f64::NAN)));
+        }
+        self
+    }
+
+    /// Names what a condition, as printed, reads, with the values at a time, of unknowns and their rates.
+    pub(crate) fn with_values(
+        mut self: Box<Self>,
+        state: &mut State<'_>,
+        (t, y, yp): (f64, &[f64], &[f64]),
+        condition: &str,
+    ) -> Box<Self> {
+        let program = state.program;
+        let mut values = vec![0.0; program.rows(Function::Outputs)];
+        state.evaluate(Function::Outputs, t, y, yp, &mut values);
+        let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']');
+        for word in condition.split(|c| !is_name(c)) {
+            let known = self.unknowns.iter().any(|(name, _)| name == word);
+            if let (false, Some(output)) = (known, program.output(word)) {
+                self.unknowns.push((word.to_owned(), values[output]));
+            }
         }
         self
     }

@@ -60,3 +60,12 @@ fn elements_of_a_clocked_array_are_held_apart() {
     close(end("x[1]"), 5.5, 1e-9);
     close(end("x[2]"), -11.0, 1e-9);
 }
+
+#[test]
+fn elements_of_an_array_are_delayed_apart() {
+    let late = solve("arrays", "late");
+    let end = |name: &str| *late.column(name).last().unwrap();
+    // Straight lines half a second ago, read by interpolation of the run's own steps at rtol 1e-9.
+    close(end("y[1]"), 1.5, 1e-8);
+    close(end("y[2]"), 3.0, 1e-8);
+}

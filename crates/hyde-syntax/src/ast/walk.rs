@@ -50,7 +50,9 @@ fn of_elements<'a>(elements: &'a [Element], visit: &mut dyn FnMut(&'a Expr)) {
             Element::Modes(modes) => {
                 of_arguments(&modes.arguments, visit);
                 for mode in &modes.modes {
-                    of_equations(&mode.equations, visit);
+                    for list in [&mode.equations, &mode.enter, &mode.leave] {
+                        of_equations(list, visit);
+                    }
                     for exit in &mode.exits {
                         visit(&exit.guard);
                         of_arguments(&exit.arguments, visit);
