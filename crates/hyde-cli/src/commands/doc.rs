@@ -102,7 +102,10 @@ fn of_path(path: &Path, model: &ModelArgs) -> Result<Library, Exit> {
 fn library_texts() -> Vec<(String, String)> {
     let packages = hyde_library::PACKAGES.iter();
     packages
-        .map(|package| (format!("{}.hyde", package.name), package.text.to_owned()))
+        .map(|package| {
+            let place = package.name.replace('.', "/");
+            (format!("{place}.hyde"), package.text.to_owned())
+        })
         .collect()
 }
 
