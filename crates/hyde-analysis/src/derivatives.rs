@@ -13,10 +13,12 @@ use crate::alias;
 use crate::cells::Cells;
 use crate::solve::solve_for;
 use crate::split;
-use crate::system::{Cell, System};
+use crate::system::{Cell, Equation, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_ir::{Expr, ExprId, Index, Range, VarId, VariableKind};
 use std::collections::{BTreeMap, BTreeSet};
+
+mod inline;
 
 /// `target[j + shift] = der(var[j])` for the elements j in `first..=last`.
 #[derive(Clone, Copy, Debug)]
@@ -200,62 +202,93 @@ fn shifted(index: Index, by: i32) -> Index {
 }
 
 /// Makes one differentiated variable explicit, if an equation allows: `der(v)` becomes the derivative of its value.
+///
+/// What modes fix stays a state as long as any other variable of any constraint can go.
 fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
     let differentiated = differentiated(system);
     let wanted = differentiated_at_start(system);
-    let pinned = pinned(system);
-    for number in 0..system.equations.len() {
-        if system.equations[number].range != Range::SCALAR {
+    let kept = kept(system);
+    for pinned in [false, true] {
+        for number in 0..system.equations.len() {
+            let Equation { range, lhs, rhs, .. } = system.equations[number];
+            if range != Range::SCALAR {
+                continue;
+            }
+            let Some(leaves) = state_leaves(system, lhs, rhs, &differentiated) else {
+                continue;
+            };
+            let candidates: Vec<Cell> = leaves
+                .into_iter()
+                .filter(|cell| differentiated.contains(cell) || wanted.contains(cell))
+                .filter(|cell| pinned || !kept.contains(cell))
+                .collect();
+            if expand(system, declared, number, (lhs, rhs), candidates, &differentiated, &kept) {
+                return true;
+            }
+        }
+        // Reduction in general leaves pinned variables alone, so that their constraints are looked for further.
+        if !pinned && !kept.is_empty() {
+            let states = &differentiated;
+            for (number, lhs, rhs, leaves) in inline::constraints(system, declared, states) {
+                let free = leaves.into_iter().filter(|cell| !kept.contains(cell)).collect();
+                if expand(system, declared, number, (lhs, rhs), free, states, &kept) {
+                    return true;
+                }
+            }
+        }
+    }
+    false
+}
+
+/// Makes the first candidate explicit that an equation, in the form given, can be solved for.
+fn expand(
+    system: &mut System,
+    declared: &[Vec<f64>],
+    number: usize,
+    (lhs, rhs): (ExprId, ExprId),
+    mut candidates: Vec<Cell>,
+    differentiated: &Cells,
+    kept: &BTreeSet<Cell>,
+) -> bool {
+    let in_array = |system: &System, cell: &Cell| system.flat.variables[cell.0].len.is_some();
+    let is_left = |system: &System, cell: Cell| matches!(system.flat.exprs[lhs], Expr::Var(var, _) if var == cell.0);
+    let fixed = |system: &System, cell: &Cell| {
+        system
+            .starts
+            .get(cell)
+            .is_some_and(|list| list.iter().any(|(_, fixed, _)| *fixed))
+    };
+    candidates.sort_by_key(|cell| {
+        (
+            kept.contains(cell),
+            in_array(system, cell),
+            !is_left(system, *cell),
+            fixed(system, cell),
+            *cell,
+        )
+    });
+    for cell in candidates {
+        let leaf = Expr::Var(cell.0, System::cell_index(cell));
+        let Some(value) = solve_for(&mut system.flat.exprs, lhs, rhs, leaf) else {
+            continue;
+        };
+        if system.divides_by_zero(declared, lhs, rhs, leaf) {
             continue;
         }
-        let (lhs, rhs) = (system.equations[number].lhs, system.equations[number].rhs);
-        let Some(leaves) = state_leaves(system, lhs, rhs, &differentiated) else {
+        let Some(rate) = derivative(system, value, cell, differentiated, 0) else {
             continue;
         };
-        let in_array = |system: &System, cell: &Cell| system.flat.variables[cell.0].len.is_some();
-        let mut candidates: Vec<Cell> = leaves
-            .into_iter()
-            .filter(|cell| differentiated.contains(cell) || wanted.contains(cell))
-            .collect();
-        let is_left = |system: &System, cell: Cell| matches!(system.flat.exprs[lhs], Expr::Var(var, _) if var == cell.0);
-        let fixed = |system: &System, cell: &Cell| {
-            system
-                .starts
-                .get(cell)
-                .is_some_and(|list| list.iter().any(|(_, fixed, _)| *fixed))
-        };
-        candidates.sort_by_key(|cell| {
-            (
-                pinned.contains(cell),
-                in_array(system, cell),
-                !is_left(system, *cell),
-                fixed(system, cell),
-                *cell,
-            )
+        // An element leaves the equations of its array that differentiate it.
+        if in_array(system, &cell) && !split::at_cell(system, cell) {
+            continue;
+        }
+        let equation = &mut system.equations[number];
+        equation.lhs = system.flat.exprs.add(leaf);
+        equation.rhs = value;
+        system.rewrite_all(None, |_, expr| {
+            (expr == Expr::Der(cell.0, System::cell_index(cell))).then_some(rate)
         });
-        for cell in candidates {
-            let leaf = Expr::Var(cell.0, System::cell_index(cell));
-            let Some(value) = solve_for(&mut system.flat.exprs, lhs, rhs, leaf) else {
-                continue;
-            };
-            if system.divides_by_zero(declared, lhs, rhs, leaf) {
-                continue;
-            }
-            let Some(rate) = derivative(system, value, cell, &differentiated, 0) else {
-                continue;
-            };
-            // An element leaves the equations of its array that differentiate it.
-            if in_array(system, &cell) && !split::at_cell(system, cell) {
-                continue;
-            }
-            let equation = &mut system.equations[number];
-            equation.lhs = system.flat.exprs.add(leaf);
-            equation.rhs = value;
-            system.rewrite_all(None, |_, expr| {
-                (expr == Expr::Der(cell.0, System::cell_index(cell))).then_some(rate)
-            });
-            return true;
-        }
+        return true;
     }
     false
 }
@@ -293,15 +326,27 @@ fn differentiated_at_start(system: &System) -> BTreeSet<Cell> {
         .collect()
 }
 
-/// The cells that modes fix to a constant.
-fn pinned(system: &System) -> BTreeSet<Cell> {
+/// The cells that modes fix to a constant, and those that they are the derivatives of.
+fn kept(system: &System) -> BTreeSet<Cell> {
     let branches = system.slots.iter().flat_map(|slot| &slot.branches);
     let sides = branches.flat_map(|branch| [(branch.lhs, branch.rhs), (branch.rhs, branch.lhs)]);
     let fixes = sides.filter_map(|(a, b)| {
         let (cell, _) = alias::signed_cell(system, a)?;
         system.is_parametric(b).then_some(cell)
     });
-    fixes.collect()
+    let mut found: BTreeSet<Cell> = fixes.collect();
+    for equation in &system.equations {
+        let exprs = &system.flat.exprs;
+        for (v, d) in [(equation.lhs, equation.rhs), (equation.rhs, equation.lhs)] {
+            if let (Some((cell, _)), Expr::Der(var, index)) = (alias::signed_cell(system, v), exprs[d])
+                && found.contains(&cell)
+                && let Some(below) = System::cell(var, index)
+            {
+                found.insert(below);
+            }
+        }
+    }
+    found
 }
 
 /// The variables of an equation if it has no derivative and every variable in it can be differentiated.

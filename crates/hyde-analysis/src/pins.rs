@@ -170,7 +170,8 @@ fn row_of_state(dae: &Dae, cell: Cell) -> Option<usize> {
     })
 }
 
-/// Whether an expression depends on the unknown of a row, through definitions too.
+/// Whether an expression depends on the unknown of a row, through definitions and the rows of other algebraic unknowns:
+/// along such a path each row takes over the unknown of the next, and the last one the force.
 fn depends(dae: &Dae, root: ExprId, row: usize) -> bool {
     let block = &dae.unknowns[dae.residuals[row].unknown];
     let mut pending = vec![root];
@@ -190,6 +191,15 @@ fn depends(dae: &Dae, root: ExprId, row: usize) -> bool {
                         .iter()
                         .filter(|d| d.var == var)
                         .map(|d| d.value),
+                );
+                pending.extend(
+                    dae.residuals
+                        .iter()
+                        .filter(|residual| {
+                            let block = &dae.unknowns[residual.unknown];
+                            block.var == var && !block.differential
+                        })
+                        .map(|residual| residual.value),
                 );
             }
         }
