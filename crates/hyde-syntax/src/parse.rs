@@ -159,6 +159,11 @@ impl<'a> Parser<'a> {
             .as_ref()
             .and_then(|hint| hint.expected)
             .unwrap_or(&expected);
+        if hint.is_none() && expected.contains("a name") && words::is_reserved(&found) {
+            return Diagnostic::error(Code::Syntax, format!("{found} cannot be a name"))
+                .label(span, "this is a word of the language")
+                .help("choose another name");
+        }
         let diagnostic =
             Diagnostic::error(Code::Syntax, format!("expected {expected}, found {found}"))
                 .label(span, label);

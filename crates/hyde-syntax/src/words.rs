@@ -1,6 +1,7 @@
 //! The words of the user for the rules of the grammar, so that no message speaks of `binding` or `kw_end`.
 
-use crate::grammar::Rule;
+use crate::grammar::{HydeParser, Rule};
+use pest::Parser;
 
 /// What the parser expected, in the user's words: at most a handful, each once.
 pub(crate) fn expected(rules: &[Rule]) -> String {
@@ -20,6 +21,12 @@ pub(crate) fn expected(rules: &[Rule]) -> String {
         Some((last, [])) => last.clone(),
         Some((last, rest)) => format!("{} or {last}", rest.join(", ")),
     }
+}
+
+/// Whether what was found, in back quotes, is a word of the language.
+pub(crate) fn is_reserved(found: &str) -> bool {
+    let token = found.trim_matches('`');
+    HydeParser::parse(Rule::keyword, token).is_ok()
 }
 
 fn word(rule: Rule) -> String {
