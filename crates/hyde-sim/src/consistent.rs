@@ -55,6 +55,44 @@ impl Consistent {
         if self.solver.is_none() {
             return Ok(());
         }
+        let (start, rates) = (y.to_vec(), yp.to_vec());
+        let Err(failure) = self.newton(state, t, y, yp, at_start) else {
+            return Ok(());
+        };
+        let singular = matches!(
+            failure.kind,
+            FailureKind::Inconsistent {
+                singular: Some(_),
+                ..
+            }
+        );
+        if at_start && singular {
+            // A product of unknowns that both start at 0, such as resistance and current, says nothing there: look from
+            // elsewhere once.
+            y.copy_from_slice(&start);
+            yp.copy_from_slice(&rates);
+            for (index, value) in y.iter_mut().enumerate() {
+                if !state.differential[index] && value.abs() < f64::MIN_POSITIVE {
+                    *value = 1.0;
+                }
+            }
+            if self.newton(state, t, y, yp, at_start).is_ok() {
+                return Ok(());
+            }
+            y.copy_from_slice(&start);
+            yp.copy_from_slice(&rates);
+        }
+        Err(failure)
+    }
+
+    fn newton(
+        &mut self,
+        state: &mut State<'_>,
+        t: f64,
+        y: &mut [f64],
+        yp: &mut [f64],
+        at_start: bool,
+    ) -> Result<(), Box<Failure>> {
         state.apply_pins(y, yp);
         self.evaluate(state, t, y, yp)?;
         let mut last = f64::INFINITY;
