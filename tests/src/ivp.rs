@@ -7,7 +7,7 @@
 //! // short: …                       why six digits are not reached; such a problem is not counted
 //! ```
 
-use crate::{Example, root};
+use crate::{Example, folder};
 use hyde_compiler::Backend;
 use hyde_experiment::{Options, RunError};
 use hyde_program::{Constant, Program};
@@ -90,15 +90,8 @@ pub fn reference(data: &Path) -> Result<Option<Reference>, String> {
 ///
 /// # Errors
 /// The folder cannot be read, or a file does not say what it is set beside.
-#[allow(clippy::disallowed_methods, reason = "tests list their models")]
 pub fn problems() -> Result<Vec<Problem>, String> {
-    let folder = root().join("tests/models/ivp");
-    let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    let mut paths: Vec<PathBuf> = entries
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.extension().is_some_and(|ending| ending == "hyde"))
-        .collect();
-    paths.sort();
+    let paths = folder::models("tests/models/ivp")?;
     paths.into_iter().map(Problem::read).collect()
 }
 

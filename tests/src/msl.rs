@@ -14,7 +14,7 @@
 mod compare;
 mod notes;
 
-use crate::{Example, root};
+use crate::{Example, folder};
 use compare::{Curve, Fit};
 use hyde_experiment::Options;
 use hyde_sim::EventKind;
@@ -87,15 +87,8 @@ pub fn reference(data: &Path) -> Option<PathBuf> {
 ///
 /// # Errors
 /// The folder cannot be read, or a file does not say what it is set beside.
-#[allow(clippy::disallowed_methods, reason = "tests list their models")]
 pub fn cases() -> Result<Vec<Case>, String> {
-    let folder = root().join("tests/models/msl");
-    let entries = std::fs::read_dir(&folder).map_err(|e| format!("{}: {e}", folder.display()))?;
-    let mut paths: Vec<PathBuf> = entries
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.extension().is_some_and(|ending| ending == "hyde"))
-        .collect();
-    paths.sort();
+    let paths = folder::models("tests/models/msl")?;
     paths.into_iter().map(Case::read).collect()
 }
 

@@ -329,6 +329,12 @@ fn repair(
     if same(ratio, Dimension::DIMENSIONLESS.divide(Dimension::TIME)) {
         return Some("the first is a rate of the second: take `der(…)` of the second, or multiply the first by a time".to_owned());
     }
+    if same(a.multiply(b), Dimension::DIMENSIONLESS) {
+        return Some(format!(
+            "a unit belongs to the number before it alone: write `20 [{0}]/3`, not `20/3 [{0}]`",
+            a.usual_unit()
+        ));
+    }
     Some(format!(
         "the first divided by the second is {}: a factor of that dimension is missing or too many",
         short(ratio)

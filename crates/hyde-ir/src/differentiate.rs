@@ -92,7 +92,7 @@ impl ExprArena {
                     let Some(factor) = self.factor(id, position) else {
                         continue;
                     };
-                    self.times(adjoint, factor)
+                    self.times_in_branch(adjoint, factor)
                 };
                 let sum = match adjoints.get(&child) {
                     Some(&old) => self.plus(old, term),
@@ -103,6 +103,24 @@ impl ExprArena {
         }
         found.reverse();
         found
+    }
+
+    /// A product whose first factor may be the zero of a branch that is not taken: there the second one may be infinite, as
+    /// the derivative of an exponential beyond the range it is for, and zero times infinity is no number.
+    fn times_in_branch(&mut self, adjoint: ExprId, factor: ExprId) -> ExprId {
+        if let Expr::If(c, a, b) = self[adjoint]
+            && !self.is_parametric(factor)
+        {
+            if self.is_constant(b, 0.0) {
+                let product = self.times_in_branch(a, factor);
+                return self.if_else(c, product, b);
+            }
+            if self.is_constant(a, 0.0) {
+                let product = self.times_in_branch(b, factor);
+                return self.if_else(c, a, product);
+            }
+        }
+        self.times(adjoint, factor)
     }
 
     /// The partial derivative of node `id` by its child at `position`; `None` for zero.
