@@ -9,11 +9,7 @@ use hyde_syntax::ast::{Class, ClassBody, ClassKind, Declaration, Element, File, 
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The folders whose models use the library.
-const FOLDERS: [&str; 3] = [
-    "tests/models/library",
-    "tests/models/msl",
-    "tests/models",
-];
+const FOLDERS: [&str; 3] = ["tests/models/library", "tests/models/msl", "tests/models"];
 
 /// A model of the library.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -209,7 +205,8 @@ fn component(
             | Element::Replace(..)
             | Element::Signature(_)
             | Element::Confounds(_)
-            | Element::Measure(_) => {}
+            | Element::Measure(_)
+            | Element::Account(..) => {}
         }
     }
     found
@@ -237,7 +234,12 @@ fn mentions(
             Element::Declaration(declaration) => {
                 written.push(declaration.type_name.dotted());
                 for change in declaration.declarators.iter().flat_map(|d| &d.changes) {
-                    written.extend(change.redeclare.as_ref().map(hyde_syntax::ast::Reference::dotted));
+                    written.extend(
+                        change
+                            .redeclare
+                            .as_ref()
+                            .map(hyde_syntax::ast::Reference::dotted),
+                    );
                 }
             }
             Element::Extends(base, _) => written.push(base.dotted()),
@@ -257,7 +259,8 @@ fn mentions(
             | Element::Add(_)
             | Element::Signature(_)
             | Element::Confounds(_)
-            | Element::Measure(_) => {}
+            | Element::Measure(_)
+            | Element::Account(..) => {}
         }
     }
     let found = written

@@ -17,7 +17,11 @@ fn what_is_expected_of_components_holds() {
 #[test]
 fn every_component_is_tried_out() {
     let unused = library::unused().unwrap();
-    assert!(unused.is_empty(), "no test model uses {}", unused.join(", "));
+    assert!(
+        unused.is_empty(),
+        "no test model uses {}",
+        unused.join(", ")
+    );
 }
 
 /// Each model of a package is in a table of the chapter below the package's heading; a row names its ends, every value that
@@ -39,7 +43,9 @@ fn the_book_lists_every_component_as_it_is() {
             continue;
         };
         let words = row[1..row.len() - 1].join(" ");
-        let words: Vec<&str> = words.split(|c: char| !c.is_alphanumeric() && c != '_').collect();
+        let words: Vec<&str> = words
+            .split(|c: char| !c.is_alphanumeric() && c != '_')
+            .collect();
         for name in &component.required {
             if !words.contains(&name.as_str()) {
                 wrong.push(format!("{place} needs `{name}`"));
@@ -59,7 +65,9 @@ fn the_book_lists_every_component_as_it_is() {
             let names = cells.split('`').skip(1).step_by(2);
             for name in names.flat_map(str::split_whitespace) {
                 let first = name.split('.').next().unwrap_or(name);
-                let known = of_row.iter().any(|c| c.declared.contains(first) || c.name == first);
+                let known = of_row
+                    .iter()
+                    .any(|c| c.declared.contains(first) || c.name == first);
                 if !known {
                     wrong.push(format!("{package}: {} has no `{name}`", row[0]));
                 }

@@ -210,7 +210,9 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
     let kept = kept(system);
     for pinned in [false, true] {
         for number in 0..system.equations.len() {
-            let Equation { range, lhs, rhs, .. } = system.equations[number];
+            let Equation {
+                range, lhs, rhs, ..
+            } = system.equations[number];
             if range != Range::SCALAR {
                 continue;
             }
@@ -222,7 +224,15 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
                 .filter(|cell| differentiated.contains(cell) || wanted.contains(cell))
                 .filter(|cell| pinned || !kept.contains(cell))
                 .collect();
-            if expand(system, declared, number, (lhs, rhs), candidates, &differentiated, &kept) {
+            if expand(
+                system,
+                declared,
+                number,
+                (lhs, rhs),
+                candidates,
+                &differentiated,
+                &kept,
+            ) {
                 return true;
             }
         }
@@ -230,7 +240,10 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
         if !pinned && !kept.is_empty() {
             let states = &differentiated;
             for (number, lhs, rhs, leaves) in inline::constraints(system, declared, states) {
-                let free = leaves.into_iter().filter(|cell| !kept.contains(cell)).collect();
+                let free = leaves
+                    .into_iter()
+                    .filter(|cell| !kept.contains(cell))
+                    .collect();
                 if expand(system, declared, number, (lhs, rhs), free, states, &kept) {
                     return true;
                 }
@@ -338,7 +351,8 @@ fn kept(system: &System) -> BTreeSet<Cell> {
     for equation in &system.equations {
         let exprs = &system.flat.exprs;
         for (v, d) in [(equation.lhs, equation.rhs), (equation.rhs, equation.lhs)] {
-            if let (Some((cell, _)), Expr::Der(var, index)) = (alias::signed_cell(system, v), exprs[d])
+            if let (Some((cell, _)), Expr::Der(var, index)) =
+                (alias::signed_cell(system, v), exprs[d])
                 && found.contains(&cell)
                 && let Some(below) = System::cell(var, index)
             {
