@@ -9,7 +9,12 @@ use hyde_syntax::ast::{Class, ClassBody, ClassKind, Declaration, Element, File, 
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The folders whose models use the library.
-const FOLDERS: [&str; 3] = ["tests/models/library", "tests/models/msl", "tests/models"];
+const FOLDERS: [&str; 4] = [
+    "tests/models/library",
+    "tests/models/msl",
+    "tests/models/paper",
+    "tests/models",
+];
 
 /// A model of the library.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -245,9 +250,11 @@ fn mentions(
             Element::Extends(base, _) => written.push(base.dotted()),
             Element::Replace(_, by, _) => written.push(by.dotted()),
             Element::Clocked(clocked) => {
-                written.extend(clocked.elements.iter().filter_map(|inner| match inner {
-                    Element::Declaration(declaration) => Some(declaration.type_name.dotted()),
-                    _ => None,
+                written.extend(clocked.elements.iter().filter_map(|inner| {
+                    if let Element::Declaration(declaration) = inner {
+                        return Some(declaration.type_name.dotted());
+                    }
+                    None
                 }));
             }
             Element::Domain(_)

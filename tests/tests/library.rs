@@ -77,13 +77,14 @@ fn the_book_lists_every_component_as_it_is() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// What stands below `## NAME` up to the next such heading.
+/// What stands below `## NAME`, or `### NAME` for a package within another, up to the next heading.
 fn section<'a>(text: &'a str, name: &str) -> &'a str {
-    let heading = format!("\n## {name}\n");
-    let Some((_, rest)) = text.split_once(&heading) else {
+    let level = if name.contains('.') { "###" } else { "##" };
+    let Some((_, rest)) = text.split_once(&format!("\n{level} {name}\n")) else {
         return "";
     };
-    rest.split("\n## ").next().unwrap_or(rest)
+    let end = rest.find("\n## ").into_iter().chain(rest.find("\n### "));
+    &rest[..end.min().unwrap_or(rest.len())]
 }
 
 /// The cells of the rows of a text's tables.

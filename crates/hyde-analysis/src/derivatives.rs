@@ -14,11 +14,12 @@ use crate::cells::Cells;
 use crate::solve::solve_for;
 use crate::split;
 use crate::system::{Cell, Equation, System};
-use hyde_diag::{Code, Diagnostic, Diagnostics};
+use hyde_diag::Diagnostics;
 use hyde_ir::{Expr, ExprId, Index, Range, VarId, VariableKind};
 use std::collections::{BTreeMap, BTreeSet};
 
 mod inline;
+mod inputs;
 
 /// `target[j + shift] = der(var[j])` for the elements j in `first..=last`.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +43,7 @@ pub(crate) fn simplify(system: &mut System, diagnostics: &mut Diagnostics) {
             break;
         }
     }
-    refuse_derivatives_of_inputs(system, diagnostics);
+    inputs::refuse(system, diagnostics);
 }
 
 /// Replaces `der(x)` by the variable that an equation `v = der(x)` names, everywhere else.
@@ -482,40 +483,4 @@ pub(crate) fn by_rates(system: &mut System, id: ExprId, rates: &BTreeMap<Cell, E
         };
         rates.get(&System::cell(var, index)?).copied()
     })
-}
-
-fn refuse_derivatives_of_inputs(system: &System, diagnostics: &mut Diagnostics) {
-    for equation in &system.equations {
-        for id in system.flat.exprs.below(&[equation.lhs, equation.rhs]) {
-            let Expr::Der(var, _) = system.flat.exprs[id] else {
-                continue;
-            };
-            let name = &system.flat.variables[var].name;
-            let (what, help) = match system.flat.variables[var].kind {
-                VariableKind::Column(..) => (
-                    format!("the recorded column `{name}`"),
-                    "drive the model by a force or through a spring, or give the velocity as a stimulus too",
-                ),
-                VariableKind::Delayed(_) => (
-                    format!("`{name}`"),
-                    "drive the model by a force or through a spring: what is delayed may jump, and has no derivative there",
-                ),
-                VariableKind::Continuous
-                | VariableKind::Discrete
-                | VariableKind::Clocked(_)
-                | VariableKind::Held(..)
-                | VariableKind::Reduction(_) => continue,
-            };
-            let mut diagnostic = Diagnostic::error(
-                Code::Constrained,
-                format!("the derivative of {what} is needed"),
-            )
-            .label(equation.origin.span, "by this equation");
-            if let VariableKind::Delayed(delay) = system.flat.variables[var].kind {
-                let span = system.flat.delays[delay].origin.span;
-                diagnostic = diagnostic.label(span, "delayed here");
-            }
-            diagnostics.push(diagnostic.help(help));
-        }
-    }
 }

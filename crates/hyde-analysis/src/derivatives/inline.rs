@@ -126,7 +126,10 @@ fn variables(system: &System, number: usize) -> Option<Vec<Cell>> {
             _ if derivative => return None,
             VariableKind::Continuous => cells.push(System::cell(var, index)?),
             VariableKind::Discrete | VariableKind::Held(..) => {}
-            VariableKind::Clocked(_) | VariableKind::Column(..) | VariableKind::Reduction(_) => {
+            VariableKind::Clocked(_)
+            | VariableKind::Column(..)
+            | VariableKind::Delayed(_)
+            | VariableKind::Reduction(_) => {
                 return None;
             }
         }
