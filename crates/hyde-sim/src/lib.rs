@@ -28,11 +28,15 @@ mod integrator;
 mod meter;
 mod operating_point;
 mod results;
+mod root_rates;
 mod selection;
 mod setup;
 mod simulation;
+mod slides;
+mod sliding;
 mod start_modes;
 mod state;
+mod time_spent;
 
 pub use failure::{Failure, FailureKind};
 pub use inputs::InputError;
