@@ -138,7 +138,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
         FailureKind::Zeno { cause, sum_s } => (
             Code::TooManyEvents,
             format!(
-                "`{cause}` comes true faster and faster {at}: infinitely often before {} s",
+                "`{cause}` changes faster and faster {at}: infinitely often before about {} s",
                 hyde_units::significant(*sum_s, 7)
             ),
             "add a mode of rest that is entered once it is slow enough, such as `mode lying { v = 0; exit … }`",
@@ -211,6 +211,18 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             None => hyde_units::significant(*value, 6),
         };
         diagnostic = diagnostic.note(format!("`{name}` is {} there", value.trim_end()));
+    }
+    if let FailureKind::Zeno { cause, .. } = &failure.kind {
+        let recent = failure.results.events.iter().rev().take(4);
+        let mut others: Vec<String> = recent
+            .filter(|event| event.cause != *cause)
+            .map(|event| format!("`{}`", event.cause))
+            .collect();
+        others.sort();
+        others.dedup();
+        if !others.is_empty() {
+            diagnostic = diagnostic.note(format!("in turn with {}", others.join(", ")));
+        }
     }
     if let Some(event) = failure.results.events.last() {
         diagnostic = diagnostic.note(format!(

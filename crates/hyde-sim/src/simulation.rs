@@ -214,7 +214,7 @@ impl<'a> Simulation<'a> {
             }
             let from = self.integrator.step(target)?;
             if let Some(kind) = self.hurry.no_way(self.integrator.t, self.setup) {
-                return Err(Failure::new(kind, self.integrator.t));
+                return Err(self.no_way(kind, target));
             }
             let crossing =
                 guards::first_change(&mut self.integrator, &mut self.consistent, &watched, from);
@@ -409,6 +409,25 @@ impl<'a> Simulation<'a> {
         });
         if let Some(meter) = &mut self.meter {
             meter.stretch(to - from, &outputs);
+        }
+    }
+
+    /// Steps that lead nowhere end the run with the unknown whose rate jumps most from one step to the next.
+    fn no_way(&mut self, kind: FailureKind, target: f64) -> Box<Failure> {
+        let before = self.integrator.yp.clone();
+        if let Err(failure) = self.integrator.step(target) {
+            return failure;
+        }
+        let now = &self.integrator.yp;
+        let jumps = now
+            .iter()
+            .zip(&before)
+            .map(|(now, before)| (now - before).abs());
+        let most = jumps.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        let failure = Failure::new(kind, self.integrator.t);
+        match most {
+            Some((row, _)) => failure.at_row(self.program, row, &self.integrator.y),
+            None => failure,
         }
     }
 
