@@ -298,8 +298,8 @@ impl State<'_> {
             let mut best: Option<(f64, usize, usize)> = None;
             for &slide in &free {
                 let columns = self.gradient(self.slides[slide].surface, t, y, yp);
-                for row in 0..y.len() {
-                    let size = differences[slide][row].abs();
+                for (row, difference) in differences[slide].iter().enumerate() {
+                    let size = difference.abs();
                     let room = || {
                         let mut columns = columns.iter();
                         columns
