@@ -165,9 +165,10 @@ impl Case {
                             from,
                             to,
                         } if automaton == number => Some((event.t, from, to)),
-                        EventKind::Transition { .. } | EventKind::When | EventKind::Relation(_) => {
-                            None
-                        }
+                        EventKind::Transition { .. }
+                        | EventKind::When
+                        | EventKind::Relation(_)
+                        | EventKind::Slide { .. } => None,
                     });
                     let switches: Vec<(f64, usize, usize)> = switches.collect();
                     let times = &results.mode_times[number];

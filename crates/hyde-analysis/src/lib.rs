@@ -36,12 +36,14 @@ mod pins;
 mod reduce;
 mod relations;
 mod segments;
+mod sliding;
 mod solve;
 mod split;
 mod system;
 mod unroll;
 
 pub use partials::{TickWrt, parameter_partials, rows, tick_partials};
+pub use sliding::sliding_cells;
 
 use hyde_diag::Diagnostics;
 use hyde_ir::{Dae, FlatModel};

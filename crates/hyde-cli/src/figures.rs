@@ -44,35 +44,48 @@ pub(crate) fn strip(program: &Program, results: &Results, stop_s: f64) -> Option
                 label: automaton.name.clone(),
                 ..EventRow::default()
             };
-            let (mut from, mut mode) = (results.time.first().copied().unwrap_or(0.0), None);
+            let label = |mode: Option<usize>| {
+                mode.map_or_else(
+                    || "sliding".to_owned(),
+                    |mode| automaton.modes[mode].clone(),
+                )
+            };
+            let mut from = results.time.first().copied().unwrap_or(0.0);
+            let mut mode: Option<String> = None;
             for event in &results.events {
-                let EventKind::Transition {
-                    automaton: of,
-                    from: before,
-                    to,
-                } = event.kind
-                else {
-                    continue;
+                let (of, before, after) = match event.kind {
+                    EventKind::Transition {
+                        automaton,
+                        from,
+                        to,
+                    } => (automaton, Some(from), Some(to)),
+                    EventKind::Slide {
+                        automaton: Some(automaton),
+                        before,
+                        after,
+                    } => (automaton, before, after),
+                    EventKind::Slide { .. } | EventKind::When | EventKind::Relation(_) => continue,
                 };
                 if of == number {
                     row.spans.push(Span {
                         from,
                         to: event.t,
-                        label: automaton.modes[before].clone(),
+                        label: mode.take().unwrap_or_else(|| label(before)),
                     });
-                    (from, mode) = (event.t, Some(to));
+                    (from, mode) = (event.t, Some(label(after)));
                 }
             }
             // Without an event it stayed where it spent its time.
             let last = mode.or_else(|| {
                 let times = results.mode_times.get(number)?;
-                times.iter().position(|time| *time > 0.0)
+                let only = times.iter().position(|time| *time > 0.0)?;
+                Some(label(Some(only)))
             });
             if let Some(last) = last {
                 row.spans.push(Span {
                     from,
                     to: end,
-                    label: automaton.modes[last].clone(),
+                    label: last,
                 });
             }
             row

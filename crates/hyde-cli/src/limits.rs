@@ -131,6 +131,13 @@ fn order((_, run): &(Compiled, Run)) -> Vec<(usize, usize, usize)> {
             } => (automaton, from, to),
             EventKind::When => (usize::MAX, 0, 0),
             EventKind::Relation(truth) => (usize::MAX, 1, usize::from(truth)),
+            EventKind::Slide {
+                automaton, after, ..
+            } => (
+                automaton.unwrap_or(usize::MAX),
+                2,
+                after.unwrap_or(usize::MAX),
+            ),
         })
         .collect()
 }

@@ -102,7 +102,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
         FailureKind::Solver(reason) => (
             Code::SolverFailed,
             format!("the solver could not go on {at}: {reason}"),
-            "look for a jump that is no event, or a stiffness beyond the others",
+            "look for a jump that is no event, as of an `if` in an array equation or below `noEvent`, or for a stiffness beyond the others",
         ),
         FailureKind::NotFinite => (
             Code::NotFinite,
@@ -117,12 +117,38 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
                     "events follow each other without end {at}: {}",
                     list.join(", ")
                 ),
-                "each of these conditions makes the other true: leave a gap between them",
+                if causes.len() > 1 {
+                    "each of these conditions makes the other true: leave a gap between them"
+                } else {
+                    "what happens there leaves the condition true: add a mode of rest, such as `mode lying { v = 0; exit … }`"
+                },
             )
         }
-        FailureKind::TooManyEvents => (
+        FailureKind::CannotSlide(causes, why) => {
+            let list: Vec<String> = causes.iter().map(|cause| format!("`{cause}`")).collect();
+            (
+                Code::Chattering,
+                format!(
+                    "both sides of {} lead back to it {at}, and {why}",
+                    list.join(" and ")
+                ),
+                "give the switch a width, two thresholds with a gap between them, or a mode of its own for staying there",
+            )
+        }
+        FailureKind::Zeno { cause, sum_s } => (
             Code::TooManyEvents,
-            format!("events come faster and faster {at}"),
+            format!(
+                "`{cause}` changes faster and faster {at}: infinitely often before about {} s",
+                hyde_units::significant(*sum_s, 7)
+            ),
+            "add a mode of rest that is entered once it is slow enough, such as `mode lying { v = 0; exit … }`",
+        ),
+        FailureKind::TooManyEvents { count, span_s } => (
+            Code::TooManyEvents,
+            format!(
+                "events come {count} times within {} s {at}",
+                hyde_units::significant(*span_s, 2)
+            ),
             "add a mode that rests where these conditions meet, such as `mode stuck { v = 0; exit … }`",
         ),
         FailureKind::Impact(name, from, to) => (
@@ -159,7 +185,10 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
         seen.push(origin.span);
         let instance = origin.instance.as_str();
         let what = match failure.kind {
-            FailureKind::Chattering(_) | FailureKind::TooManyEvents => "this condition",
+            FailureKind::Chattering(_)
+            | FailureKind::CannotSlide(..)
+            | FailureKind::Zeno { .. }
+            | FailureKind::TooManyEvents { .. } => "this condition",
             FailureKind::Assert(_) => "does not hold",
             FailureKind::Inconsistent { .. }
             | FailureKind::Solver(_)
@@ -182,6 +211,18 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             None => hyde_units::significant(*value, 6),
         };
         diagnostic = diagnostic.note(format!("`{name}` is {} there", value.trim_end()));
+    }
+    if let FailureKind::Zeno { cause, .. } = &failure.kind {
+        let recent = failure.results.events.iter().rev().take(4);
+        let mut others: Vec<String> = recent
+            .filter(|event| event.cause != *cause)
+            .map(|event| format!("`{}`", event.cause))
+            .collect();
+        others.sort();
+        others.dedup();
+        if !others.is_empty() {
+            diagnostic = diagnostic.note(format!("in turn with {}", others.join(", ")));
+        }
     }
     if let Some(event) = failure.results.events.last() {
         diagnostic = diagnostic.note(format!(

@@ -45,6 +45,9 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
             .collect();
         let _ = writeln!(out, "  {:<24} {}", automaton.name, parts.join(", "));
     }
+    for (cause, time) in &run.results.sliding {
+        let _ = writeln!(out, "  {:<24} sliding {} s", cause, significant(*time, 3));
+    }
     if !run.channels.is_empty() {
         let _ = writeln!(
             out,
@@ -155,6 +158,12 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
             (automaton.name.clone(), Value::Object(times))
         })
         .collect();
+    let sliding: Map<String, Value> = run
+        .results
+        .sliding
+        .iter()
+        .map(|(cause, time)| (cause.clone(), json!(time)))
+        .collect();
     let mut summary = json!({
         "ok": true,
         "hyde": env!("CARGO_PKG_VERSION"),
@@ -180,6 +189,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
             "ticks": statistics.ticks,
         },
         "mode_seconds": modes,
+        "sliding_seconds": sliding,
         "channels": channels,
         "measures": measures,
         "expectations": expectations,
@@ -225,5 +235,19 @@ pub(crate) fn described(compiled: &Compiled, event: &Event) -> (String, String, 
         }
         EventKind::When => ("when".to_owned(), String::new(), String::new()),
         EventKind::Relation(truth) => ("if".to_owned(), (!truth).to_string(), truth.to_string()),
+        EventKind::Slide {
+            automaton,
+            before,
+            after,
+        } => {
+            let automaton = automaton.map(|number| &compiled.program.automata[number]);
+            let side = |side: Option<usize>| match (side, automaton) {
+                (None, _) => "sliding".to_owned(),
+                (Some(mode), Some(automaton)) => automaton.modes[mode].clone(),
+                (Some(truth), None) => (truth != 0).to_string(),
+            };
+            let whose = automaton.map_or("if", |automaton| automaton.name.as_str());
+            (whose.to_owned(), side(before), side(after))
+        }
     }
 }

@@ -200,6 +200,10 @@ impl Kernels for Compiled {
         entries(self.dae.partials(in_dae(function)))
     }
 
+    fn sliding_cells(&self) -> Vec<(usize, usize)> {
+        hyde_analysis::sliding_cells(&self.dae)
+    }
+
     fn partials(
         &self,
         function: Function,

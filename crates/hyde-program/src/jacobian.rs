@@ -28,15 +28,16 @@ pub struct Jacobian {
 }
 
 impl Jacobian {
-    /// The pattern of `n` unknowns from the derivatives in the order the kernel writes them. Every diagonal entry is part
-    /// of the pattern, for in some mode it is the pivot.
+    /// The pattern of `n` unknowns from the derivatives in the order the kernel writes them, with more cells (row, column)
+    /// that some mode of the run fills. Every diagonal entry is part of the pattern, for in some mode it is the pivot.
     #[must_use]
-    pub fn new(n: usize, entries: &[JacobianEntry]) -> Self {
+    pub fn new(n: usize, entries: &[JacobianEntry], more: &[(usize, usize)]) -> Self {
         let mut cells: Vec<(usize, usize)> = entries
             .iter()
             .map(|entry| (entry.column, entry.row))
             .collect();
         cells.extend((0..n).map(|diagonal| (diagonal, diagonal)));
+        cells.extend(more.iter().map(|&(row, column)| (column, row)));
         cells.sort_unstable();
         cells.dedup();
         let mut column_starts = vec![0_i64; n + 1];
@@ -72,6 +73,28 @@ impl Jacobian {
             runs,
             positions,
         }
+    }
+
+    /// Position of an entry of the matrix; `None` where the pattern has none.
+    #[must_use]
+    pub fn position(&self, row: usize, column: usize) -> Option<usize> {
+        let at = |start: i64| usize::try_from(start).ok();
+        let (first, end) = (
+            at(*self.column_starts.get(column)?)?,
+            at(*self.column_starts.get(column + 1)?)?,
+        );
+        let row = i64::try_from(row).ok()?;
+        let inside = self.rows[first..end].binary_search(&row).ok()?;
+        Some(first + inside)
+    }
+
+    /// The entries of a row: column and position.
+    #[must_use]
+    pub fn row(&self, row: usize) -> Vec<(usize, usize)> {
+        let columns = 0..self.column_starts.len().saturating_sub(1);
+        columns
+            .filter_map(|column| Some((column, self.position(row, column)?)))
+            .collect()
     }
 
     /// Number of entries of the matrix.
@@ -133,8 +156,11 @@ mod tests {
                 entry(0, 0, false),
                 entry(1, 0, false),
             ],
+            &[(0, 1), (1, 1)],
         );
         assert_eq!(jacobian.column_starts, vec![0, 2, 4]);
+        assert_eq!(jacobian.row(1), vec![(0, 1), (1, 3)]);
+        assert_eq!(jacobian.position(0, 2), None);
         assert_eq!(jacobian.rows, vec![0, 1, 0, 1]);
         let mut matrix = vec![9.0; 4];
         jacobian.assemble(&[5.0, 2.0, 3.0, 7.0], 1.0, 10.0, &mut matrix);

@@ -131,6 +131,11 @@ pub trait Kernels: Send + Sync {
     /// The places of a function's derivatives, in the order in which [`Kernels::partials`] writes them.
     fn entries(&self, function: Function) -> Vec<PartialEntry>;
 
+    /// Entries of the Jacobian, row and column, that sliding on switching surfaces may take beside the residual's own.
+    fn sliding_cells(&self) -> Vec<(usize, usize)> {
+        Vec::new()
+    }
+
     /// The derivatives of a function, in the order of [`Kernels::entries`].
     fn partials(
         &self,

@@ -193,7 +193,7 @@ impl Program {
     pub fn jacobian(&self) -> &Jacobian {
         self.derivatives
             .jacobian
-            .get_or_init(|| Self::jacobian_of(self.n_unknowns, self.partials(Function::Residual)))
+            .get_or_init(|| self.jacobian_of(self.partials(Function::Residual)))
     }
 
     /// Number of values of a function.
@@ -290,7 +290,7 @@ impl Program {
     /// The Jacobian's pattern from the derivatives of the residual: by unknowns and their derivatives, then by delayed
     /// values, which are no entries.
     #[must_use]
-    fn jacobian_of(n_unknowns: usize, partials: &[PartialEntry]) -> Jacobian {
+    fn jacobian_of(&self, partials: &[PartialEntry]) -> Jacobian {
         let entries: Vec<JacobianEntry> = partials
             .iter()
             .filter_map(|entry| match entry.wrt {
@@ -307,6 +307,6 @@ impl Program {
                 Wrt::Parameter(_) | Wrt::Delayed(_) | Wrt::Time => None,
             })
             .collect();
-        Jacobian::new(n_unknowns, &entries)
+        Jacobian::new(self.n_unknowns, &entries, &self.kernels.sliding_cells())
     }
 }

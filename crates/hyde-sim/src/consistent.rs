@@ -164,6 +164,19 @@ impl Consistent {
         Some((dy, dyp))
     }
 
+    /// Consistent values while sliding, where the weights follow from the rates: those of an interpolant are less exact than
+    /// its values. Where there are none, and else, the values stay.
+    pub(crate) fn refine(&mut self, state: &mut State<'_>, t: f64, y: &mut [f64], yp: &mut [f64]) {
+        if state.slides.is_empty() {
+            return;
+        }
+        let (before, rates) = (y.to_vec(), yp.to_vec());
+        if self.solve(state, t, y, yp, false).is_err() {
+            y.copy_from_slice(&before);
+            yp.copy_from_slice(&rates);
+        }
+    }
+
     fn evaluate(
         &mut self,
         state: &mut State<'_>,

@@ -6,10 +6,10 @@
 //! starts anew. What a delayed value does to others is seen as theirs, so chains and loops of delays need no rule.
 
 use crate::consistent::Consistent;
-use crate::events::rates_at;
 use crate::failure::Failure;
 use crate::history::{History, PLACES, Step};
 use crate::integrator::Integrator;
+use crate::root_rates::rates_at;
 use crate::setup::same_instant;
 use hyde_program::{Function, Program};
 
@@ -142,7 +142,7 @@ pub(crate) fn limits(
     state.evaluate(Function::Delayed, t, &y, &yp, &mut values);
     let slopes = consistent
         .and_then(|consistent| rates_at(Function::Delayed, state, consistent, t, &y, &yp))
-        .map_or_else(|| vec![0.0; count], |(rates, _)| rates);
+        .map_or_else(|| vec![0.0; count], |(rates, ..)| rates);
     Some(Limits { values, slopes })
 }
 

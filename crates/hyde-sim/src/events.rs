@@ -15,10 +15,13 @@ use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
 use crate::guards::{current_mode, is_active};
 use crate::results::{Event, EventKind};
+use crate::root_rates::{moment, root_rates, rounding};
 use crate::state::State;
-use hyde_program::{Function, ReactionKind, RelationUse, Target, Wrt};
+use hyde_program::{Function, ReactionKind, RelationUse, Target};
 
 const MAX_ROUNDS: usize = 50;
+/// Rounds at the start in which relations alone may change.
+const MAX_SETTLING: usize = 20;
 /// How deep guards may ask for each other.
 const MAX_NESTED: usize = 8;
 
@@ -29,6 +32,8 @@ pub(crate) struct Instant<'s, 'a> {
     pub(crate) t: f64,
     pub(crate) y: &'s mut Vec<f64>,
     pub(crate) yp: &'s mut Vec<f64>,
+    /// The largest value of each unknown so far.
+    pub(crate) largest: &'s [f64],
     /// Conditions as they were, to tell which become true.
     pub(crate) conditions: &'s mut Vec<bool>,
     pub(crate) log: &'s mut Vec<Event>,
@@ -49,22 +54,37 @@ impl Instant<'_, '_> {
         let mut changed = false;
         let mut seen: Vec<Vec<u64>> = Vec::new();
         let mut causes: Vec<String> = Vec::new();
-        // Guards that brought the run here, with their root functions' values: zero but for the location's rounding.
-        let mut located: Vec<(usize, f64)> = Vec::new();
+        // Guards that brought the run here, now or when they were true last, with their root functions' values: zero but for
+        // the location's rounding.
+        let mut located: Vec<(usize, f64)> = self.state.located.clone();
         let (mut turned, mut looked_closer) = (Vec::new(), false);
-        for _ in 0..MAX_ROUNDS {
+        // Relations of equations that changed at this instant and may have to slide.
+        let mut switched: Vec<usize> = Vec::new();
+        for round in 0..MAX_ROUNDS {
+            changed |= self.leave_slides(&mut located)?;
             let (truths, roots) = self.truths(scheduled, &located)?;
             if seen.is_empty() {
-                located = self.guards_that_became_true(&truths, &roots);
+                let now = self.guards_that_became_true(&truths, &roots);
+                self.remember_located(&now);
+                located.extend(now);
             }
             turned.extend(self.true_guards(&truths));
-            let flipped = self.flip(&truths);
+            let mut flipped = self.flip(&truths);
+            switched.extend(&flipped);
             let first_at_start = at_start && seen.is_empty();
             let conditions = self.conditions_with_edges(first_at_start);
-            let fired = self.fired(&conditions, first_at_start)?;
+            let mut fired = self.fired(&conditions, first_at_start)?;
             *self.conditions = conditions;
-            if fired.is_empty() && flipped.is_empty() {
+            // At the start the truths of relations are not known yet: guards wait until they are.
+            let settles = first_at_start && !flipped.is_empty() && round < MAX_SETTLING;
+            if settles {
+                fired.clear();
+            }
+            let slid = self.enter_slides(&mut switched, &mut fired)?;
+            flipped.retain(|&relation| is_active(self.state, relation));
+            if fired.is_empty() && flipped.is_empty() && !slid {
                 self.set_edges(|_, _| false);
+                self.remember_doubtful(&truths, &roots);
                 return Ok(changed);
             }
             changed = true;
@@ -81,7 +101,9 @@ impl Instant<'_, '_> {
             if again && looked_closer {
                 return Err(self.chattering(&causes));
             }
-            seen.push(key);
+            if !settles {
+                seen.push(key);
+            }
             self.consistent
                 .solve(self.state, self.t, self.y, self.yp, at_start)?;
             if again {
@@ -132,12 +154,12 @@ impl Instant<'_, '_> {
         let mut roots = vec![0.0; program.relations.len()];
         self.state
             .evaluate(Function::Roots, self.t, self.y, self.yp, &mut roots);
-        let rounding = rounding(self.state, self.t, self.y, self.yp);
+        let rounding = rounding(self.state, self.t, self.y, self.yp, self.largest);
         let mut rates: Option<Vec<f64>> = None;
         let mut truths = Vec::with_capacity(roots.len());
         for (number, &root) in roots.iter().enumerate() {
             let before = self.state.z[number] != 0.0;
-            if !is_active(program, &self.state.z, number) {
+            if !is_active(self.state, number) {
                 truths.push(before);
                 continue;
             }
@@ -170,6 +192,28 @@ impl Instant<'_, '_> {
         Ok((truths, roots))
     }
 
+    /// Takes down where guards of states became true, if that is their zero as far as the instant can be known.
+    fn remember_located(&mut self, guards: &[(usize, f64)]) {
+        for &(guard, root) in guards {
+            self.state.located.retain(|(other, _)| *other != guard);
+            if self.state.is_of_states(guard) {
+                let rate = self.state.height_rate(guard, self.t, self.y, self.yp);
+                if root.abs() <= rate.abs() * 1e-12 * (1.0 + self.t.abs()) {
+                    self.state.located.push((guard, root));
+                }
+            }
+        }
+    }
+
+    /// Takes down the relations whose truth was decided by the direction of the flow against their sign.
+    fn remember_doubtful(&mut self, truths: &[bool], roots: &[f64]) {
+        let pairs = truths.iter().zip(roots).enumerate();
+        self.state.doubtful = pairs
+            .filter(|(_, (truth, root))| **root != 0.0 && (**root > 0.0) != **truth)
+            .map(|(number, (_, root))| (number, 2.0 * root.abs()))
+            .collect();
+    }
+
     /// Guards that lead in a circle may do so by rounding alone: a diode's current is zero where its voltage is. Those that
     /// cross zero within a moment of now count by the direction in which they do.
     fn all_but_zero(&mut self, guards: &[usize]) -> Vec<(usize, f64)> {
@@ -188,7 +232,7 @@ impl Instant<'_, '_> {
             .filter(|&number| {
                 matches!(program.relations[number].used, RelationUse::Exit(..))
                     && truths[number]
-                    && is_active(program, &self.state.z, number)
+                    && is_active(self.state, number)
             })
             .collect()
     }
@@ -233,7 +277,7 @@ impl Instant<'_, '_> {
                 ReactionKind::Transition {
                     automaton, from, ..
                 } => {
-                    let here = current_mode(program, &self.state.z, *automaton) == *from;
+                    let here = self.state.in_mode(*automaton, *from);
                     if now && here && !left.contains(automaton) {
                         left.push(*automaton);
                         fired.push(number);
@@ -297,6 +341,8 @@ impl Instant<'_, '_> {
             }
         }
         for &(automaton, to, _) in &entered {
+            let slides = &mut self.state.slides;
+            slides.retain(|slide| slide.modes.is_none_or(|pair| pair.automaton != automaton));
             self.state.z[program.automata[automaton].place] = to as f64;
         }
         self.pin(&entered)
@@ -357,7 +403,13 @@ impl Instant<'_, '_> {
             .collect()
     }
 
-    fn note(&mut self, kind: EventKind, cause: &str, origin: &hyde_diag::Origin, at_start: bool) {
+    pub(crate) fn note(
+        &mut self,
+        kind: EventKind,
+        cause: &str,
+        origin: &hyde_diag::Origin,
+        at_start: bool,
+    ) {
         if !at_start {
             self.log.push(Event {
                 t: self.t,
@@ -389,104 +441,4 @@ impl Instant<'_, '_> {
         }
         failure
     }
-}
-
-/// How far from zero rounding of its arguments alone takes each root function: two modes that meet at a point, one with a
-/// guard `g > 0` and the other with `g < 0`, must not both see theirs true.
-fn rounding(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
-    let program = state.program;
-    let mut rounding = vec![0.0; program.relations.len()];
-    let partials = state.partials(Function::Roots, t, y, yp);
-    let delayed = state.delayed();
-    for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
-        let argument = match entry.wrt {
-            Wrt::Unknown(column) => y[column],
-            Wrt::Derivative(column) => yp[column],
-            Wrt::Delayed(number) => delayed[number],
-            Wrt::Time => t,
-            Wrt::Parameter(_) => 0.0,
-        };
-        rounding[entry.row] += 16.0 * f64::EPSILON * (value * argument).abs();
-    }
-    rounding
-}
-
-/// How far the rounding of an instant may reach, in s.
-fn moment(t: f64) -> f64 {
-    1e-9 * (1.0 + t.abs())
-}
-
-/// In which direction each root function leaves zero along the flow: the mean of its derivative now and a moment later.
-///
-/// A friction that breaks away does so where the acceleration is still zero, so the derivative alone would be rounding;
-/// a moment later it has its sign.
-fn root_rates(
-    state: &mut State<'_>,
-    consistent: &mut Consistent,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-) -> Vec<f64> {
-    let Some((now, dy)) = rates_at(Function::Roots, state, consistent, t, y, yp) else {
-        return vec![0.0; state.program.relations.len()];
-    };
-    let moment = moment(t);
-    let mut y_later: Vec<f64> = y
-        .iter()
-        .zip(&dy)
-        .map(|(value, rate)| value + moment * rate)
-        .collect();
-    let mut yp_later = yp.to_vec();
-    if consistent
-        .solve(state, t + moment, &mut y_later, &mut yp_later, false)
-        .is_err()
-    {
-        return now;
-    }
-    match rates_at(
-        Function::Roots,
-        state,
-        consistent,
-        t + moment,
-        &y_later,
-        &yp_later,
-    ) {
-        Some((later, _)) => now
-            .iter()
-            .zip(later)
-            .map(|(now, later)| 0.5 * (now + later))
-            .collect(),
-        None => now,
-    }
-}
-
-/// The derivatives of a function along the flow at a point, and that of y.
-pub(crate) fn rates_at(
-    function: Function,
-    state: &mut State<'_>,
-    consistent: &mut Consistent,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-) -> Option<(Vec<f64>, Vec<f64>)> {
-    let program = state.program;
-    let mut rates = vec![0.0; program.rows(function)];
-    let (dy, dyp) = consistent.flow(state, t, y, yp)?;
-    let partials = state.partials(function, t, y, yp);
-    for (entry, value) in program.partials(function).iter().zip(partials) {
-        rates[entry.row] += match entry.wrt {
-            Wrt::Unknown(column) => value * dy[column],
-            Wrt::Derivative(column) => value * dyp[column],
-            Wrt::Delayed(_) | Wrt::Time | Wrt::Parameter(_) => 0.0,
-        };
-    }
-    // The time itself, and record columns and delayed values that move with it.
-    let step = 1e-7 * (1e-3 + t.abs());
-    let (mut later, mut now) = (vec![0.0; rates.len()], vec![0.0; rates.len()]);
-    state.evaluate(function, t + step, y, yp, &mut later);
-    state.evaluate(function, t, y, yp, &mut now);
-    for (rate, (later, now)) in rates.iter_mut().zip(later.iter().zip(&now)) {
-        *rate += (later - now) / step;
-    }
-    Some((rates, dy))
 }

@@ -22,8 +22,22 @@ pub enum FailureKind {
     NotFinite,
     /// Events follow each other at one instant without end: the conditions involved.
     Chattering(Vec<String>),
-    /// More and more events in less and less time.
-    TooManyEvents,
+    /// Both sides of a switch lead to it, but it cannot slide: its conditions, and why.
+    CannotSlide(Vec<String>, &'static str),
+    /// The events of a condition follow each other faster and faster: the condition, and the time in s that they add up to.
+    Zeno {
+        /// The condition, as written.
+        cause: String,
+        /// The time that its events do not reach.
+        sum_s: f64,
+    },
+    /// Events without number in next to no time.
+    TooManyEvents {
+        /// Instants with events.
+        count: u64,
+        /// Within this time in s.
+        span_s: f64,
+    },
     /// A state jumps as a mode fixes it: its name, its value, and the value it is fixed to.
     Impact(String, f64, f64),
     /// An `assert` does not hold: its message.

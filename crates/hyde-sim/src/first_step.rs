@@ -1,8 +1,17 @@
-//! The first step after a start: as long as the curvature of the solution allows.
+//! The first step after a start or an event: as long as the curvature of the solution allows.
+//!
+//! And it must not step over what has just begun: where a root function leaves zero and turns back, as the height of a ball
+//! does, it returns after 2|g'/g''|, in a flight that may be lower than the tolerance.
 
 use crate::consistent::Consistent;
+use crate::guards::is_active;
 use crate::integrator::Integrator;
 use crate::setup::Setup;
+use crate::state::State;
+use hyde_program::{Function, Wrt};
+
+/// The part of the way back to zero that the first step may be.
+const PART_OF_RETURN: f64 = 0.02;
 
 /// The first step in s from consistent values. The algebraic variables get their slopes along the flow, which the
 /// solver's first guess of them follows.
@@ -32,7 +41,52 @@ pub(crate) fn first_step(
         if norm.is_finite() && norm > 0.0 {
             step = step.min((0.5 / norm).sqrt());
         }
+        let back = shortest_return(integrator.state_mut(), t, (&y, &yp), (&dy, &dyp));
+        step = step.min(PART_OF_RETURN * back);
     }
     let least = 64.0 * f64::EPSILON * (1e-3 + t.abs());
     step.max(least)
+}
+
+/// The shortest time in s after which a root function that is zero now, and leaves zero, comes back.
+fn shortest_return(
+    state: &mut State<'_>,
+    t: f64,
+    (y, yp): (&[f64], &[f64]),
+    (dy, dyp): (&[f64], &[f64]),
+) -> f64 {
+    let program = state.program;
+    let n = program.relations.len();
+    if n == 0 {
+        return f64::INFINITY;
+    }
+    let mut roots = vec![0.0; n];
+    state.evaluate(Function::Roots, t, y, yp, &mut roots);
+    let (mut rates, mut bends, mut sizes) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
+    let partials = state.partials(Function::Roots, t, y, yp);
+    for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
+        match entry.wrt {
+            Wrt::Unknown(column) => {
+                rates[entry.row] += value * dy[column];
+                if state.differential[column] {
+                    bends[entry.row] += value * dyp[column];
+                }
+                sizes[entry.row] += (value * y[column]).abs();
+            }
+            Wrt::Derivative(column) => rates[entry.row] += value * dyp[column],
+            Wrt::Time => rates[entry.row] += value,
+            Wrt::Delayed(_) | Wrt::Parameter(_) => {}
+        }
+    }
+    // The instant was located to rounding of the time.
+    let moment = 1e-12 * (1.0 + t.abs());
+    let at_zero = |k: &usize| {
+        let near = rates[*k].abs() * moment + 16.0 * f64::EPSILON * sizes[*k];
+        is_active(state, *k) && roots[*k].abs() <= near
+    };
+    (0..n)
+        .filter(at_zero)
+        .map(|k| -2.0 * rates[k] / bends[k])
+        .filter(|back| *back > moment)
+        .fold(f64::INFINITY, f64::min)
 }

@@ -4,7 +4,10 @@
 //! and in between where they bend enough to reach zero; a change of sign between two of them brackets a crossing, which
 //! is located on the interpolant.
 
+use crate::consistent::Consistent;
 use crate::integrator::Integrator;
+use crate::slides::margins;
+use crate::state::State;
 use hyde_program::{Function, Program, RelationUse};
 
 /// Chebyshev points inside a step.
@@ -16,21 +19,24 @@ pub(crate) struct Crossing {
 }
 
 /// The relations to watch: in equations, in `when` and `assert`, and in exits of current modes. Scheduled ones are not
-/// searched for.
-pub(crate) fn active(program: &Program, z: &[f64]) -> Vec<usize> {
-    let watched = |number: &usize| {
-        let relation = &program.relations[*number];
-        !relation.scheduled && is_active(program, z, *number)
-    };
-    (0..program.relations.len()).filter(watched).collect()
+/// searched for. Behind the relations follow the margins of the slides, two of each.
+pub(crate) fn active(state: &State<'_>) -> Vec<usize> {
+    let relations = &state.program.relations;
+    let watched = |number: &usize| !relations[*number].scheduled && is_active(state, *number);
+    let margins = relations.len()..relations.len() + 2 * state.slides.len();
+    (0..relations.len())
+        .filter(watched)
+        .chain(margins)
+        .collect()
 }
 
-/// Whether a relation matters in the current modes.
-pub(crate) fn is_active(program: &Program, z: &[f64], relation: usize) -> bool {
-    match program.relations[relation].used {
-        RelationUse::Exit(automaton, mode) => current_mode(program, z, automaton) == mode,
+/// Whether a relation matters in the current modes, and is not held at its zero.
+pub(crate) fn is_active(state: &State<'_>, relation: usize) -> bool {
+    let in_mode = match state.program.relations[relation].used {
+        RelationUse::Exit(automaton, mode) => state.in_mode(automaton, mode),
         RelationUse::Equation | RelationUse::When | RelationUse::Assert => true,
-    }
+    };
+    in_mode && !state.slides.iter().any(|slide| slide.holds(relation))
 }
 
 /// The number of an automaton's mode.
@@ -38,9 +44,11 @@ pub(crate) fn current_mode(program: &Program, z: &[f64], automaton: usize) -> us
     z[program.automata[automaton].place] as usize
 }
 
-/// The first change of a watched relation within the last step, which began at `from`.
+/// The first change of a watched relation within the last step, which began at `from`. Without one, relations that have left
+/// their zero are no longer doubtful.
 pub(crate) fn first_change(
     integrator: &mut Integrator<'_>,
+    consistent: &mut Consistent,
     watched: &[usize],
     from: f64,
 ) -> Option<Crossing> {
@@ -48,14 +56,20 @@ pub(crate) fn first_change(
         return None;
     }
     let (start, end) = (from, integrator.t);
-    let truths: Vec<bool> = watched
-        .iter()
-        .map(|&relation| integrator.state().z[relation] != 0.0)
-        .collect();
+    let n_relations = integrator.state().program.relations.len();
+    let state = integrator.state();
+    let watch = |&number: &usize| {
+        let doubtful = state.doubtful.iter().find(|(other, _)| *other == number);
+        Watched {
+            number,
+            truth: number >= n_relations || state.z[number] != 0.0,
+            band: doubtful.map_or(0.0, |(_, band)| *band),
+        }
+    };
+    let watched: Vec<Watched> = watched.iter().map(watch).collect();
     let mut search = Search {
-        probe: Probe::new(integrator),
-        watched,
-        truths: &truths,
+        probe: Probe::new(integrator, consistent),
+        watched: &watched,
     };
     let inside = INSIDE.map(|part| start + part * (end - start));
     let points: Vec<(f64, Vec<f64>)> = [start]
@@ -77,6 +91,16 @@ pub(crate) fn first_change(
             return found;
         }
     }
+    // What has left its zero is known by its sign from here on.
+    let at_end = points.last().map_or(&[][..], |(_, roots)| roots);
+    let left: Vec<usize> = watched
+        .iter()
+        .zip(at_end)
+        .filter(|(watched, root)| root.abs() > watched.band)
+        .map(|(watched, _)| watched.number)
+        .collect();
+    let doubtful = &mut integrator.state_mut().doubtful;
+    doubtful.retain(|(number, _)| !left.contains(number));
     None
 }
 
@@ -85,9 +109,8 @@ const MAX_HALVINGS: usize = 6;
 
 /// The search for the first change.
 struct Search<'s> {
-    probe: Probe,
-    watched: &'s [usize],
-    truths: &'s [bool],
+    probe: Probe<'s>,
+    watched: &'s [Watched],
 }
 
 impl Search<'_> {
@@ -99,9 +122,10 @@ impl Search<'_> {
         b: (f64, &[f64]),
         depth: usize,
     ) -> Option<Crossing> {
-        let changed: Vec<(usize, bool)> = (0..self.watched.len())
-            .filter(|&k| is_true(b.1[k], self.truths[k]) != self.truths[k])
-            .map(|k| (self.watched[k], self.truths[k]))
+        let pairs = self.watched.iter().zip(b.1);
+        let changed: Vec<Watched> = pairs
+            .filter(|(watched, root)| !watched.holds(**root))
+            .map(|(watched, _)| *watched)
             .collect();
         if changed.is_empty() && depth > MAX_HALVINGS {
             return None;
@@ -114,8 +138,8 @@ impl Search<'_> {
                 (t, middle.clone()),
                 (b.0, b.1.to_vec()),
             ];
-            let turned = (0..self.watched.len())
-                .any(|k| is_true(middle[k], self.truths[k]) != self.truths[k]);
+            let mut pairs = self.watched.iter().zip(&middle);
+            let turned = pairs.any(|(watched, root)| !watched.holds(*root));
             if turned || self.may_reach_zero(&points) {
                 let left = self.between(integrator, a, (t, &middle), depth + 1);
                 return left.or_else(|| self.between(integrator, (t, &middle), b, depth + 1));
@@ -146,29 +170,39 @@ impl Search<'_> {
         let roots = self.probe.roots(integrator, t);
         self.watched
             .iter()
-            .map(|&relation| roots[relation])
+            .map(|watched| roots[watched.number])
             .collect()
     }
 }
 
-/// Truth by the sign of the root function; exactly zero keeps the truth it had.
-fn is_true(root: f64, before: bool) -> bool {
-    if root == 0.0 { before } else { root > 0.0 }
+/// A relation that is watched: its number, its truth, and how far from zero its root function says nothing.
+#[derive(Clone, Copy)]
+struct Watched {
+    number: usize,
+    truth: bool,
+    band: f64,
+}
+
+impl Watched {
+    /// Whether the sign of the root function is that of the truth; at zero the truth stays.
+    fn holds(&self, root: f64) -> bool {
+        root.abs() <= self.band || (root > 0.0) == self.truth
+    }
 }
 
 /// The first of several changes between `low`, where none has happened, and `high`, where all have.
 fn locate(
     integrator: &mut Integrator<'_>,
-    probe: &mut Probe,
-    relations: &[(usize, bool)],
+    probe: &mut Probe<'_>,
+    relations: &[Watched],
     low: f64,
     high: f64,
 ) -> Crossing {
     let (mut a, mut b) = (low, high);
-    let mut remaining: Vec<(usize, bool)> = relations.to_vec();
+    let mut remaining: Vec<Watched> = relations.to_vec();
     // Values of the one whose secant guides the search.
     let mut at_a: Option<f64> = None;
-    let mut at_b = probe.roots(integrator, b)[remaining[0].0];
+    let mut at_b = probe.roots(integrator, b)[remaining[0].number];
     let mut side = 0_i32;
     for round in 0..200 {
         let tolerance = 4.0 * f64::EPSILON * b.abs().max(a.abs()) + 1e-15 * (high - low);
@@ -186,23 +220,23 @@ fn locate(
         // A secant that lands on an end moves by the tolerance, so that the bracket closes from that side.
         t = t.clamp(a + 0.5 * tolerance, b - 0.5 * tolerance);
         let roots = probe.roots(integrator, t);
-        let changed: Vec<(usize, bool)> = remaining
+        let changed: Vec<Watched> = remaining
             .iter()
             .copied()
-            .filter(|&(relation, truth)| is_true(roots[relation], truth) != truth)
+            .filter(|watched| !watched.holds(roots[watched.number]))
             .collect();
         if changed.is_empty() {
             a = t;
-            at_a = Some(roots[remaining[0].0]);
+            at_a = Some(roots[remaining[0].number]);
             if side == -1 {
                 // Illinois: the end that stays twice counts half.
                 at_b *= 0.5;
             }
             side = -1;
         } else {
-            let same = changed[0].0 == remaining[0].0;
+            let same = changed[0].number == remaining[0].number;
             b = t;
-            at_b = roots[changed[0].0];
+            at_b = roots[changed[0].number];
             if side == 1 {
                 at_a = at_a.map(|value| 0.5 * value);
             }
@@ -216,17 +250,19 @@ fn locate(
     Crossing { t: b }
 }
 
-/// Evaluates root functions on the interpolant.
-struct Probe {
+/// Evaluates root functions on the interpolant, and the margins of slides.
+struct Probe<'c> {
+    consistent: &'c mut Consistent,
     y: Vec<f64>,
     yp: Vec<f64>,
     roots: Vec<f64>,
 }
 
-impl Probe {
-    fn new(integrator: &Integrator<'_>) -> Self {
+impl<'c> Probe<'c> {
+    fn new(integrator: &Integrator<'_>, consistent: &'c mut Consistent) -> Self {
         let program = integrator.state().program;
         Self {
+            consistent,
             y: vec![0.0; program.n_unknowns],
             yp: vec![0.0; program.n_unknowns],
             roots: vec![0.0; program.relations.len()],
@@ -234,10 +270,17 @@ impl Probe {
     }
 
     fn roots(&mut self, integrator: &mut Integrator<'_>, t: f64) -> &[f64] {
-        integrator.interpolate(t, &mut self.y, &mut self.yp);
-        integrator
-            .state_mut()
-            .evaluate(Function::Roots, t, &self.y, &self.yp, &mut self.roots);
-        &self.roots
+        let Self { y, yp, roots, .. } = self;
+        integrator.interpolate(t, y, yp);
+        let state = integrator.state_mut();
+        let n_relations = state.program.relations.len();
+        roots.truncate(n_relations);
+        self.consistent.refine(state, t, y, yp);
+        state.evaluate(Function::Roots, t, y, yp, roots);
+        if !state.slides.is_empty() {
+            let weights = state.weights(t, y, yp);
+            roots.extend(weights.into_iter().flat_map(margins));
+        }
+        roots
     }
 }

@@ -1,26 +1,155 @@
-//! Events without end: a ball that bounces ever lower meets infinitely many in a finite time.
+//! Events without end: a ball that bounces ever lower meets infinitely many in a finite time (Zeno).
 
-/// Events that follow each other faster and faster.
+use crate::failure::FailureKind;
+use crate::results::Event;
+use crate::setup::Setup;
+use hyde_diag::Origin;
+
+/// So many intervals must have become shorter each time, fewer if they shrink evenly, and those to come add up to so small a
+/// part of the first one.
+const LEAST_COUNT: u64 = 12;
+const LEAST_EVEN: u64 = 4;
+const EVEN: f64 = 0.05;
+const NOTHING: f64 = 1e-4;
+/// So many instants with events within a billionth of the run are no solution any more.
+const MAX_AT_ONCE: u64 = 2000;
+const AT_ONCE: f64 = 1e-9;
+
+/// So many steps that take the run no further than this part of it would never end it.
+const STEPS: u64 = 20_000;
+const NO_FURTHER: f64 = 1e-7;
+
+/// Whether events follow each other faster and faster, or steps.
 #[derive(Default)]
 pub(crate) struct Hurry {
+    /// Of each condition, by its text and its origin.
+    series: Vec<(String, Origin, Series)>,
+    /// Start of the window in which all events are counted, and their number.
+    crowd: (f64, u64),
+    /// The same for steps.
+    steps: (f64, u64),
+}
+
+/// The events of one condition.
+#[derive(Default)]
+struct Series {
     /// Time of the last event in s.
     last: f64,
     /// The first interval of the run of ever shorter ones, the latest, and their number.
     first: f64,
     interval: f64,
     count: u64,
+    /// The latest ratio of two intervals, and how many in a row were near each other.
+    ratio: f64,
+    even: u64,
 }
 
 impl Hurry {
-    /// Takes note of an event; whether a long run of ever shorter intervals has come down to nothing.
-    pub(crate) fn no_end(&mut self, t: f64) -> bool {
+    /// Takes note of the events of an instant, and tells if there is no end of them.
+    pub(crate) fn no_end(
+        &mut self,
+        t: f64,
+        events: &[Event],
+        setup: &Setup<'_>,
+    ) -> Option<FailureKind> {
+        for (number, event) in events.iter().enumerate() {
+            let same = |other: &Event| other.cause == event.cause && other.origin == event.origin;
+            if events[..number].iter().any(same) {
+                continue;
+            }
+            let mut known = self.series.iter_mut();
+            let known = known.find(|known| known.0 == event.cause && known.1 == event.origin);
+            let Some((.., series)) = known else {
+                let series = Series {
+                    last: t,
+                    ..Series::default()
+                };
+                let (cause, origin) = (event.cause.clone(), event.origin.clone());
+                self.series.push((cause, origin, series));
+                continue;
+            };
+            if let Some(sum_s) = series.next(t) {
+                let cause = event.cause.clone();
+                return Some(FailureKind::Zeno { cause, sum_s });
+            }
+        }
+        let (start, _) = self.crowd;
+        if t - start > AT_ONCE * (setup.stop_s - setup.start_s) {
+            self.crowd = (t, 0);
+        }
+        self.crowd.1 += 1;
+        let (start, count) = self.crowd;
+        (count > MAX_AT_ONCE).then_some(FailureKind::TooManyEvents {
+            count,
+            span_s: t - start,
+        })
+    }
+}
+
+impl Hurry {
+    /// Takes note of a step, and tells if they lead nowhere: something jumps to and fro that is no event.
+    pub(crate) fn no_way(&mut self, t: f64, setup: &Setup<'_>) -> Option<FailureKind> {
+        let (start, count) = &mut self.steps;
+        *count += 1;
+        if *count < STEPS {
+            return None;
+        }
+        let span_s = t - *start;
+        (*start, *count) = (t, 0);
+        let told = format!("{STEPS} steps took it {span_s:.1e} s further");
+        (span_s < NO_FURTHER * (setup.stop_s - setup.start_s)).then_some(FailureKind::Solver(told))
+    }
+}
+
+impl Series {
+    /// Takes note of the next event. If they have become ever faster down to nothing: the time in s that they add up to, with
+    /// intervals that shrink as the last did.
+    fn next(&mut self, t: f64) -> Option<f64> {
         let interval = t - self.last;
+        let ratio = interval / self.interval;
         if interval < self.interval {
             self.count += 1;
         } else {
             (self.first, self.count) = (interval, 0);
         }
-        (self.last, self.interval) = (t, interval);
-        self.count >= 12 && interval < 1e-4 * self.first
+        let near = (ratio - self.ratio).abs() <= EVEN * ratio;
+        self.even = if near { self.even + 1 } else { 0 };
+        (self.last, self.interval, self.ratio) = (t, interval, ratio);
+        // A geometric series. Intervals that only shrink for a while, as where a heavy ball turns back a light one, have a
+        // ratio near one, and their rest stays long.
+        let rest = interval * ratio / (1.0 - ratio);
+        let long =
+            self.count >= LEAST_COUNT || (self.count >= LEAST_EVEN && self.even + 2 >= LEAST_EVEN);
+        (long && rest < NOTHING * self.first).then_some(t + rest)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The time to which a condition with events after these intervals is told to add up.
+    fn told(mut intervals: impl Iterator<Item = f64>) -> Option<f64> {
+        let (mut series, mut t) = (Series::default(), 0.0);
+        intervals.find_map(|interval| {
+            t += interval;
+            series.next(t)
+        })
+    }
+
+    #[test]
+    fn a_geometric_series_is_told_with_its_sum() {
+        let end = told((0..100).map(|k| 0.5_f64.powi(k))).expect("it has an end");
+        // 1 + 1/2 + 1/4 + …, each known to rounding of the time.
+        assert!((end - 2.0).abs() < 1e-9, "{end}");
+    }
+
+    #[test]
+    fn intervals_that_shrink_and_grow_again_are_none() {
+        // Impacts of a heavy ball that drives a light one to a wall and turns, masses as a million to one: times go with the
+        // cotangent of equal angles (Galperin 2003).
+        let time = |k: i32| -1.0 / (f64::from(k) * 1e-3).tan();
+        assert_eq!(told((1..3141).map(|k| time(k + 1) - time(k))), None);
+        assert_eq!(told(std::iter::repeat_n(1e-3, 100)), None);
     }
 }

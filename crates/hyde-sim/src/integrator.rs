@@ -163,7 +163,7 @@ impl<'a> Integrator<'a> {
     }
 
     /// The solution at a time within the last step.
-    pub(crate) fn interpolate(&self, t: f64, y: &mut [f64], yp: &mut [f64]) {
+    pub(crate) fn interpolate(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) {
         match &self.solver {
             Solver::Ida(ida) if t.to_bits() != self.t.to_bits() => {
                 let inside = ida
@@ -179,7 +179,9 @@ impl<'a> Integrator<'a> {
                 yp.copy_from_slice(&self.yp);
             }
         }
-        self.state().apply_pins(y, yp);
+        let state = self.state_mut();
+        state.apply_pins(y, yp);
+        state.put_on_surfaces(t, y, yp);
     }
 
     /// Starts anew after an event.
@@ -200,6 +202,11 @@ impl<'a> Integrator<'a> {
             }
         }
         Ok(())
+    }
+
+    /// The largest value of each unknown so far; none where there is nothing to solve.
+    pub(crate) fn largest(&self) -> &[f64] {
+        &self.largest
     }
 
     pub(crate) fn statistics(&self) -> hyde_ida::Statistics {
@@ -246,13 +253,17 @@ impl<'a> Integrator<'a> {
         Ok(())
     }
 
+    /// Exact values where modes fix states, and on the surfaces that the run slides on.
     fn apply_pins(&mut self) {
-        let Self { solver, y, yp, .. } = self;
-        let state: &State<'_> = match solver {
+        let Self {
+            solver, t, y, yp, ..
+        } = self;
+        let state: &mut State<'_> = match solver {
             Solver::Nothing(state, _) => state,
-            Solver::Ida(ida) => ida.system(),
+            Solver::Ida(ida) => ida.system_mut(),
         };
         state.apply_pins(y, yp);
+        state.put_on_surfaces(*t, y, yp);
     }
 
     /// What the solver says, with the equation and the unknown it stumbled over.

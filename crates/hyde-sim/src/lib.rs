@@ -6,6 +6,7 @@
 //!              states chosen anew where constraints tie them                     selection.rs
 //!              guards checked on the step's interpolant; the first crossing located guards.rs
 //!              events: reactions, ticks, held values, until nothing fires           events.rs, clocks.rs
+//!              what both sides lead back to is slid on                              slides.rs, sliding.rs, surfaces.rs
 //!              consistent values again, then on                                     consistent.rs
 //!              what is delayed kept as polynomials, jumps with their arrivals       delays.rs, history.rs
 //! ```
@@ -28,11 +29,16 @@ mod integrator;
 mod meter;
 mod operating_point;
 mod results;
+mod root_rates;
 mod selection;
 mod setup;
 mod simulation;
+mod slides;
+mod sliding;
 mod start_modes;
 mod state;
+mod surfaces;
+mod time_spent;
 
 pub use failure::{Failure, FailureKind};
 pub use inputs::InputError;

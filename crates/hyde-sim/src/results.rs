@@ -18,6 +18,15 @@ pub enum EventKind {
     When,
     /// A relation in the equations changed its truth to this.
     Relation(bool),
+    /// Sliding on a switching surface begins or ends.
+    Slide {
+        /// The automaton whose modes switch there; none for a relation in the equations.
+        automaton: Option<usize>,
+        /// The mode, or the truth as a number, before; none where sliding ends.
+        before: Option<usize>,
+        /// The same after; none where sliding begins.
+        after: Option<usize>,
+    },
 }
 
 /// An entry of the event log.
@@ -82,7 +91,9 @@ pub struct Results {
     pub events: Vec<Event>,
     /// What the solver did.
     pub statistics: Statistics,
-    /// Time each automaton spent in each mode, in s.
+    /// Surfaces that the run slid on, by the condition that is zero there, and the time it did in s.
+    pub sliding: Vec<(String, f64)>,
+    /// Time each automaton spent in each mode, in s; while it slides between two, each has its share.
     pub mode_times: Vec<Vec<f64>>,
     /// The sums of the energy ledger, if it was asked for.
     pub energies: Option<Energies>,

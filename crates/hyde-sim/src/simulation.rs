@@ -13,16 +13,15 @@ use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
 use crate::meter::Meter;
-use crate::results::{Event, Results};
+use crate::results::Results;
 use crate::selection;
 use crate::setup::{Setup, same_instant};
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
+use crate::time_spent::count_modes;
 use hyde_program::{Function, Program};
 use std::sync::atomic::Ordering;
 
-/// So many events within a billionth of the run are no solution any more.
-const MAX_EVENTS_AT_ONCE: u64 = 2000;
 /// Relations that are not settled after so many solutions of the initial equations contradict them.
 const MAX_ROUNDS_AT_START: usize = 20;
 
@@ -37,8 +36,6 @@ pub(crate) struct Simulation<'a> {
     results: Results,
     next_row: usize,
     outputs: Vec<f64>,
-    /// Start of the window in which events are counted, and their number.
-    crowd: (f64, u64),
     hurry: Hurry,
     meter: Option<Meter<'a>>,
 }
@@ -100,7 +97,6 @@ impl<'a> Simulation<'a> {
             results,
             next_row: 0,
             outputs: vec![0.0; program.outputs.len()],
-            crowd: (t, 0),
             hurry: Hurry::default(),
             meter: Meter::new(&program.experiment.ledger),
         })
@@ -211,19 +207,23 @@ impl<'a> Simulation<'a> {
     /// Steps until `target` or the first crossing; rows on the way are taken. Returns whether there was a crossing; the
     /// values there are consistent.
     fn advance(&mut self, target: f64) -> Result<bool, Box<Failure>> {
-        let watched = guards::active(self.program, &self.integrator.state().z);
+        let watched = guards::active(self.integrator.state());
         loop {
             if self.setup.interrupted.load(Ordering::Relaxed) {
                 return Err(Failure::new(FailureKind::Interrupted, self.integrator.t));
             }
             let from = self.integrator.step(target)?;
-            let crossing = guards::first_change(&mut self.integrator, &watched, from);
+            if let Some(kind) = self.hurry.no_way(self.integrator.t, self.setup) {
+                return Err(self.no_way(kind, target));
+            }
+            let crossing =
+                guards::first_change(&mut self.integrator, &mut self.consistent, &watched, from);
             let end = crossing
                 .as_ref()
                 .map_or(self.integrator.t, |crossing| crossing.t);
             self.measure_energy(from, end);
             self.rows_until(end);
-            self.count_modes(from, end);
+            count_modes(&mut self.integrator, &mut self.results, end - from);
             delays::record(&mut self.integrator, from, end);
             if let Some(crossing) = crossing {
                 let n = self.program.n_unknowns;
@@ -290,7 +290,7 @@ impl<'a> Simulation<'a> {
         let happened = self.results.events.len() > events;
         if happened {
             self.results.statistics.events += 1;
-            self.not_too_many()?;
+            self.not_too_many(events)?;
         }
         if let Some(before) = before {
             self.row_values();
@@ -329,8 +329,10 @@ impl<'a> Simulation<'a> {
             std::mem::take(&mut self.integrator.y),
             std::mem::take(&mut self.integrator.yp),
         );
+        let largest = self.integrator.largest().to_vec();
         let outcome = Instant {
             state: self.integrator.state_mut(),
+            largest: &largest,
             consistent: &mut self.consistent,
             t,
             y: &mut y,
@@ -400,6 +402,8 @@ impl<'a> Simulation<'a> {
         let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
         let outputs = Meter::times(from, to).map(|t| {
             self.integrator.interpolate(t, &mut y, &mut yp);
+            let state = self.integrator.state_mut();
+            self.consistent.refine(state, t, &mut y, &mut yp);
             self.values_at(t, &y, &yp);
             self.outputs.clone()
         });
@@ -408,31 +412,39 @@ impl<'a> Simulation<'a> {
         }
     }
 
-    fn count_modes(&mut self, from: f64, to: f64) {
-        for automaton in 0..self.program.automata.len() {
-            let mode = guards::current_mode(self.program, &self.integrator.state().z, automaton);
-            self.results.mode_times[automaton][mode] += to - from;
+    /// Steps that lead nowhere end the run with the unknown whose rate jumps most from one step to the next.
+    fn no_way(&mut self, kind: FailureKind, target: f64) -> Box<Failure> {
+        let before = self.integrator.yp.clone();
+        if let Err(failure) = self.integrator.step(target) {
+            return failure;
+        }
+        let now = &self.integrator.yp;
+        let jumps = now
+            .iter()
+            .zip(&before)
+            .map(|(now, before)| (now - before).abs());
+        let most = jumps.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
+        let failure = Failure::new(kind, self.integrator.t);
+        match most {
+            Some((row, _)) => failure.at_row(self.program, row, &self.integrator.y),
+            None => failure,
         }
     }
 
-    /// Events that come ever faster end the run with what they are (Zeno).
-    fn not_too_many(&mut self) -> Result<(), Box<Failure>> {
-        let window = 1e-9 * (self.setup.stop_s - self.setup.start_s);
-        let t = self.integrator.t;
-        if t - self.crowd.0 > window {
-            self.crowd = (t, 0);
-        }
-        self.crowd.1 += 1;
-        if !self.hurry.no_end(t) && self.crowd.1 <= MAX_EVENTS_AT_ONCE {
+    /// Events that come ever faster end the run with what they are (Zeno). `first` is the first event of this instant.
+    fn not_too_many(&mut self, first: usize) -> Result<(), Box<Failure>> {
+        let (t, events) = (self.integrator.t, &self.results.events);
+        let Some(kind) = self.hurry.no_end(t, &events[first..], self.setup) else {
             return Ok(());
-        }
-        let mut failure = Failure::new(FailureKind::TooManyEvents, t);
-        let recent: Vec<&Event> = self.results.events.iter().rev().take(4).collect();
-        for event in recent {
-            if !failure.origins.contains(&event.origin) {
-                failure = failure.at_origin(&event.origin);
+        };
+        let recent = events.iter().rev().take(4);
+        let failure = recent.fold(Failure::new(kind, t), |failure, event| {
+            if failure.origins.contains(&event.origin) {
+                failure
+            } else {
+                failure.at_origin(&event.origin)
             }
-        }
+        });
         Err(failure)
     }
 

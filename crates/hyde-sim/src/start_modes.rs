@@ -126,7 +126,7 @@ fn leaves_at_once(
     let mut roots = vec![0.0; program.relations.len()];
     state.evaluate(Function::Roots, t, y, yp, &mut roots);
     for (number, root) in roots.into_iter().enumerate() {
-        if is_active(program, &state.z, number) {
+        if is_active(state, number) {
             state.z[number] = f64::from(u8::from(root > 0.0));
         }
     }

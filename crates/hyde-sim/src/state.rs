@@ -4,6 +4,7 @@ use crate::delays::Delays;
 use crate::failure::Failure;
 use crate::inputs::Inputs;
 use crate::setup::Setup;
+use crate::sliding::{Slide, Surface};
 use hyde_ida::{Recoverable, System};
 use hyde_program::{Function, Point, Program, Workspace};
 
@@ -18,9 +19,16 @@ pub(crate) struct State<'a> {
     u: Vec<f64>,
     workspace: Workspace,
     /// Values of the residual's derivatives, before they are put in their places.
-    partials: Vec<f64>,
+    pub(crate) partials: Vec<f64>,
     /// States that the current modes fix, with their values.
     pub(crate) pinned: Vec<(usize, f64)>,
+    /// The value of each guard's root function of states where it became true last: its zero as far as it could be located.
+    pub(crate) located: Vec<(usize, f64)>,
+    /// Relations that are at their zero since the last event, with how far from it their root functions may be: within
+    /// that a sign says nothing.
+    pub(crate) doubtful: Vec<(usize, f64)>,
+    /// Switches that are held at their surfaces.
+    pub(crate) slides: Vec<Slide>,
     pub(crate) differential: Vec<bool>,
 }
 
@@ -36,6 +44,9 @@ impl<'a> State<'a> {
             workspace: Workspace::new(program.n_work),
             partials: vec![0.0; program.partials(Function::Residual).len()],
             pinned: Vec::new(),
+            located: Vec::new(),
+            doubtful: Vec::new(),
+            slides: Vec::new(),
             differential: program.differential(&vec![0.0; program.n_memory]),
         };
         state.inputs.read(setup.start_s, &mut state.u);
@@ -43,8 +54,32 @@ impl<'a> State<'a> {
         Ok(state)
     }
 
-    /// The values of a function. `everything` reads all columns, not only those that the equations use.
+    /// The values of a function; while sliding the mean of the sides, with the rows of consistent values.
     pub(crate) fn evaluate(
+        &mut self,
+        function: Function,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        out: &mut [f64],
+    ) {
+        if self.slides.is_empty() {
+            self.evaluate_side(function, t, y, yp, out);
+        } else if function == Function::Residual {
+            self.sliding_residual(t, y, yp, Surface::Rate, out);
+        } else {
+            let weights = self.weights(t, y, yp);
+            let values = self.mean(&weights, &mut |state| {
+                let mut side = vec![0.0; out.len()];
+                state.evaluate_side(function, t, y, yp, &mut side);
+                side
+            });
+            out.copy_from_slice(&values);
+        }
+    }
+
+    /// The values of a function with the memory as it is.
+    pub(crate) fn evaluate_side(
         &mut self,
         function: Function,
         t: f64,
@@ -58,8 +93,25 @@ impl<'a> State<'a> {
         program.kernels.evaluate(function, at, workspace, out);
     }
 
-    /// The derivatives of a function, in the program's order.
+    /// The derivatives of a function, in the program's order; while sliding the mean of the sides.
     pub(crate) fn partials(
+        &mut self,
+        function: Function,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> Vec<f64> {
+        if self.slides.is_empty() {
+            return self.partials_side(function, t, y, yp);
+        }
+        let weights = self.weights(t, y, yp);
+        self.mean(&weights, &mut |state| {
+            state.partials_side(function, t, y, yp)
+        })
+    }
+
+    /// The derivatives of a function with the memory as it is.
+    pub(crate) fn partials_side(
         &mut self,
         function: Function,
         t: f64,
@@ -85,21 +137,49 @@ impl<'a> State<'a> {
 
     /// The memory after a tick, with every column read at `t`, and delayed values as they were just before.
     pub(crate) fn tick(&mut self, clock: usize, t: f64, y: &[f64], yp: &[f64], delayed: &[f64]) {
+        if self.slides.is_empty() {
+            self.z = self.tick_side(clock, t, y, yp, delayed);
+            return;
+        }
+        let weights = self.weights(t, y, yp);
+        let mut after = self.mean(&weights, &mut |state| {
+            state.tick_side(clock, t, y, yp, delayed)
+        });
+        for slide in &self.slides {
+            for (place, _) in slide.settings(self, 0) {
+                after[place] = self.z[place];
+            }
+        }
+        self.z = after;
+    }
+
+    /// The memory after a tick, with the memory as it is.
+    fn tick_side(
+        &mut self,
+        clock: usize,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        delayed: &[f64],
+    ) -> Vec<f64> {
         self.inputs.read(t, &mut self.u);
         self.delayed_mut().copy_from_slice(delayed);
         let mut after = self.z.clone();
         let program = self.program;
         let (at, workspace) = self.at(t, y, yp);
         program.kernels.tick(clock, at, workspace, &mut after);
-        self.z = after;
+        after
     }
 
     /// The matrix that consistent values are solved with.
     pub(crate) fn consistent_matrix(&mut self, t: f64, y: &[f64], yp: &[f64], matrix: &mut [f64]) {
-        self.residual_partials(t, y, yp);
+        self.mean_residual_partials(t, y, yp);
         self.program
             .jacobian()
             .assemble_consistent(&self.partials, &self.differential, matrix);
+        if !self.slides.is_empty() {
+            self.exchange_rows(t, y, yp, matrix);
+        }
     }
 
     /// `dF/dy` times a vector and `dF/dy'` times another, summed into `out`.
@@ -112,7 +192,7 @@ impl<'a> State<'a> {
         dyp: &[f64],
         out: &mut [f64],
     ) {
-        self.residual_partials(t, y, yp);
+        self.mean_residual_partials(t, y, yp);
         out.iter_mut().for_each(|value| *value = 0.0);
         for (entry, &value) in self
             .program
@@ -127,6 +207,9 @@ impl<'a> State<'a> {
                 | hyde_program::Wrt::Delayed(_)
                 | hyde_program::Wrt::Time => {}
             }
+        }
+        if !self.slides.is_empty() {
+            self.exchange_in(t, y, yp, dy, out);
         }
     }
 
@@ -173,7 +256,16 @@ impl<'a> State<'a> {
         self.delays.read(t, &mut self.u[first..]);
     }
 
-    fn residual_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+    /// The derivatives of the residual; while sliding the mean of the sides, before rows are exchanged.
+    fn mean_residual_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        if self.slides.is_empty() {
+            self.residual_partials(t, y, yp);
+        } else {
+            self.partials = self.sliding_partials(t, y, yp);
+        }
+    }
+
+    pub(crate) fn residual_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) {
         self.read_continuous(t);
         let program = self.program;
         let mut values = std::mem::take(&mut self.partials);
@@ -206,7 +298,11 @@ impl System for State<'_> {
         yp: &[f64],
         out: &mut [f64],
     ) -> Result<(), Recoverable> {
-        self.evaluate(Function::Residual, t, y, yp, out);
+        if self.slides.is_empty() {
+            self.evaluate_side(Function::Residual, t, y, yp, out);
+        } else {
+            self.sliding_residual(t, y, yp, Surface::Place, out);
+        }
         Ok(())
     }
 
@@ -218,10 +314,13 @@ impl System for State<'_> {
         yp: &[f64],
         values: &mut [f64],
     ) -> Result<(), Recoverable> {
-        self.residual_partials(t, y, yp);
+        self.mean_residual_partials(t, y, yp);
         self.program
             .jacobian()
             .assemble(&self.partials, 1.0, cj, values);
+        if !self.slides.is_empty() {
+            self.exchange_rows(t, y, yp, values);
+        }
         Ok(())
     }
 }

@@ -98,6 +98,7 @@ fn digest(compiled: &Compiled, run: &Run) -> String {
             }
             EventKind::When => "when".to_owned(),
             EventKind::Relation(truth) => format!("if: {truth}"),
+            EventKind::Slide { before, after, .. } => format!("slide: {before:?} -> {after:?}"),
         };
         let t = to_digits(event.t, event.t, 6);
         let _ = writeln!(out, "{t:>10} s  {what}, {}", event.cause);

@@ -52,6 +52,7 @@ impl Solved {
                 }
                 EventKind::When => (event.t, "when"),
                 EventKind::Relation(_) => (event.t, "if"),
+                EventKind::Slide { .. } => (event.t, "slide"),
             })
             .collect()
     }

@@ -1,0 +1,118 @@
+//! Where a root function that is zero goes (M2), and what counts as zero.
+
+use crate::consistent::Consistent;
+use crate::state::State;
+use hyde_program::{Function, Wrt};
+
+/// How far from zero rounding of its arguments alone takes each root function: two modes that meet at a point, one with a
+/// guard `g > 0` and the other with `g < 0`, must not both see theirs true. A state that has come to zero from afar, as the
+/// height of a ball that lies down, is known to rounding of what it was.
+pub(crate) fn rounding(
+    state: &mut State<'_>,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+    largest: &[f64],
+) -> Vec<f64> {
+    let program = state.program;
+    let mut rounding = vec![0.0; program.relations.len()];
+    let partials = state.partials(Function::Roots, t, y, yp);
+    let delayed = state.delayed().to_vec();
+    for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
+        let argument = match entry.wrt {
+            Wrt::Unknown(column) if state.differential[column] => {
+                let most = largest.get(column).copied().unwrap_or(0.0);
+                most.max(y[column].abs())
+            }
+            Wrt::Unknown(column) => y[column],
+            Wrt::Derivative(column) => yp[column],
+            Wrt::Delayed(number) => delayed[number],
+            Wrt::Time => t,
+            Wrt::Parameter(_) => 0.0,
+        };
+        rounding[entry.row] += 16.0 * f64::EPSILON * (value * argument).abs();
+    }
+    rounding
+}
+
+/// How far the rounding of an instant may reach, in s.
+pub(crate) fn moment(t: f64) -> f64 {
+    1e-9 * (1.0 + t.abs())
+}
+
+/// In which direction each root function leaves zero along the flow: the mean of its derivative now and a moment later.
+///
+/// A friction that breaks away does so where the acceleration is still zero, so the derivative alone would be rounding;
+/// a moment later it has its sign.
+pub(crate) fn root_rates(
+    state: &mut State<'_>,
+    consistent: &mut Consistent,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+) -> Vec<f64> {
+    let Some((now, dy, dyp)) = rates_at(Function::Roots, state, consistent, t, y, yp) else {
+        return vec![0.0; state.program.relations.len()];
+    };
+    let moment = moment(t);
+    // To second order: what breaks away may do so where its acceleration is not quite zero yet.
+    let ahead = |i: usize| {
+        let bend = if state.differential[i] { dyp[i] } else { 0.0 };
+        y[i] + moment * (dy[i] + 0.5 * moment * bend)
+    };
+    let mut y_later: Vec<f64> = (0..y.len()).map(ahead).collect();
+    let mut yp_later = yp.to_vec();
+    if consistent
+        .solve(state, t + moment, &mut y_later, &mut yp_later, false)
+        .is_err()
+    {
+        return now;
+    }
+    let later = rates_at(
+        Function::Roots,
+        state,
+        consistent,
+        t + moment,
+        &y_later,
+        &yp_later,
+    );
+    match later {
+        Some((later, ..)) => now
+            .iter()
+            .zip(later)
+            .map(|(now, later)| 0.5 * (now + later))
+            .collect(),
+        None => now,
+    }
+}
+
+/// The derivatives of a function along the flow at a point, and those of y and y'.
+pub(crate) fn rates_at(
+    function: Function,
+    state: &mut State<'_>,
+    consistent: &mut Consistent,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+) -> Option<(Vec<f64>, Vec<f64>, Vec<f64>)> {
+    let program = state.program;
+    let mut rates = vec![0.0; program.rows(function)];
+    let (dy, dyp) = consistent.flow(state, t, y, yp)?;
+    let partials = state.partials(function, t, y, yp);
+    for (entry, value) in program.partials(function).iter().zip(partials) {
+        rates[entry.row] += match entry.wrt {
+            Wrt::Unknown(column) => value * dy[column],
+            Wrt::Derivative(column) => value * dyp[column],
+            Wrt::Delayed(_) | Wrt::Time | Wrt::Parameter(_) => 0.0,
+        };
+    }
+    // The time itself, and record columns and delayed values that move with it.
+    let step = 1e-7 * (1e-3 + t.abs());
+    let (mut later, mut now) = (vec![0.0; rates.len()], vec![0.0; rates.len()]);
+    state.evaluate(function, t + step, y, yp, &mut later);
+    state.evaluate(function, t, y, yp, &mut now);
+    for (rate, (later, now)) in rates.iter_mut().zip(later.iter().zip(&now)) {
+        *rate += (later - now) / step;
+    }
+    Some((rates, dy, dyp))
+}

@@ -1,0 +1,128 @@
+//! Switching surfaces g(t, y) = 0: how far the run is from them, where they lead, and how it is put on them.
+
+use crate::state::State;
+use hyde_program::{Function, Wrt};
+
+impl State<'_> {
+    /// The root functions.
+    pub(crate) fn heights(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
+        let mut roots = vec![0.0; self.program.relations.len()];
+        self.evaluate_side(Function::Roots, t, y, yp, &mut roots);
+        roots
+    }
+
+    /// One root function.
+    pub(crate) fn height(&mut self, relation: usize, t: f64, y: &[f64], yp: &[f64]) -> f64 {
+        self.heights(t, y, yp)[relation]
+    }
+
+    /// The derivatives of a root function by the unknowns.
+    pub(crate) fn gradient(
+        &mut self,
+        relation: usize,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> Vec<(usize, f64)> {
+        let values = self.partials_side(Function::Roots, t, y, yp);
+        let entries = self.program.partials(Function::Roots).iter().zip(values);
+        entries
+            .filter_map(|(entry, value)| match entry.wrt {
+                Wrt::Unknown(column) if entry.row == relation => Some((column, value)),
+                Wrt::Unknown(_)
+                | Wrt::Derivative(_)
+                | Wrt::Delayed(_)
+                | Wrt::Parameter(_)
+                | Wrt::Time => None,
+            })
+            .collect()
+    }
+
+    /// The rates of root functions of states along the flow.
+    pub(crate) fn height_rates(
+        &mut self,
+        relations: &[usize],
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> Vec<f64> {
+        let program = self.program;
+        let mut rates = vec![0.0; program.relations.len()];
+        let given = !program.columns.is_empty() || !program.delays.is_empty();
+        let values = self.partials_side(Function::Roots, t, y, yp);
+        for (entry, value) in program.partials(Function::Roots).iter().zip(values) {
+            rates[entry.row] += match entry.wrt {
+                Wrt::Unknown(column) => value * yp[column],
+                Wrt::Time if !given => value,
+                Wrt::Time | Wrt::Derivative(_) | Wrt::Delayed(_) | Wrt::Parameter(_) => 0.0,
+            };
+        }
+        if given {
+            // Record columns and delayed values move with the time, and have no other derivative.
+            let step = 1e-7 * (1e-3 + t.abs());
+            let (now, later) = (self.heights(t, y, yp), self.heights(t + step, y, yp));
+            for (rate, (now, later)) in rates.iter_mut().zip(now.iter().zip(&later)) {
+                *rate += (later - now) / step;
+            }
+        }
+        relations.iter().map(|&relation| rates[relation]).collect()
+    }
+
+    /// The rate of one root function of states along the flow.
+    pub(crate) fn height_rate(&mut self, relation: usize, t: f64, y: &[f64], yp: &[f64]) -> f64 {
+        self.height_rates(&[relation], t, y, yp)[0]
+    }
+
+    /// Whether a root function depends on states alone, and on one at least: then its rate is known with the states'.
+    pub(crate) fn is_of_states(&self, relation: usize) -> bool {
+        let mut entries = self.program.partials(Function::Roots).iter();
+        let mut any = false;
+        let only = entries
+            .by_ref()
+            .filter(|entry| entry.row == relation)
+            .all(|entry| match entry.wrt {
+                Wrt::Unknown(column) => {
+                    any = true;
+                    self.differential[column]
+                }
+                Wrt::Derivative(_) => false,
+                Wrt::Delayed(_) | Wrt::Parameter(_) | Wrt::Time => true,
+            });
+        only && any
+    }
+
+    /// Puts y exactly on the surfaces: the solver meets them to its tolerance.
+    pub(crate) fn put_on_surfaces(&mut self, t: f64, y: &mut [f64], yp: &[f64]) {
+        if self.slides.is_empty() {
+            return;
+        }
+        // Once for each slide, and again where they depend on each other or bend.
+        for _ in 0..3 {
+            let heights = self.heights(t, y, yp);
+            if self
+                .slides
+                .iter()
+                .all(|slide| heights[slide.surface] == 0.0)
+            {
+                return;
+            }
+            for slide in self.slides.clone() {
+                let height = self.height(slide.surface, t, y, yp);
+                if height == 0.0 {
+                    continue;
+                }
+                let along: f64 = self
+                    .gradient(slide.surface, t, y, yp)
+                    .into_iter()
+                    .map(|(column, value)| value * slide.direction[column])
+                    .sum();
+                let length = height / along;
+                if length.is_finite() {
+                    y.iter_mut()
+                        .zip(&slide.direction)
+                        .for_each(|(y, direction)| *y -= length * direction);
+                }
+            }
+        }
+    }
+}
