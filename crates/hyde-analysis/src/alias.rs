@@ -32,14 +32,7 @@ pub(crate) fn eliminate(system: &mut System) -> bool {
         };
         let used = match fact {
             Some(Fact::Equal(a, b, negated)) => join(system, &mut merged, a, b, negated),
-            Some(Fact::Value(cell, value)) => {
-                let root = root(&merged, cell);
-                let used = assign(system, &mut merged, cell, value);
-                if let (true, Ok((root, _))) = (used, root) {
-                    system.valued.insert(root, equation.origin.clone());
-                }
-                used
-            }
+            Some(Fact::Value(cell, value)) => assign(system, &mut merged, cell, value),
             None => false,
         };
         if !used {

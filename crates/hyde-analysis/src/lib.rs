@@ -2,6 +2,7 @@
 //! vector, what remains is matched row by row.
 //!
 //! In order:
+//! 0. `regularity`: a model that cannot determine its unknowns is refused, with the smallest sets that conflict;
 //! 1. `alias` and `derivatives`, repeated until nothing changes: variables that are equal become one, before and
 //!    after differentiation (M5); derivatives of explicit variables become explicit;
 //! 2. `reduce`: equations that constrain states to each other are differentiated, and states chosen among the
@@ -34,6 +35,7 @@ mod outputs;
 mod partials;
 mod pins;
 mod reduce;
+mod regularity;
 mod relations;
 mod segments;
 mod solve;
@@ -51,6 +53,9 @@ use hyde_ir::{Dae, FlatModel};
 /// `None` if there were errors; all of them are in `diagnostics`.
 pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
     let mut system = system::System::new(flat);
+    if regularity::refuse(&system, diagnostics) {
+        return None;
+    }
     derivatives::simplify(&mut system, diagnostics);
     if diagnostics.has_errors() {
         return None;

@@ -54,10 +54,6 @@ pub(crate) struct System {
     pub(crate) groups: Vec<Group>,
     pub(crate) relations: hyde_ir::IdVec<hyde_ir::RelationId, hyde_ir::dae::Relation>,
     pub(crate) notes: Vec<String>,
-    /// The equation that gave an eliminated cell its value.
-    pub(crate) valued: BTreeMap<Cell, Origin>,
-    /// The continuous equations as written, before anything was eliminated: left, right, origin.
-    pub(crate) written: Vec<(ExprId, ExprId, Origin)>,
 }
 
 impl System {
@@ -65,10 +61,6 @@ impl System {
     pub(crate) fn new(mut flat: FlatModel) -> Self {
         let notes = std::mem::take(&mut flat.notes);
         let equations = std::mem::take(&mut flat.equations);
-        let written = equations
-            .iter()
-            .map(|e| (e.lhs, e.rhs, e.origin.clone()))
-            .collect();
         let equations = equations
             .into_iter()
             .map(|e| Equation {
@@ -118,8 +110,6 @@ impl System {
             groups: Vec::new(),
             relations: hyde_ir::IdVec::new(),
             notes,
-            valued: BTreeMap::new(),
-            written,
         }
     }
 

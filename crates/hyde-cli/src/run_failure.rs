@@ -89,15 +89,29 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             } else {
                 "no consistent values after an event"
             };
-            let message = match singular {
-                Some(name) => format!("{what} {at}: nothing determines `{name}` here"),
-                None => format!("{what} {at}"),
-            };
-            (
-                Code::InitialFailed,
-                message,
-                "check the start values, and that these equations have a solution there",
-            )
+            let list: Vec<String> = singular
+                .iter()
+                .take(4)
+                .map(|name| format!("`{name}`"))
+                .collect();
+            let more = if singular.len() > 4 { ", …" } else { "" };
+            if singular.is_empty() {
+                (
+                    Code::InitialFailed,
+                    format!("{what} {at}"),
+                    "check the start values, and that these equations have a solution there",
+                )
+            } else {
+                (
+                    Code::InitialFailed,
+                    format!(
+                        "{what} {at}: nothing determines {}{more} here",
+                        list.join(", ")
+                    ),
+                    "these equations depend on each other there: look for a factor that is 0, a massless part that only \
+                     friction holds, or parts that fix each other",
+                )
+            }
         }
         FailureKind::Solver(reason) => (
             Code::SolverFailed,
@@ -182,6 +196,18 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             None => hyde_units::significant(*value, 6),
         };
         diagnostic = diagnostic.note(format!("`{name}` is {} there", value.trim_end()));
+    }
+    if let FailureKind::Inconsistent { singular, .. } = &failure.kind
+        && !singular.is_empty()
+    {
+        let near = |name: &str| {
+            let part = name.split('.').next();
+            singular.iter().any(|s| s.split('.').next() == part)
+        };
+        let modes = failure.modes.iter().filter(|(name, _)| near(name));
+        for (name, mode) in modes.take(3) {
+            diagnostic = diagnostic.note(format!("`{name}` is in the mode `{mode}`"));
+        }
     }
     if let Some(event) = failure.results.events.last() {
         diagnostic = diagnostic.note(format!(

@@ -70,6 +70,7 @@ codes! {
     ArrayEquation "E0508" "an array equation determines no whole array";
     BadPin "E0509" "a mode fixes what cannot be fixed";
     ClockedEquation "E0510" "an equation of a clocked part is no assignment";
+    Jammed "E0511" "rigid parts hold each other where they are";
     ConflictingStarts "E0601" "joined states start at different values";
     TooManyConditions "E0602" "more initial conditions than states";
     InitialFailed "E0603" "no consistent initial conditions were found";

@@ -8,11 +8,11 @@ use hyde_program::{Function, Program};
 /// The kinds of failures.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FailureKind {
-    /// No consistent initial conditions or values after an event: the equations, the unknown where the matrix is
-    /// singular, and whether this is the start.
+    /// No consistent initial conditions or values after an event: the unknowns that are open where the equations depend
+    /// on each other, and whether this is the start.
     Inconsistent {
-        /// The unknown that no equation determines here.
-        singular: Option<String>,
+        /// The unknowns that no equation determines here; none where the equations have no solution.
+        singular: Vec<String>,
         /// At the start of the run.
         at_start: bool,
     },
@@ -45,6 +45,8 @@ pub struct Failure {
     pub origins: Vec<Origin>,
     /// The unknowns involved, by name, with their values.
     pub unknowns: Vec<(String, f64)>,
+    /// The automata with the modes they are in, where that matters: name and mode.
+    pub modes: Vec<(String, String)>,
     /// Everything up to the failure.
     pub results: Results,
 }
@@ -56,6 +58,7 @@ impl Failure {
             t,
             origins: Vec::new(),
             unknowns: Vec::new(),
+            modes: Vec::new(),
             results: Results::default(),
         })
     }
@@ -71,6 +74,22 @@ impl Failure {
             self.origins.extend(block.origins.iter().cloned());
         }
         self.at_unknown(program, row, y)
+    }
+
+    /// Tells the modes the automata are in.
+    pub(crate) fn in_modes(mut self: Box<Self>, state: &State<'_>) -> Box<Self> {
+        for automaton in &state.program.automata {
+            let number = state.z.get(automaton.place).copied().unwrap_or(0.0);
+            let mode = automaton
+                .modes
+                .iter()
+                .zip(0_u32..)
+                .find(|&(_, place)| f64::from(place).total_cmp(&number).is_eq());
+            if let Some((mode, _)) = mode {
+                self.modes.push((automaton.name.clone(), mode.clone()));
+            }
+        }
+        self
     }
 
     /// Names an unknown.

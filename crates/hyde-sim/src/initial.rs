@@ -96,14 +96,14 @@ pub(crate) fn solve(
     let targets: Vec<f64> = fixed.iter().map(|&i| y[i]).collect();
     if n + count + fixed.len() + delays != size {
         let kind = FailureKind::Inconsistent {
-            singular: None,
+            singular: Vec::new(),
             at_start: true,
         };
         return Err(Failure::new(kind, t));
     }
     let (pattern, positions) = pattern(state, size, n, count, &fixed, &column_of_rate);
     let mut past = state.delayed_at(t).to_vec();
-    let failed = |singular: Option<String>| {
+    let failed = |singular: Vec<String>| {
         let mut failure = Failure::new(
             FailureKind::Inconsistent {
                 singular,
@@ -118,7 +118,8 @@ pub(crate) fn solve(
         }
         failure
     };
-    let mut solver = SparseSolver::new(pattern, LinearMethod::Auto).map_err(|_| failed(None))?;
+    let mut solver =
+        SparseSolver::new(pattern, LinearMethod::Auto).map_err(|_| failed(Vec::new()))?;
     let residual = |state: &mut State<'_>, y: &[f64], yp: &[f64], past: &[f64]| {
         let mut out = vec![0.0; size];
         state.delays.set_past(t, past);
@@ -146,9 +147,8 @@ pub(crate) fn solve(
                 None => Some(column),
                 Some(rate) => states.get(rate).copied(),
             };
-            return Err(failed(
-                position.map(|position| program.unknown_name(position)),
-            ));
+            let open = position.map(|position| program.unknown_name(position));
+            return Err(failed(open.into_iter().collect()));
         }
         let mut step = r.clone();
         solver.solve(&mut step);
@@ -179,7 +179,7 @@ pub(crate) fn solve(
             return consistent.solve(state, t, y, yp, true);
         }
     }
-    Err(failed(None))
+    Err(failed(Vec::new()))
 }
 
 /// The relations of equations as they are at the first guess: a limiter that is at no limit there must not begin at one,

@@ -31,6 +31,7 @@ mod results;
 mod selection;
 mod setup;
 mod simulation;
+mod singular;
 mod start_modes;
 mod state;
 

@@ -202,7 +202,7 @@ impl<'a> Simulation<'a> {
             (self.integrator.y, self.integrator.yp) = (y, yp);
         }
         let kind = FailureKind::Inconsistent {
-            singular: None,
+            singular: Vec::new(),
             at_start: true,
         };
         Err(Failure::new(kind, t))

@@ -101,6 +101,7 @@ pages! {
     ArrayEquation "E0508";
     BadPin "E0509";
     ClockedEquation "E0510";
+    Jammed "E0511";
     ConflictingStarts "E0601";
     TooManyConditions "E0602";
     InitialFailed "E0603";
