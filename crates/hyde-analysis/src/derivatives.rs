@@ -15,7 +15,8 @@ use crate::solve::solve_for;
 use crate::split;
 use crate::system::{Cell, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics};
-use hyde_ir::{Expr, ExprId, Index, Range, VarId, VariableKind};
+use hyde_ir::dae::Dependent;
+use hyde_ir::{Expr, ExprId, Index, Range, StateChoice, VarId, VariableKind};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// `target[j + shift] = der(var[j])` for the elements j in `first..=last`.
@@ -201,7 +202,13 @@ fn shifted(index: Index, by: i32) -> Index {
 
 /// Makes one differentiated variable explicit, if an equation allows: `der(v)` becomes the derivative of its value.
 fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
-    let differentiated = differentiated(system);
+    let mut differentiated = differentiated(system);
+    for (var, variable) in system.flat.variables.enumerate() {
+        let eliminated = system.aliases.contains_key(&(var, 0));
+        if variable.state >= StateChoice::Prefer && variable.len.is_none() && !eliminated {
+            differentiated.insert(var, 0, 0);
+        }
+    }
     let wanted = differentiated_at_start(system);
     let pinned = pinned(system);
     for number in 0..system.equations.len() {
@@ -227,6 +234,7 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
         candidates.sort_by_key(|cell| {
             (
                 pinned.contains(cell),
+                system.flat.variables[cell.0].state,
                 in_array(system, cell),
                 !is_left(system, *cell),
                 fixed(system, cell),
@@ -251,6 +259,12 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
             let equation = &mut system.equations[number];
             equation.lhs = system.flat.exprs.add(leaf);
             equation.rhs = value;
+            let origin = equation.origin.clone();
+            system.dependent.push(Dependent {
+                var: cell.0,
+                element: cell.1,
+                origin,
+            });
             system.rewrite_all(None, |_, expr| {
                 (expr == Expr::Der(cell.0, System::cell_index(cell))).then_some(rate)
             });

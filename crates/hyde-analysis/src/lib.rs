@@ -40,6 +40,7 @@ mod relations;
 mod segments;
 mod solve;
 mod split;
+mod state_choices;
 mod system;
 mod unroll;
 
@@ -68,6 +69,7 @@ pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
     pins::exchange_rows(&mut dae, &mut system, &matched, &order, diagnostics);
     clocked::sort(&mut dae, &mut system, diagnostics);
     events::react(&mut dae, &mut system, diagnostics);
+    state_choices::check(&dae, &system, diagnostics);
     initial::conditions(&mut dae, &mut system, diagnostics);
     if diagnostics.has_errors() {
         return None;

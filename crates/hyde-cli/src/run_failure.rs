@@ -148,6 +148,15 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             ),
             "if the impact is meant, write `impact` behind the exit; else leave the mode at rest",
         ),
+        FailureKind::Start(name, wanted, found) => (
+            Code::StartContradicted,
+            format!(
+                "`{name}` is to start at {}, but the other conditions make it {}",
+                hyde_units::significant(*wanted, 6),
+                hyde_units::significant(*found, 6)
+            ),
+            "give the start values that belong together, or leave out the one that follows from the others",
+        ),
         FailureKind::Assert(message) => (
             Code::AssertFailed,
             format!("{message} ({at})"),
@@ -175,6 +184,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
         let what = match failure.kind {
             FailureKind::Chattering(_) | FailureKind::TooManyEvents => "this condition",
             FailureKind::Assert(_) => "does not hold",
+            FailureKind::Start(..) => "a condition of the start",
             FailureKind::Inconsistent { .. }
             | FailureKind::Solver(_)
             | FailureKind::NotFinite

@@ -31,6 +31,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) modifications: Vec<(Span, String, bool)>,
     /// The instance that a modification with one word left was given to, by its number.
     pub(crate) modified: BTreeMap<usize, InstanceId>,
+    /// The measures of the top so far, by name.
+    pub(crate) measured_numbers: Vec<(&'a str, Typed)>,
     /// Effects to be put on instances, what they wrap and what they replace.
     pub(crate) hooks: Vec<crate::instantiate::Hook<'a>>,
     pub(crate) wraps: Vec<crate::wrap::Wrap<'a>>,
@@ -69,6 +71,7 @@ impl<'a, 'd> Model<'a, 'd> {
             dimensions: Dimensions::default(),
             modifications: Vec::new(),
             modified: BTreeMap::new(),
+            measured_numbers: Vec::new(),
             hooks: Vec::new(),
             wraps: Vec::new(),
             replacements: Vec::new(),
@@ -180,6 +183,8 @@ impl<'a, 'd> Model<'a, 'd> {
             quantity: Quantity::number(),
             start: Vec::new(),
             fixed: false,
+            start_given: false,
+            state: hyde_ir::StateChoice::Open,
             flow: false,
             boolean: false,
             input: false,

@@ -26,6 +26,8 @@ pub enum FailureKind {
     TooManyEvents,
     /// A state jumps as a mode fixes it: its name, its value, and the value it is fixed to.
     Impact(String, f64, f64),
+    /// A variable's start value, as given and as the other conditions make it.
+    Start(String, f64, f64),
     /// An `assert` does not hold: its message.
     Assert(String),
     /// A record is missing or lacks a column.

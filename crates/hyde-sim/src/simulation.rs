@@ -18,7 +18,7 @@ use crate::selection;
 use crate::setup::{Setup, same_instant};
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
-use hyde_program::{Function, Program};
+use hyde_program::Program;
 use std::sync::atomic::Ordering;
 
 /// So many events within a billionth of the run are no solution any more.
@@ -187,7 +187,7 @@ impl<'a> Simulation<'a> {
         for _ in 0..MAX_ROUNDS_AT_START {
             let changed = self.iterate(&scheduled, true)?;
             let same_modes = modes(&self.integrator.state().z) == initial_modes;
-            let states_kept = !same_modes || self.program.rows(Function::Initial) == 0;
+            let states_kept = !same_modes || self.program.n_initial_equations() == 0;
             if !changed || states_kept && self.program.delays.is_empty() {
                 return Ok(());
             }
