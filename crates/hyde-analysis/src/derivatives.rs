@@ -14,6 +14,7 @@ use crate::cells::Cells;
 use crate::solve::solve_for;
 use crate::split;
 use crate::system::{Cell, System};
+use crate::whole_arrays;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_ir::dae::Dependent;
 use hyde_ir::{Expr, ExprId, Index, Range, StateChoice, VarId, VariableKind};
@@ -36,7 +37,7 @@ pub(crate) fn simplify(system: &mut System, diagnostics: &mut Diagnostics) {
     for _ in 0..10_000 {
         let aliased = alias::eliminate(system);
         let named = name_derivatives(system);
-        let expanded = expand_one(system, &declared);
+        let expanded = whole_arrays::expand_one(system, &declared) || expand_one(system, &declared);
         if !aliased && !named && !expanded {
             break;
         }
@@ -263,6 +264,7 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
             system.dependent.push(Dependent {
                 var: cell.0,
                 element: cell.1,
+                len: 1,
                 origin,
             });
             system.rewrite_all(None, |_, expr| {
@@ -275,7 +277,7 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
 }
 
 /// The cells of continuous variables that stand under `der` anywhere in the equations.
-fn differentiated(system: &System) -> Cells {
+pub(crate) fn differentiated(system: &System) -> Cells {
     let mut found = Cells::default();
     let sides = system.equations.iter().map(|e| (e.range, [e.lhs, e.rhs]));
     let branches = system

@@ -43,6 +43,7 @@ mod split;
 mod state_choices;
 mod system;
 mod unroll;
+mod whole_arrays;
 
 pub use partials::{TickWrt, parameter_partials, rows, tick_partials};
 

@@ -49,10 +49,7 @@ impl States {
             let variable = &dae.variables[d.var];
             variable.fixed || variable.state != StateChoice::Open
         });
-        let dependent = meant.map(|d| {
-            let name = dae.variables[d.var].element_name(d.element);
-            (name, d.origin.clone())
-        });
+        let dependent = meant.map(|d| (dae.dependent_name(d), d.origin.clone()));
         let filled = dae.initial.iter().filter_map(|condition| match condition {
             InitialCondition::Fixed {
                 state,

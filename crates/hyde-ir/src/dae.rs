@@ -147,6 +147,20 @@ impl Dae {
         self.delays.iter().map(|delay| delay.range.len()).sum()
     }
 
+    /// The name of what is dependent: of an array with its bounds.
+    #[must_use]
+    pub fn dependent_name(&self, dependent: &Dependent) -> String {
+        let variable = &self.variables[dependent.var];
+        let first = variable.element_name(dependent.element);
+        match dependent.len {
+            1 => first,
+            len => format!(
+                "{first} .. {}",
+                variable.element_name(dependent.element + len - 1)
+            ),
+        }
+    }
+
     /// A selection in names: what the run chooses from, how many are states, and where the constraints are written.
     #[must_use]
     pub fn choice(&self, selection: &Selection) -> Choice {

@@ -27,4 +27,5 @@ mod stages;
 mod starts;
 mod stick_slip;
 mod travelling_nut;
+mod whole_arrays;
 mod without_states;

@@ -5,7 +5,7 @@ use crate::graph::{Bipartite, Matching};
 use crate::segments::Segment;
 use crate::system::System;
 use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
-use hyde_ir::{Expr, VarId};
+use hyde_ir::{Expr, Range, VarId};
 
 pub(super) fn report(
     system: &System,
@@ -202,8 +202,20 @@ fn constrained(system: &System, node: Node) -> Diagnostic {
         .help("remove it, or what gives its variables their values");
     }
     let list: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-    Diagnostic::error(Code::Constrained, format!("{} are constrained to each other", list.join(" and ")))
-        .label(origin.span, "this equation fixes one by the others")
+    let diagnostic = Diagnostic::error(
+        Code::Constrained,
+        format!("{} are constrained to each other", list.join(" and ")),
+    )
+    .label(origin.span, "this equation fixes one by the others");
+    if sides(system, node)
+        .iter()
+        .any(|(range, ..)| *range != Range::SCALAR)
+    {
+        return diagnostic
+            .note("between whole arrays a constraint is differentiated where it gives one of them: `x[i] = …`")
+            .help("solve it for one of the arrays, or put a stiffness between the parts");
+    }
+    diagnostic
         .note("each of them is a state with an equation for its derivative: the model needs index reduction")
         .help("put a stiffness between the parts, or describe the joined parts by one of the states")
 }

@@ -25,8 +25,10 @@ pub struct Selection {
 pub struct Dependent {
     /// The variable.
     pub var: VarId,
-    /// Its element; 0 of a scalar.
+    /// Its element; 0 of a scalar, the first of a whole array.
     pub element: usize,
+    /// Number of its elements that are given so.
+    pub len: usize,
     /// The equation that gives it.
     pub origin: Origin,
 }

@@ -68,7 +68,7 @@ pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
         let _ = writeln!(out, "no states, for an equation gives them by others");
     }
     for dependent in &dae.dependent {
-        let name = dae.variables[dependent.var].element_name(dependent.element);
+        let name = dae.dependent_name(dependent);
         let _ = writeln!(out, "  {name}{}", comment(&dependent.origin, sources));
     }
     if !dae.definitions.is_empty() {
