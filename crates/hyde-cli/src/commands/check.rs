@@ -1,5 +1,6 @@
 //! `hyde check`: compiles everything in a file, or in the files of a package, and runs nothing.
 
+use super::effects::wrapped;
 use crate::args::{CheckArgs, ModelArgs};
 use crate::exit::Exit;
 use crate::files;
@@ -152,7 +153,15 @@ fn choices(model: &str, states: &States, project: &Project) -> Vec<String> {
             "  {model}: nothing but `start` says where {list} begins"
         ));
     }
-    lines
+    // Eighty columns: what does not fit goes on below, deeper in.
+    let wrapped = lines.iter().flat_map(|line| {
+        let parts = wrapped(line.trim_start(), 74).into_iter().enumerate();
+        parts.map(|(number, part)| match number {
+            0 => format!("  {part}"),
+            _ => format!("      {part}"),
+        })
+    });
+    wrapped.collect()
 }
 
 fn states_json(model: &str, states: &States, project: &Project) -> Value {

@@ -55,7 +55,7 @@ fn listed(args: &EffectsArgs) -> Result<String, Exit> {
 }
 
 /// A list in lines of at most so many characters.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = vec![String::new()];
     for word in text.split(' ') {
         let last = lines.len() - 1;
