@@ -11,7 +11,7 @@
 
 use crate::system::{Cell, System};
 use hyde_ir::dae::Alias;
-use hyde_ir::{BinaryOp, Expr, ExprId, UnaryOp};
+use hyde_ir::{BinaryOp, Expr, ExprId, StateChoice, UnaryOp};
 use std::collections::BTreeMap;
 
 /// What an equation says of two cells.
@@ -32,14 +32,7 @@ pub(crate) fn eliminate(system: &mut System) -> bool {
         };
         let used = match fact {
             Some(Fact::Equal(a, b, negated)) => join(system, &mut merged, a, b, negated),
-            Some(Fact::Value(cell, value)) => {
-                let root = root(&merged, cell);
-                let used = assign(system, &mut merged, cell, value);
-                if let (true, Ok((root, _))) = (used, root) {
-                    system.valued.insert(root, equation.origin.clone());
-                }
-                used
-            }
+            Some(Fact::Value(cell, value)) => assign(system, &mut merged, cell, value),
             None => false,
         };
         if !used {
@@ -287,30 +280,44 @@ fn rank(system: &System, cell: Cell) -> (u8, Cell) {
         0
     } else if variable.len.is_some() {
         1
-    } else if fixed {
+    } else if variable.state >= StateChoice::Prefer {
         2
-    } else if system.starts.contains_key(&cell) {
+    } else if fixed {
         3
-    } else if variable.flow {
-        5
-    } else {
+    } else if system.starts.contains_key(&cell) {
         4
+    } else if variable.flow {
+        6
+    } else {
+        5
     };
     (class, cell)
 }
 
-/// The start values of an eliminated variable go to the one kept.
+/// The start values of an eliminated variable go to the one kept, and what its author says of it as a state.
 fn move_starts(system: &mut System, cell: Cell, alias: &Alias) {
+    let said = system.flat.variables[cell.0].state;
+    if let Alias::Of { var, .. } = *alias {
+        let kept = &mut system.flat.variables[var].state;
+        if *kept == StateChoice::Open {
+            *kept = said;
+        }
+    }
     let Some(starts) = system.starts.remove(&cell) else {
         return;
     };
-    let Alias::Of {
-        var,
-        element,
-        negated,
-    } = *alias
-    else {
-        return;
+    let (var, element, negated) = match *alias {
+        Alias::Of {
+            var,
+            element,
+            negated,
+        } => (var, element, negated),
+        Alias::Value(value) => {
+            let fixed = starts.into_iter().filter(|(_, fixed, _)| *fixed);
+            let met = fixed.map(|(start, _, given_by)| (given_by, value, start));
+            system.known_starts.extend(met);
+            return;
+        }
     };
     for (value, fixed, given_by) in starts {
         let value = if negated {

@@ -19,6 +19,20 @@ impl Cells {
         }
     }
 
+    /// Whether all elements from `first` to `last` are in it.
+    pub(crate) fn contains_all(&self, var: VarId, first: usize, last: usize) -> bool {
+        let mut at = first;
+        let list = self.intervals.get(&var).map_or(&[][..], Vec::as_slice);
+        while at <= last {
+            let ends = list.iter().filter(|(from, to)| (*from..=*to).contains(&at));
+            match ends.map(|(_, to)| *to).max() {
+                Some(to) => at = to + 1,
+                None => return false,
+            }
+        }
+        true
+    }
+
     /// Whether a cell is in it.
     pub(crate) fn contains(&self, cell: &Cell) -> bool {
         self.intervals.get(&cell.0).is_some_and(|list| {

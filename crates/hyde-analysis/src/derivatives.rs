@@ -14,12 +14,15 @@ use crate::cells::Cells;
 use crate::solve::solve_for;
 use crate::split;
 use crate::system::{Cell, Equation, System};
+use crate::whole_arrays;
 use hyde_diag::Diagnostics;
-use hyde_ir::{Expr, ExprId, Index, Range, VarId, VariableKind};
+use hyde_ir::dae::Dependent;
+use hyde_ir::{Expr, ExprId, Index, Range, StateChoice, VarId, VariableKind};
 use std::collections::{BTreeMap, BTreeSet};
 
 mod inline;
 mod inputs;
+mod wanted;
 
 /// `target[j + shift] = der(var[j])` for the elements j in `first..=last`.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +41,7 @@ pub(crate) fn simplify(system: &mut System, diagnostics: &mut Diagnostics) {
     for _ in 0..10_000 {
         let aliased = alias::eliminate(system);
         let named = name_derivatives(system);
-        let expanded = expand_one(system, &declared);
+        let expanded = whole_arrays::expand_one(system, &declared) || expand_one(system, &declared);
         if !aliased && !named && !expanded {
             break;
         }
@@ -206,9 +209,15 @@ fn shifted(index: Index, by: i32) -> Index {
 ///
 /// What modes fix stays a state as long as any other variable of any constraint can go.
 fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
-    let differentiated = differentiated(system);
-    let wanted = differentiated_at_start(system);
-    let kept = kept(system);
+    let mut differentiated = differentiated(system);
+    for (var, variable) in system.flat.variables.enumerate() {
+        let eliminated = system.aliases.contains_key(&(var, 0));
+        if variable.state >= StateChoice::Prefer && variable.len.is_none() && !eliminated {
+            differentiated.insert(var, 0, 0);
+        }
+    }
+    let wanted = wanted::at_start(system);
+    let kept = wanted::kept(system);
     for pinned in [false, true] {
         for number in 0..system.equations.len() {
             let Equation {
@@ -275,6 +284,7 @@ fn expand(
     candidates.sort_by_key(|cell| {
         (
             kept.contains(cell),
+            system.flat.variables[cell.0].state,
             in_array(system, cell),
             !is_left(system, *cell),
             fixed(system, cell),
@@ -299,6 +309,13 @@ fn expand(
         let equation = &mut system.equations[number];
         equation.lhs = system.flat.exprs.add(leaf);
         equation.rhs = value;
+        let origin = equation.origin.clone();
+        system.dependent.push(Dependent {
+            var: cell.0,
+            element: cell.1,
+            len: 1,
+            origin,
+        });
         system.rewrite_all(None, |_, expr| {
             (expr == Expr::Der(cell.0, System::cell_index(cell))).then_some(rate)
         });
@@ -308,7 +325,7 @@ fn expand(
 }
 
 /// The cells of continuous variables that stand under `der` anywhere in the equations.
-fn differentiated(system: &System) -> Cells {
+pub(crate) fn differentiated(system: &System) -> Cells {
     let mut found = Cells::default();
     let sides = system.equations.iter().map(|e| (e.range, [e.lhs, e.rhs]));
     let branches = system
@@ -321,43 +338,6 @@ fn differentiated(system: &System) -> Cells {
             if let Expr::Der(var, index) = system.flat.exprs[id] {
                 let (first, last) = System::interval(index, range);
                 found.insert(var, first, last);
-            }
-        }
-    }
-    found
-}
-
-/// The cells under `der` in initial equations: `der(slip) = 0` needs the derivative of what `slip` is.
-fn differentiated_at_start(system: &System) -> BTreeSet<Cell> {
-    let equations = system.flat.initial_equations.iter();
-    let sides: Vec<ExprId> = equations.flat_map(|e| [e.lhs, e.rhs]).collect();
-    let below = system.flat.exprs.below(&sides).into_iter();
-    below
-        .filter_map(|id| {
-            let (var, index, derivative) = system.flat.exprs[id].access()?;
-            System::cell(var, index).filter(|_| derivative)
-        })
-        .collect()
-}
-
-/// The cells that modes fix to a constant, and those that they are the derivatives of.
-fn kept(system: &System) -> BTreeSet<Cell> {
-    let branches = system.slots.iter().flat_map(|slot| &slot.branches);
-    let sides = branches.flat_map(|branch| [(branch.lhs, branch.rhs), (branch.rhs, branch.lhs)]);
-    let fixes = sides.filter_map(|(a, b)| {
-        let (cell, _) = alias::signed_cell(system, a)?;
-        system.is_parametric(b).then_some(cell)
-    });
-    let mut found: BTreeSet<Cell> = fixes.collect();
-    for equation in &system.equations {
-        let exprs = &system.flat.exprs;
-        for (v, d) in [(equation.lhs, equation.rhs), (equation.rhs, equation.lhs)] {
-            if let (Some((cell, _)), Expr::Der(var, index)) =
-                (alias::signed_cell(system, v), exprs[d])
-                && found.contains(&cell)
-                && let Some(below) = System::cell(var, index)
-            {
-                found.insert(below);
             }
         }
     }

@@ -160,6 +160,8 @@ impl Hoisting {
             is_final: true,
             derived: true,
             prior: None,
+            role: hyde_ir::Role::Plain,
+            range: None,
             source: None,
             origin,
         });

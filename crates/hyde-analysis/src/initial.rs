@@ -61,15 +61,45 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
         too_many(dae, &equations, &fixed, open, diagnostics);
         return;
     }
-    let mut before = taken(&take(dae, &equations, &free));
-    for equation in starts_of_algebraic(dae, system) {
+    // Start values given for this model come before those that parts declare for every use.
+    let in_group = |position: usize| {
+        let mut groups = dae.selections.iter();
+        groups.any(|group| group.candidates.contains(&position))
+    };
+    let weak: Vec<usize> = fixed
+        .iter()
+        .filter(|&&(position, len)| {
+            len == 1 && !in_group(position) && !given(dae, system, position)
+        })
+        .map(|&(position, _)| position)
+        .collect();
+    let with_weak: Vec<usize> = free.iter().chain(&weak).copied().collect();
+    let mut checks: Vec<(VarId, ExprId, ExprId)> = Vec::new();
+    for start in starts_of_algebraic(dae, system) {
+        let given = dae.variables[start.given_by].start_given;
+        let open: &[usize] = if given { &with_weak } else { &free };
+        let before = taken(&take(dae, &equations, open));
+        let equation = (Range::SCALAR, start.condition, start.origin.clone());
         equations.push(equation);
-        let after = taken(&take(dae, &equations, &free));
-        if after == before {
+        if taken(&take(dae, &equations, open)) == before {
             equations.pop();
+            if given {
+                checks.push((start.given_by, start.value, start.start));
+            }
         }
-        before = after;
     }
+    let overruled: Vec<usize> = take(dae, &equations, &with_weak)
+        .of_right
+        .iter()
+        .zip(&with_weak)
+        .filter(|(taken, position)| taken.is_some() && weak.contains(position))
+        .map(|(_, position)| *position)
+        .collect();
+    fixed.retain(|(position, _)| !overruled.contains(position));
+    free.extend(overruled);
+    checks.extend(starts_in_groups(dae, system));
+    let known = system.known_starts.iter().copied();
+    checks.extend(known.filter(|(given_by, ..)| dae.variables[*given_by].start_given));
     let filled = fill(dae, &equations, &free);
     for (state, len) in fixed {
         dae.initial.push(InitialCondition::Fixed {
@@ -92,10 +122,53 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
             reason: Reason::Filled,
         });
     }
+    for (var, value, start) in checks {
+        dae.initial
+            .push(InitialCondition::Check { var, value, start });
+    }
+}
+
+/// Whether the fixed start of a state is given for this model.
+fn given(dae: &Dae, system: &System, position: usize) -> bool {
+    let inside = |b: &&hyde_ir::dae::Unknown| (b.offset..b.offset + b.len).contains(&position);
+    let Some(block) = dae.unknowns.iter().find(inside) else {
+        return true;
+    };
+    let starts = system.starts.get(&(block.var, block.first));
+    starts.is_none_or(|list| {
+        let mut fixed = list.iter().filter(|(_, fixed, _)| *fixed);
+        fixed.any(|(.., given_by)| dae.variables[*given_by].start_given)
+    })
+}
+
+/// Start values given for this model of variables that constraints tie: the run chooses which of them are conditions.
+fn starts_in_groups(dae: &mut Dae, system: &System) -> Vec<(VarId, ExprId, ExprId)> {
+    let mut found = Vec::new();
+    let cells = system.groups.iter().flat_map(|group| &group.candidates);
+    for (cell, _) in cells {
+        for (start, fixed, given_by) in system.starts.get(cell).into_iter().flatten() {
+            if *fixed && dae.variables[*given_by].start_given {
+                let leaf = Expr::Var(cell.0, System::cell_index(*cell));
+                let value = dae.exprs.add(leaf);
+                found.push((*given_by, value, *start));
+            }
+        }
+    }
+    found
+}
+
+/// A fixed start value of a variable that is no state.
+struct AlgebraicStart {
+    given_by: VarId,
+    value: ExprId,
+    start: ExprId,
+    condition: ExprId,
+    origin: hyde_diag::Origin,
 }
 
 /// Fixed start values of variables that are no states: each is an equation, if it determines a state that is still free.
-fn starts_of_algebraic(dae: &mut Dae, system: &System) -> Vec<(Range, ExprId, hyde_diag::Origin)> {
+/// Those given for this model first.
+fn starts_of_algebraic(dae: &mut Dae, system: &System) -> Vec<AlgebraicStart> {
     let mut found = Vec::new();
     for (&(var, element), starts) in &system.starts {
         let is_state = dae.unknowns.iter().any(|block| {
@@ -103,7 +176,7 @@ fn starts_of_algebraic(dae: &mut Dae, system: &System) -> Vec<(Range, ExprId, hy
                 && block.var == var
                 && (block.first..block.first + block.len).contains(&element)
         });
-        let Some((start, ..)) = starts.iter().find(|(_, fixed, _)| *fixed) else {
+        let Some(&(start, _, given_by)) = starts.iter().find(|(_, fixed, _)| *fixed) else {
             continue;
         };
         if is_state || dae.places[var].is_none() {
@@ -112,9 +185,15 @@ fn starts_of_algebraic(dae: &mut Dae, system: &System) -> Vec<(Range, ExprId, hy
         let value = dae
             .exprs
             .add(Expr::Var(var, System::cell_index((var, element))));
-        let value = dae.exprs.minus(value, *start);
-        found.push((Range::SCALAR, value, dae.variables[var].origin.clone()));
+        found.push(AlgebraicStart {
+            given_by,
+            value,
+            start,
+            condition: dae.exprs.minus(value, start),
+            origin: dae.variables[var].origin.clone(),
+        });
     }
+    found.sort_by_key(|start| !dae.variables[start.given_by].start_given);
     found
 }
 
@@ -171,6 +250,9 @@ fn take(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usi
                 own.extend((0..free.len()).filter(|&number| cells.contains(&free[number])));
             }
         }
+        // What stands first in the list is taken first.
+        own.sort_unstable();
+        own.dedup();
         // An equation over a range takes as many states as it has values.
         edges.extend(std::iter::repeat_n(own, range.len()));
     }

@@ -10,7 +10,7 @@ use crate::system::{Cell, System};
 use hyde_ir::dae::{
     AutomatonInfo, Dae, Definition, Place, Residual, Selection, Space, Start, Unknown,
 };
-use hyde_ir::{Expr, ExprId, Id as _, IdVec, Index, Range, VarId, VariableKind};
+use hyde_ir::{Expr, ExprId, Id as _, IdVec, Index, Range, StateChoice, VarId, VariableKind};
 
 /// Builds the DAE with its places, definitions and residuals; pins exchange rows later.
 pub(crate) fn place(system: &mut System, matched: &Matched, order: &Order) -> Dae {
@@ -99,6 +99,7 @@ pub(crate) fn place(system: &mut System, matched: &Matched, order: &Order) -> Da
         });
     }
     selections(system, matched, &mut dae);
+    dae.dependent = std::mem::take(&mut system.dependent);
     std::mem::swap(&mut dae.exprs, &mut system.flat.exprs);
     starts(system, &mut dae);
     dae
@@ -117,11 +118,29 @@ fn selections(system: &System, matched: &Matched, dae: &mut Dae) {
             .filter_map(|(unknown, _)| position((unknown.var, unknown.first)))
             .collect();
         let candidates = group.candidates.iter();
+        let weights = group
+            .candidates
+            .iter()
+            .map(|(cell, _)| weight(system.flat.variables[cell.0].state));
+        let weights = weights.collect();
         dae.selections.push(Selection {
+            weights,
             candidates: candidates.filter_map(|(cell, _)| position(*cell)).collect(),
             constraints,
             factors: factors.base,
         });
+    }
+}
+
+/// How a choice counts among the columns of constraints: a preference is given up where the rest is a hundred times nearer
+/// to singular.
+fn weight(choice: StateChoice) -> f64 {
+    match choice {
+        StateChoice::Always => 0.0,
+        StateChoice::Prefer => 1e-2,
+        StateChoice::Open => 1.0,
+        StateChoice::Avoid => 1e2,
+        StateChoice::Never => 1e12,
     }
 }
 

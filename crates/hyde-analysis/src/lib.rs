@@ -2,6 +2,7 @@
 //! vector, what remains is matched row by row.
 //!
 //! In order:
+//! 0. `regularity`: a model that cannot determine its unknowns is refused, with the smallest sets that conflict;
 //! 1. `alias` and `derivatives`, repeated until nothing changes: variables that are equal become one, before and
 //!    after differentiation (M5); derivatives of explicit variables become explicit;
 //! 2. `reduce`: equations that constrain states to each other are differentiated, and states chosen among the
@@ -34,13 +35,16 @@ mod outputs;
 mod partials;
 mod pins;
 mod reduce;
+mod regularity;
 mod relations;
 mod segments;
 mod sliding;
 mod solve;
 mod split;
+mod state_choices;
 mod system;
 mod unroll;
+mod whole_arrays;
 
 pub use partials::{TickWrt, parameter_partials, rows, tick_partials};
 pub use sliding::sliding_cells;
@@ -53,6 +57,9 @@ use hyde_ir::{Dae, FlatModel};
 /// `None` if there were errors; all of them are in `diagnostics`.
 pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
     let mut system = system::System::new(flat);
+    if regularity::refuse(&system, diagnostics) {
+        return None;
+    }
     derivatives::simplify(&mut system, diagnostics);
     if diagnostics.has_errors() {
         return None;
@@ -65,6 +72,7 @@ pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
     pins::exchange_rows(&mut dae, &mut system, &matched, &order, diagnostics);
     clocked::sort(&mut dae, &mut system, diagnostics);
     events::react(&mut dae, &mut system, diagnostics);
+    state_choices::check(&dae, &system, diagnostics);
     initial::conditions(&mut dae, &mut system, diagnostics);
     if diagnostics.has_errors() {
         return None;

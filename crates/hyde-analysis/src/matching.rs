@@ -13,7 +13,7 @@ use crate::system::{Equation, Slot, System};
 use crate::{pins, unroll};
 use hyde_diag::{Diagnostics, Origin};
 use hyde_ir::{ExprId, Range};
-pub(crate) use mismatch::{name, plural};
+pub(crate) use mismatch::{missing_boundary, name, plural, short, unbound_input};
 use mismatch::{report, undetermined};
 
 /// An equation node: a number of the list of equations, or of the slots.

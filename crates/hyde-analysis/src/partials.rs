@@ -249,15 +249,25 @@ pub fn rows(dae: &Dae, function: Function) -> Vec<(Range, Index, ExprId)> {
             let mut row = 0;
             let mut found = Vec::new();
             for condition in &dae.initial {
-                if let InitialCondition::Equation { range, value, .. } = condition {
-                    let offset = i32::try_from(row).unwrap_or(0) - range.first;
-                    let index = if range.len() == 1 {
-                        Index::fixed(offset)
-                    } else {
-                        Index { stride: 1, offset }
-                    };
-                    found.push((*range, index, *value));
-                    row += range.len();
+                match condition {
+                    InitialCondition::Equation { range, value, .. } => {
+                        let offset = i32::try_from(row).unwrap_or(0) - range.first;
+                        let index = if range.len() == 1 {
+                            Index::fixed(offset)
+                        } else {
+                            Index { stride: 1, offset }
+                        };
+                        found.push((*range, index, *value));
+                        row += range.len();
+                    }
+                    InitialCondition::Check { value, start, .. } => {
+                        for value in [*value, *start] {
+                            let index = Index::fixed(i32::try_from(row).unwrap_or(0));
+                            found.push((Range::SCALAR, index, value));
+                            row += 1;
+                        }
+                    }
+                    InitialCondition::Fixed { .. } => {}
                 }
             }
             found

@@ -318,6 +318,8 @@ fn new_rate(system: &mut System, cell: Cell) -> Option<ExprId> {
         quantity: Quantity::usual(dimension),
         start: Vec::new(),
         fixed: false,
+        start_given: false,
+        state: hyde_ir::StateChoice::Open,
         flow: false,
         boolean: false,
         input: false,
@@ -374,16 +376,6 @@ fn add_rows(system: &mut System) {
         if rows == 0 {
             continue;
         }
-        let names: Vec<String> = candidates
-            .iter()
-            .map(|(cell, _)| format!("`{}`", system.cell_name(*cell)))
-            .collect();
-        system.notes.push(format!(
-            "{rows} of {} {} chosen as {} while running",
-            names.join(", "),
-            if rows == 1 { "is" } else { "are" },
-            if rows == 1 { "state" } else { "states" },
-        ));
         let origin = system.flat.variables[candidates[0].0.0].origin.clone();
         let factors = factors(system, number, rows * candidates.len(), &origin);
         system.groups[number].factors = Some(factors);
@@ -424,6 +416,8 @@ fn factors(system: &mut System, number: usize, len: usize, origin: &Origin) -> V
         quantity: Quantity::number(),
         start: vec![zero],
         fixed: true,
+        start_given: false,
+        state: hyde_ir::StateChoice::Open,
         flow: false,
         boolean: false,
         input: false,

@@ -3,7 +3,7 @@
 use crate::reduce::Group;
 use crate::solve::divisor;
 use hyde_diag::{InstancePath, Origin, Span};
-use hyde_ir::dae::Alias;
+use hyde_ir::dae::{Alias, Dependent};
 use hyde_ir::flat::{Action, FlatModel};
 use hyde_ir::{AutomatonId, Expr, ExprArena, ExprId, Id as _, Index, Range, VarId, VariableKind};
 use std::collections::{BTreeMap, HashMap};
@@ -50,14 +50,14 @@ pub(crate) struct System {
     pub(crate) aliases: BTreeMap<Cell, Alias>,
     /// Start values that joined variables gave to the one kept: value, fixed, and who gave it.
     pub(crate) starts: BTreeMap<Cell, Vec<(ExprId, bool, VarId)>>,
+    /// Fixed start values of variables that equal what is known: who gave it, the known value, the start value.
+    pub(crate) known_starts: Vec<(VarId, ExprId, ExprId)>,
     /// Variables that constraints tie to each other.
     pub(crate) groups: Vec<Group>,
     pub(crate) relations: hyde_ir::IdVec<hyde_ir::RelationId, hyde_ir::dae::Relation>,
     pub(crate) notes: Vec<String>,
-    /// The equation that gave an eliminated cell its value.
-    pub(crate) valued: BTreeMap<Cell, Origin>,
-    /// The continuous equations as written, before anything was eliminated: left, right, origin.
-    pub(crate) written: Vec<(ExprId, ExprId, Origin)>,
+    /// Variables that equations give by states, so that they are none.
+    pub(crate) dependent: Vec<Dependent>,
 }
 
 impl System {
@@ -65,10 +65,6 @@ impl System {
     pub(crate) fn new(mut flat: FlatModel) -> Self {
         let notes = std::mem::take(&mut flat.notes);
         let equations = std::mem::take(&mut flat.equations);
-        let written = equations
-            .iter()
-            .map(|e| (e.lhs, e.rhs, e.origin.clone()))
-            .collect();
         let equations = equations
             .into_iter()
             .map(|e| Equation {
@@ -115,11 +111,11 @@ impl System {
             slots,
             aliases: BTreeMap::new(),
             starts,
+            known_starts: Vec::new(),
             groups: Vec::new(),
             relations: hyde_ir::IdVec::new(),
             notes,
-            valued: BTreeMap::new(),
-            written,
+            dependent: Vec::new(),
         }
     }
 

@@ -133,6 +133,9 @@ pub(crate) struct EmitArgs {
     /// The stage
     #[arg(long, value_enum)]
     pub(crate) stage: StageName,
+    /// Show only the lines in which it differs from that of another model of the file
+    #[arg(long, value_name = "MODEL")]
+    pub(crate) against: Option<String>,
 }
 
 /// A stage of the compiler.
@@ -218,6 +221,9 @@ pub(crate) struct ParamsArgs {
 pub(crate) struct EffectsArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+    /// Run the limit test of every size in the file's experiments: an effect has to vanish with its size
+    #[arg(long)]
+    pub(crate) check: bool,
 }
 
 #[derive(Debug, Args)]

@@ -4,6 +4,7 @@ pub(crate) mod bode;
 pub(crate) mod check;
 pub(crate) mod doc;
 pub(crate) mod effects;
+mod effects_check;
 pub(crate) mod emit;
 pub(crate) mod explain;
 pub(crate) mod modes;

@@ -7,12 +7,10 @@ use crate::args::ModelArgs;
 use crate::commands::run::solved;
 use crate::commands::test::{Tested, Verdict, percent, run_args};
 use crate::exit::Exit;
-use crate::project::Project;
 use hyde_compiler::Compiled;
 use hyde_experiment::{Answer, LIMIT_LEFT, LIMIT_PART, Run, limit};
 use hyde_program::Program;
 use hyde_sim::EventKind;
-use hyde_syntax::ast::{Class, ClassBody, ClassKind, Element, Item, Prefix, Reference};
 
 /// Relative tolerance of the runs: a thousandth of a small effect is to stand above it.
 const RTOL: f64 = 1e-9;
@@ -24,41 +22,42 @@ const PARTS: [f64; 3] = [1.0, 0.1, 0.01];
 /// A size of an effect on the model of an experiment.
 pub(crate) struct Size {
     /// Full name of the parameter.
-    path: String,
+    pub(crate) path: String,
     /// Its value there, SI, and the unit of that.
     value: f64,
     unit: String,
 }
 
-/// The sizes, other than zero, of the effects that a model was given by name.
-pub(crate) fn sizes(project: &Project, program: &Program, run: &Run) -> Vec<Size> {
-    let mut found = Vec::new();
-    let mut model = class(project, &project.model);
-    for _ in 0..project.file.files.len() + 40 {
-        let Some(ClassBody::Short { base, effects, .. }) = model.map(|class| &class.body) else {
-            break;
-        };
-        for used in effects {
-            let effect = last_word(&used.effect);
-            for site in &used.sites {
-                let site = hyde_syntax::format_reference(site);
-                for size in declared_sizes(project, effect) {
-                    let path = format!("{site}.{effect}.{size}");
-                    if let Some((parameter, _)) = program.parameter(&path)
-                        && run.parameters[parameter.place] != 0.0
-                    {
-                        found.push(Size {
-                            value: run.parameters[parameter.place],
-                            unit: parameter.dimension.usual_unit(),
-                            path,
-                        });
-                    }
-                }
-            }
-        }
-        model = class(project, last_word(base));
-    }
-    found
+/// Which sizes are tested.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Neutral {
+    /// Those that the model gives a value.
+    LeftOut,
+    /// All; those at zero with a tenth of their range.
+    AtATenth,
+}
+
+/// The sizes of the effects on the model of an experiment.
+pub(crate) fn sizes(program: &Program, run: &Run, neutral: Neutral) -> Vec<Size> {
+    let sizes = program.parameters.iter().filter(|p| p.is_size);
+    sizes
+        .filter_map(|parameter| {
+            let given = run.parameters[parameter.place];
+            let largest = parameter
+                .range
+                .map_or(0.0, |(from, to)| from.abs().max(to.abs()));
+            let value = match (given == 0.0, neutral) {
+                (false, _) => given,
+                (true, Neutral::AtATenth) => 0.1 * largest,
+                (true, Neutral::LeftOut) => return None,
+            };
+            Some(Size {
+                value,
+                unit: parameter.dimension.usual_unit(),
+                path: parameter.name.clone(),
+            })
+        })
+        .collect()
 }
 
 /// Tests one size: runs without it, with a thousandth of it, and with it.
@@ -76,7 +75,19 @@ pub(crate) fn tested(args: &ModelArgs, size: &Size) -> Result<Tested, Exit> {
         let (_, compiled, run, _) = solved(&run_args(&args, Some(RTOL)))?;
         Ok::<_, Exit>((compiled, run))
     };
+    let skipped = |found: &str| Tested {
+        name: name.clone(),
+        verdict: Verdict::Skipped,
+        found: found.to_owned(),
+    };
+    if size.value == 0.0 {
+        return Ok(skipped(
+            "it is 0 and has no range: write `in 0 .. …` behind it",
+        ));
+    }
     let plain = at(0.0)?;
+    // A strong effect on a small machine is no longer proportional to its size: then a smaller one is tried.
+    let mut failed: Option<Tested> = None;
     for part in PARTS {
         let full = at(part * size.value)?;
         let small = at(LIMIT_PART * part * size.value)?;
@@ -91,18 +102,13 @@ pub(crate) fn tested(args: &ModelArgs, size: &Size) -> Result<Tested, Exit> {
             .map(|answer| answer.left())
             .max_by(f64::total_cmp);
         let Some(worst) = worst else {
-            return Ok(Tested {
-                name,
-                verdict: Verdict::Skipped,
-                found: "not seen in any state".to_owned(),
-            });
+            return Ok(failed.unwrap_or_else(|| skipped("not seen in any state")));
         };
-        return Ok(Tested {
-            name,
-            verdict: if worst <= LIMIT_LEFT {
-                Verdict::Passed
-            } else {
-                Verdict::Failed
+        let test = Tested {
+            name: name.clone(),
+            verdict: match worst <= LIMIT_LEFT {
+                true => Verdict::Passed,
+                false => Verdict::Failed,
             },
             found: format!(
                 "{} of it leaves {} of its effect, at most {} may",
@@ -110,13 +116,15 @@ pub(crate) fn tested(args: &ModelArgs, size: &Size) -> Result<Tested, Exit> {
                 percent(worst),
                 percent(LIMIT_LEFT)
             ),
-        });
+        };
+        if test.verdict == Verdict::Passed {
+            return Ok(test);
+        }
+        failed = failed.or(Some(test));
     }
-    Ok(Tested {
-        name,
-        verdict: Verdict::Skipped,
-        found: "it changes the order of the events: test it on a smaller model".to_owned(),
-    })
+    Ok(failed.unwrap_or_else(|| {
+        skipped("it changes the order of the events: test it on a smaller model")
+    }))
 }
 
 /// What happened in a run, in order: the transitions, and which sign relations changed to.
@@ -140,48 +148,4 @@ fn order((_, run): &(Compiled, Run)) -> Vec<(usize, usize, usize)> {
             ),
         })
         .collect()
-}
-
-fn class<'p>(project: &'p Project, name: &str) -> Option<&'p Class> {
-    let items = project.file.files.iter().flat_map(|(_, file)| &file.items);
-    items
-        .filter_map(of_class)
-        .find(|class| class.name.text == name)
-}
-
-fn of_class(item: &Item) -> Option<&Class> {
-    match item {
-        Item::Class(class) => Some(class),
-        Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
-    }
-}
-
-/// The names that an effect, or one it extends, declares as `size`.
-fn declared_sizes(project: &Project, effect: &str) -> Vec<String> {
-    let mut found = Vec::new();
-    let mut waiting = vec![effect.to_owned()];
-    let mut turns = 0;
-    while let (Some(name), true) = (waiting.pop(), turns < 40) {
-        turns += 1;
-        let known = class(project, &name).filter(|class| class.kind == ClassKind::Effect);
-        let Some(ClassBody::Long { elements, .. }) = known.map(|class| &class.body) else {
-            continue;
-        };
-        for element in elements {
-            if let Element::Extends(base, _) = element {
-                waiting.push(last_word(base).to_owned());
-            }
-            if let Element::Declaration(declaration) = element
-                && declaration.prefixes.contains(&Prefix::Size)
-            {
-                let names = declaration.declarators.iter();
-                found.extend(names.map(|declarator| declarator.name.text.clone()));
-            }
-        }
-    }
-    found
-}
-
-fn last_word(name: &Reference) -> &str {
-    name.parts.last().map_or("", |part| part.name.text.as_str())
 }

@@ -39,8 +39,17 @@ pub(crate) enum Records {
     IfThere,
 }
 
-/// Loads what the arguments name.
+/// Loads what the arguments name; reports and ends where that has errors.
 pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
+    let project = load_silently(args, needed)?;
+    if project.diagnostics.has_errors() {
+        return Err(project.finish_with_errors(args));
+    }
+    Ok(project)
+}
+
+/// Loads what the arguments name. What is wrong in the files stays in the project's diagnostics.
+pub(crate) fn load_silently(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
     if files::is_folder(&args.file) {
         let reason = format!(
             "`{}` is a folder: name a file in it; `hyde check` and `hyde test` take folders with a `{MANIFEST}`",
@@ -71,7 +80,7 @@ pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
         file,
     };
     if project.diagnostics.has_errors() {
-        return Err(project.finish_with_errors(args));
+        return Ok(project);
     }
     let experiment = choose(&project, args)
         .map_err(|reason| complain(args, Exit::CommandLine, &reason))?
@@ -89,7 +98,7 @@ pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
         let read = records::read(experiment, args, needed, &mut project.diagnostics);
         project.records = read.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
         if project.diagnostics.has_errors() {
-            return Err(project.finish_with_errors(args));
+            return Ok(project);
         }
         if project.records.len() < experiment.records.len() {
             project.experiment = None;
@@ -171,6 +180,14 @@ pub(crate) enum Aim {
 impl Project {
     /// Compiles; reports and ends with the errors otherwise. Warnings are printed.
     pub(crate) fn compile(&mut self, args: &ModelArgs, aim: Aim) -> Result<Compiled, Exit> {
+        let compiled = self.compile_silently(aim);
+        compiled.inspect_err(|_| {
+            self.finish_with_errors(args);
+        })
+    }
+
+    /// Compiles; what is wrong stays in the project's diagnostics.
+    pub(crate) fn compile_silently(&mut self, aim: Aim) -> Result<Compiled, Exit> {
         let settings = self
             .settings
             .iter()
@@ -190,7 +207,7 @@ impl Project {
         };
         let compiled = hyde_compiler::compile(&request, &mut self.diagnostics);
         let Some(compiled) = compiled else {
-            return Err(self.finish_with_errors(args));
+            return Err(Exit::Model);
         };
         for setting in &self.settings {
             let checked = match compiled.program.parameter(&setting.path) {
@@ -202,7 +219,6 @@ impl Project {
             if let Err(reason) = checked {
                 let diagnostic = run_failure::cannot_set(&compiled.program, &setting.path, reason);
                 self.diagnostics.push(diagnostic);
-                self.finish_with_errors(args);
                 return Err(Exit::CommandLine);
             }
         }

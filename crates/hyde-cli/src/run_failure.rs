@@ -89,15 +89,29 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             } else {
                 "no consistent values after an event"
             };
-            let message = match singular {
-                Some(name) => format!("{what} {at}: nothing determines `{name}` here"),
-                None => format!("{what} {at}"),
-            };
-            (
-                Code::InitialFailed,
-                message,
-                "check the start values, and that these equations have a solution there",
-            )
+            let list: Vec<String> = singular
+                .iter()
+                .take(4)
+                .map(|name| format!("`{name}`"))
+                .collect();
+            let more = if singular.len() > 4 { ", …" } else { "" };
+            if singular.is_empty() {
+                (
+                    Code::InitialFailed,
+                    format!("{what} {at}"),
+                    "check the start values, and that these equations have a solution there",
+                )
+            } else {
+                (
+                    Code::InitialFailed,
+                    format!(
+                        "{what} {at}: nothing determines {}{more} here",
+                        list.join(", ")
+                    ),
+                    "these equations depend on each other there: look for a factor that is 0, a massless part that only \
+                     friction holds, or parts that fix each other",
+                )
+            }
         }
         FailureKind::Solver(reason) => (
             Code::SolverFailed,
@@ -160,6 +174,15 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             ),
             "if the impact is meant, write `impact` behind the exit; else leave the mode at rest",
         ),
+        FailureKind::Start(name, wanted, found) => (
+            Code::StartContradicted,
+            format!(
+                "`{name}` is to start at {}, but the other conditions make it {}",
+                hyde_units::significant(*wanted, 6),
+                hyde_units::significant(*found, 6)
+            ),
+            "give the start values that belong together, or leave out the one that follows from the others",
+        ),
         FailureKind::Assert(message) => (
             Code::AssertFailed,
             format!("{message} ({at})"),
@@ -190,6 +213,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             | FailureKind::Zeno { .. }
             | FailureKind::TooManyEvents { .. } => "this condition",
             FailureKind::Assert(_) => "does not hold",
+            FailureKind::Start(..) => "a condition of the start",
             FailureKind::Inconsistent { .. }
             | FailureKind::Solver(_)
             | FailureKind::NotFinite
@@ -222,6 +246,18 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
         others.dedup();
         if !others.is_empty() {
             diagnostic = diagnostic.note(format!("in turn with {}", others.join(", ")));
+        }
+    }
+    if let FailureKind::Inconsistent { singular, .. } = &failure.kind
+        && !singular.is_empty()
+    {
+        let near = |name: &str| {
+            let part = name.split('.').next();
+            singular.iter().any(|s| s.split('.').next() == part)
+        };
+        let modes = failure.modes.iter().filter(|(name, _)| near(name));
+        for (name, mode) in modes.take(3) {
+            diagnostic = diagnostic.note(format!("`{name}` is in the mode `{mode}`"));
         }
     }
     if let Some(event) = failure.results.events.last() {

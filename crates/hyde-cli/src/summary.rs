@@ -5,7 +5,7 @@ use crate::project::Project;
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
 use hyde_sim::{Event, EventKind};
-use hyde_units::{engineering, significant};
+use hyde_units::{engineering, engineering_as, significant};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -36,6 +36,10 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
         statistics.ticks,
         statistics.restarts
     );
+    if !compiled.states.filled.is_empty() {
+        let list = compiled.states.filled.join(", ");
+        let _ = writeln!(out, "  nothing but `start` says where {list} begins");
+    }
     for (automaton, times) in program.automata.iter().zip(&run.results.mode_times) {
         let parts: Vec<String> = automaton
             .modes
@@ -85,7 +89,7 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
             };
             let _ = writeln!(out, "  expect {}: {verdict}", measure.name);
         } else {
-            let value = engineering(measure.value, known.unit.unit().dimension);
+            let value = engineering_as(measure.value, &known.unit);
             let _ = writeln!(out, "  {} = {value}", measure.name);
         }
     }

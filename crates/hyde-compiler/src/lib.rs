@@ -7,6 +7,7 @@ mod fits;
 mod load;
 mod named;
 mod pipeline;
+mod states;
 
 pub use emit::{Stage, emit};
 pub use fits::{Fit, fits};
@@ -14,3 +15,4 @@ pub use hyde_flatten::{Header, TableFile};
 pub use hyde_jit::Backend;
 pub use load::{File, Find, Packages, Place, check_name, load};
 pub use pipeline::{Compiled, Request, analyze, compile};
+pub use states::States;

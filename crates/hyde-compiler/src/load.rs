@@ -203,6 +203,16 @@ impl File {
         self.files.iter().flat_map(of_file).collect()
     }
 
+    /// The names of the effects of the user's file.
+    pub fn effects(&self) -> impl Iterator<Item = &str> {
+        self.items().filter_map(|item| match item {
+            Item::Class(class) if class.kind == ast::ClassKind::Effect => {
+                Some(class.name.text.as_str())
+            }
+            Item::Class(_) | Item::Experiment(_) | Item::Type(_) | Item::Study(_) => None,
+        })
+    }
+
     fn items(&self) -> impl Iterator<Item = &Item> {
         self.files
             .first()

@@ -1,6 +1,7 @@
 //! The way through the compiler, in the order written here.
 
 use crate::load::File;
+use crate::states::States;
 use hyde_diag::{Diagnostics, Sources};
 use hyde_flatten::Header;
 use hyde_ir::{Dae, FlatModel};
@@ -35,6 +36,8 @@ pub struct Request<'a> {
 pub struct Compiled {
     /// What can be run.
     pub program: Program,
+    /// Its states.
+    pub states: States,
     /// The stages and their times.
     pub times: Vec<(&'static str, Duration)>,
 }
@@ -48,10 +51,15 @@ pub fn compile(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<C
     let dae = step("analyze", &mut times, || {
         checked(hyde_analysis::analyze(flat, diagnostics))
     })?;
+    let states = States::of(&dae);
     let program = step("compile", &mut times, || {
         hyde_jit::compile(dae, request.backend)
     });
-    Some(Compiled { program, times })
+    Some(Compiled {
+        program,
+        states,
+        times,
+    })
 }
 
 /// The same up to the DAE, for printing.

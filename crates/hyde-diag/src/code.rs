@@ -70,9 +70,12 @@ codes! {
     ArrayEquation "E0508" "an array equation determines no whole array";
     BadPin "E0509" "a mode fixes what cannot be fixed";
     ClockedEquation "E0510" "an equation of a clocked part is no assignment";
+    Jammed "E0511" "rigid parts hold each other where they are";
+    StateChoice "E0512" "a choice of states cannot be met";
     ConflictingStarts "E0601" "joined states start at different values";
     TooManyConditions "E0602" "more initial conditions than states";
     InitialFailed "E0603" "no consistent initial conditions were found";
+    StartContradicted "E0604" "a start value contradicts the others";
     SolverFailed "E0701" "the solver could not go on";
     Chattering "E0702" "events follow each other at one instant without end";
     ImpactOnPin "E0703" "a state jumps as a mode fixes it";

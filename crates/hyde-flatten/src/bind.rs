@@ -65,6 +65,50 @@ impl<'a> Model<'a, '_> {
         let values = self.values(&binding, len, &dim, truth);
         self.flat.parameters[param].value = values;
         self.parameters[param.index()].state = Lowering::Done;
+        if let Some((instance, range)) = self.parameters[param.index()].within {
+            self.flat.parameters[param].range = self.range_of(instance, range, &dim);
+        }
+    }
+
+    /// The bounds that a parameter may have, SI; the unit behind the upper one is that of both (U2).
+    fn range_of(
+        &mut self,
+        instance: InstanceId,
+        range: &'a hyde_syntax::ast::Range,
+        dim: &Dim,
+    ) -> Option<(f64, f64)> {
+        let scope = Scope::new(instance, Setting::Parameter);
+        let (mut from, to) = (
+            self.value(&range.from, &scope),
+            self.value(&range.to, &scope),
+        );
+        let mut bounds = vec![to.clone()];
+        if let (true, hyde_syntax::ast::ExprKind::Number(_, Some(unit))) =
+            (from.bare, &range.to.kind)
+            && let (Ok(unit), Some(number)) = (
+                hyde_units::NamedUnit::parse(&unit.text),
+                self.flat.exprs.as_constant(from.id),
+            )
+        {
+            from.id = self.flat.exprs.constant(unit.unit().to_si(number));
+        } else {
+            bounds.push(from.clone());
+        }
+        for bound in &bounds {
+            let declared = self.typed(bound.id, dim.clone(), bound.span);
+            self.agree(
+                &declared,
+                bound,
+                "the parameter and its range are",
+                instance,
+            );
+        }
+        // A range is made of numbers: it makes no parameter structural.
+        let number = |id| {
+            let leaf = |_| Err(());
+            self.flat.exprs.evaluate(id, leaf).ok()
+        };
+        Some((number(from.id)?, number(to.id)?))
     }
 
     fn no_value(&self, name: &str, param: ParamId) -> Diagnostic {

@@ -7,6 +7,7 @@
 
 use crate::instance::InstanceId;
 use hyde_diag::{Code, Diagnostic, InstancePath, Span};
+use hyde_ir::ExprId;
 use hyde_units::{Agreement, AngleExponent, Dimension, Exponent};
 
 /// An unknown dimension.
@@ -103,6 +104,8 @@ pub(crate) struct Demand {
     pub(crate) bare: (bool, bool),
     /// The bare numbers as written.
     pub(crate) written: (String, String),
+    /// The two sides.
+    pub(crate) sides: (ExprId, ExprId),
 }
 
 /// The path of an instance, and its parameters with their dimensions: what a repair may name.
@@ -159,7 +162,7 @@ impl Dimensions {
     }
 
     /// Solves what the constraints determine, makes the rest pure numbers, and reports what disagrees.
-    pub(crate) fn solve(&mut self, in_scope: InScope<'_>) -> Vec<Diagnostic> {
+    pub(crate) fn solve(&mut self, in_scope: InScope<'_>) -> Vec<(Diagnostic, (ExprId, ExprId))> {
         let mut found = Vec::new();
         loop {
             let mut progress = false;
@@ -176,7 +179,8 @@ impl Dimensions {
                             (Some(a), Some(b)) => (a, b),
                             _ => (known, Dimension::DIMENSIONLESS),
                         };
-                        found.extend(verdict(a, b, &demand, in_scope));
+                        let verdict = verdict(a, b, &demand, in_scope);
+                        found.extend(verdict.map(|diagnostic| (diagnostic, demand.sides)));
                     }
                     [(unknown, exponent)] => {
                         progress = true;
@@ -274,7 +278,7 @@ fn with_unit(number: &str, unit: &str) -> String {
 }
 
 /// A dimension in one word: its usual unit.
-fn short(dimension: Dimension) -> String {
+pub(crate) fn short(dimension: Dimension) -> String {
     let unit = dimension.usual_unit();
     if unit.is_empty() || unit == "1" {
         "a pure number".to_owned()

@@ -103,6 +103,8 @@ pub(crate) struct ParameterNotes<'a> {
     pub(crate) binding: Option<Binding<'a>>,
     pub(crate) state: Lowering,
     pub(crate) boolean: bool,
+    /// `in a .. b`, with the instance whose names it uses.
+    pub(crate) within: Option<(InstanceId, &'a hyde_syntax::ast::Range)>,
 }
 
 /// How far a parameter's binding is lowered.

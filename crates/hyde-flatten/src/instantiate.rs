@@ -140,11 +140,7 @@ impl<'a> Model<'a, '_> {
             );
             return id;
         }
-        let last_words = modifiers
-            .iter()
-            .filter(|modifier| modifier.target.len() == 1);
-        self.modified
-            .extend(last_words.map(|modifier| (modifier.number, id)));
+        self.note_modified(id, &modifiers);
         self.effects_of(id);
         let mut collected = Vec::new();
         let walk = Walk {

@@ -7,9 +7,10 @@ use crate::instance::{
     Domain, Instance, InstanceId, Member, ParameterNotes, Scope, Typed, VariableNotes,
 };
 use crate::names::{self, Names};
-use hyde_diag::{Code, Diagnostic, Diagnostics, InstancePath, MadeBy, Origin, Span};
+use hyde_diag::{Code, Diagnostic, Diagnostics, InstancePath, MadeBy, Origin, Severity, Span};
 use hyde_ir::{
-    ClockId, ColumnId, ExprId, FlatModel, ParamId, Quantity, VarId, Variable, VariableKind,
+    ClockId, ColumnId, Expr, ExprId, FlatModel, Id as _, ParamId, Quantity, VarId, Variable,
+    VariableKind,
 };
 use hyde_syntax::ast::Reference;
 use hyde_units::Dimension;
@@ -31,6 +32,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) modifications: Vec<(Span, String, bool)>,
     /// The instance that a modification with one word left was given to, by its number.
     pub(crate) modified: BTreeMap<usize, InstanceId>,
+    /// The measures of the top so far, by name.
+    pub(crate) measured_numbers: Vec<(&'a str, Typed)>,
     /// Effects to be put on instances, what they wrap and what they replace.
     pub(crate) hooks: Vec<crate::instantiate::Hook<'a>>,
     pub(crate) wraps: Vec<crate::wrap::Wrap<'a>>,
@@ -69,6 +72,7 @@ impl<'a, 'd> Model<'a, 'd> {
             dimensions: Dimensions::default(),
             modifications: Vec::new(),
             modified: BTreeMap::new(),
+            measured_numbers: Vec::new(),
             hooks: Vec::new(),
             wraps: Vec::new(),
             replacements: Vec::new(),
@@ -106,27 +110,95 @@ impl<'a, 'd> Model<'a, 'd> {
     }
 
     /// Demands that two dimensions agree, and reports it if they cannot.
-    pub(crate) fn agree(&mut self, a: &Typed, b: &Typed, what: &'static str, instance: InstanceId) {
+    ///
+    /// False where they are known to disagree; that is reported.
+    pub(crate) fn agree(
+        &mut self,
+        a: &Typed,
+        b: &Typed,
+        what: &'static str,
+        instance: InstanceId,
+    ) -> bool {
         let demand = Demand {
             what,
             spans: (a.span, b.span),
             instance,
             bare: (a.bare, b.bare),
             written: (self.bare_text(a), self.bare_text(b)),
+            sides: (a.id, b.id),
         };
         let Self {
             dimensions,
             instances,
             parameters,
             flat,
-            diagnostics,
             ..
         } = self;
         let found = dimensions.agree(&a.dim, &b.dim, demand, &|id| {
             in_scope(instances, parameters, flat, id)
         });
-        if let Some(diagnostic) = found {
-            diagnostics.push(diagnostic);
+        let Some(diagnostic) = found else { return true };
+        let error = diagnostic.severity == Severity::Error;
+        let diagnostic = self.with_parts(diagnostic, (a.id, b.id));
+        self.report(diagnostic);
+        !error
+    }
+
+    /// Says what the names in two sides are, where one of them is more than a name.
+    fn with_parts(&self, diagnostic: Diagnostic, sides: (ExprId, ExprId)) -> Diagnostic {
+        let exprs = &self.flat.exprs;
+        let mut named: Vec<(&str, &Dim, &Quantity)> = Vec::new();
+        let composed = [sides.0, sides.1].into_iter().filter(|&side| {
+            matches!(
+                exprs[side],
+                Expr::Unary(..) | Expr::Binary(..) | Expr::If(..)
+            )
+        });
+        for id in exprs.below(&composed.collect::<Vec<_>>()) {
+            let part = match exprs[id] {
+                Expr::Param(param, _) => (
+                    self.flat.parameters[param].name.as_str(),
+                    &self.parameters[param.index()].dim,
+                    &self.flat.parameters[param].quantity,
+                ),
+                Expr::Var(var, _) => (
+                    self.flat.variables[var].name.as_str(),
+                    &self.variables[var.index()].dim,
+                    &self.flat.variables[var].quantity,
+                ),
+                Expr::Const(_)
+                | Expr::Time
+                | Expr::Counter
+                | Expr::Der(..)
+                | Expr::Pre(..)
+                | Expr::Relation(_)
+                | Expr::InMode(..)
+                | Expr::Unary(..)
+                | Expr::Binary(..)
+                | Expr::If(..)
+                | Expr::NoEvent(_) => continue,
+            };
+            if !named.iter().any(|(name, ..)| *name == part.0) {
+                named.push(part);
+            }
+        }
+        let parts: Vec<String> = named
+            .iter()
+            .take(6)
+            .filter_map(|(name, dim, quantity)| {
+                let dimension = self.dimensions.resolve(dim).as_known()?;
+                // In the unit it was declared in, as long as that says what it is.
+                let declared = quantity.unit.text();
+                let unit = match quantity.dimension == dimension && declared != "1" {
+                    true => declared.to_owned(),
+                    false => crate::dimension::short(dimension),
+                };
+                Some(format!("`{}` is {unit}", short(name)))
+            })
+            .collect();
+        match parts.as_slice() {
+            [] => diagnostic,
+            _ => diagnostic.note(parts.join(", ")),
         }
     }
 
@@ -146,11 +218,12 @@ impl<'a, 'd> Model<'a, 'd> {
             instances,
             parameters,
             flat,
-            diagnostics,
             ..
         } = self;
-        for diagnostic in dimensions.solve(&|id| in_scope(instances, parameters, flat, id)) {
-            diagnostics.push(diagnostic);
+        let found = dimensions.solve(&|id| in_scope(instances, parameters, flat, id));
+        for (diagnostic, sides) in found {
+            let diagnostic = self.with_parts(diagnostic, sides);
+            self.report(diagnostic);
         }
     }
 
@@ -180,6 +253,8 @@ impl<'a, 'd> Model<'a, 'd> {
             quantity: Quantity::number(),
             start: Vec::new(),
             fixed: false,
+            start_given: false,
+            state: hyde_ir::StateChoice::Open,
             flow: false,
             boolean: false,
             input: false,

@@ -16,7 +16,7 @@ pub use initial::{InitialCondition, Reason, Start};
 pub use partial::{Function, Partial, Wrt};
 pub use place::{Alias, Place, Space, Unknown};
 pub use relation::{Relation, RelationUse};
-pub use selection::Selection;
+pub use selection::{Choice, Dependent, Selection};
 
 use crate::flat::{Delay, Experiment};
 use crate::id::{
@@ -78,6 +78,8 @@ pub struct Dae {
     pub pins: Vec<Pin>,
     /// Groups of variables of which the run chooses the states.
     pub selections: Vec<Selection>,
+    /// Variables that constraints give for the whole run, in the order found.
+    pub dependent: Vec<Dependent>,
     /// Clocked partitions.
     pub ticks: IdVec<ClockId, Tick>,
     /// The order in which partitions that tick together run.
@@ -145,6 +147,44 @@ impl Dae {
         self.delays.iter().map(|delay| delay.range.len()).sum()
     }
 
+    /// The name of what is dependent: of an array with its bounds.
+    #[must_use]
+    pub fn dependent_name(&self, dependent: &Dependent) -> String {
+        let variable = &self.variables[dependent.var];
+        let first = variable.element_name(dependent.element);
+        match dependent.len {
+            1 => first,
+            len => format!(
+                "{first} .. {}",
+                variable.element_name(dependent.element + len - 1)
+            ),
+        }
+    }
+
+    /// A selection in names: what the run chooses from, how many are states, and where the constraints are written.
+    #[must_use]
+    pub fn choice(&self, selection: &Selection) -> Choice {
+        let name = |&position: &usize| {
+            let inside = |b: &&Unknown| (b.offset..b.offset + b.len).contains(&position);
+            let block = self.unknowns.iter().find(inside);
+            block.map_or_else(String::new, |block| {
+                self.variables[block.var].element_name(block.first + position - block.offset)
+            })
+        };
+        let origins = selection.constraints.iter().flat_map(|&row| {
+            let mut blocks = self.unknowns.enumerate();
+            let found = blocks.find(|(_, b)| (b.offset..b.offset + b.len).contains(&row));
+            let residual =
+                found.and_then(|(id, _)| self.residuals.iter().find(|r| r.unknown == id));
+            residual.map_or_else(Vec::new, |residual| residual.origins.clone())
+        });
+        Choice {
+            candidates: selection.candidates.iter().map(name).collect(),
+            states: selection.candidates.len() - selection.constraints.len(),
+            constraints: origins.collect(),
+        }
+    }
+
     /// The derivatives of a function.
     #[must_use]
     pub fn partials(&self, function: Function) -> &[Partial] {
@@ -160,14 +200,15 @@ impl Dae {
         self.outputs.iter().map(|output| output.range.len()).sum()
     }
 
-    /// Number of initial conditions that are equations.
+    /// Number of values of the initial conditions: one of each equation, two of each start value to be checked.
     #[must_use]
-    pub fn n_initial_equations(&self) -> usize {
+    fn n_initial_values(&self) -> usize {
         self.initial
             .iter()
             .map(|condition| match condition {
                 InitialCondition::Equation { range, .. } => range.len(),
                 InitialCondition::Fixed { .. } => 0,
+                InitialCondition::Check { .. } => 2,
             })
             .sum()
     }
@@ -180,7 +221,7 @@ impl Dae {
             Function::Roots => self.relations.len(),
             Function::Assignments => self.assignments.len() + self.pins.len(),
             Function::Outputs => self.n_outputs(),
-            Function::Initial => self.n_initial_equations(),
+            Function::Initial => self.n_initial_values(),
             Function::Delayed => self.n_delayed(),
         }
     }

@@ -49,4 +49,6 @@ pub use id::{
     UnknownId, VarId,
 };
 pub use validate::{validate_dae, validate_flat};
-pub use variable::{Column, Interpolation, Parameter, Prior, Quantity, Variable, VariableKind};
+pub use variable::{
+    Column, Interpolation, Parameter, Prior, Quantity, Role, StateChoice, Variable, VariableKind,
+};

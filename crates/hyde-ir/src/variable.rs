@@ -58,6 +58,49 @@ pub enum VariableKind {
     Reduction(usize),
 }
 
+/// What the author says of a variable as a state, where equations leave the choice (`state = prefer`).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
+pub enum StateChoice {
+    /// It must not be one.
+    Never,
+    /// Only where there is no other.
+    Avoid,
+    /// As the compiler finds best.
+    #[default]
+    Open,
+    /// Rather than others.
+    Prefer,
+    /// It must be one.
+    Always,
+}
+
+impl StateChoice {
+    /// The word for it.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Never => "never",
+            Self::Avoid => "avoid",
+            Self::Open => "open",
+            Self::Prefer => "prefer",
+            Self::Always => "always",
+        }
+    }
+
+    /// The choice of a word.
+    #[must_use]
+    pub fn of(word: &str) -> Option<Self> {
+        let all = [
+            Self::Never,
+            Self::Avoid,
+            Self::Open,
+            Self::Prefer,
+            Self::Always,
+        ];
+        all.into_iter().find(|choice| choice.word() == word)
+    }
+}
+
 /// A scalar variable, or an array whose elements share everything but their value.
 #[derive(Clone, Debug)]
 pub struct Variable {
@@ -75,6 +118,10 @@ pub struct Variable {
     pub start: Vec<ExprId>,
     /// Whether the start value is a condition rather than a guess.
     pub fixed: bool,
+    /// Whether the start value is given for this model, not in the declaration of a part.
+    pub start_given: bool,
+    /// Whether it is to be a state.
+    pub state: StateChoice,
     /// Whether it is the flow of a connector.
     pub flow: bool,
     /// Truth-valued (1 or 0).
@@ -117,6 +164,18 @@ pub enum Prior {
     Absolute(f64),
 }
 
+/// What a parameter is to an effect.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Role {
+    /// Of a model: none.
+    #[default]
+    Plain,
+    /// `size`: where all are 0 the effect vanishes (E3).
+    Size,
+    /// `shape`: means nothing where the effect has vanished.
+    Shape,
+}
+
 /// A parameter: constant during a run.
 #[derive(Clone, Debug)]
 pub struct Parameter {
@@ -136,6 +195,10 @@ pub struct Parameter {
     pub derived: bool,
     /// Its spread, if it is uncertain.
     pub prior: Option<Prior>,
+    /// What it is to its effect.
+    pub role: Role,
+    /// `in a .. b`: the values it may have, SI.
+    pub range: Option<(f64, f64)>,
     /// Where the number comes from, in the author's words.
     pub source: Option<String>,
     /// Where it is declared or last modified.

@@ -57,6 +57,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
             .map(|selection| Selection {
                 candidates: selection.candidates.clone(),
                 constraints: selection.constraints.clone(),
+                weights: selection.weights.clone(),
                 factors: selection.factors,
             })
             .collect(),
@@ -81,7 +82,11 @@ pub(crate) fn program(kernels: Compiled) -> Program {
             })
             .collect(),
         delays: delays(dae),
-        initial: dae.initial.iter().map(initial).collect(),
+        initial: dae
+            .initial
+            .iter()
+            .map(|condition| initial(dae, condition))
+            .collect(),
         derivatives: Derivatives::default(),
         experiment: experiment(dae),
         notes: dae.notes.clone(),
@@ -130,6 +135,8 @@ fn parameters(dae: &Dae) -> Vec<Parameter> {
                 hyde_ir::Prior::Relative(part) => Prior::Relative(part),
                 hyde_ir::Prior::Absolute(spread) => Prior::Absolute(spread),
             }),
+            is_size: parameter.role == hyde_ir::Role::Size,
+            range: parameter.range,
             source: parameter.source.clone(),
             origin: parameter.origin.clone(),
         })
@@ -289,7 +296,7 @@ fn reaction(reaction: &dae::Reaction) -> Reaction {
     }
 }
 
-fn initial(condition: &dae::InitialCondition) -> InitialCondition {
+fn initial(dae: &Dae, condition: &dae::InitialCondition) -> InitialCondition {
     match condition {
         dae::InitialCondition::Fixed { state, len, reason } => InitialCondition::Fixed {
             state: *state,
@@ -299,6 +306,10 @@ fn initial(condition: &dae::InitialCondition) -> InitialCondition {
         dae::InitialCondition::Equation { range, origin, .. } => InitialCondition::Equation {
             len: range.len(),
             origin: origin.clone(),
+        },
+        dae::InitialCondition::Check { var, .. } => InitialCondition::Check {
+            name: dae.variables[*var].name.clone(),
+            origin: dae.variables[*var].origin.clone(),
         },
     }
 }

@@ -121,6 +121,9 @@ pub struct Selection {
     pub candidates: Vec<usize>,
     /// Rows of the constraints in the residual.
     pub constraints: Vec<usize>,
+    /// What each variable's column of the constraints' Jacobian is multiplied by before columns are picked: 0 keeps a
+    /// variable a state, a large factor makes it none.
+    pub weights: Vec<f64>,
     /// Position of the first factor in the memory.
     pub factors: usize,
 }
@@ -177,6 +180,14 @@ pub enum InitialCondition {
         /// Number of them.
         len: usize,
         /// Where they are written.
+        origin: Origin,
+    },
+    /// A start value that the other conditions have to meet: two values of [`crate::Function::Initial`], what the variable
+    /// is and what it is to be, behind those of all equations.
+    Check {
+        /// The variable's name.
+        name: String,
+        /// Where it is declared.
         origin: Origin,
     },
 }

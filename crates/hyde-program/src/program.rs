@@ -70,6 +70,10 @@ pub struct Parameter {
     pub is_final: bool,
     /// Its spread, if it is uncertain.
     pub prior: Option<Prior>,
+    /// Whether it is the `size` of an effect: at 0 the effect vanishes.
+    pub is_size: bool,
+    /// The values it may have, SI, where that is said.
+    pub range: Option<(f64, f64)>,
     /// Where its number comes from.
     pub source: Option<String>,
     /// Where it is declared or modified.
@@ -210,10 +214,21 @@ impl Program {
                 .map(|condition| match condition {
                     InitialCondition::Equation { len, .. } => *len,
                     InitialCondition::Fixed { .. } => 0,
+                    InitialCondition::Check { .. } => 2,
                 })
                 .sum(),
             Function::Delayed => self.delays.len(),
         }
+    }
+
+    /// Number of the initial conditions' values that are equations; those of checks follow.
+    #[must_use]
+    pub fn n_initial_equations(&self) -> usize {
+        let equations = self.initial.iter().map(|condition| match condition {
+            InitialCondition::Equation { len, .. } => *len,
+            InitialCondition::Fixed { .. } | InitialCondition::Check { .. } => 0,
+        });
+        equations.sum()
     }
 
     /// Whether each unknown is a state, with the choice of states that the memory holds.

@@ -6,6 +6,7 @@
 //! how large the first step may be.
 
 use crate::failure::{Failure, FailureKind};
+use crate::singular;
 use crate::state::State;
 use hyde_ida::{LinearMethod, Pattern, SparseSolver};
 use hyde_program::Function;
@@ -60,11 +61,8 @@ impl Consistent {
             return Ok(());
         };
         let singular = matches!(
-            failure.kind,
-            FailureKind::Inconsistent {
-                singular: Some(_),
-                ..
-            }
+            &failure.kind,
+            FailureKind::Inconsistent { singular, .. } if !singular.is_empty()
         );
         if at_start && singular {
             // A product of unknowns that both start at 0, such as resistance and current, says nothing there: look from
@@ -114,8 +112,19 @@ impl Consistent {
             }
         }
         let worst = largest(&self.residual);
+        state.consistent_matrix(t, y, yp, &mut self.matrix);
+        if singular::is_singular(state, &self.matrix) {
+            return Err(singular::failure(
+                state,
+                &self.matrix,
+                worst,
+                t,
+                y,
+                at_start,
+            ));
+        }
         let kind = FailureKind::Inconsistent {
-            singular: None,
+            singular: Vec::new(),
             at_start,
         };
         Err(Failure::new(kind, t).at_row(state.program, worst, y))
@@ -203,13 +212,8 @@ impl Consistent {
         let Some(solver) = &mut self.solver else {
             return Ok(());
         };
-        solver.factor(&self.matrix).map_err(|singular| {
-            let name = state.program.unknown_name(singular.unknown);
-            let kind = FailureKind::Inconsistent {
-                singular: Some(name),
-                at_start,
-            };
-            Failure::new(kind, t).at_row(state.program, singular.unknown, y)
+        solver.factor(&self.matrix).map_err(|stopped| {
+            singular::failure(state, &self.matrix, stopped.unknown, t, y, at_start)
         })
     }
 

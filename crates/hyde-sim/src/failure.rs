@@ -8,11 +8,11 @@ use hyde_program::{Function, Program};
 /// The kinds of failures.
 #[derive(Clone, Debug, PartialEq)]
 pub enum FailureKind {
-    /// No consistent initial conditions or values after an event: the equations, the unknown where the matrix is
-    /// singular, and whether this is the start.
+    /// No consistent initial conditions or values after an event: the unknowns that are open where the equations depend
+    /// on each other, and whether this is the start.
     Inconsistent {
-        /// The unknown that no equation determines here.
-        singular: Option<String>,
+        /// The unknowns that no equation determines here; none where the equations have no solution.
+        singular: Vec<String>,
         /// At the start of the run.
         at_start: bool,
     },
@@ -40,6 +40,8 @@ pub enum FailureKind {
     },
     /// A state jumps as a mode fixes it: its name, its value, and the value it is fixed to.
     Impact(String, f64, f64),
+    /// A variable's start value, as given and as the other conditions make it.
+    Start(String, f64, f64),
     /// An `assert` does not hold: its message.
     Assert(String),
     /// A record is missing or lacks a column.
@@ -59,6 +61,8 @@ pub struct Failure {
     pub origins: Vec<Origin>,
     /// The unknowns involved, by name, with their values.
     pub unknowns: Vec<(String, f64)>,
+    /// The automata with the modes they are in, where that matters: name and mode.
+    pub modes: Vec<(String, String)>,
     /// Everything up to the failure.
     pub results: Results,
 }
@@ -70,6 +74,7 @@ impl Failure {
             t,
             origins: Vec::new(),
             unknowns: Vec::new(),
+            modes: Vec::new(),
             results: Results::default(),
         })
     }
@@ -85,6 +90,22 @@ impl Failure {
             self.origins.extend(block.origins.iter().cloned());
         }
         self.at_unknown(program, row, y)
+    }
+
+    /// Tells the modes the automata are in.
+    pub(crate) fn in_modes(mut self: Box<Self>, state: &State<'_>) -> Box<Self> {
+        for automaton in &state.program.automata {
+            let number = state.z.get(automaton.place).copied().unwrap_or(0.0);
+            let mode = automaton
+                .modes
+                .iter()
+                .zip(0_u32..)
+                .find(|&(_, place)| f64::from(place).total_cmp(&number).is_eq());
+            if let Some((mode, _)) = mode {
+                self.modes.push((automaton.name.clone(), mode.clone()));
+            }
+        }
+        self
     }
 
     /// Names an unknown.

@@ -14,6 +14,10 @@ use hyde_program::{Function, InitialCondition, RelationUse, Wrt};
 const MAX_ITERATIONS: usize = 100;
 const MAX_HALVINGS: usize = 20;
 
+/// A start value is met to this: authors write some six digits of what a constraint makes of the others.
+const START_RTOL: f64 = 1e-5;
+const START_ATOL: f64 = 1e-9;
+
 /// Start values of y and the memory, before anything is solved.
 pub(crate) fn start(state: &mut State<'_>, t: f64) -> (Vec<f64>, Vec<f64>) {
     let n = state.program.n_unknowns;
@@ -49,12 +53,13 @@ pub(crate) fn solve(
         selection::choose_at_start(state, t, y, yp);
     }
     let count = match round {
-        Round::First | Round::Again => program.rows(Function::Initial),
+        Round::First | Round::Again => program.n_initial_equations(),
         Round::StatesKept => 0,
     };
     let delays = program.delays.len();
     if count == 0 && delays == 0 {
-        return consistent.solve(state, t, y, yp, true);
+        consistent.solve(state, t, y, yp, true)?;
+        return check(state, t, y, yp, round);
     }
     // A first guess for the rest from the states' start values; it need not exist.
     let (mut guess_y, mut guess_yp) = (y.to_vec(), yp.to_vec());
@@ -96,14 +101,14 @@ pub(crate) fn solve(
     let targets: Vec<f64> = fixed.iter().map(|&i| y[i]).collect();
     if n + count + fixed.len() + delays != size {
         let kind = FailureKind::Inconsistent {
-            singular: None,
+            singular: Vec::new(),
             at_start: true,
         };
         return Err(Failure::new(kind, t));
     }
     let (pattern, positions) = pattern(state, size, n, count, &fixed, &column_of_rate);
     let mut past = state.delayed_at(t).to_vec();
-    let failed = |singular: Option<String>| {
+    let failed = |singular: Vec<String>| {
         let mut failure = Failure::new(
             FailureKind::Inconsistent {
                 singular,
@@ -118,14 +123,15 @@ pub(crate) fn solve(
         }
         failure
     };
-    let mut solver = SparseSolver::new(pattern, LinearMethod::Auto).map_err(|_| failed(None))?;
+    let mut solver =
+        SparseSolver::new(pattern, LinearMethod::Auto).map_err(|_| failed(Vec::new()))?;
     let residual = |state: &mut State<'_>, y: &[f64], yp: &[f64], past: &[f64]| {
         let mut out = vec![0.0; size];
         state.delays.set_past(t, past);
         state.evaluate(Function::Residual, t, y, yp, &mut out[..n]);
-        let mut equations = vec![0.0; count];
+        let mut equations = vec![0.0; program.rows(Function::Initial)];
         state.evaluate(Function::Initial, t, y, yp, &mut equations);
-        out[n..n + count].copy_from_slice(&equations);
+        out[n..n + count].copy_from_slice(&equations[..count]);
         for (number, (&i, target)) in fixed.iter().zip(&targets).enumerate() {
             out[n + count + number] = y[i] - target;
         }
@@ -146,9 +152,8 @@ pub(crate) fn solve(
                 None => Some(column),
                 Some(rate) => states.get(rate).copied(),
             };
-            return Err(failed(
-                position.map(|position| program.unknown_name(position)),
-            ));
+            let open = position.map(|position| program.unknown_name(position));
+            return Err(failed(open.into_iter().collect()));
         }
         let mut step = r.clone();
         solver.solve(&mut step);
@@ -176,10 +181,49 @@ pub(crate) fn solve(
         }
         let size_of = |v: &[f64]| v.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         if whole && size_of(&step) <= 1e-11 * (1.0 + size_of(&old_y).max(size_of(&old_yp))) {
-            return consistent.solve(state, t, y, yp, true);
+            consistent.solve(state, t, y, yp, true)?;
+            return check(state, t, y, yp, round);
         }
     }
-    Err(failed(None))
+    Err(failed(Vec::new()))
+}
+
+/// Start values that the other conditions have to meet; events at the start may have changed them since.
+fn check(
+    state: &mut State<'_>,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+    round: Round,
+) -> Result<(), Box<Failure>> {
+    let program = state.program;
+    let mut values = vec![0.0; program.rows(Function::Initial)];
+    if values.len() == program.n_initial_equations() || round == Round::StatesKept {
+        return Ok(());
+    }
+    state.evaluate(Function::Initial, t, y, yp, &mut values);
+    let pairs = values[program.n_initial_equations()..].chunks_exact(2);
+    let checks = program
+        .initial
+        .iter()
+        .filter_map(|condition| match condition {
+            InitialCondition::Check { name, origin } => Some((name, origin)),
+            InitialCondition::Fixed { .. } | InitialCondition::Equation { .. } => None,
+        });
+    for ((name, origin), pair) in checks.zip(pairs) {
+        let (found, wanted) = (pair[0], pair[1]);
+        if (found - wanted).abs() > START_RTOL * found.abs().max(wanted.abs()) + START_ATOL {
+            let kind = FailureKind::Start(name.clone(), wanted, found);
+            let mut failure = Failure::new(kind, t).at_origin(origin);
+            for condition in &program.initial {
+                if let InitialCondition::Equation { origin, .. } = condition {
+                    failure = failure.at_origin(origin);
+                }
+            }
+            return Err(failure);
+        }
+    }
+    Ok(())
 }
 
 /// The relations of equations as they are at the first guess: a limiter that is at no limit there must not begin at one,
@@ -223,8 +267,7 @@ fn pattern(
         program
             .partials(Function::Initial)
             .iter()
-            .filter(|_| count > 0)
-            .map(|e| Some((column(e.wrt)?, n + e.row)))
+            .map(|e| (e.row < count).then_some((column(e.wrt)?, n + e.row)))
             .collect(),
         fixed
             .iter()

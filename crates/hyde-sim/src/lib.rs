@@ -33,6 +33,7 @@ mod root_rates;
 mod selection;
 mod setup;
 mod simulation;
+mod singular;
 mod slides;
 mod sliding;
 mod start_modes;

@@ -33,7 +33,7 @@ pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &mut [f64], yp: 
     let start = y.to_vec();
     meet_constraints(state, t, y, yp, &fixed);
     for selection in &state.program.selections {
-        let mut jacobian = jacobian(state, selection, t, y, yp);
+        let mut jacobian = weighted(jacobian(state, selection, t, y, yp), selection);
         for (column, &candidate) in selection.candidates.iter().enumerate() {
             if fixed[candidate] {
                 jacobian.column_mut(column).scale_mut(1e-6);
@@ -90,7 +90,7 @@ fn meet_constraints(state: &mut State<'_>, t: f64, y: &mut [f64], yp: &[f64], fi
 pub(crate) fn choose_again(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) -> bool {
     let mut changed = false;
     for selection in &state.program.selections {
-        let jacobian = jacobian(state, selection, t, y, yp);
+        let jacobian = weighted(jacobian(state, selection, t, y, yp), selection);
         let candidates = 0..selection.candidates.len();
         let now: Vec<usize> = candidates
             .filter(|&column| !state.differential[selection.candidates[column]])
@@ -132,6 +132,14 @@ fn jacobian(
         }
     }
     found
+}
+
+/// The same with each column multiplied by its weight, for the choice.
+fn weighted(mut jacobian: DMatrix<f64>, selection: &Selection) -> DMatrix<f64> {
+    for (column, weight) in selection.weights.iter().enumerate() {
+        jacobian.column_mut(column).scale_mut(*weight);
+    }
+    jacobian
 }
 
 /// The columns that determine the constraints best.

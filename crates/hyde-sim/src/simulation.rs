@@ -19,7 +19,7 @@ use crate::setup::{Setup, same_instant};
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
 use crate::time_spent::count_modes;
-use hyde_program::{Function, Program};
+use hyde_program::Program;
 use std::sync::atomic::Ordering;
 
 /// Relations that are not settled after so many solutions of the initial equations contradict them.
@@ -183,7 +183,7 @@ impl<'a> Simulation<'a> {
         for _ in 0..MAX_ROUNDS_AT_START {
             let changed = self.iterate(&scheduled, true)?;
             let same_modes = modes(&self.integrator.state().z) == initial_modes;
-            let states_kept = !same_modes || self.program.rows(Function::Initial) == 0;
+            let states_kept = !same_modes || self.program.n_initial_equations() == 0;
             if !changed || states_kept && self.program.delays.is_empty() {
                 return Ok(());
             }
@@ -198,7 +198,7 @@ impl<'a> Simulation<'a> {
             (self.integrator.y, self.integrator.yp) = (y, yp);
         }
         let kind = FailureKind::Inconsistent {
-            singular: None,
+            singular: Vec::new(),
             at_start: true,
         };
         Err(Failure::new(kind, t))

@@ -43,7 +43,7 @@ pub(crate) fn leave_impossible_modes(
                 len,
                 declared,
             } => *declared && (*state..*state + *len).contains(&position),
-            InitialCondition::Equation { .. } => false,
+            InitialCondition::Equation { .. } | InitialCondition::Check { .. } => false,
         })
     };
     for automaton in 0..program.automata.len() {

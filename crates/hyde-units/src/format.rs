@@ -29,6 +29,26 @@ pub fn engineering(si: f64, dimension: Dimension) -> String {
     }
 }
 
+/// The same in the unit of a declared type, where that is one symbol of SI: an energy in J, not N.m.
+#[must_use]
+pub fn engineering_as(si: f64, unit: &NamedUnit) -> String {
+    let coherent = unit.unit().to_si(1.0).to_bits() == 1.0_f64.to_bits()
+        && unit.unit().to_si(0.0).to_bits() == 0.0_f64.to_bits();
+    let symbol = look_up(unit.text()).is_some_and(|(_, row)| row.text == unit.text());
+    if !coherent || !symbol {
+        return engineering(si, unit.unit().dimension);
+    }
+    let size = round_to(si.abs(), DIGITS);
+    let prefixed = size != 0.0 && size.is_finite() && !(0.1..1000.0).contains(&size);
+    match fitting_prefix(size, prefixes_of(unit.text())).filter(|_| prefixed) {
+        Some((prefix, value)) => {
+            let value = significant(value.copysign(si), DIGITS);
+            format!("{value} {prefix}{}", unit.text())
+        }
+        None => format!("{} {}", significant(si, DIGITS), unit.text()),
+    }
+}
+
 /// Prints an SI value in a unit the user chose: `350 mm`. Ten significant digits, so that conversion leaves no dust.
 #[must_use]
 pub fn format_value(si: f64, unit: &NamedUnit) -> String {
@@ -126,6 +146,17 @@ mod tests {
         ] {
             assert_eq!(shown(si, unit), text);
         }
+    }
+
+    #[test]
+    fn values_of_a_declared_type_keep_its_symbol() {
+        let show = |si, unit| engineering_as(si, &NamedUnit::parse(unit).unwrap());
+        assert_eq!(show(1250.0, "J"), "1.25 kJ");
+        assert_eq!(show(-0.004, "J"), "-4 mJ");
+        assert_eq!(show(50.0, "Hz"), "50 Hz");
+        // No symbol of SI alone: the usual unit of the dimension.
+        assert_eq!(show(0.35, "mm"), "0.35 m");
+        assert_eq!(show(20.0, "N.m/rad"), "20 N.m");
     }
 
     #[test]

@@ -34,7 +34,7 @@ mod unit;
 pub use dimension::{Agreement, AngleExponent, Dimension};
 pub use error::{UnitError, UnitErrorKind};
 pub use exponent::Exponent;
-pub use format::{engineering, format_value, significant};
+pub use format::{engineering, engineering_as, format_value, significant};
 pub use parse::parse_unit;
 pub use scale::Scale;
 pub use unit::{NamedUnit, Unit};

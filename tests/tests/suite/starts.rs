@@ -24,3 +24,21 @@ fn initial_equations_hold_with_the_relations_as_they_are_at_the_start() {
     // The integral of 2 + t over 1 s; rtol 1e-8.
     close(controller.column("x")[last], 0.5, 1e-7);
 }
+
+#[test]
+fn a_start_given_for_the_model_counts_before_a_part_s_own() {
+    let train = solve("starts", "gear");
+    close(train.column("motor.phi")[0], 6.0, 1e-12);
+    close(train.column("motor.w")[0], 1.5, 1e-12);
+    close(train.column("table.w")[0], 0.5, 1e-12);
+    let pair = solve("starts", "strained");
+    close(pair.column("right.s")[0], 0.4, 1e-12);
+    close(pair.column("left.s")[0], 0.3, 1e-12);
+}
+
+#[test]
+fn what_begins_at_a_start_alone_is_listed() {
+    let guess = solve("starts", "guess");
+    assert_eq!(guess.compiled.states.filled, ["y"]);
+    close(guess.column("y")[0], 2.0, 0.0);
+}

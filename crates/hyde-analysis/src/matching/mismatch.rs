@@ -3,10 +3,9 @@
 use super::{Node, origin, sides};
 use crate::graph::{Bipartite, Matching};
 use crate::segments::Segment;
-use crate::system::{Cell, System};
+use crate::system::System;
 use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
-use hyde_ir::dae::Alias;
-use hyde_ir::{Expr, VarId};
+use hyde_ir::{Expr, Range, VarId};
 
 pub(super) fn report(
     system: &System,
@@ -48,16 +47,16 @@ pub(super) fn report(
             .iter()
             .find(|&&right| system.flat.variables[unknowns[right].var].input);
         let diagnostic = match (trace, input) {
-            (Some(&trace), _) => missing_boundary(system, unknowns[trace]),
-            (None, Some(&input)) => unbound_input(system, unknowns[input]),
+            (Some(&trace), _) => missing_boundary(system, unknowns[trace].var),
+            (None, Some(&input)) => unbound_input(system, unknowns[input].var),
             (None, None) => too_few(system, nodes, unknowns, graph, matching, right),
         };
         diagnostics.push(diagnostic);
     }
 }
 
-fn missing_boundary(system: &System, unknown: Segment) -> Diagnostic {
-    let variable = &system.flat.variables[unknown.var];
+pub(crate) fn missing_boundary(system: &System, trace: VarId) -> Diagnostic {
+    let variable = &system.flat.variables[trace];
     let place = variable.trace.clone().unwrap_or_default();
     let flux = short(&variable.name);
     let flux = flux
@@ -79,8 +78,8 @@ fn missing_boundary(system: &System, unknown: Segment) -> Diagnostic {
     ))
 }
 
-fn unbound_input(system: &System, unknown: Segment) -> Diagnostic {
-    let variable = &system.flat.variables[unknown.var];
+pub(crate) fn unbound_input(system: &System, input: VarId) -> Diagnostic {
+    let variable = &system.flat.variables[input];
     let name = &variable.name;
     Diagnostic::error(
         Code::UnboundInput,
@@ -190,74 +189,35 @@ fn constrained(system: &System, node: Node) -> Diagnostic {
     }
     let origin = origin(system, node);
     if names.is_empty() {
-        return nothing_new(system, &origin);
+        return Diagnostic::error(
+            Code::TooManyEquations,
+            "this equation determines nothing new",
+        )
+        .placed(
+            system,
+            &origin,
+            "an equation too many in this component",
+            "all it names is known without it",
+        )
+        .help("remove it, or what gives its variables their values");
     }
     let list: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
-    Diagnostic::error(Code::Constrained, format!("{} are constrained to each other", list.join(" and ")))
-        .label(origin.span, "this equation fixes one by the others")
+    let diagnostic = Diagnostic::error(
+        Code::Constrained,
+        format!("{} are constrained to each other", list.join(" and ")),
+    )
+    .label(origin.span, "this equation fixes one by the others");
+    if sides(system, node)
+        .iter()
+        .any(|(range, ..)| *range != Range::SCALAR)
+    {
+        return diagnostic
+            .note("between whole arrays a constraint is differentiated where it gives one of them: `x[i] = …`")
+            .help("solve it for one of the arrays, or put a stiffness between the parts");
+    }
+    diagnostic
         .note("each of them is a state with an equation for its derivative: the model needs index reduction")
         .help("put a stiffness between the parts, or describe the joined parts by one of the states")
-}
-
-/// An equation of which everything is known: those that determined it before are the conflict.
-fn nothing_new(system: &System, origin: &Origin) -> Diagnostic {
-    let mut known: Vec<(Cell, &Origin)> = Vec::new();
-    let of_it = system.written.iter().filter(|(.., at)| at == origin);
-    for (lhs, rhs, _) in of_it {
-        for id in system.flat.exprs.below(&[*lhs, *rhs]) {
-            let Expr::Var(var, index) = system.flat.exprs[id] else {
-                continue;
-            };
-            let Some(cell) = System::cell(var, index) else {
-                continue;
-            };
-            if let Some(by) = value_given_by(system, cell)
-                && !known.iter().any(|(other, _)| *other == cell)
-            {
-                known.push((cell, by));
-            }
-        }
-    }
-    let names: Vec<String> = known
-        .iter()
-        .map(|(cell, _)| format!("`{}`", system.cell_name(*cell)))
-        .collect();
-    let message = match names.as_slice() {
-        [] => "this equation determines nothing new".to_owned(),
-        [only] => format!("{only} is determined twice"),
-        several => format!("{} are determined already", several.join(" and ")),
-    };
-    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message).placed(
-        system,
-        origin,
-        "an equation too many in this component: is it connected?",
-        "all it names is known without it",
-    );
-    for ((_, by), name) in known.iter().zip(&names) {
-        let place = system.component(by).map_or(by.span, |(_, span)| span);
-        diagnostic = diagnostic.label(place, format!("{name} is determined here"));
-    }
-    let parts = known.iter().all(|(_, by)| system.component(by).is_some());
-    diagnostic.help(if parts && known.len() > 1 {
-        "take one of the parts away, or put something elastic between them"
-    } else {
-        "remove one of these"
-    })
-}
-
-/// The equation that gave an eliminated cell its value, through its aliases.
-fn value_given_by(system: &System, cell: Cell) -> Option<&Origin> {
-    let mut at = cell;
-    for _ in 0..=system.aliases.len() {
-        if let Some(origin) = system.valued.get(&at) {
-            return Some(origin);
-        }
-        match system.aliases.get(&at)? {
-            Alias::Of { var, element, .. } => at = (*var, *element),
-            Alias::Value(_) => return None,
-        }
-    }
-    None
 }
 
 /// Labels in the user's own file for what lies in a component of a library.
@@ -354,7 +314,7 @@ pub(crate) fn plural(count: usize, word: &str) -> String {
     }
 }
 
-fn short(name: &str) -> &str {
+pub(crate) fn short(name: &str) -> &str {
     // `screw.q.left` is shown as `q.left`.
     match name.rsplit_once('.') {
         Some((before, "left" | "right")) => &name[before.rfind('.').map_or(0, |at| at + 1)..],

@@ -1,34 +1,34 @@
 //! `hyde check`: compiles everything in a file, or in the files of a package, and runs nothing.
 
+use super::effects::wrapped;
 use crate::args::{CheckArgs, ModelArgs};
 use crate::exit::Exit;
 use crate::files;
-use crate::project::{self, Aim, Records, complain, print_output, report_errors};
+use crate::project::{self, Aim, Project, Records, complain, print_output, report_errors};
 use crate::render;
-use hyde_diag::{Diagnostics, Sources};
+use hyde_compiler::States;
+use hyde_diag::{Diagnostics, Origin, Sources};
 use serde_json::{Value, json};
 
-/// Checks every experiment of a file (its records included), or its last model if it has none; all files of a folder.
+/// Checks every experiment of a file (its records included), or its last model if it has none; all files of a folder. One
+/// that is wrong does not keep the others from being looked at.
 pub(crate) fn check(args: &CheckArgs) -> Exit {
     let folder = files::is_folder(&args.model.file);
     let list = match project::files_of(&args.model) {
         Ok(list) => list,
         Err(exit) => return exit,
     };
-    let (mut exit, mut all, mut warnings) = (Exit::Done, Vec::new(), Vec::new());
+    let (mut exit, mut all) = (Exit::Done, Found::default());
     for args in &list {
         match checked(args, folder) {
-            Ok((names, found)) => {
+            Ok(found) => {
                 if !args.json && !args.quiet {
-                    let names = if names.is_empty() {
-                        "nothing to compile".to_owned()
-                    } else {
-                        names.join(", ")
-                    };
-                    print_output(&format!("{}: {names} in order", args.file.display()));
+                    print_output(&found.text(args));
                 }
-                all.extend(names);
-                warnings.extend(found);
+                all.names.extend(found.names);
+                all.choices.extend(found.choices);
+                all.states.extend(found.states);
+                all.warnings.extend(found.warnings);
             }
             // One object on standard output: it is about the first file at fault.
             Err(failed) if args.json => return failed,
@@ -38,30 +38,151 @@ pub(crate) fn check(args: &CheckArgs) -> Exit {
     if args.model.json {
         print_output(&format!(
             "{:#}",
-            json!({ "ok": true, "checked": all, "diagnostics": warnings })
+            json!({ "ok": true, "checked": all.names, "states": all.states, "diagnostics": all.warnings })
         ));
     }
     exit
 }
 
-/// What was checked, and the warnings of it as JSON. A file of a folder may have nothing but types and functions.
-fn checked(args: &ModelArgs, folder: bool) -> Result<(Vec<String>, Vec<Value>), Exit> {
-    let (mut names, mut warnings) = (Vec::new(), Vec::new());
-    for args in each(args, folder)? {
-        let mut project = project::load(&args, Records::IfThere)?;
-        let alone = project.experiment.is_none();
-        let compiled = project.compile(&args, if alone { Aim::Linearize } else { Aim::Ledger })?;
-        project.print_warnings(&args);
-        if let Value::Array(list) = render::to_json(&project.diagnostics, &project.sources) {
-            warnings.extend(list);
-        }
-        let what = project.experiment.as_ref().map_or_else(
-            || format!("model {}", project.model),
-            |experiment| format!("experiment {experiment}"),
-        );
-        names.push(format!("{what} ({} unknowns)", compiled.program.n_unknowns));
+/// What was in order.
+#[derive(Default)]
+struct Found {
+    names: Vec<String>,
+    /// Lines on the states of each model.
+    choices: Vec<String>,
+    /// The states of each model as JSON.
+    states: Vec<Value>,
+    /// Warnings as JSON.
+    warnings: Vec<Value>,
+}
+
+impl Found {
+    fn text(&self, args: &ModelArgs) -> String {
+        let names = match self.names.as_slice() {
+            [] => "nothing to compile".to_owned(),
+            names => names.join(", "),
+        };
+        let mut lines = vec![format!("{}: {names} in order", args.file.display())];
+        lines.extend(self.choices.iter().cloned());
+        lines.join("\n")
     }
-    Ok((names, warnings))
+}
+
+/// Checks the experiments of a file, one after the other; what is wrong in any is printed at the end. A file of a folder may
+/// have nothing but types and functions.
+fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
+    let mut found = Found::default();
+    let mut models: Vec<String> = Vec::new();
+    let mut exit = Exit::Done;
+    let mut last: Option<Project> = None;
+    for args in each(args, folder)? {
+        let mut project = project::load_silently(&args, Records::IfThere)?;
+        let aim = match project.experiment {
+            None => Aim::Linearize,
+            Some(_) => Aim::Ledger,
+        };
+        let compiled = match project.diagnostics.has_errors() {
+            true => Err(Exit::Model),
+            false => project.compile_silently(aim),
+        };
+        match compiled {
+            Ok(compiled) => {
+                let what = project.experiment.as_ref().map_or_else(
+                    || format!("model {}", project.model),
+                    |experiment| format!("experiment {experiment}"),
+                );
+                let unknowns = compiled.program.n_unknowns;
+                found.names.push(format!("{what} ({unknowns} unknowns)"));
+                if !models.contains(&project.model) {
+                    let states = &compiled.states;
+                    found
+                        .choices
+                        .extend(choices(&project.model, states, &project));
+                    found
+                        .states
+                        .push(states_json(&project.model, states, &project));
+                    models.push(project.model.clone());
+                }
+            }
+            Err(failed) => exit = exit.max(failed),
+        }
+        // The files are the same, so places are: what is wrong with a model is said once.
+        if let Some(before) = last {
+            let own = std::mem::take(&mut project.diagnostics);
+            project.diagnostics = before.diagnostics;
+            own.iter().for_each(|d| project.diagnostics.push(d.clone()));
+        }
+        last = Some(project);
+    }
+    let Some(project) = last else {
+        return Ok(found);
+    };
+    if exit != Exit::Done {
+        project.finish_with_errors(args);
+        return Err(exit);
+    }
+    project.print_warnings(args);
+    if let Value::Array(list) = render::to_json(&project.diagnostics, &project.sources) {
+        found.warnings = list;
+    }
+    Ok(found)
+}
+
+/// Lines on states where the equations left a choice, or a start value is no condition of the model.
+fn choices(model: &str, states: &States, project: &Project) -> Vec<String> {
+    let place = |origin: &Origin| project.sources.place(origin.span);
+    let mut lines = Vec::new();
+    for choice in &states.chosen {
+        let places: Vec<String> = choice.constraints.iter().map(place).collect();
+        lines.push(format!(
+            "  {model}: {} of {} is chosen while running, tied at {}",
+            choice.states,
+            choice.candidates.join(", "),
+            places.join(", ")
+        ));
+    }
+    for (name, origin) in &states.dependent {
+        lines.push(format!(
+            "  {model}: {name} is no state, given at {}",
+            place(origin)
+        ));
+    }
+    if !states.filled.is_empty() {
+        let list = states.filled.join(", ");
+        lines.push(format!(
+            "  {model}: nothing but `start` says where {list} begins"
+        ));
+    }
+    // Eighty columns: what does not fit goes on below, deeper in.
+    let wrapped = lines.iter().flat_map(|line| {
+        let parts = wrapped(line.trim_start(), 74).into_iter().enumerate();
+        parts.map(|(number, part)| match number {
+            0 => format!("  {part}"),
+            _ => format!("      {part}"),
+        })
+    });
+    wrapped.collect()
+}
+
+fn states_json(model: &str, states: &States, project: &Project) -> Value {
+    let place = |origin: &Origin| project.sources.place(origin.span);
+    let chosen: Vec<Value> = states
+        .chosen
+        .iter()
+        .map(|choice| {
+            let places: Vec<String> = choice.constraints.iter().map(place).collect();
+            json!({ "states": choice.states, "of": choice.candidates, "constraints": places })
+        })
+        .collect();
+    let dependent: Vec<Value> = states
+        .dependent
+        .iter()
+        .map(|(name, origin)| json!({ "name": name, "constraint": place(origin) }))
+        .collect();
+    json!({
+        "model": model, "states": states.states, "chosen": chosen, "dependent": dependent,
+        "start_only": states.filled,
+    })
 }
 
 /// The arguments for each experiment of the file, if none is named.

@@ -1,5 +1,6 @@
 //! `hyde effects`: every effect of the library and of the file, and the sites of the model it fits on.
 
+use super::effects_check;
 use crate::args::{EffectsArgs, ModelArgs};
 use crate::exit::Exit;
 use crate::project::{self, Records, print_output};
@@ -8,6 +9,9 @@ use std::fmt::Write as _;
 
 /// Lists effects and sites.
 pub(crate) fn effects(args: &EffectsArgs) -> Exit {
+    if args.check {
+        return effects_check::check(&args.model);
+    }
     match listed(args) {
         Ok(text) => {
             print_output(&text);
@@ -51,7 +55,7 @@ fn listed(args: &EffectsArgs) -> Result<String, Exit> {
 }
 
 /// A list in lines of at most so many characters.
-fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = vec![String::new()];
     for word in text.split(' ') {
         let last = lines.len() - 1;

@@ -33,7 +33,26 @@ pub(crate) fn emit(args: &EmitArgs) -> Exit {
         StageName::Clif => Stage::Clif,
         StageName::Asm => Stage::Asm,
     };
-    match hyde_compiler::emit(&request, stage, &mut project.diagnostics) {
+    let mut texts = vec![hyde_compiler::emit(
+        &request,
+        stage,
+        &mut project.diagnostics,
+    )];
+    if let Some(model) = &args.against {
+        let other = Request {
+            model,
+            experiment: None,
+            free_inputs: request.experiment.is_none(),
+            ..request
+        };
+        texts.push(hyde_compiler::emit(&other, stage, &mut project.diagnostics));
+    }
+    let texts: Option<Vec<String>> = texts.into_iter().collect();
+    let text = texts.map(|mut texts| match texts.len() {
+        1 => texts.remove(0),
+        _ => differences(&texts[1], &texts[0]),
+    });
+    match text {
         Some(text) => {
             if args.model.json {
                 print_output(&format!(
@@ -47,4 +66,20 @@ pub(crate) fn emit(args: &EmitArgs) -> Exit {
         }
         None => project.finish_with_errors(&args.model),
     }
+}
+
+/// The lines that only one of two texts has, with `-` those of the first and `+` those of the second, in their order.
+fn differences(before: &str, after: &str) -> String {
+    let diff = similar::TextDiff::from_lines(before, after);
+    let mut out = String::new();
+    for change in diff.iter_all_changes() {
+        let mark = match change.tag() {
+            similar::ChangeTag::Equal => continue,
+            similar::ChangeTag::Delete => '-',
+            similar::ChangeTag::Insert => '+',
+        };
+        out.push(mark);
+        out.push_str(change.value());
+    }
+    out
 }

@@ -101,9 +101,12 @@ pages! {
     ArrayEquation "E0508";
     BadPin "E0509";
     ClockedEquation "E0510";
+    Jammed "E0511";
+    StateChoice "E0512";
     ConflictingStarts "E0601";
     TooManyConditions "E0602";
     InitialFailed "E0603";
+    StartContradicted "E0604";
     SolverFailed "E0701";
     Chattering "E0702";
     ImpactOnPin "E0703";

@@ -3,7 +3,7 @@
 use crate::args::{Format, ModelArgs, RunArgs, TestArgs};
 use crate::commands::{check, run};
 use crate::exit::Exit;
-use crate::limits;
+use crate::limits::{self, Neutral};
 use crate::project::{self, print_output};
 use hyde_units::significant;
 use serde_json::{Value, json};
@@ -27,7 +27,7 @@ pub(crate) enum Verdict {
 }
 
 impl Verdict {
-    fn word(self) -> &'static str {
+    pub(crate) fn word(self) -> &'static str {
         match self {
             Self::Passed => "passed",
             Self::Failed => "FAILED",
@@ -94,7 +94,7 @@ fn tested(args: &ModelArgs) -> Result<Exit, Exit> {
 fn experiment(args: &ModelArgs, tests: &mut Vec<Tested>) -> Exit {
     let name = args.experiment.clone().unwrap_or_default();
     let run_args = run_args(args, None);
-    let (project, compiled, run, _) = match run::solved(&run_args) {
+    let (_, compiled, run, _) = match run::solved(&run_args) {
         Ok(solved) => solved,
         Err(exit) => {
             tests.push(Tested {
@@ -127,7 +127,7 @@ fn experiment(args: &ModelArgs, tests: &mut Vec<Tested>) -> Exit {
         name,
     });
     let mut exit = Exit::Done;
-    for size in limits::sizes(&project, &compiled.program, &run) {
+    for size in limits::sizes(&compiled.program, &run, Neutral::LeftOut) {
         match limits::tested(args, &size) {
             Ok(test) => tests.push(test),
             Err(failed) => exit = exit.max(failed),
@@ -153,7 +153,8 @@ pub(crate) fn run_args(args: &ModelArgs, rtol: Option<f64>) -> RunArgs {
     }
 }
 
-fn table(place: &str, tests: &[Tested]) -> String {
+/// The tests of a file, one a line.
+pub(crate) fn table(place: &str, tests: &[Tested]) -> String {
     let width = tests.iter().map(|test| test.name.chars().count()).max();
     let width = width.unwrap_or(0).max(20);
     let lines: Vec<String> = tests

@@ -8,6 +8,7 @@
 
 mod analyses;
 mod command;
+mod effects;
 mod files;
 mod printed;
 mod settings;

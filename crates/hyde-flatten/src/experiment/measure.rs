@@ -10,6 +10,7 @@ use hyde_syntax::ast;
 use hyde_units::{Dimension, NamedUnit};
 
 impl<'a> Model<'a, '_> {
+    /// A measure of an experiment or a model; expectations behind it may use its name.
     pub(crate) fn add_measure(&mut self, measure: &'a ast::Measure, scope: &Scope<'a>) {
         let typed = self.lower(&measure.value, scope);
         let file = self.instances[scope.instance].file;
@@ -39,6 +40,10 @@ impl<'a> Model<'a, '_> {
                 let diagnostic = self.names.unknown(file, &measure.type_name);
                 self.report(diagnostic);
             }
+        }
+        if scope.instance == 0 {
+            self.measured_numbers
+                .push((&measure.name.text, typed.clone()));
         }
         self.push_measure(measure.name.text.clone(), typed, false, unit);
     }

@@ -170,6 +170,7 @@ impl<'a> Model<'a, '_> {
             binding: None,
             state: Lowering::Done,
             boolean: false,
+            within: None,
         });
         let quantity = self.flat.variables[linear].quantity.clone();
         let origin = self.origin(0, span).made_by(MadeBy::Experiment);
@@ -182,6 +183,8 @@ impl<'a> Model<'a, '_> {
             is_final: false,
             derived: false,
             prior: None,
+            role: hyde_ir::Role::Plain,
+            range: None,
             source: Some(format!("record {record}")),
             origin,
         });

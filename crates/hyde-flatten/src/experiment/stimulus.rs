@@ -83,6 +83,7 @@ impl<'a> Model<'a, '_> {
                 binding: None,
                 state: Lowering::Done,
                 boolean: false,
+                within: None,
             });
             let origin = self.flat.variables[var]
                 .origin
@@ -97,6 +98,8 @@ impl<'a> Model<'a, '_> {
                 is_final: false,
                 derived: false,
                 prior: None,
+                role: hyde_ir::Role::Plain,
+                range: None,
                 source: None,
                 origin: origin.clone(),
             });

@@ -130,6 +130,7 @@ impl<'a> Model<'a, '_> {
         }
         let mut modifiers = Vec::new();
         self.modifiers_of(changes, scope, &mut modifiers);
+        self.note_modified(id, &modifiers);
         let mut collected = Vec::new();
         let walk = Walk {
             id,

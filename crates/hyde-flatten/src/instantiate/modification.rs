@@ -93,6 +93,15 @@ impl<'a> Model<'a, '_> {
         }
     }
 
+    /// Notes the instance that the last words of modifications are looked up in.
+    pub(super) fn note_modified(&mut self, id: InstanceId, modifiers: &[Modifier<'a>]) {
+        let last_words = modifiers
+            .iter()
+            .filter(|modifier| modifier.target.len() == 1);
+        self.modified
+            .extend(last_words.map(|modifier| (modifier.number, id)));
+    }
+
     pub(super) fn report_unused_modifications(&mut self) {
         let unused: Vec<(usize, Span, String)> = (0..)
             .zip(&self.modifications)
@@ -159,7 +168,7 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    /// `start` or `fixed` of a variable: the outermost modification, else the declaration.
+    /// `start`, `fixed` or `state` of a variable: the outermost modification, else the declaration.
     pub(super) fn attribute(
         &mut self,
         id: InstanceId,
@@ -202,20 +211,20 @@ impl<'a> Model<'a, '_> {
     ) {
         for modifier in modifiers {
             if modifier.target.is_empty()
-                || matches!(modifier.target.as_slice(), ["start" | "fixed"])
+                || matches!(modifier.target.as_slice(), ["start" | "fixed" | "state"])
             {
                 self.modifications[modifier.number].2 = true;
             }
         }
         for change in &declarator.changes {
-            if !matches!(change.target.as_word(), Some("start" | "fixed")) {
+            if !matches!(change.target.as_word(), Some("start" | "fixed" | "state")) {
                 self.report(
                     Diagnostic::error(
                         Code::UnknownModification,
                         format!("a variable has no attribute `{}`", change.target.dotted()),
                     )
                     .label(change.target.span, "changes nothing")
-                    .help("attributes are `start` and `fixed`"),
+                    .help("attributes are `start`, `fixed` and `state`"),
                 );
             }
         }

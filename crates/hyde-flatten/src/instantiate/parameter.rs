@@ -5,7 +5,7 @@ use crate::instance::{InstanceId, Lowering, Member, ParameterNotes};
 use crate::model::Model;
 use crate::names::TypeName;
 use hyde_diag::{Code, Diagnostic};
-use hyde_ir::Parameter;
+use hyde_ir::{Parameter, Role};
 use hyde_syntax::ast::{self, Declaration, Prefix};
 use hyde_units::NamedUnit;
 
@@ -73,7 +73,13 @@ impl<'a> Model<'a, '_> {
                 binding,
                 state: Lowering::Waiting,
                 boolean: matches!(kind, TypeName::Boolean),
+                within: declarator.within.as_ref().map(|within| (id, within)),
             });
+            let role = match (has(Prefix::Size), has(Prefix::Shape)) {
+                (true, _) => Role::Size,
+                (false, true) => Role::Shape,
+                (false, false) => Role::Plain,
+            };
             let param = self.flat.parameters.push(Parameter {
                 name: path.member(name),
                 len,
@@ -83,6 +89,8 @@ impl<'a> Model<'a, '_> {
                 is_final,
                 derived: false,
                 prior,
+                role,
+                range: None,
                 source,
                 origin: self.origin(id, span),
             });

@@ -5,8 +5,8 @@ use crate::instance::{InstanceId, Member, Setting, VariableNotes};
 use crate::model::Model;
 use crate::names::TypeName;
 use hyde_diag::{Code, Diagnostic};
-use hyde_ir::{Variable, VariableKind};
-use hyde_syntax::ast::{ClassKind, Declaration, Declarator, ExprKind, Prefix};
+use hyde_ir::{StateChoice, Variable, VariableKind};
+use hyde_syntax::ast::{ClassKind, Declaration, Declarator, Expr, ExprKind, Prefix};
 
 impl<'a> Model<'a, '_> {
     pub(super) fn declare_variable(
@@ -26,11 +26,16 @@ impl<'a> Model<'a, '_> {
             |model: &mut Self, word: &str| model.attribute(id, declarator, &modifiers, word);
         let start = attribute(self, "start");
         let fixed = attribute(self, "fixed");
+        let state = attribute(self, "state");
         self.check_attributes(declarator, &modifiers);
         let fixed = fixed.is_some_and(|fixed| {
             let (picked, ..) = self.picked(&fixed, Setting::Parameter);
             matches!(picked.kind, ExprKind::Boolean(true))
         });
+        // At the top, and in a modification, the author means this model; in a part's own declaration every use of it.
+        let start_given = start.as_ref().is_some_and(|start| start.scope != id)
+            || self.instances[id].parent.is_none();
+        let state = state.map_or(StateChoice::Open, |state| self.state_choice(state.expr));
         let (dim, quantity) = self.quantity(kind, binding.as_ref().map(|binding| binding.expr));
         let clock = self.instances[id].clock;
         let variable_kind = match clock {
@@ -84,6 +89,8 @@ impl<'a> Model<'a, '_> {
             quantity,
             start: Vec::new(),
             fixed,
+            start_given,
+            state,
             flow,
             boolean: matches!(kind, TypeName::Boolean),
             input: has(Prefix::Input),
@@ -93,5 +100,22 @@ impl<'a> Model<'a, '_> {
         self.instances[id]
             .members
             .insert(name, Member::Variable(var));
+    }
+
+    /// The word behind `state =`.
+    fn state_choice(&mut self, expr: &Expr) -> StateChoice {
+        let word = if let ExprKind::Reference(reference) = &expr.kind {
+            reference.as_word()
+        } else {
+            None
+        };
+        word.and_then(StateChoice::of).unwrap_or_else(|| {
+            self.report(
+                Diagnostic::error(Code::UnknownModification, "no such choice of states")
+                    .label(expr.span, "not known")
+                    .help("write `state = always`, `prefer`, `avoid`, `never`, or leave it open"),
+            );
+            StateChoice::Open
+        })
     }
 }

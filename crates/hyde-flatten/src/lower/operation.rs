@@ -78,11 +78,16 @@ impl<'a> Model<'a, '_> {
                 } else {
                     (BinaryOp::Sub, "`-` subtracts")
                 };
-                self.agree(&a, &b, what, scope.instance);
+                let agree = self.agree(&a, &b, what, scope.instance);
                 let id = self.flat.exprs.binary(ir, a.id, b.id);
+                // A sum that is wrong already is not held against what it is compared with.
+                let dim = match agree {
+                    true => sum_dim(&a.dim, &b.dim),
+                    false => Dim::Any,
+                };
                 Typed {
                     bare: a.bare && b.bare,
-                    ..self.typed(id, sum_dim(&a.dim, &b.dim), span)
+                    ..self.typed(id, dim, span)
                 }
             }
             Binary::Mul | Binary::Div => {

@@ -1,7 +1,9 @@
 //! Names: what they stand for in scope.
 
 use super::subscript::{mentions_counter, without_elements};
-use crate::instance::{Counter, Elementwise, FieldPlace, InstanceId, Member, Scope, Typed};
+use crate::instance::{
+    Counter, Elementwise, FieldPlace, InstanceId, Member, Scope, Setting, Typed,
+};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{Index, ParamId, VarId};
@@ -19,7 +21,7 @@ pub(crate) enum Resolved {
     Pi,
     /// The coordinate of the domain the field expression is on.
     Coordinate,
-    /// An input or variable of a function.
+    /// An input or variable of a function, or a measure.
     Value(Typed),
 }
 
@@ -69,6 +71,12 @@ impl<'a> Model<'a, '_> {
             }
             if let Some((_, var)) = scope.locals.iter().rev().find(|(name, _)| *name == word) {
                 return Some(Resolved::Variable(*var, None));
+            }
+            if let (Setting::Measure, Some((_, value))) = (
+                scope.setting,
+                self.measured_numbers.iter().find(|(name, _)| *name == word),
+            ) {
+                return Some(Resolved::Value(value.clone()));
             }
             if self.coordinate(scope) == Some(word) {
                 return Some(Resolved::Coordinate);

@@ -1,7 +1,7 @@
 //! Start values and initial conditions.
 
 use super::Place;
-use crate::id::ExprId;
+use crate::id::{ExprId, VarId};
 use crate::{Index, Range};
 use hyde_diag::Origin;
 
@@ -34,6 +34,16 @@ pub enum InitialCondition {
         value: ExprId,
         /// Where it is written.
         origin: Origin,
+    },
+    /// Nothing to solve: a variable that other conditions determine, and the start value that its author gave it. Behind
+    /// all equations.
+    Check {
+        /// The variable as named.
+        var: VarId,
+        /// Its value.
+        value: ExprId,
+        /// Its start value, of parameters alone.
+        start: ExprId,
     },
 }
 

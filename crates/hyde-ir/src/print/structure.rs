@@ -51,6 +51,26 @@ pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
             let _ = writeln!(out, "  {:>4} {name}{}", block.offset, origins.join(","));
         }
     }
+    if !dae.selections.is_empty() {
+        let _ = writeln!(out, "states chosen while running");
+    }
+    for selection in &dae.selections {
+        let choice = dae.choice(selection);
+        let origins: Vec<String> = choice
+            .constraints
+            .iter()
+            .map(|origin| comment(origin, sources))
+            .collect();
+        let names = choice.candidates.join(", ");
+        let _ = writeln!(out, "  {} of {names}{}", choice.states, origins.join(","));
+    }
+    if !dae.dependent.is_empty() {
+        let _ = writeln!(out, "no states, for an equation gives them by others");
+    }
+    for dependent in &dae.dependent {
+        let name = dae.dependent_name(dependent);
+        let _ = writeln!(out, "  {name}{}", comment(&dependent.origin, sources));
+    }
     if !dae.definitions.is_empty() {
         let _ = writeln!(out, "explicit variables");
     }
@@ -118,6 +138,11 @@ pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
                     comment(origin, sources)
                 )
             }
+            InitialCondition::Check { var, start, .. } => format!(
+                "{} is to be {}, by the others",
+                dae.variables[*var].name,
+                names.expr(*start)
+            ),
         };
         let _ = writeln!(out, "  {text}");
     }

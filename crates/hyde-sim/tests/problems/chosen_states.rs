@@ -110,6 +110,7 @@ fn pendulum() -> Program {
     let choice = |first: usize| Selection {
         candidates: vec![first, first + 1],
         constraints: vec![first],
+        weights: vec![1.0; 2],
         factors: first,
     };
     let starts_at = |state: usize| InitialCondition::Fixed {

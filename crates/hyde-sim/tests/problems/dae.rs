@@ -137,7 +137,7 @@ fn a_flow_that_no_equation_determines_is_named() {
     let set = [(CUBIC, 0.0), (LINEAR, 0.0)];
     let failure = run(&program, &set, vec![0.0, 1.0]).unwrap_err();
     let kind = FailureKind::Inconsistent {
-        singular: Some("q".to_owned()),
+        singular: vec!["q".to_owned()],
         at_start: true,
     };
     assert_eq!(failure.kind, kind);

@@ -74,7 +74,7 @@ impl Declarator {
     pub fn is_modified(&self) -> bool {
         self.changes
             .iter()
-            .any(|change| !matches!(change.target.as_word(), Some("start" | "fixed")))
+            .any(|change| !matches!(change.target.as_word(), Some("start" | "fixed" | "state")))
     }
 }
 

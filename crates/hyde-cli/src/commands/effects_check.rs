@@ -1,0 +1,64 @@
+//! `hyde effects FILE --check`: the limit test of every size of the effects on the models of a file's experiments (E3).
+//!
+//! [`crate::limits`] does it, as for `hyde test`; here the sizes that are 0 are tested too, at a tenth of their range.
+
+use super::{check, run};
+use crate::args::ModelArgs;
+use crate::commands::test::{Tested, Verdict, run_args, table};
+use crate::exit::Exit;
+use crate::limits::{self, Neutral};
+use crate::project::{complain, print_output};
+use serde_json::json;
+use std::collections::BTreeSet;
+
+/// Runs the tests; the model is at fault where a size does not vanish.
+pub(super) fn check(args: &ModelArgs) -> Exit {
+    match tested(args) {
+        Ok((tests, unused)) => {
+            let good = tests.iter().all(|test| test.verdict != Verdict::Failed);
+            if args.json {
+                let list = tests.iter().map(|test| {
+                    json!({ "test": test.name, "verdict": test.verdict.word().to_lowercase(), "found": test.found })
+                });
+                let list: Vec<_> = list.collect();
+                print_output(&format!(
+                    "{:#}",
+                    json!({ "ok": good, "tests": list, "without_experiment": unused })
+                ));
+            } else if !args.quiet {
+                print_output(&table(&args.file.display().to_string(), &tests));
+                if !unused.is_empty() {
+                    print_output(&format!("no experiment has {}", unused.join(", ")));
+                }
+            }
+            if good { Exit::Done } else { Exit::Model }
+        }
+        Err(exit) => exit,
+    }
+}
+
+/// What came of each size of each experiment, and the effects of the file that no experiment has.
+fn tested(args: &ModelArgs) -> Result<(Vec<Tested>, Vec<String>), Exit> {
+    let quiet = ModelArgs {
+        json: false,
+        quiet: true,
+        ..args.clone()
+    };
+    let mut tests = Vec::new();
+    let mut known: Vec<String> = Vec::new();
+    let mut used: BTreeSet<String> = BTreeSet::new();
+    for one in check::each(&quiet, false)? {
+        if one.experiment.is_none() {
+            let reason = "the file has no experiment: an effect is tested on a model that moves";
+            return Err(complain(args, Exit::CommandLine, reason));
+        }
+        let (project, compiled, run, _) = run::solved(&run_args(&one, None))?;
+        known = project.file.effects().map(str::to_owned).collect();
+        for size in limits::sizes(&compiled.program, &run, Neutral::AtATenth) {
+            used.extend(size.path.rsplit('.').nth(1).map(str::to_owned));
+            tests.push(limits::tested(&one, &size)?);
+        }
+    }
+    known.retain(|name| !used.contains(name));
+    Ok((tests, known))
+}

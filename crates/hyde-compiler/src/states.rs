@@ -1,0 +1,77 @@
+//! [`States`]: what the compiler made of the variables with derivatives, for those who want to know.
+
+use hyde_diag::Origin;
+use hyde_ir::dae::{Choice, InitialCondition, Reason};
+use hyde_ir::{Dae, StateChoice};
+
+/// The states of a model.
+#[derive(Clone, Debug, Default)]
+pub struct States {
+    /// States for the whole run; of arrays their bounds, `th[0] .. th[24]`.
+    pub states: Vec<String>,
+    /// Groups of which the run chooses the states.
+    pub chosen: Vec<Choice>,
+    /// Variables that were meant as states (by `fixed` or `state =`) and are given by others, each with its equation.
+    pub dependent: Vec<(String, Origin)>,
+    /// States that no condition of the model fixes at the start: they begin at their start values.
+    pub filled: Vec<String>,
+}
+
+impl States {
+    pub(crate) fn of(dae: &Dae) -> Self {
+        let name = |position: usize, len: usize| {
+            let inside =
+                |b: &&hyde_ir::dae::Unknown| (b.offset..b.offset + b.len).contains(&position);
+            let Some(block) = dae.unknowns.iter().find(inside) else {
+                return String::new();
+            };
+            let variable = &dae.variables[block.var];
+            let first = block.first + position - block.offset;
+            match len {
+                1 => variable.element_name(first),
+                _ => format!(
+                    "{} .. {}",
+                    variable.element_name(first),
+                    variable.element_name(first + len - 1)
+                ),
+            }
+        };
+        let chosen = |position: usize| {
+            let mut groups = dae.selections.iter();
+            groups.any(|group| group.candidates.contains(&position))
+        };
+        let states = dae
+            .unknowns
+            .iter()
+            .filter(|block| block.differential && !chosen(block.offset));
+        // What its author gave a start or a choice was meant as a state.
+        let meant = dae.dependent.iter().filter(|d| {
+            let variable = &dae.variables[d.var];
+            variable.fixed || variable.state != StateChoice::Open
+        });
+        let dependent = meant.map(|d| (dae.dependent_name(d), d.origin.clone()));
+        let filled = dae.initial.iter().filter_map(|condition| match condition {
+            InitialCondition::Fixed {
+                state,
+                len,
+                reason: Reason::Filled,
+            } => Some(name(*state, *len)),
+            InitialCondition::Fixed {
+                reason: Reason::Declared,
+                ..
+            }
+            | InitialCondition::Equation { .. }
+            | InitialCondition::Check { .. } => None,
+        });
+        Self {
+            states: states.map(|b| name(b.offset, b.len)).collect(),
+            chosen: dae
+                .selections
+                .iter()
+                .map(|group| dae.choice(group))
+                .collect(),
+            dependent: dependent.collect(),
+            filled: filled.collect(),
+        }
+    }
+}
