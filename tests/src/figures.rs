@@ -10,6 +10,7 @@ mod event_suite;
 mod events;
 mod fixtures;
 mod ivp;
+mod ledger;
 mod msl;
 mod paper_rows;
 mod promise;
@@ -47,4 +48,5 @@ pub const FIGURES: &[Figure] = &[
     events::P3,
     travelling_nut::DRIFT,
     travelling_nut::RIPPLE,
+    ledger::FIGURE,
 ];

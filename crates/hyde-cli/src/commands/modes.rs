@@ -12,9 +12,9 @@ use hyde_units::significant;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
-/// So many shares of the energy are printed, and none below this.
-const SHARES: usize = 3;
-const LEAST_SHARE: f64 = 0.01;
+/// Shares of the energy are printed down to this, as long as there is room for them in a line.
+const LEAST_SHARE: f64 = 0.05;
+const WIDTH: usize = 54;
 
 /// Prints the modes of vibration.
 pub(crate) fn modes(args: &ModesArgs) -> Exit {
@@ -84,18 +84,19 @@ fn shares(shape: &ModeShape) -> String {
         .filter(|share| share.2 > LEAST_SHARE)
         .collect();
     sorted.sort_by(|a, b| b.2.total_cmp(&a.2));
-    let parts = sorted
-        .iter()
-        .take(SHARES)
-        .map(|(component, account, share)| {
-            let percent = significant(100.0 * share, 2);
-            if component.is_empty() {
-                format!("{percent} % {account}")
-            } else {
-                format!("{percent} % {component}.{account}")
-            }
-        });
-    parts.collect::<Vec<_>>().join(", ")
+    let mut text = String::new();
+    for (component, account, share) in sorted {
+        let dot = if component.is_empty() { "" } else { "." };
+        let percent = significant(100.0 * share, 2);
+        let part = format!("{percent} % {component}{dot}{account}");
+        let comma = if text.is_empty() { "" } else { ", " };
+        if text.len() + comma.len() + part.len() > WIDTH {
+            break;
+        }
+        text.push_str(comma);
+        text.push_str(&part);
+    }
+    text
 }
 
 fn json(
