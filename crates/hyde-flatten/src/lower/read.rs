@@ -87,6 +87,20 @@ impl<'a> Model<'a, '_> {
             self.not_constant(&format!("`{name}`"), span);
             return self.poison(span);
         }
+        if scope.setting == Setting::Measure {
+            let name = self.flat.variables[var].name.clone();
+            self.report(
+                Diagnostic::error(
+                    Code::BadArguments,
+                    format!("`{name}` changes during the run: which of its values is meant?"),
+                )
+                .label(span, "a signal, where one number is wanted")
+                .help(format!(
+                    "take one number of it: `last({name})`, `max({name})`, `rms({name})`, …"
+                )),
+            );
+            return self.poison(span);
+        }
         if let (Some(field), None) = (self.notes(var).field, index) {
             return self.field_value(var, field, scope, span);
         }
