@@ -94,7 +94,7 @@ impl Place {
         let (y, yp) = (numbers(program.n_unknowns), numbers(program.n_unknowns));
         let (mut z, u) = (
             numbers(program.n_memory),
-            numbers(2 * program.columns.len()),
+            numbers(2 * program.columns.len() + program.delays.len()),
         );
         let t = numbers(1)[0].abs();
         for truth in z.iter_mut().take(program.relations.len()) {

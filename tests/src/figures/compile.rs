@@ -45,7 +45,7 @@ fn shortest(example: &Example) -> Result<f64, String> {
         let program = &compiled.program;
         let (y, u) = (
             vec![0.0; program.n_unknowns],
-            vec![0.0; 2 * program.columns.len()],
+            vec![0.0; 2 * program.columns.len() + program.delays.len()],
         );
         let (z, p) = (vec![0.0; program.n_memory], vec![1.0; program.n_parameters]);
         let at = Point {

@@ -17,6 +17,7 @@ mod event_suite;
 mod examples;
 mod first_order;
 mod ledger;
+mod loops;
 mod models;
 mod paper;
 mod points;
