@@ -54,9 +54,13 @@ impl<'a> Parser<'a> {
 
     /// Whether the next word is the one given.
     fn looking_at(&self, word: &str) -> bool {
-        recover::Scanner::new(self.text, self.at)
-            .next()
-            .is_some_and(|(_, token)| token == word)
+        self.nth_word(0) == Some(word)
+    }
+
+    /// The word or sign that stands so many behind the next one.
+    fn nth_word(&self, behind: usize) -> Option<&'a str> {
+        let mut words = recover::Scanner::new(self.text, self.at);
+        words.nth(behind).map(|(_, token)| token)
     }
 
     /// Parses `rule` here; on success moves past it.

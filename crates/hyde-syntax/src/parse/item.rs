@@ -77,6 +77,7 @@ impl Parser<'_> {
             return self.study().map(Item::Study);
         }
         if self.looking_at("model")
+            && self.nth_word(2) == Some("=")
             && let Some(pairs) = self.accept(Rule::short_item)
         {
             let node = significant(pairs).next()?;
@@ -122,7 +123,9 @@ impl Parser<'_> {
                 self.end(name);
                 return elements;
             }
-            if let Some(pairs) = self.accept(Rule::section) {
+            // An attempt that fails is dear: pest looks for the line of what it did not find.
+            let section_begins = matches!(self.nth_word(0), Some("equation" | "initial"));
+            if section_begins && let Some(pairs) = self.accept(Rule::section) {
                 let initial = pairs
                     .into_iter()
                     .any(|node| has(&node, Rule::initial_section));
