@@ -49,6 +49,9 @@ struct Walk<'a> {
     depth: usize,
 }
 
+/// A replaceable part may be redeclared as what holds it, a few times over; more has no end.
+const MAX_NESTED: usize = 6;
+
 impl<'a> Model<'a, '_> {
     /// Instantiates the model asked for; `None` if there is none of that name.
     pub(crate) fn instantiate_root(&mut self) -> Option<InstanceId> {
@@ -129,7 +132,11 @@ impl<'a> Model<'a, '_> {
             elements: Vec::new(),
             span,
         });
-        if self.depth(id) > 40 {
+        if self.endless.iter().any(|&known| std::ptr::eq(known, class)) {
+            return id;
+        }
+        if self.nested(id) > MAX_NESTED {
+            self.endless.push(class);
             self.report(
                 Diagnostic::error(
                     Code::Cycle,
@@ -268,7 +275,12 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    fn depth(&self, id: InstanceId) -> usize {
-        std::iter::successors(Some(id), |&id| self.instances[id].parent).count()
+    /// How often the class of an instance is that of the instances around it, itself counted.
+    fn nested(&self, id: InstanceId) -> usize {
+        let class = self.instances[id].class;
+        let around = std::iter::successors(Some(id), |&id| self.instances[id].parent);
+        around
+            .filter(|&id| std::ptr::eq(self.instances[id].class, class))
+            .count()
     }
 }

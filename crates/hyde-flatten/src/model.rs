@@ -52,6 +52,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) column_firsts: BTreeMap<(String, String), ParamId>,
     /// Names whose declaration has an unknown type: their uses are no mistake of their own.
     pub(crate) undeclared: BTreeSet<&'a str>,
+    /// Classes that contain themselves, once reported.
+    pub(crate) endless: Vec<&'a hyde_syntax::ast::Class>,
     /// How deep the call of a function is in others.
     pub(crate) calls: usize,
     /// A subscript met that keeps its `for` equation from being one equation over a range.
@@ -83,6 +85,7 @@ impl<'a, 'd> Model<'a, 'd> {
             column_variables: BTreeMap::new(),
             column_firsts: BTreeMap::new(),
             undeclared: BTreeSet::new(),
+            endless: Vec::new(),
             calls: 0,
             needs_unrolling: false,
             diagnostics,

@@ -88,13 +88,13 @@ impl Instant<'_, '_> {
                 return Ok(changed);
             }
             changed = true;
-            for relation in flipped {
+            for &relation in &flipped {
                 let relation_info = &program.relations[relation];
                 causes.push(relation_info.text.clone());
                 let kind = EventKind::Relation(self.state.z[relation] != 0.0);
                 self.note(kind, &relation_info.text, &relation_info.origin, at_start);
             }
-            self.apply(&fired, &mut causes)?;
+            self.apply(&fired, &flipped, &mut causes)?;
             let key: Vec<u64> = self.mode_key();
             let repeats = seen.contains(&key) && fired.iter().all(|&r| self.only_changes_mode(r));
             let again = repeats && !fired.is_empty();
@@ -304,11 +304,19 @@ impl Instant<'_, '_> {
     }
 
     /// Carries out the assignments of reactions, all from the values before; then modes, then pins.
-    fn apply(&mut self, fired: &[usize], causes: &mut Vec<String>) -> Result<(), Box<Failure>> {
+    fn apply(
+        &mut self,
+        fired: &[usize],
+        flipped: &[usize],
+        causes: &mut Vec<String>,
+    ) -> Result<(), Box<Failure>> {
         let program = self.state.program;
         let mut values = vec![0.0; program.rows(Function::Assignments)];
+        // What an event sets is made of values before it, also of those that a relation switches at this instant.
+        self.turn(flipped);
         self.state
             .evaluate(Function::Assignments, self.t, self.y, self.yp, &mut values);
+        self.turn(flipped);
         let mut entered: Vec<(usize, usize, bool)> = Vec::new();
         for &number in fired {
             let reaction = &program.reactions[number];
@@ -346,6 +354,13 @@ impl Instant<'_, '_> {
             self.state.z[program.automata[automaton].place] = to as f64;
         }
         self.pin(&entered)
+    }
+
+    /// Turns the truths of relations over.
+    fn turn(&mut self, relations: &[usize]) {
+        for &relation in relations {
+            self.state.z[relation] = 1.0 - self.state.z[relation];
+        }
     }
 
     /// Fixes the states of the modes entered, and frees those of the modes left.

@@ -88,3 +88,10 @@ fn parallel_modes_go_their_own_ways() {
     assert_eq!(last(&run, "pendulum.up.r"), 1.0);
     assert_eq!(last(&run, "tank.up.r"), 3.0);
 }
+
+#[test]
+fn pre_is_the_value_before_what_switches_at_the_same_instant() {
+    let climb = solve("before", "climb");
+    assert_eq!(last(&climb, "n"), 0.0);
+    assert_eq!(last(&climb, "m"), 1.0);
+}
