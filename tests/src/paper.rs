@@ -15,7 +15,7 @@ pub use table::{Row, drives, rows};
 use std::collections::BTreeMap;
 
 /// How many rows the table has.
-pub const ROWS: usize = 50;
+pub const ROWS: usize = 51;
 
 /// A row and what came of it.
 #[derive(Clone, Debug, PartialEq)]
