@@ -1,7 +1,7 @@
 //! [`Example`]: a `.hyde` file of this project with one of its experiments, its records, and what is set beside it.
 
-use hyde_compiler::{Backend, Compiled, File, Header, Request, Stage};
-use hyde_diag::{Diagnostic, Diagnostics, Sources};
+use hyde_compiler::{Additions, Backend, Candidate, Compiled, File, Header, Request, Stage};
+use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources};
 use hyde_experiment::{Options, Run, RunError};
 use hyde_signal::Table;
 use hyde_syntax::ast::Experiment;
@@ -27,6 +27,7 @@ pub struct Example {
     ledger: bool,
     set: BTreeMap<String, f64>,
     model: Option<String>,
+    whole_library: bool,
 }
 
 /// A file parsed, with its records read: what compiling begins with.
@@ -61,6 +62,7 @@ impl Example {
             ledger: false,
             set: BTreeMap::new(),
             model: None,
+            whole_library: false,
         })
     }
 
@@ -68,6 +70,13 @@ impl Example {
     #[must_use]
     pub fn model(mut self, name: &str) -> Self {
         self.model = Some(name.to_owned());
+        self
+    }
+
+    /// Loads every package of the library, named or not.
+    #[must_use]
+    pub fn whole_library(mut self) -> Self {
+        self.whole_library = true;
         self
     }
 
@@ -125,7 +134,10 @@ impl Example {
             &mut sources,
             &name,
             &self.text,
-            &hyde_compiler::Packages::LIBRARY,
+            &hyde_compiler::Packages {
+                whole_library: self.whole_library,
+                ..hyde_compiler::Packages::LIBRARY
+            },
             &mut diagnostics,
         );
         refuse(&diagnostics, &sources)?;
@@ -219,11 +231,42 @@ impl Loaded {
     /// # Errors
     /// Every diagnostic, one a line.
     pub fn compile(&self, example: &Example, backend: Backend) -> Result<Compiled, String> {
+        self.compile_with(example, &Additions::new(), backend)
+    }
+
+    /// The same with effects put on the model.
+    ///
+    /// # Errors
+    /// Every diagnostic, one a line.
+    pub fn compile_with(
+        &self,
+        example: &Example,
+        additions: &Additions,
+        backend: Backend,
+    ) -> Result<Compiled, String> {
         let mut diagnostics = self.diagnostics.clone();
         let headers = self.headers();
         let request = self.request(example, &headers, backend);
-        hyde_compiler::compile(&request, &mut diagnostics)
+        hyde_compiler::compile_with(&request, additions, &mut diagnostics)
             .ok_or_else(|| lines(&diagnostics, &self.sources))
+    }
+
+    /// Every effect of the files at every site of the model where it fits.
+    ///
+    /// # Errors
+    /// Every diagnostic, one a line.
+    pub fn candidates(&self, example: &Example) -> Result<Vec<Candidate>, String> {
+        let mut diagnostics = self.diagnostics.clone();
+        let headers = self.headers();
+        let request = self.request(example, &headers, Backend::Native);
+        hyde_compiler::candidates(&request, &mut diagnostics)
+            .ok_or_else(|| lines(&diagnostics, &self.sources))
+    }
+
+    /// The user's file, in which additions name things.
+    #[must_use]
+    pub fn own_file(&self) -> FileId {
+        self.file.files[0].0
     }
 
     fn headers(&self) -> BTreeMap<String, Header> {

@@ -226,7 +226,10 @@ impl Project {
     }
 
     /// Which effects fit where on the model, as long as that is in order.
-    pub(crate) fn fits(&mut self, args: &ModelArgs) -> Result<Vec<hyde_compiler::Fit>, Exit> {
+    pub(crate) fn candidates(
+        &mut self,
+        args: &ModelArgs,
+    ) -> Result<Vec<hyde_compiler::Candidate>, Exit> {
         let request = Request {
             sources: &self.sources,
             file: &self.file,
@@ -238,7 +241,7 @@ impl Project {
             ledger: false,
             backend: Backend::Native,
         };
-        let found = hyde_compiler::fits(&request, &mut self.diagnostics);
+        let found = hyde_compiler::candidates(&request, &mut self.diagnostics);
         found.ok_or_else(|| self.finish_with_errors(args))
     }
 

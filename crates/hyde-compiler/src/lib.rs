@@ -2,17 +2,17 @@
 //!
 //! Start reading at [`compile`] in `pipeline.rs`.
 
+mod candidates;
 mod emit;
-mod fits;
 mod load;
 mod named;
 mod pipeline;
 mod states;
 
+pub use candidates::{Additions, Candidate, Knob, candidates};
 pub use emit::{Stage, emit};
-pub use fits::{Fit, fits};
 pub use hyde_flatten::{Header, TableFile};
 pub use hyde_jit::Backend;
 pub use load::{File, Find, Packages, Place, check_name, load};
-pub use pipeline::{Compiled, Request, analyze, compile};
+pub use pipeline::{Compiled, Request, analyze, compile, compile_with};
 pub use states::States;

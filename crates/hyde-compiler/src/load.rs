@@ -213,6 +213,24 @@ impl File {
         })
     }
 
+    /// The names of the effects of all files as `with` takes them: those of packages with the package before.
+    pub fn effects_known(&self) -> impl Iterator<Item = String> {
+        self.files
+            .iter()
+            .enumerate()
+            .flat_map(|(number, (_, tree))| {
+                let package = tree.package.as_ref().filter(|_| number > 0);
+                let package =
+                    package.map_or_else(String::new, |(path, _)| format!("{}.", path.dotted()));
+                tree.items.iter().filter_map(move |item| match item {
+                    Item::Class(class) if class.kind == ast::ClassKind::Effect => {
+                        Some(format!("{package}{}", class.name.text))
+                    }
+                    Item::Class(_) | Item::Experiment(_) | Item::Type(_) | Item::Study(_) => None,
+                })
+            })
+    }
+
     fn items(&self) -> impl Iterator<Item = &Item> {
         self.files
             .first()

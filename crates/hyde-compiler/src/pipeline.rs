@@ -3,7 +3,7 @@
 use crate::load::File;
 use crate::states::States;
 use hyde_diag::{Diagnostics, Sources};
-use hyde_flatten::Header;
+use hyde_flatten::{Additions, Header};
 use hyde_ir::{Dae, FlatModel};
 use hyde_jit::Backend;
 use hyde_program::Program;
@@ -46,8 +46,19 @@ pub struct Compiled {
 ///
 /// `None` if there were errors; all of them are in `diagnostics`.
 pub fn compile(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<Compiled> {
+    compile_with(request, &Additions::new(), diagnostics)
+}
+
+/// The same with effects put on the model beside those of its text.
+pub fn compile_with(
+    request: &Request<'_>,
+    additions: &Additions,
+    diagnostics: &mut Diagnostics,
+) -> Option<Compiled> {
     let mut times = Vec::new();
-    let flat = step("flatten", &mut times, || flatten(request, diagnostics))?;
+    let flat = step("flatten", &mut times, || {
+        flat(request, additions, diagnostics)
+    })?;
     let dae = step("analyze", &mut times, || {
         checked(hyde_analysis::analyze(flat, diagnostics))
     })?;
@@ -70,27 +81,43 @@ pub fn analyze(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<D
 
 /// The flat model; refused if parsing found errors.
 pub(crate) fn flatten(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<FlatModel> {
+    flat(request, &Additions::new(), diagnostics)
+}
+
+fn flat(
+    request: &Request<'_>,
+    additions: &Additions,
+    diagnostics: &mut Diagnostics,
+) -> Option<FlatModel> {
     if diagnostics.has_errors() {
         return None;
     }
-    let input = hyde_flatten::Input {
-        sources: request.sources,
-        files: &request.file.files,
-        elsewhere: &request.file.elsewhere,
-        tables: &request.file.tables,
-        model: request.model,
-        experiment: request.experiment,
-        settings: request.settings,
-        records: request.records,
-        free_inputs: request.free_inputs,
-        ledger: request.ledger,
-    };
-    let flat = hyde_flatten::flatten(&input, diagnostics)?;
+    let flat = hyde_flatten::flatten(&input(request, additions), diagnostics)?;
     if cfg!(debug_assertions) {
         let valid = hyde_ir::validate_flat(&flat);
         assert!(valid.is_ok(), "flatten broke an invariant: {valid:?}");
     }
     Some(flat)
+}
+
+/// What a request is to the first stage.
+pub(crate) fn input<'a>(
+    request: &'a Request<'_>,
+    additions: &'a Additions,
+) -> hyde_flatten::Input<'a> {
+    hyde_flatten::Input {
+        sources: request.sources,
+        files: &request.file.files,
+        elsewhere: &request.file.elsewhere,
+        tables: &request.file.tables,
+        model: request.model,
+        additions,
+        experiment: request.experiment,
+        settings: request.settings,
+        records: request.records,
+        free_inputs: request.free_inputs,
+        ledger: request.ledger,
+    }
 }
 
 fn checked(dae: Option<Dae>) -> Option<Dae> {

@@ -15,7 +15,6 @@ impl Model<'_, '_> {
             .iter()
             .map(|instance| (instance.path.clone(), instance.span))
             .collect();
-        self.flat.fits = self.fits();
         self.report_undriven();
         self.solve_dimensions();
         for id in self.flat.variables.ids().collect::<Vec<_>>() {

@@ -12,6 +12,7 @@ mod declare;
 mod domain;
 mod effect;
 mod modification;
+mod offer;
 mod parameter;
 mod quantity;
 mod variable;
@@ -24,6 +25,7 @@ use hyde_diag::{Code, Diagnostic, InstancePath, Span};
 use hyde_ir::ClockId;
 use hyde_syntax::ast::{Change, Class, ClassBody, Element, Prefix, Reference};
 use modification::Modifier;
+pub(crate) use offer::Offer;
 
 /// Elements of a class and its bases, each with the modifications of the `extends` clauses on the way.
 struct Collected<'a> {
@@ -148,6 +150,9 @@ impl<'a> Model<'a, '_> {
             return id;
         }
         self.note_modified(id, &modifiers);
+        if parent.is_none() {
+            self.hook_additions(id);
+        }
         self.effects_of(id);
         let mut collected = Vec::new();
         let walk = Walk {
@@ -158,6 +163,7 @@ impl<'a> Model<'a, '_> {
         };
         self.collect(walk, class, &mut collected);
         self.members(id, &collected);
+        self.offer(id);
         id
     }
 

@@ -12,8 +12,10 @@
 //!
 //! Arrays and fields are not unrolled: a `for` equation or a field equation is one equation over a range.
 
+mod additions;
 mod bind;
 mod call;
+mod candidates;
 mod connect;
 mod dimension;
 mod equation;
@@ -30,6 +32,9 @@ mod names;
 mod site;
 mod structural;
 mod wrap;
+
+pub use additions::Additions;
+pub use candidates::{Candidate, Knob};
 
 use hyde_diag::{Diagnostics, FileId, Sources};
 use hyde_ir::FlatModel;
@@ -63,6 +68,8 @@ pub struct Input<'a> {
     pub tables: &'a BTreeMap<(FileId, String), TableFile>,
     /// The model, in the first file.
     pub model: &'a str,
+    /// Effects put on it beside those of its text.
+    pub additions: &'a Additions,
     /// The experiment, in the first file.
     pub experiment: Option<&'a str>,
     /// Values set from outside, by full name of the parameter, SI.
@@ -79,8 +86,25 @@ pub struct Input<'a> {
 ///
 /// `None` if there were errors; all of them are in `diagnostics`.
 pub fn flatten(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<FlatModel> {
+    flat_model(input, false, diagnostics).map(|(flat, _)| flat)
+}
+
+/// Every effect of the files at every site of the model where it fits; sites in the order of the model.
+///
+/// `None` if there were errors; all of them are in `diagnostics`.
+pub fn candidates(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Vec<Candidate>> {
+    flat_model(input, true, diagnostics).map(|(_, candidates)| candidates)
+}
+
+/// The flat model, with the effects that fit on it if they are asked for.
+fn flat_model(
+    input: &Input<'_>,
+    offering: bool,
+    diagnostics: &mut Diagnostics,
+) -> Option<(FlatModel, Vec<Candidate>)> {
     let before = diagnostics.error_count();
     let mut model = model::Model::new(input, diagnostics);
+    model.offering = offering;
     let root = model.instantiate_root()?;
     model.lower_bindings();
     model.lower_equations();
@@ -91,6 +115,7 @@ pub fn flatten(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<FlatM
     model.accounts();
     model.finish();
     model.ports();
+    let candidates = model.candidates();
     let flat = model.flat;
-    (diagnostics.error_count() == before).then_some(flat)
+    (diagnostics.error_count() == before).then_some((flat, candidates))
 }

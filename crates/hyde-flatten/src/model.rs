@@ -38,6 +38,9 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) hooks: Vec<crate::instantiate::Hook<'a>>,
     pub(crate) wraps: Vec<crate::wrap::Wrap<'a>>,
     pub(crate) replacements: Vec<crate::instantiate::Replacement<'a>>,
+    /// Whether effects are offered to what they fit on, and those that were.
+    pub(crate) offering: bool,
+    pub(crate) offers: Vec<crate::instantiate::Offer<'a>>,
     /// Connectors of effects with those of their hosts: they join connection sets after everything written.
     pub(crate) joined: Vec<crate::connect::Connection>,
     /// Connected connectors and signals, in the order written.
@@ -78,6 +81,8 @@ impl<'a, 'd> Model<'a, 'd> {
             hooks: Vec::new(),
             wraps: Vec::new(),
             replacements: Vec::new(),
+            offering: false,
+            offers: Vec::new(),
             joined: Vec::new(),
             connections: Vec::new(),
             held: BTreeMap::new(),

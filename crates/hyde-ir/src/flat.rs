@@ -324,19 +324,6 @@ pub struct Experiment {
     pub solve: Vec<(String, ExprId)>,
 }
 
-/// An effect with the sites of a model that it fits on.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fit {
-    /// Its full name: `Effects.Stribeck`.
-    pub effect: String,
-    /// The type it is for.
-    pub host: String,
-    /// What it is.
-    pub doc: String,
-    /// Paths of the instances.
-    pub sites: Vec<String>,
-}
-
 /// A model with an experiment, flat.
 #[derive(Clone, Debug, Default)]
 pub struct FlatModel {
@@ -374,8 +361,6 @@ pub struct FlatModel {
     pub asserts: Vec<Assert>,
     /// What the experiment adds.
     pub experiment: Experiment,
-    /// The effects known with the sites they fit on.
-    pub fits: Vec<Fit>,
     /// Where each instance is declared, for messages.
     pub declared: BTreeMap<InstancePath, Span>,
 }

@@ -5,6 +5,7 @@ mod arrays;
 mod backends;
 mod bar;
 mod bouncing_ball;
+mod candidates;
 mod chosen_states;
 mod clocks;
 mod clutch;

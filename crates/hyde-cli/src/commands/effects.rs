@@ -1,10 +1,12 @@
-//! `hyde effects`: every effect of the library and of the file, and the sites of the model it fits on.
+//! `hyde effects`: every effect of the library and of the file with the sites of the model it fits on: what a diagnosis
+//! may try.
 
 use super::effects_check;
 use crate::args::{EffectsArgs, ModelArgs};
 use crate::exit::Exit;
 use crate::project::{self, Records, print_output};
-use serde_json::json;
+use hyde_compiler::{Candidate, Knob};
+use serde_json::{Value, json};
 use std::fmt::Write as _;
 
 /// Lists effects and sites.
@@ -28,30 +30,70 @@ fn listed(args: &EffectsArgs) -> Result<String, Exit> {
     };
     let mut project = project::load(&args, Records::IfThere)?;
     project.experiment = None;
-    let fits = project.fits(&args)?;
+    let candidates = project.candidates(&args)?;
     if args.json {
-        let list: Vec<_> = fits
-            .iter()
-            .map(|fit| json!({ "effect": fit.effect, "on": fit.host, "doc": fit.doc, "sites": fit.sites }))
-            .collect();
-        return Ok(format!("{:#}", json!({ "ok": true, "effects": list })));
+        let list: Vec<_> = candidates.iter().map(as_json).collect();
+        return Ok(format!("{:#}", json!({ "ok": true, "candidates": list })));
     }
     let mut text = String::new();
-    for fit in fits {
-        let head = format!("{} on {}: {}", fit.effect, fit.host, fit.doc);
+    let mut at = candidates.as_slice();
+    while let Some(first) = at.first() {
+        let sites = at.iter().take_while(|other| other.effect == first.effect);
+        let sites: Vec<String> = sites.map(site).collect();
+        at = &at[sites.len()..];
+        let head = format!("{} on {}: {}", first.effect, first.host, first.doc);
         for line in wrapped(&head, 78) {
             let _ = writeln!(text, "{line}");
         }
-        let sites = if fit.sites.is_empty() {
-            "nowhere on this model".to_owned()
-        } else {
-            fit.sites.join(", ")
-        };
-        for line in wrapped(&sites, 74) {
+        for line in wrapped(&sites.join(", "), 74) {
             let _ = writeln!(text, "    {line}");
         }
     }
+    let nowhere: Vec<String> = project
+        .file
+        .effects_known()
+        .filter(|name| candidates.iter().all(|known| known.effect != *name))
+        .collect();
+    if !nowhere.is_empty() {
+        let line = format!("nowhere on this model: {}", nowhere.join(", "));
+        for line in wrapped(&line, 78) {
+            let _ = writeln!(text, "{line}");
+        }
+    }
     Ok(text)
+}
+
+/// A site with the other names it has.
+fn site(candidate: &Candidate) -> String {
+    match candidate.aliases.as_slice() {
+        [] => candidate.site.clone(),
+        aliases => format!("{} (= {})", candidate.site, aliases.join(", ")),
+    }
+}
+
+fn as_json(candidate: &Candidate) -> Value {
+    let knob = |knob: &Knob| {
+        json!({
+            "name": knob.name,
+            "doc": knob.doc,
+            "value": knob.value,
+            "range": knob.range.map(|(from, to)| [from, to]),
+            "unit": knob.quantity.dimension.usual_unit(),
+            "integer": knob.integer,
+        })
+    };
+    let marks = candidate.signature.iter();
+    json!({
+        "effect": candidate.effect,
+        "on": candidate.host,
+        "doc": candidate.doc,
+        "site": candidate.site,
+        "aliases": candidate.aliases,
+        "sizes": candidate.sizes.iter().map(knob).collect::<Vec<_>>(),
+        "shapes": candidate.shapes.iter().map(knob).collect::<Vec<_>>(),
+        "signature": marks.map(|(mark, of)| json!({ "mark": mark, "of": of })).collect::<Vec<_>>(),
+        "confounds": candidate.confounds,
+    })
 }
 
 /// A list in lines of at most so many characters.

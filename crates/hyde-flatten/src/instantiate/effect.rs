@@ -15,8 +15,7 @@ use crate::instance::{Instance, InstanceId, Member};
 use crate::model::Model;
 use crate::names::FileIndex;
 use crate::wrap::Wrap;
-use hyde_diag::{Code, Diagnostic, InstancePath, MadeBy};
-use hyde_ir::flat::Fit;
+use hyde_diag::{Code, Diagnostic, InstancePath, MadeBy, Span};
 use hyde_ir::{Expr as Ir, Index};
 use hyde_syntax::ast::{
     Change, Class, ClassBody, ClassKind, Declaration, Declarator, EffectUse, Element, Prefix,
@@ -32,6 +31,10 @@ pub(crate) struct Hook<'a> {
     changes: &'a [Change],
     /// The model that uses the effect: its changes stand in its scope.
     pub(crate) scope: InstanceId,
+    /// What its instance is called below its host.
+    name: &'a str,
+    /// Neutral sizes do not leave it out.
+    keep: bool,
     pub(crate) used: bool,
 }
 
@@ -71,9 +74,33 @@ impl<'a> Model<'a, '_> {
                     class,
                     changes: &used.changes,
                     scope: id,
+                    name: &class.name.text,
+                    keep: false,
                     used: false,
                 });
             }
+        }
+    }
+
+    /// Notes the effects that are put on the model from outside its text.
+    pub(super) fn hook_additions(&mut self, root: InstanceId) {
+        for addition in self.input.additions.list() {
+            let Some((file, class)) = self.names.class(0, &addition.effect) else {
+                let diagnostic = self.names.unknown(0, &addition.effect);
+                self.report(diagnostic);
+                continue;
+            };
+            self.hooks.push(Hook {
+                host: InstancePath::root().child(&written(&addition.site)),
+                site: &addition.site,
+                file,
+                class,
+                changes: &[],
+                scope: root,
+                name: &addition.name,
+                keep: self.input.additions.keeps_neutral(),
+                used: false,
+            });
         }
     }
 
@@ -94,6 +121,8 @@ impl<'a> Model<'a, '_> {
             class,
             changes,
             scope,
+            name,
+            keep,
             ..
         } = self.hooks[number];
         if !self.fits_on(host, file, class) {
@@ -101,19 +130,7 @@ impl<'a> Model<'a, '_> {
             return;
         }
         let path = self.path(host);
-        let id = self.instances.len();
-        let name = class.name.text.as_str();
-        self.instances.push(Instance {
-            path: path.child(name),
-            file,
-            class,
-            parent: Some(host),
-            outer: Some(host),
-            clock: self.instances[host].clock,
-            members: std::collections::BTreeMap::new(),
-            elements: Vec::new(),
-            span: site.span,
-        });
+        let id = self.instance_of_effect(host, (file, class), name, site.span);
         if self.instances[host]
             .members
             .insert(name, Member::Instance(id))
@@ -141,7 +158,7 @@ impl<'a> Model<'a, '_> {
         self.collect(walk, class, &mut collected);
         let (parameters, rest): (Vec<_>, Vec<_>) = collected.into_iter().partition(is_parameter);
         self.members(id, &parameters);
-        if self.is_neutral(id, &parameters) {
+        if !keep && self.is_neutral(id, &parameters) {
             self.instances[id].elements = Vec::new();
             self.flat
                 .notes
@@ -222,33 +239,37 @@ impl<'a> Model<'a, '_> {
         self.instances[id].elements = all.map(|item| (item.file, item.element)).collect();
     }
 
-    /// Every effect known with the instances it fits on.
-    pub(crate) fn fits(&self) -> Vec<Fit> {
-        let mut found = Vec::new();
-        for (file, package, class) in self.names.effects() {
-            let sites = (0..self.instances.len())
-                .filter(|&host| !self.is_of_effect(host) && self.fits_on(host, file, class));
-            let name = &class.name.text;
-            found.push(Fit {
-                effect: package.map_or_else(|| name.clone(), |package| format!("{package}.{name}")),
-                host: host_of(class).map_or_else(String::new, Reference::dotted),
-                doc: class.doc.clone().unwrap_or_default(),
-                sites: sites
-                    .map(|host| self.instances[host].path.as_str().to_owned())
-                    .collect(),
-            });
-        }
-        found
+    /// An effect inside its host, without members yet.
+    pub(super) fn instance_of_effect(
+        &mut self,
+        host: InstanceId,
+        (file, class): (FileIndex, &'a Class),
+        name: &str,
+        span: Span,
+    ) -> InstanceId {
+        let id = self.instances.len();
+        self.instances.push(Instance {
+            path: self.path(host).child(name),
+            file,
+            class,
+            parent: Some(host),
+            outer: Some(host),
+            clock: self.instances[host].clock,
+            members: std::collections::BTreeMap::new(),
+            elements: Vec::new(),
+            span,
+        });
+        id
     }
 
     /// Whether an instance is an effect or a part of one.
-    fn is_of_effect(&self, id: InstanceId) -> bool {
+    pub(crate) fn is_of_effect(&self, id: InstanceId) -> bool {
         std::iter::successors(Some(id), |&id| self.instances[id].parent)
             .any(|id| self.instances[id].class.kind == ClassKind::Effect)
     }
 
     /// Whether an instance is of the type that an effect is for, or of one that extends it.
-    fn fits_on(&self, host: InstanceId, file: FileIndex, effect: &'a Class) -> bool {
+    pub(super) fn fits_on(&self, host: InstanceId, file: FileIndex, effect: &'a Class) -> bool {
         let Some(wanted) = host_of(effect).and_then(|host| self.names.class(file, host)) else {
             return false;
         };
@@ -361,7 +382,7 @@ pub(crate) fn host_of(class: &Class) -> Option<&Reference> {
     }
 }
 
-fn is_parameter(item: &Collected<'_>) -> bool {
+pub(super) fn is_parameter(item: &Collected<'_>) -> bool {
     matches!(item.element, Element::Declaration(declaration) if declaration.prefixes.iter().any(|prefix| {
         matches!(prefix, Prefix::Parameter | Prefix::Constant | Prefix::Size | Prefix::Shape)
     }))

@@ -1,0 +1,93 @@
+//! [`Additions`]: effects put on a model from outside its text, as `with E on site` would put them there.
+
+use crate::Candidate;
+use hyde_diag::{FileId, Span};
+use hyde_syntax::ast::{Name, Part, Reference};
+
+/// Effects put on a model from outside its text. Their parameters have the values declared; all that are not structural
+/// can be set without compiling anew.
+#[derive(Clone, Debug, Default)]
+pub struct Additions {
+    list: Vec<Addition>,
+    keep_neutral: bool,
+}
+
+/// One of them.
+#[derive(Clone, Debug)]
+pub(crate) struct Addition {
+    pub(crate) effect: Reference,
+    pub(crate) site: Reference,
+    pub(crate) name: String,
+}
+
+impl Additions {
+    /// None yet; those put in are left out of the equations while their sizes are exactly 0.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// None yet; those put in stay in the equations whatever their sizes, so that a size can leave 0 and come back
+    /// to it without compiling anew.
+    #[must_use]
+    pub fn kept() -> Self {
+        Self {
+            list: Vec::new(),
+            keep_neutral: true,
+        }
+    }
+
+    /// Puts a candidate on its site once more, and gives the path of its instance there: its parameter `dF` is
+    /// `PATH.dF`. The second of an effect at one site is called `Cogging2`.
+    pub fn put(&mut self, file: FileId, candidate: &Candidate) -> String {
+        let path = |name: &str| format!("{}.{name}", candidate.site);
+        let class = candidate.name();
+        let first = candidate.instance.strip_prefix(class).unwrap_or_default();
+        let from: usize = first.parse().unwrap_or(1);
+        let taken = |name: &str| {
+            self.list.iter().any(|other| {
+                path(&other.name) == path(name) && written(&other.site) == candidate.site
+            })
+        };
+        let mut names = (from..).map(|number| match number {
+            1 => class.to_owned(),
+            _ => format!("{class}{number}"),
+        });
+        let name = names.find(|name| !taken(name)).unwrap_or_default();
+        let found = path(&name);
+        self.list.push(Addition {
+            effect: reference(file, &candidate.effect),
+            site: reference(file, &candidate.site),
+            name,
+        });
+        found
+    }
+
+    pub(crate) fn list(&self) -> &[Addition] {
+        &self.list
+    }
+
+    pub(crate) fn keeps_neutral(&self) -> bool {
+        self.keep_neutral
+    }
+}
+
+fn written(reference: &Reference) -> String {
+    reference.dotted()
+}
+
+/// A dotted name as a reference that stands nowhere; subscripts stay part of the words.
+fn reference(file: FileId, dotted: &str) -> Reference {
+    let span = Span::new(file, 0, 0);
+    let part = |word: &str| Part {
+        name: Name {
+            text: word.to_owned(),
+            span,
+        },
+        subscripts: Vec::new(),
+    };
+    Reference {
+        parts: dotted.split('.').map(part).collect(),
+        span,
+    }
+}
