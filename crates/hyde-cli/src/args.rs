@@ -122,6 +122,8 @@ pub(crate) struct RunArgs {
 pub(crate) enum Format {
     /// `results.csv`, a header of `name [unit]` columns
     Csv,
+    /// `results.parquet`, the same numbers with the units in the metadata
+    Parquet,
     /// `results.json`, one list a column
     Json,
 }
@@ -157,7 +159,7 @@ pub(crate) enum StageName {
 
 #[derive(Debug, Args)]
 pub(crate) struct PlotArgs {
-    /// A CSV file, or a folder that `run --out` left
+    /// A CSV or Parquet file, or a folder that `run --out` left
     pub(crate) results: PathBuf,
     /// The columns of each panel, separated by commas: `motor.w,screw.w[0]`; a choice if left out
     pub(crate) panels: Vec<String>,

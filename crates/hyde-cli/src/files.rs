@@ -86,6 +86,19 @@ pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), String> {
     Ok(())
 }
 
+/// Removes a file, if there is one.
+#[allow(clippy::disallowed_methods, reason = "the command line removes files")]
+pub(crate) fn remove(path: &Path) -> Result<(), String> {
+    match std::fs::remove_file(path) {
+        Err(error) if error.kind() != ErrorKind::NotFound => Err(format!(
+            "cannot remove `{}`: {}",
+            path.display(),
+            reason(&error)
+        )),
+        Ok(()) | Err(_) => Ok(()),
+    }
+}
+
 /// A temporary file is private; a result is as readable as the folder's other files.
 #[cfg(unix)]
 fn make_readable(file: &tempfile::NamedTempFile) -> std::io::Result<()> {

@@ -53,7 +53,7 @@ fn of_file(
             .help("the path is relative to the manifest's folder, or to the model's without one")
     })?;
     // A table has no time: its rows are only counted.
-    let table = hyde_signal::csv::read(&content, Some(1.0)).map_err(|error| {
+    let table = hyde_signal::read(&content, Some(1.0)).map_err(|error| {
         Diagnostic::error(Code::BadRecord, format!("`{}`: {error}", path.display()))
             .label(span, "read for this table")
             .help(error.repair())

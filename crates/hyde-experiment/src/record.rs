@@ -1,19 +1,19 @@
-//! A record as its experiment declares it: the table in a file's text.
+//! A record as its experiment declares it: the table in a file, CSV or Parquet.
 
 use hyde_diag::{Code, Diagnostic};
-use hyde_signal::{Table, csv};
+use hyde_signal::Table;
 use hyde_syntax::ast::{Expr, ExprKind, RecordItem};
 
-/// Reads the text of a record's file; `name` is the file as messages call it.
+/// Reads the content of a record's file; `name` is the file as messages call it.
 ///
 /// # Errors
-/// A diagnostic at the declaration: the text is no record, or `every` is no positive time.
-pub fn read_record(item: &RecordItem, name: &str, text: &[u8]) -> Result<Table, Diagnostic> {
+/// A diagnostic at the declaration: the content is no record, or `every` is no positive time.
+pub fn read_record(item: &RecordItem, name: &str, bytes: &[u8]) -> Result<Table, Diagnostic> {
     let every = match &item.every {
         Some(expr) => Some(period_s(expr)?),
         None => None,
     };
-    csv::read(text, every).map_err(|error| {
+    hyde_signal::read(bytes, every).map_err(|error| {
         Diagnostic::error(Code::BadRecord, format!("`{name}`: {error}"))
             .label(
                 item.default.as_ref().unwrap_or(&item.name).span,

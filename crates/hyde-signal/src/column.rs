@@ -1,6 +1,7 @@
 //! One column of a table: a name, a unit if it is known, and the values.
 
-use hyde_units::{Agreement, Dimension, NamedUnit};
+use hyde_units::{Agreement, Dimension, NamedUnit, Unit};
+use std::borrow::Cow;
 use std::fmt;
 
 /// A named sequence of samples.
@@ -70,6 +71,18 @@ impl Column {
         &self.values
     }
 
+    /// The values in the column's unit, as files hold them: each the shortest decimal that converts back to the SI value;
+    /// where no double does, it is off by one unit in the last place.
+    #[must_use]
+    pub fn in_unit(&self) -> Cow<'_, [f64]> {
+        match self.unit.as_ref().map(NamedUnit::unit) {
+            Some(unit) if !unit.is_si() => {
+                self.values.iter().map(|&si| in_unit(si, unit)).collect()
+            }
+            Some(_) | None => Cow::Borrowed(&self.values),
+        }
+    }
+
     /// The same column with its unit: raw values become SI. A column that has a unit is only printed in another one.
     ///
     /// # Errors
@@ -106,6 +119,15 @@ impl Column {
             ..self
         }
     }
+}
+
+/// The shortest value that converts to `si`: 15 digits if they do, else the doubles next to the quotient.
+fn in_unit(si: f64, unit: Unit) -> f64 {
+    let value = unit.from_si(si);
+    let short = format!("{value:.14e}").parse().unwrap_or(value);
+    let candidates = [short, value, value.next_up(), value.next_down()];
+    let same = |candidate: &f64| unit.to_si(*candidate).to_bits() == si.to_bits();
+    candidates.into_iter().find(same).unwrap_or(value)
 }
 
 impl fmt::Display for UnitConflict {

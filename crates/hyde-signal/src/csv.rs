@@ -16,5 +16,6 @@ mod rows;
 mod write;
 
 pub use error::ReadError;
+pub(crate) use header::name_and_unit;
 pub use read::read;
 pub use write::write;

@@ -1,7 +1,7 @@
-//! Sampled signals with names and units: CSV, interpolation, filters, spectra.
+//! Sampled signals with names and units: CSV and Parquet, interpolation, filters, spectra.
 //!
 //! A record is a [`Table`]: columns of equal length over one time, read by [`csv::read`] and written by
-//! [`csv::write`] in the same form, so that a result can stand in for a measurement. Columns whose unit is known hold
+//! [`csv::write`] in the same form, or by [`parquet`] with the same numbers, so that a result can stand in for a measurement. Columns whose unit is known hold
 //! SI values. A [`Signal`] is one column over the time; it reads between the rows. [`filter`], [`spectrum`] and
 //! [`statistics`] work on plain slices of equally spaced samples, unless they say otherwise.
 //!
@@ -19,13 +19,16 @@
 
 pub mod csv;
 pub mod filter;
+pub mod parquet;
 pub mod spectrum;
 pub mod statistics;
 
 mod column;
+mod record;
 mod signal;
 mod table;
 
 pub use column::{Column, UnitConflict};
+pub use record::{RecordError, read};
 pub use signal::{Cursor, Signal};
 pub use table::{Table, TableError};

@@ -8,7 +8,7 @@ use crate::project::{print_error, print_output};
 use hyde_report::{
     EventRow, EventStrip, Figure, Line, Span, time_panel, time_plot, to_png, to_svg, xy_plot,
 };
-use hyde_signal::{Column, Table, csv};
+use hyde_signal::{Column, Table};
 use std::path::{Path, PathBuf};
 
 /// Plots columns into a file.
@@ -44,11 +44,16 @@ pub(crate) fn plot(args: &PlotArgs) -> Exit {
 
 fn figure(args: &PlotArgs) -> Result<Figure, String> {
     let path = if args.results.is_dir() {
-        args.results.join("results.csv")
+        let parquet = args.results.join("results.parquet");
+        if files::is_file(&parquet) {
+            parquet
+        } else {
+            args.results.join("results.csv")
+        }
     } else {
         args.results.clone()
     };
-    let table = csv::read(&files::read(&path)?, args.every)
+    let table = hyde_signal::read(&files::read(&path)?, args.every)
         .map_err(|error| format!("`{}`: {error}", path.display()))?;
     let panels = if args.panels.is_empty() {
         choice(&table)

@@ -9,7 +9,7 @@ use crate::{render, report, run_failure, summary};
 use hyde_compiler::Compiled;
 use hyde_experiment::{Options, Run, RunError};
 use hyde_program::Program;
-use hyde_signal::{Column, csv};
+use hyde_signal::{Column, csv, parquet};
 use hyde_sim::Results;
 use serde_json::{Map, Value, json};
 use std::io::IsTerminal as _;
@@ -125,14 +125,7 @@ fn leave(
     run: &Run,
 ) -> Result<(), String> {
     files::make_folder(folder)?;
-    let results = match format {
-        Format::Csv => ("results.csv", results_csv(&compiled.program, &run.results)),
-        Format::Json => (
-            "results.json",
-            format!("{}\n", results_json(&compiled.program, &run.results)),
-        ),
-    };
-    files::write(&folder.join(results.0), results.1.as_bytes())?;
+    leave_results(folder, format, &compiled.program, &run.results)?;
     let events = summary::events_csv(project, compiled, &run.results.events);
     files::write(&folder.join("events.csv"), events.as_bytes())?;
     let summary = format!("{:#}\n", summary::json(project, compiled, run));
@@ -143,8 +136,40 @@ fn leave(
     )
 }
 
+/// Writes the results in a form. Those of an earlier run in another form are not left beside them.
+fn leave_results(
+    folder: &Path,
+    format: Format,
+    program: &Program,
+    results: &Results,
+) -> Result<(), String> {
+    let (name, content) = match format {
+        Format::Csv => (
+            "results.csv",
+            csv::write(&columns(program, results)).into_bytes(),
+        ),
+        Format::Parquet => {
+            let content = parquet::write(&columns(program, results));
+            (
+                "results.parquet",
+                content.map_err(|error| error.to_string())?,
+            )
+        }
+        Format::Json => {
+            let text = format!("{}\n", results_json(program, results));
+            ("results.json", text.into_bytes())
+        }
+    };
+    files::write(&folder.join(name), &content)?;
+    let others = ["results.csv", "results.parquet", "results.json"];
+    others
+        .iter()
+        .filter(|other| **other != name)
+        .try_for_each(|other| files::remove(&folder.join(other)))
+}
+
 /// Results in the form of a record: time first, every column with its unit.
-fn results_csv(program: &Program, results: &Results) -> String {
+fn columns(program: &Program, results: &Results) -> Vec<Column> {
     let time = hyde_units::NamedUnit::usual(hyde_units::Dimension::TIME);
     let mut columns = vec![Column::new("t", time, results.time.clone())];
     for (&number, values) in results.outputs.iter().zip(&results.columns) {
@@ -157,7 +182,7 @@ fn results_csv(program: &Program, results: &Results) -> String {
             ));
         }
     }
-    csv::write(&columns)
+    columns
 }
 
 fn results_json(program: &Program, results: &Results) -> Value {
@@ -190,10 +215,7 @@ fn failed(args: &RunArgs, mut project: Project, compiled: &Compiled, error: &Run
     // What was finished is kept.
     if let (Some(folder), RunError::Failed(failure)) = (&args.out, error) {
         let kept = files::make_folder(folder)
-            .and_then(|()| {
-                let results = results_csv(&compiled.program, &failure.results);
-                files::write(&folder.join("results.csv"), results.as_bytes())
-            })
+            .and_then(|()| leave_results(folder, args.format, &compiled.program, &failure.results))
             .and_then(|()| {
                 let events = summary::events_csv(&project, compiled, &failure.results.events);
                 files::write(&folder.join("events.csv"), events.as_bytes())

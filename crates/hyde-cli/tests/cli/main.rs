@@ -10,6 +10,7 @@ mod analyses;
 mod command;
 mod effects;
 mod files;
+mod parquet;
 mod printed;
 mod settings;
 mod status;

@@ -28,7 +28,7 @@ pub(super) fn separator(text: &[u8]) -> u8 {
 /// Splits `x [mm]` into name and unit.
 ///
 /// Brackets that close the cell hold a unit, except an index that stands at the name: `x[1]` is an element.
-pub(super) fn name_and_unit(
+pub(crate) fn name_and_unit(
     cell: &str,
     column: usize,
 ) -> Result<(String, Option<NamedUnit>), ReadError> {

@@ -1,7 +1,6 @@
 //! Writes columns as a CSV record, in the form that is read.
 
 use crate::Column;
-use hyde_units::Unit;
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
@@ -22,17 +21,13 @@ pub fn write<'a>(columns: impl IntoIterator<Item = &'a Column>) -> String {
         .min()
         .unwrap_or(0);
     text.reserve(rows * columns.len() * 20);
+    let cells: Vec<Cow<'_, [f64]>> = columns.iter().map(|column| column.in_unit()).collect();
     for row in 0..rows {
-        for (at, column) in columns.iter().enumerate() {
+        for (at, values) in cells.iter().enumerate() {
             if at > 0 {
                 text.push(',');
             }
-            let si = column.values()[row];
-            let value = match column.unit().map(hyde_units::NamedUnit::unit) {
-                Some(unit) if !unit.is_si() => in_unit(si, unit),
-                Some(_) | None => si,
-            };
-            push_number(&mut text, value);
+            push_number(&mut text, values[row]);
         }
         text.push('\n');
     }
@@ -49,15 +44,6 @@ fn header_cell(column: &Column) -> String {
         return format!("\"{}\"", cell.replace('"', "\"\""));
     }
     cell.into_owned()
-}
-
-/// The shortest value that converts to `si`: 15 digits if they do, else the doubles next to the quotient.
-fn in_unit(si: f64, unit: Unit) -> f64 {
-    let value = unit.from_si(si);
-    let short = format!("{value:.14e}").parse().unwrap_or(value);
-    let candidates = [short, value, value.next_up(), value.next_down()];
-    let same = |candidate: &f64| unit.to_si(*candidate).to_bits() == si.to_bits();
-    candidates.into_iter().find(same).unwrap_or(value)
 }
 
 /// `{:?}` prints the shortest digits and goes over to powers of ten where they are shorter; `1.0` is cut to `1`.

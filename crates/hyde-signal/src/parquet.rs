@@ -1,0 +1,23 @@
+//! Tables as Parquet: records and results, and data sets with text in them.
+//!
+//! The [format](https://parquet.apache.org/docs/file-format/) has names and types of columns, no units. Hyde keeps the
+//! unit of the column `x` in the key-value metadata of the file, as `unit:x`; the values are in that unit, as in CSV.
+//! What other programs wrote may say the unit in the name, `x [mm]`, as a CSV header does.
+//!
+//! A [`Frame`] is what a file holds: columns of numbers, integers or texts. A record is one whose columns are numbers over
+//! time: [`read`] and [`write`]. A number that is not there (NaN) is a null. Equal frames give equal bytes.
+
+mod error;
+mod frame;
+mod read;
+mod record;
+mod write;
+
+pub use error::ReadError;
+pub use frame::{Field, Frame, Kind, Values};
+pub use read::read_frame;
+pub use record::{is_parquet, read, write};
+pub use write::Writer;
+
+#[cfg(test)]
+mod tests;
