@@ -11,6 +11,7 @@ mod events;
 mod fixtures;
 mod ivp;
 mod ledger;
+mod mode_error;
 mod msl;
 mod paper_rows;
 mod promise;
@@ -38,6 +39,7 @@ pub const FIGURES: &[Figure] = &[
     backends::FIGURE,
     msl::FIGURE,
     paper_rows::FIGURE,
+    mode_error::FIGURE,
     ivp::PROBLEMS,
     ivp::MIN_DIGITS,
     compile::Y_AXIS,

@@ -1,5 +1,6 @@
 //! What the tests across crates and the figures share: the examples, compiled as the command line compiles them.
 
+mod closed_form;
 mod data;
 pub mod events;
 mod example;
@@ -11,5 +12,6 @@ pub mod msl;
 pub mod paper;
 pub mod stored_energy;
 
+pub use closed_form::ContinuousAxis;
 pub use data::data;
 pub use example::{Example, Loaded, root};

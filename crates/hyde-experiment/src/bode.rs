@@ -1,15 +1,17 @@
 //! Frequency responses of a linearised system, with its sampled loop closed.
 //!
-//! A sine at w drives the input. Between ticks the plant is continuous; the held values are a staircase. At the ticks
-//! everything is a sampled sine of the same frequency, z = exp(jwT), so the loop closes in discrete time with the
-//! plant's exact zero-order-hold equivalent (Franklin, Powell, Workman, Digital Control of Dynamic Systems, ch. 4). Of the
-//! staircase the fundamental, (1 - exp(-jwT))/(jwT) exp(-jwd), goes on through the continuous plant to the outputs. Above
-//! half the sampling rate a sampled sine has no frequency of its own: refused.
+//! A sine at w drives the input. Between ticks the plant is continuous; the held values are staircases, which repeat with
+//! the common period of the clocks but for a turn. The loop closes in discrete time with the plant's exact zero-order-hold
+//! equivalent (Franklin, Powell, Workman, Digital Control of Dynamic Systems, ch. 4). Of the staircases the part that turns
+//! with the input goes on through the continuous plant to the outputs. Above half the rate of a clock that the response
+//! goes through a sampled sine has no frequency of its own: refused.
 //!
 //! A delay is exp(-jwT) between what it is the delay of and its value, exactly; delayed values are solved for with the
 //! states.
 
-use crate::linearize::{Delayed, Linear, Sampled};
+use crate::common_period::CommonPeriod;
+use crate::linearize::{Delayed, Linear};
+use crate::sampled::Sampled;
 use nalgebra::{Complex, DMatrix};
 
 /// Why there is no response.
@@ -34,32 +36,25 @@ pub fn frequency_response(
     frequencies_hz: &[f64],
 ) -> Result<Vec<Vec<Complex<f64>>>, BodeError> {
     let mut found = vec![Vec::with_capacity(frequencies_hz.len()); outputs.len()];
-    let discrete = linear
-        .sampled
-        .as_ref()
-        .map(|sampled| Discrete::new(linear, sampled));
+    let clocked = linear.sampled.as_ref();
+    let limit_hz = clocked.map_or(f64::INFINITY, |sampled| {
+        nyquist_hz(linear, sampled, outputs)
+    });
+    let period = clocked.and_then(|sampled| CommonPeriod::new(linear, sampled));
     for &f in frequencies_hz {
+        if f > limit_hz {
+            return Err(BodeError::AboveNyquist(f, limit_hz));
+        }
         let s = Complex::new(0.0, std::f64::consts::TAU * f);
         let identity = Matrix::identity(linear.a.nrows(), linear.a.nrows());
         let plant = (identity * s - complex(&linear.a)).lu();
         let by_input = complex(&linear.b_input.columns(input, 1).into_owned());
         let mut state = plant.solve(&by_input).ok_or(BodeError::Singular(f))?;
         let mut direct = complex(&linear.d_input.columns(input, 1).into_owned());
-        if let (Some(sampled), Some(discrete)) = (&linear.sampled, &discrete) {
-            if f > 0.5 / sampled.period {
-                return Err(BodeError::AboveNyquist(f, 0.5 / sampled.period));
-            }
-            let held = discrete
-                .held(linear, sampled, input, &state, s)
+        if let Some(period) = &period {
+            let held = period
+                .held(input, &state, s)
                 .ok_or(BodeError::Singular(f))?;
-            // The fundamental of the staircase.
-            let turn = s * sampled.period;
-            let staircase = if f > 0.0 {
-                (Complex::new(1.0, 0.0) - (-turn).exp()) / turn
-            } else {
-                Complex::new(1.0, 0.0)
-            };
-            let held = held * (staircase * (-s * sampled.delay).exp());
             state += plant
                 .solve(&(complex(&linear.b_held) * &held))
                 .ok_or(BodeError::Singular(f))?;
@@ -78,6 +73,22 @@ pub fn frequency_response(
         }
     }
     Ok(found)
+}
+
+/// Half the rate of the slowest clock whose held values reach the states or the outputs, in Hz.
+fn nyquist_hz(linear: &Linear, sampled: &Sampled, outputs: &[usize]) -> f64 {
+    let reaches = |held: usize| {
+        let plant = linear.b_held.column(held).iter().any(|by| *by != 0.0);
+        plant
+            || outputs
+                .iter()
+                .any(|&output| linear.d_held[(output, held)] != 0.0)
+    };
+    let held = sampled.holder.iter().enumerate();
+    let periods = held
+        .filter(|(held, _)| reaches(*held))
+        .map(|(_, &clock)| sampled.clocks[clock].period);
+    0.5 / periods.fold(0.0, f64::max)
 }
 
 /// The delayed values d, from the response of the states to the input alone: `d = exp(-sT) (now + by_delayed*d)`.
@@ -100,68 +111,6 @@ fn late(
     let size = delayed.times.len();
     let closed = (Matrix::identity(size, size) - &turn * back).lu();
     closed.solve(&(turn * open))
-}
-
-/// The plant between ticks: `x[k+1] = phi x[k] + late h[k-1] + early h[k]`.
-struct Discrete {
-    phi: DMatrix<f64>,
-    late: DMatrix<f64>,
-    early: DMatrix<f64>,
-}
-
-impl Discrete {
-    fn new(linear: &Linear, sampled: &Sampled) -> Self {
-        let delay = sampled.delay.min(sampled.period);
-        let (before, at_delay) = hold_equivalent(&linear.a, &linear.b_held, delay);
-        let (after, at_rest) = hold_equivalent(&linear.a, &linear.b_held, sampled.period - delay);
-        Self {
-            phi: &after * before,
-            late: &after * at_delay,
-            early: at_rest,
-        }
-    }
-
-    /// The held values at the ticks, from the response of the state to the input alone.
-    fn held(
-        &self,
-        linear: &Linear,
-        sampled: &Sampled,
-        input: usize,
-        driven: &Matrix,
-        s: Complex<f64>,
-    ) -> Option<Matrix> {
-        let z = (s * sampled.period).exp();
-        let back = Complex::new(1.0, 0.0) / z;
-        let nx = linear.a.nrows();
-        // States at the ticks by held values.
-        let plant = (Matrix::identity(nx, nx) * z - complex(&self.phi)).lu();
-        let by_held = plant.solve(&(complex(&self.late) * back + complex(&self.early)))?;
-        // Memory after the tick by samples.
-        let size = sampled.memory.nrows();
-        let controller = (Matrix::identity(size, size) - complex(&sampled.memory) * back).lu();
-        let select = complex(&sampled.select);
-        let through = |samples: &Matrix| controller.solve(samples).map(|memory| &select * memory);
-        let from_input = complex(&sampled.by_state) * driven
-            + complex(&sampled.by_input.columns(input, 1).into_owned());
-        let open = through(&from_input)?;
-        let loop_gain =
-            through(&(complex(&sampled.by_state) * by_held + complex(&sampled.by_held) * back))?;
-        let nh = open.nrows();
-        (Matrix::identity(nh, nh) - loop_gain).lu().solve(&open)
-    }
-}
-
-/// exp(A t) and its integral times B, from one exponential of the block matrix (Van Loan, IEEE Trans. AC 23 (1978) 395).
-fn hold_equivalent(a: &DMatrix<f64>, b: &DMatrix<f64>, t: f64) -> (DMatrix<f64>, DMatrix<f64>) {
-    let (n, m) = (a.nrows(), b.ncols());
-    let mut block = DMatrix::zeros(n + m, n + m);
-    block.view_mut((0, 0), (n, n)).copy_from(&(a * t));
-    block.view_mut((0, n), (n, m)).copy_from(&(b * t));
-    let exponential = block.exp();
-    (
-        exponential.view((0, 0), (n, n)).into_owned(),
-        exponential.view((0, n), (n, m)).into_owned(),
-    )
 }
 
 fn complex(matrix: &DMatrix<f64>) -> Matrix {

@@ -4,6 +4,7 @@
 //! limit test of an effect ([`limit`]).
 
 mod bode;
+mod common_period;
 mod compare;
 mod ledger;
 mod limit;
@@ -12,6 +13,7 @@ mod mode_shape;
 mod modes;
 mod record;
 mod run;
+mod sampled;
 mod swept;
 
 pub use bode::{BodeError, frequency_response};
@@ -23,4 +25,5 @@ pub use mode_shape::{ModeShape, mode_shape};
 pub use modes::{NaturalMode, modes};
 pub use record::read_record;
 pub use run::{MeasureValue, Options, Run, RunError, parameters, run};
+pub use sampled::{Clocked, Sampled};
 pub use swept::{Swept, swept_response};

@@ -4,9 +4,11 @@
 //!
 //! The states x are those of the solver's vector; its algebraic variables are solved for. Inputs u are the free inputs of
 //! the model, h the values that clocks hold. The clocked parts are linearised as they are: what a tick writes depends on
-//! the memory before it and on the samples, with quantisers as the identity (S3).
+//! the memory before it and on the samples, with quantisers as the identity (S3): [`Sampled`].
 
-use hyde_program::{Function, Point, Program, TickWrt, Workspace, Wrt};
+use crate::common_period::common_period;
+use crate::sampled::{Sampled, sampled};
+use hyde_program::{Function, Point, Program, Workspace, Wrt};
 use hyde_signal::Table;
 use hyde_sim::{Failure, OperatingPoint};
 use nalgebra::DMatrix;
@@ -32,7 +34,7 @@ pub struct Linear {
     pub d_input: DMatrix<f64>,
     /// Outputs by held values.
     pub d_held: DMatrix<f64>,
-    /// The clocked part, if there is one.
+    /// The clocked parts, if there are any.
     pub sampled: Option<Sampled>,
     /// The whole solver's vector by states.
     pub unknowns: DMatrix<f64>,
@@ -59,25 +61,6 @@ pub struct Delayed {
     pub by_delayed: DMatrix<f64>,
 }
 
-/// The linearised clocked part: memory m after a tick is `memory*m_before + (by_state*x + by_input*u + by_held*h)`.
-#[derive(Clone, Debug)]
-pub struct Sampled {
-    /// Period in s.
-    pub period: f64,
-    /// From the tick to the change of held values, in s.
-    pub delay: f64,
-    /// Memory by memory before.
-    pub memory: DMatrix<f64>,
-    /// Memory by states just before the tick.
-    pub by_state: DMatrix<f64>,
-    /// Memory by inputs.
-    pub by_input: DMatrix<f64>,
-    /// Memory by held values before the tick.
-    pub by_held: DMatrix<f64>,
-    /// Held values by memory: selects what each holds.
-    pub select: DMatrix<f64>,
-}
-
 /// Why there is no linearised system.
 #[derive(Clone, Debug)]
 pub enum LinearizeError {
@@ -85,8 +68,10 @@ pub enum LinearizeError {
     NoInput(String),
     /// Too many unknowns for dense matrices.
     TooLarge(usize),
-    /// Clocks of different periods.
-    SeveralClocks,
+    /// Clocks whose ticks never come together again, or after thousands of ticks only.
+    NoCommonPeriod,
+    /// Held values that change more than a period after their tick.
+    LongDelay,
     /// A delay beside a clock: between ticks such a plant has no finite state.
     DelayAndClock,
     /// The algebraic variables are not determined at the operating point.
@@ -173,7 +158,7 @@ pub fn linearize(
 
     let outputs = Dense::of(program, Function::Outputs, at, &mut work, &places, &held);
     let outputs = parts.through(&outputs);
-    let sampled = sampled(program, at, &mut work, &parts, parameters, &held)?;
+    let sampled = clocked(program, at, &mut work, &parts, &held)?;
     let delayed = if nd == 0 {
         None
     } else if sampled.is_some() {
@@ -205,22 +190,42 @@ pub fn linearize(
     })
 }
 
+/// The clocked parts, if their clocks have a common period.
+fn clocked(
+    program: &Program,
+    at: Point<'_>,
+    work: &mut Workspace,
+    parts: &Parts<'_>,
+    held: &[usize],
+) -> Result<Option<Sampled>, LinearizeError> {
+    let Some(found) = sampled(program, at, work, parts, held) else {
+        return Ok(None);
+    };
+    if found.clocks.iter().any(|clock| clock.delay > clock.period) {
+        return Err(LinearizeError::LongDelay);
+    }
+    match common_period(&found.clocks) {
+        Some(_) => Ok(Some(found)),
+        None => Err(LinearizeError::NoCommonPeriod),
+    }
+}
+
 /// How the unknowns depend on states, inputs, held and delayed values.
-struct Parts<'a> {
+pub(crate) struct Parts<'a> {
     solved: &'a DMatrix<f64>,
     states: &'a [usize],
     algebraic: &'a [usize],
-    nu: usize,
+    pub(crate) nu: usize,
     nh: usize,
-    nd: usize,
+    pub(crate) nd: usize,
 }
 
 /// A function by states, inputs, held and delayed values.
-struct Through {
-    by_state: DMatrix<f64>,
-    by_input: DMatrix<f64>,
-    by_held: DMatrix<f64>,
-    by_delayed: DMatrix<f64>,
+pub(crate) struct Through {
+    pub(crate) by_state: DMatrix<f64>,
+    pub(crate) by_input: DMatrix<f64>,
+    pub(crate) by_held: DMatrix<f64>,
+    pub(crate) by_delayed: DMatrix<f64>,
 }
 
 impl Parts<'_> {
@@ -239,7 +244,7 @@ impl Parts<'_> {
     }
 
     /// A function of unknowns and their derivatives, by what these depend on.
-    fn through(&self, dense: &Dense) -> Through {
+    pub(crate) fn through(&self, dense: &Dense) -> Through {
         let (nx, rows) = (self.states.len(), dense.by_unknown.nrows());
         let mut total = DMatrix::zeros(rows, nx + self.nu + self.nh + self.nd);
         for (number, &state) in self.states.iter().enumerate() {
@@ -260,16 +265,16 @@ impl Parts<'_> {
 }
 
 /// The derivatives of a function as dense matrices.
-struct Dense {
-    by_unknown: DMatrix<f64>,
-    by_derivative: DMatrix<f64>,
+pub(crate) struct Dense {
+    pub(crate) by_unknown: DMatrix<f64>,
+    pub(crate) by_derivative: DMatrix<f64>,
     by_input: DMatrix<f64>,
-    by_held: DMatrix<f64>,
+    pub(crate) by_held: DMatrix<f64>,
     by_delayed: DMatrix<f64>,
 }
 
 impl Dense {
-    fn zeros(rows: usize, n: usize, inputs: usize, held: usize, delayed: usize) -> Self {
+    pub(crate) fn zeros(rows: usize, n: usize, inputs: usize, held: usize, delayed: usize) -> Self {
         Self {
             by_unknown: DMatrix::zeros(rows, n),
             by_derivative: DMatrix::zeros(rows, n),
@@ -331,77 +336,4 @@ impl Dense {
         }
         dense
     }
-}
-
-fn sampled(
-    program: &Program,
-    at: Point<'_>,
-    work: &mut Workspace,
-    parts: &Parts<'_>,
-    parameters: &[f64],
-    held: &[usize],
-) -> Result<Option<Sampled>, LinearizeError> {
-    if program.clocks.is_empty() || held.is_empty() {
-        return Ok(None);
-    }
-    let constant = |which| {
-        program
-            .kernels
-            .constant(which, parameters)
-            .unwrap_or(f64::NAN)
-    };
-    let period = constant(hyde_program::Constant::Period(0));
-    let delay = constant(hyde_program::Constant::Delay(0));
-    let same = (1..program.clocks.len()).all(|clock| {
-        constant(hyde_program::Constant::Period(clock)).to_bits() == period.to_bits()
-            && constant(hyde_program::Constant::Delay(clock)).to_bits() == delay.to_bits()
-    });
-    if !same {
-        return Err(LinearizeError::SeveralClocks);
-    }
-    let size = program.n_memory;
-    let mut memory = DMatrix::<f64>::identity(size, size);
-    let mut samples = Dense::zeros(size, program.n_unknowns, parts.nu, held.len(), parts.nd);
-    for &clock in &program.clock_order {
-        let mut step = DMatrix::<f64>::identity(size, size);
-        let mut own = Dense::zeros(size, program.n_unknowns, parts.nu, held.len(), parts.nd);
-        let partials = program.kernels.tick_partials(clock, at, work);
-        for &(row, _, _) in &partials {
-            step[(row, row)] = 0.0;
-        }
-        for (row, wrt, value) in partials {
-            match wrt {
-                TickWrt::Memory(column) => step[(row, column)] += value,
-                TickWrt::Unknown(column) => own.by_unknown[(row, column)] += value,
-                TickWrt::Derivative(column) => own.by_derivative[(row, column)] += value,
-            }
-        }
-        memory = &step * memory;
-        samples.by_unknown = &step * samples.by_unknown + own.by_unknown;
-        samples.by_derivative = &step * samples.by_derivative + own.by_derivative;
-    }
-    let Through {
-        by_state,
-        by_input,
-        by_held,
-        by_delayed: _,
-    } = parts.through(&samples);
-    // What a tick reads of a held value is its own past.
-    let mut select = DMatrix::zeros(held.len(), size);
-    let sources = program
-        .holds
-        .iter()
-        .flat_map(|hold| hold.source..hold.source + hold.len);
-    for (row, source) in sources.enumerate() {
-        select[(row, source)] = 1.0;
-    }
-    Ok(Some(Sampled {
-        period,
-        delay,
-        memory,
-        by_state,
-        by_input,
-        by_held,
-        select,
-    }))
 }

@@ -82,11 +82,13 @@ impl<'a> Model<'a, '_> {
 
     fn parameter_value(&mut self, param: ParamId, element: usize) -> Option<f64> {
         self.flat.parameters[param].structural = true;
-        if let Some(&value) = self.input.settings.get(&self.flat.parameters[param].name) {
-            return Some(value);
-        }
         if self.parameters[param.index()].state != Lowering::Done {
             self.lower_parameter(param);
+        }
+        if let Some(&value) = self.input.settings.get(&self.flat.parameters[param].name) {
+            // What else uses the parameter sees the value that is set as well.
+            self.flat.parameters[param].value = vec![self.flat.exprs.constant(value)];
+            return Some(value);
         }
         let values = &self.flat.parameters[param].value;
         let value = *values.get(element).or_else(|| values.first())?;

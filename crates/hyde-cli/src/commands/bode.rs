@@ -161,8 +161,11 @@ fn linear(
         LinearizeError::TooLarge(n) => {
             format!("{n} unknowns are too many for a dense linearised system")
         }
-        LinearizeError::SeveralClocks => {
-            "clocks of several periods have no common frequency response".to_owned()
+        LinearizeError::NoCommonPeriod => {
+            "clocks that never tick together again have no common frequency response".to_owned()
+        }
+        LinearizeError::LongDelay => {
+            "a clock whose held values change more than a period later has no response".to_owned()
         }
         LinearizeError::DelayAndClock => {
             "a model with both `delay` and a clocked part has no linearised response".to_owned()
