@@ -3,6 +3,7 @@
 use crate::system::System;
 use hyde_diag::MadeBy;
 use hyde_ir::dae::{Alias, Dae, Output};
+use hyde_ir::flat;
 use hyde_ir::{Expr, Index, Quantity, Range, VariableKind};
 
 /// Arrays longer than this are not reported element by element: more columns than a person looks at.
@@ -128,6 +129,11 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
     for (name, value, quantity) in experiment.bodes.iter().flat_map(|bode| &bode.outputs) {
         dae.outputs
             .push(single(format!("response {name}"), *value, quantity, false));
+    }
+    for curve in experiment.figures.iter().flat_map(flat::Figure::curves) {
+        let name = format!("curve {}", curve.name);
+        dae.outputs
+            .push(single(name, curve.value, &curve.quantity, false));
     }
     let plain = Quantity::usual(hyde_units::Dimension::DIMENSIONLESS);
     for account in &experiment.ledger.accounts {

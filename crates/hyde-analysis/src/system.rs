@@ -4,7 +4,7 @@ use crate::reduce::Group;
 use crate::solve::divisor;
 use hyde_diag::{InstancePath, Origin, Span};
 use hyde_ir::dae::{Alias, Dependent};
-use hyde_ir::flat::{Action, FlatModel};
+use hyde_ir::flat::{self, Action, FlatModel};
 use hyde_ir::{AutomatonId, Expr, ExprArena, ExprId, Id as _, Index, Range, VarId, VariableKind};
 use std::collections::{BTreeMap, HashMap};
 
@@ -204,6 +204,10 @@ impl System {
             .flat_map(|bode| &mut bode.outputs)
         {
             each(arena, value);
+        }
+        let figures = flat.experiment.figures.iter_mut();
+        for curve in figures.flat_map(flat::Figure::curves_mut) {
+            each(arena, &mut curve.value);
         }
         let ledger = &mut flat.experiment.ledger;
         for (_, value) in ledger.accounts.iter_mut().flat_map(|a| &mut a.pieces) {

@@ -20,6 +20,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Run an experiment, compare it with its records, and test its expectations
     Run(RunArgs),
+    /// Tell what each imperfection of a model contributes to the measures of an experiment
+    Budget(BudgetArgs),
     /// Print what a stage of the compiler makes of a model
     Emit(EmitArgs),
     /// Plot columns of results or of a record
@@ -115,6 +117,34 @@ pub(crate) struct RunArgs {
     /// Tell where every joule came from and where it went
     #[arg(long)]
     pub(crate) ledger: bool,
+    /// Tell the force, torque or current of every connection
+    #[arg(long)]
+    pub(crate) forces: bool,
+}
+
+impl RunArgs {
+    /// A run as its experiment says, that leaves no files.
+    pub(crate) fn of_model(model: &ModelArgs) -> Self {
+        Self {
+            model: model.clone(),
+            stop: None,
+            rtol: None,
+            atol: None,
+            out: None,
+            format: Format::Csv,
+            ledger: false,
+            forces: false,
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct BudgetArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Leave budget.csv in this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 /// Form of results.

@@ -1,6 +1,7 @@
 //! One file a command.
 
 pub(crate) mod bode;
+pub(crate) mod budget;
 pub(crate) mod check;
 pub(crate) mod doc;
 pub(crate) mod effects;

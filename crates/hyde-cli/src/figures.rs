@@ -1,5 +1,6 @@
-//! The figures of a run: measured over simulated, or a choice of states, with the modes below.
+//! The figures of a run: those asked for, then measured over simulated, or a choice of states, with the modes below.
 
+use crate::asked_figures;
 use hyde_experiment::{Channel, Run};
 use hyde_program::Program;
 use hyde_report::{
@@ -12,9 +13,12 @@ const MAX_PANELS: usize = 4;
 
 /// The figures of a run, the most telling first.
 pub(crate) fn of_run(title: &str, program: &Program, run: &Run) -> Vec<Figure> {
+    let asked = asked_figures::of_run(program, run);
+    let mut figures: Vec<Figure> = asked.into_iter().map(|(_, figure)| figure).collect();
     let strip = strip(program, &run.results, run.stop_s);
     if run.channels.is_empty() {
-        return vec![time_plot(title, states(program, &run.results), strip)];
+        figures.push(time_plot(title, states(program, &run.results), strip));
+        return figures;
     }
     let both: Vec<Panel> = run
         .channels
@@ -26,7 +30,8 @@ pub(crate) fn of_run(title: &str, program: &Program, run: &Run) -> Vec<Figure> {
     let figure = time_plot(title, both, strip.clone())
         .with_caption("Measured and simulated; the modes of the frictions below.");
     let rest = time_plot(format!("{title}: measured minus simulated"), errors, strip);
-    vec![figure, rest]
+    figures.extend([figure, rest]);
+    figures
 }
 
 /// The modes of every automaton over time.

@@ -4,10 +4,12 @@
 //! diagnostics (`render`), and writing files whole or not at all (`files`).
 
 mod args;
+mod asked_figures;
 mod commands;
 mod exit;
 mod figures;
 mod files;
+mod forces;
 mod ledger;
 mod limits;
 mod package;
@@ -45,6 +47,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let code = match &arguments.command {
         Command::Check(args) => commands::check::check(args),
         Command::Run(args) => commands::run::run(args),
+        Command::Budget(args) => commands::budget::budget(args),
         Command::Emit(args) => commands::emit::emit(args),
         Command::Plot(args) => commands::plot::plot(args),
         Command::Bode(args) => commands::bode::bode(args),

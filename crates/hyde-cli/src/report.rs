@@ -1,11 +1,13 @@
 //! The report of a run as one HTML page.
 
-use crate::figures;
 use crate::project::Project;
 use crate::summary;
+use crate::{figures, forces};
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
-use hyde_report::{ChannelError, Event, EventTable, Outcome, Parameter, RunReport, Verdict};
+use hyde_report::{
+    ChannelError, Event, EventTable, Outcome, Parameter, RunReport, Verdict, to_html,
+};
 use hyde_units::{format_value, significant};
 
 /// The page.
@@ -117,7 +119,7 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
         counted("ticks", statistics.ticks),
     ];
     let stop = hyde_units::NamedUnit::usual(hyde_units::Dimension::TIME);
-    RunReport {
+    let mut page = RunReport {
         title: title.clone(),
         model: program.name.clone(),
         experiment: project.experiment.clone().unwrap_or_default(),
@@ -142,5 +144,15 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
                 .map_or("", |(_, source)| source.name.as_str())
         ),
     }
-    .to_html()
+    .page();
+    // Behind the figures, before the long list of events.
+    let events = page
+        .sections
+        .iter()
+        .position(|section| section.heading == "Events");
+    let place = events.unwrap_or(page.sections.len());
+    if let Some(section) = forces::section(compiled, run) {
+        page.sections.insert(place, section);
+    }
+    to_html(&page)
 }

@@ -4,6 +4,7 @@
 
 mod candidates;
 mod emit;
+mod ideal;
 mod load;
 mod named;
 mod pipeline;
@@ -13,6 +14,7 @@ pub use candidates::{Additions, Candidate, Knob, candidates};
 pub use emit::{Stage, emit};
 pub use hyde_flatten::{Header, TableFile};
 pub use hyde_jit::Backend;
+pub use ideal::{changed, ideals};
 pub use load::{File, Find, Packages, Place, check_name, load};
 pub use pipeline::{Compiled, Request, analyze, compile, compile_with};
 pub use states::States;

@@ -7,6 +7,7 @@ use hyde_syntax::ast::{self, Item};
 use std::collections::BTreeMap;
 
 /// Parsed files, the user's first, then every package that one of them names.
+#[derive(Clone)]
 pub struct File {
     /// Texts and trees.
     pub files: Vec<(FileId, ast::File)>,

@@ -1,11 +1,13 @@
 //! What is asked of a program beside one solution: a run with its record ([`read_record`]), measures and expectations ([`run`]); the
 //! system linearised about an operating point ([`linearize`]), its frequency response with the sampled loop closed
 //! ([`frequency_response`]) and its modes ([`modes`]); the response swept on the full hybrid model ([`swept_response`]); the
-//! limit test of an effect ([`limit`]).
+//! forces between components ([`flows`]) and the error budget ([`BudgetOf`]); the limit test of an effect ([`limit`]).
 
 mod bode;
+mod budget;
 mod common_period;
 mod compare;
+mod flows;
 mod ledger;
 mod limit;
 mod linearize;
@@ -17,7 +19,9 @@ mod sampled;
 mod swept;
 
 pub use bode::{BodeError, frequency_response};
+pub use budget::{BudgetOf, Share};
 pub use compare::{Channel, CompareError};
+pub use flows::{FlowLine, flows};
 pub use ledger::{EnergyLedger, LedgerEntry};
 pub use limit::{Answer, LIMIT_LEFT, LIMIT_PART, limit};
 pub use linearize::{Linear, LinearizeError, linearize};

@@ -237,25 +237,23 @@ fn reduce(reduction: &Reduction, results: &Results) -> f64 {
     let Some(values) = results.column(reduction.output) else {
         return f64::NAN;
     };
-    let span = || {
-        results
-            .time
-            .last()
-            .zip(results.time.first())
-            .map_or(0.0, |(last, first)| last - first)
-    };
-    let integral = |of: &dyn Fn(f64) -> f64| -> f64 {
-        let pairs = results.time.windows(2).zip(values.windows(2));
-        pairs
-            .map(|(t, v)| 0.5 * (t[1] - t[0]) * (of(v[0]) + of(v[1])))
-            .sum()
-    };
+    let time = &results.time;
     match reduction.kind {
         ReductionKind::Max => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
         ReductionKind::Min => values.iter().copied().fold(f64::INFINITY, f64::min),
-        ReductionKind::Mean => integral(&|v| v) / span(),
-        ReductionKind::Rms => (integral(&|v| v * v) / span()).sqrt(),
+        ReductionKind::Mean => mean(time, values, |v| v),
+        ReductionKind::Rms => mean(time, values, |v| v * v).sqrt(),
         ReductionKind::First => values.first().copied().unwrap_or(f64::NAN),
         ReductionKind::Last => values.last().copied().unwrap_or(f64::NAN),
     }
+}
+
+/// The mean over time of a function of a signal, by the trapezoidal rule.
+pub(crate) fn mean(time: &[f64], values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
+    let pairs = time.windows(2).zip(values.windows(2));
+    let integral: f64 = pairs
+        .map(|(t, v)| 0.5 * (t[1] - t[0]) * (of(v[0]) + of(v[1])))
+        .sum();
+    let ends = time.last().zip(time.first());
+    integral / ends.map_or(0.0, |(last, first)| last - first)
 }

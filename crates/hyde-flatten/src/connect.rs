@@ -8,7 +8,7 @@ use crate::instance::{Elementwise, InstanceId, Member, Position, Scope, Setting,
 use crate::lower::Resolved;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy, Origin, Span};
-use hyde_ir::flat::Equation;
+use hyde_ir::flat::{Equation, Flow};
 use hyde_ir::{Expr as Ir, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{ClassKind, Reference};
 
@@ -234,6 +234,7 @@ impl<'a> Model<'a, '_> {
                 connected_inside[instance] |= inside;
             }
             self.set_equations(members, origin);
+            self.flows(members);
         }
         for (id, connected) in connected_inside.into_iter().enumerate() {
             if self.instances[id].class.kind != ClassKind::Connector || connected {
@@ -329,6 +330,44 @@ impl<'a> Model<'a, '_> {
                     rhs,
                     origin: origin.clone(),
                 });
+            }
+        }
+    }
+
+    /// Notes what goes from one of the joined connectors to another. That of a component whose connector leads on to one
+    /// part of it is told where the component is connected.
+    fn flows(&mut self, members: &[(InstanceId, bool)]) {
+        let told: Vec<(InstanceId, String)> = match *members {
+            [_] => return,
+            [(from, true), (to, true)] => {
+                let (from, to) = (&self.instances[from].path, to);
+                vec![(to, format!("{from} to {}", self.instances[to].path))]
+            }
+            [_, _] => return,
+            _ => {
+                let inside = members.iter().filter(|(_, inside)| *inside);
+                let told = |&(id, _): &(InstanceId, bool)| {
+                    (id, format!("into {}", self.instances[id].path))
+                };
+                inside.map(told).collect()
+            }
+        };
+        for (connector, name) in told {
+            let variables = self.variables_of(connector).into_iter();
+            let flows: Vec<VarId> = variables
+                .filter(|&var| {
+                    let variable = &self.flat.variables[var];
+                    variable.flow && variable.len.is_none()
+                })
+                .collect();
+            for &var in &flows {
+                let variable = &self.flat.variables[var].name;
+                let last = variable.rsplit('.').next().unwrap_or(variable);
+                let name = match flows.len() {
+                    1 => name.clone(),
+                    _ => format!("{name}.{last}"),
+                };
+                self.flat.experiment.flows.push(Flow { name, var });
             }
         }
     }

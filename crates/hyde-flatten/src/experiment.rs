@@ -1,6 +1,7 @@
 //! The experiment: stimuli drive the free inputs, measured channels name their columns, measures reduce the run.
 
 mod bode;
+mod figure;
 mod measure;
 mod measured;
 mod record;
@@ -34,6 +35,7 @@ impl<'a> Model<'a, '_> {
             return;
         };
         self.flat.experiment.name = experiment.name.text.clone();
+        self.check_budget(&experiment.items);
         let at = |setting| Scope {
             records: true,
             ..Scope::new(root, setting)
@@ -83,6 +85,30 @@ impl<'a> Model<'a, '_> {
                     self.flat.experiment.skip = Some(time.id);
                 }
                 ExperimentItem::Bode(bode) => self.bode(bode, root),
+                ExperimentItem::Figure(figure) => self.figure(figure, root),
+                ExperimentItem::Budget(_) => {} // Each of them is a run of its own, of a changed model.
+            }
+        }
+    }
+
+    /// Every imperfection of a budget has a name of its own.
+    fn check_budget(&mut self, items: &'a [ExperimentItem]) {
+        let mut known: Vec<&ast::Name> = Vec::new();
+        for item in items {
+            let ExperimentItem::Budget(ideals) = item else {
+                continue;
+            };
+            for ideal in ideals {
+                let name = &ideal.name;
+                if let Some(first) = known.iter().find(|known| known.text == name.text) {
+                    let message = format!("the budget has `{}` twice", name.text);
+                    let diagnostic = Diagnostic::error(Code::Duplicate, message)
+                        .label(name.span, "here again")
+                        .label(first.span, "here first")
+                        .help("give it a name of its own, or write all that is changed into one: `play(a.gap = 0, b.gap = 0)`");
+                    self.report(diagnostic);
+                }
+                known.push(name);
             }
         }
     }

@@ -180,6 +180,12 @@ impl Kernels for Compiled {
             Constant::Noise(channel) => experiment.measured.get(channel)?.noise?,
             Constant::BandFrom(bode) => experiment.bodes.get(bode)?.band.0,
             Constant::BandTo(bode) => experiment.bodes.get(bode)?.band.1,
+            Constant::Radius(figure) => match experiment.figures.get(figure)?.kind {
+                hyde_ir::flat::FigureKind::Circle(_, radius) => radius,
+                hyde_ir::flat::FigureKind::Panels(..) => return None,
+            },
+            Constant::ShownFrom(figure) => experiment.figures.get(figure)?.within?.0,
+            Constant::ShownTo(figure) => experiment.figures.get(figure)?.within?.1,
         };
         self.evaluate_known(id, p, &[])
     }

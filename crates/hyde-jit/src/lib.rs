@@ -10,6 +10,7 @@
 
 mod compiled;
 mod emit;
+mod figures;
 mod host;
 mod interpret;
 mod ledger;

@@ -1,16 +1,17 @@
 //! The tables of a [`Program`], from the DAE.
 
 use crate::compiled::Compiled;
-use crate::ledger;
+use crate::{figures, ledger};
 use hyde_ir::dae::{self, Dae};
 use hyde_ir::flat;
 use hyde_ir::{Id as _, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Bode, Clock, Column, Delay, Derivatives, Experiment, Hold,
+    Assignment, Automaton, Bode, Clock, Column, Delay, Derivatives, Experiment, Flow, Hold,
     InitialCondition, Measure, Measured, Output, Parameter, Pin, Preparation, Prior, Program,
     Reaction, ReactionKind, Reduction, ReductionKind, Relation, RelationUse, Selection, Stop,
     Target, UnknownBlock,
 };
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The program of compiled kernels.
@@ -228,6 +229,7 @@ fn outputs(dae: &Dae) -> Vec<Output> {
             .iter()
             .map(|bode| bode.outputs.len())
             .sum::<usize>()
+        - figures::outputs(&dae.experiment.figures)
         - ledger::outputs(&dae.experiment.ledger);
     let mut found = Vec::new();
     for (number, output) in dae.outputs.iter().enumerate() {
@@ -319,7 +321,8 @@ fn experiment(dae: &Dae) -> Experiment {
     let columns: usize = dae.outputs.iter().map(|output| output.names.len()).sum();
     let responses: usize = known.bodes.iter().map(|bode| bode.outputs.len()).sum();
     let first_account = columns - ledger::columns(&known.ledger);
-    let first_measured = first_account - known.measured.len() - known.reductions.len() - responses;
+    let first_curve = first_account - figures::outputs(&known.figures);
+    let first_measured = first_curve - known.measured.len() - known.reductions.len() - responses;
     let first_reduction = first_measured + known.measured.len();
     let mut next_response = first_reduction + known.reductions.len();
     Experiment {
@@ -411,10 +414,26 @@ fn experiment(dae: &Dae) -> Experiment {
                 }
             })
             .collect(),
+        figures: figures::figures(&known.figures, first_curve),
+        flows: flows(dae),
         ledger: ledger::ledger(&known.ledger, first_account),
         stop: known.stop.as_ref().map(|stop| match stop {
             flat::Stop::At(_) => Stop::At,
             flat::Stop::EndOf(record) => Stop::EndOf(record.clone()),
         }),
     }
+}
+
+/// The flows of the connections among the outputs; one that is no output has no value of its own.
+fn flows(dae: &Dae) -> Vec<Flow> {
+    let names = dae.outputs.iter().flat_map(|output| &output.names);
+    let numbers: BTreeMap<&str, usize> = names.map(String::as_str).zip(0..).collect();
+    let of = |flow: &flat::Flow| {
+        let output = *numbers.get(dae.variables[flow.var].name.as_str())?;
+        Some(Flow {
+            name: flow.name.clone(),
+            output,
+        })
+    };
+    dae.experiment.flows.iter().filter_map(of).collect()
 }

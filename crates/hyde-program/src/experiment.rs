@@ -88,6 +88,45 @@ pub struct Bode {
     pub origin: Origin,
 }
 
+/// Something that a figure shows over time.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    /// As it is written.
+    pub name: String,
+    /// The output.
+    pub output: usize,
+}
+
+/// What kind of figure.
+#[derive(Clone, Debug)]
+pub enum FigureKind {
+    /// Panels one above the other, over time or over a curve.
+    Panels(Vec<Vec<Curve>>, Option<Curve>),
+    /// A contour about the origin, x and y, whose deviation from a circle is magnified; the radius is a
+    /// [`crate::Constant`].
+    Circle([Curve; 2]),
+}
+
+/// A figure asked for; the times shown are [`crate::Constant`]s.
+#[derive(Clone, Debug)]
+pub struct Figure {
+    /// Its name, and that of its files.
+    pub name: String,
+    /// Its title.
+    pub title: String,
+    /// What it shows.
+    pub kind: FigureKind,
+}
+
+/// What goes from one component to another where they are connected: a force, a torque, a current.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Flow {
+    /// `motor.shaft to belt.a`, or `into belt.a` where more than two connectors meet.
+    pub name: String,
+    /// The output that goes into the connector named last.
+    pub output: usize,
+}
+
 /// When a run ends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stop {
@@ -112,8 +151,12 @@ pub struct Experiment {
     pub measures: Vec<Measure>,
     /// Frequency responses.
     pub bodes: Vec<Bode>,
+    /// Figures asked for.
+    pub figures: Vec<Figure>,
     /// The energy ledger; empty unless it was asked for.
     pub ledger: Ledger,
+    /// The flows of the connections.
+    pub flows: Vec<Flow>,
     /// When it ends.
     pub stop: Option<Stop>,
 }

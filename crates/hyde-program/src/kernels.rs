@@ -103,6 +103,12 @@ pub enum Constant {
     BandFrom(usize),
     /// Upper end of a frequency response in Hz.
     BandTo(usize),
+    /// Radius of the circle that a figure shows, in m.
+    Radius(usize),
+    /// First time that a figure shows, in s.
+    ShownFrom(usize),
+    /// Last time that a figure shows, in s.
+    ShownTo(usize),
 }
 
 /// The numbers of a program.

@@ -28,7 +28,8 @@ pub use event::{
     Relation, RelationUse, Selection, Target,
 };
 pub use experiment::{
-    Bode, Experiment, Measure, Measured, Preparation, Reduction, ReductionKind, Stop,
+    Bode, Curve, Experiment, Figure, FigureKind, Flow, Measure, Measured, Preparation, Reduction,
+    ReductionKind, Stop,
 };
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Constant, Function, Kernels, Point, TickWrt, Workspace};

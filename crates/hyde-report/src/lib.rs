@@ -1,6 +1,6 @@
 //! Figures and the run report: SVG, PNG and one self-contained HTML page.
 //!
-//! Plain data in, bytes out. A [`Figure`] is filled by hand or by [`time_plot`], [`bode_plot`] and [`xy_plot`]. It is
+//! Plain data in, bytes out. A [`Figure`] is filled by hand or by [`time_plot`], [`bode_plot`], [`xy_plot`] and [`circle_plot`]. It is
 //! laid out once, into a list of strokes, areas and texts measured with the font that travels in the binary, and that
 //! list is written as SVG ([`to_svg`]) or rasterised ([`to_png`]), so both look the same on every machine.
 //!
@@ -23,6 +23,7 @@
 
 mod axis;
 mod bode_plot;
+mod circle_plot;
 mod draw;
 mod escape;
 mod event_strip;
@@ -39,6 +40,7 @@ mod xy_plot;
 
 pub use axis::{Axis, Scale};
 pub use bode_plot::{BodeCurve, bode_plot};
+pub use circle_plot::circle_plot;
 pub use escape::escape;
 pub use event_strip::{EventRow, EventStrip, Span};
 pub use figure::{Band, Direction, Figure, Line, LineStyle, Marker, Panel, Reference};

@@ -73,6 +73,9 @@ experiment bench(record file every 1 [ms] = "records/strokes.csv") of Guide(F = 
   expect max(abs(v)) < 1 [m/s] "slow";
   measure Length worst = max(abs(file.x - s));
   bode from u to motor.w, der(v) over 1 .. 50 [Hz] in guide = slip, nut.contact = positive;
+  figure lag = r - s, {guide.a.f, screw.F} over time in 0.8 [s] .. 1 [s] "the reversal";
+  figure contour = circle(x, y - 25 [mm], 25 [mm]);
+  budget backlash(gap = 0) "no play", belt(belt(k = 1e9 [N/m]), redeclare Rigid nut), bed(each k = 1);
   solve ida(rtol = 1e-6) stop file.end every 1 [ms] skip 50 [ms];
 end bench;
 calibrate bench of Guide fit bench("fit-*.csv"); holdout bench("validate-*.csv"); vary uncertain; end bench;

@@ -6,7 +6,8 @@ use hyde_tests::root;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
-/// Longer than this nobody reads a snapshot: of longer code the instructions of each kernel are counted.
+/// Longer than this nobody reads a snapshot: of longer code the instructions of each kernel are counted, of
+/// other texts the lines below each heading.
 const LONGEST: usize = 2000;
 
 #[test]
@@ -52,7 +53,12 @@ fn check(case: &examples::Case, stage: Stage, name: &str) {
     let text = case.example.emit(stage);
     let text = text.unwrap_or_else(|error| panic!("{name}: {error}"));
     let text = if text.lines().count() > LONGEST {
-        instructions(&text)
+        match stage {
+            Stage::Clif => instructions(&text),
+            Stage::Ast | Stage::Flat | Stage::Structure | Stage::Dae | Stage::Asm => {
+                sections(&text)
+            }
+        }
     } else {
         text
     };
@@ -63,6 +69,20 @@ fn check(case: &examples::Case, stage: Stage, name: &str) {
     }, {
         insta::assert_snapshot!(name, text);
     });
+}
+
+/// How many lines stand below each line that is not indented.
+fn sections(text: &str) -> String {
+    let mut out = String::new();
+    let mut lines = text.lines().peekable();
+    while let Some(heading) = lines.next() {
+        let mut below = 0;
+        while lines.next_if(|line| line.starts_with(' ')).is_some() {
+            below += 1;
+        }
+        let _ = writeln!(out, "{below:>6} {heading}");
+    }
+    out
 }
 
 /// How often each instruction stands in each kernel.

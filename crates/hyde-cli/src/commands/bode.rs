@@ -1,6 +1,6 @@
 //! `hyde bode`: the frequency responses an experiment asks for, linearised and as swept on the full hybrid model.
 
-use crate::args::{BodeArgs, Format, RunArgs};
+use crate::args::{BodeArgs, RunArgs};
 use crate::commands::run;
 use crate::exit::Exit;
 use crate::figures::shown;
@@ -54,16 +54,7 @@ fn responses(args: &BodeArgs) -> Result<String, Exit> {
     let run = if args.linear {
         None
     } else {
-        let run_args = RunArgs {
-            model: args.model.clone(),
-            stop: None,
-            rtol: None,
-            atol: None,
-            out: None,
-            format: Format::Csv,
-            ledger: false,
-        };
-        Some(run::solved(&run_args)?)
+        Some(run::solved(&RunArgs::of_model(&args.model))?)
     };
     let mut text = run
         .as_ref()

@@ -6,7 +6,7 @@ use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Aim, Project, Records, complain, print_output, report_errors};
 use crate::render;
-use hyde_compiler::States;
+use hyde_compiler::{States, ideals};
 use hyde_diag::{Diagnostics, Origin, Sources};
 use serde_json::{Value, json};
 
@@ -85,6 +85,10 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
             true => Err(Exit::Model),
             false => project.compile_silently(aim),
         };
+        let compiled = compiled.and_then(|compiled| {
+            check_ideals(&mut project, aim)?;
+            Ok(compiled)
+        });
         match compiled {
             Ok(compiled) => {
                 let what = project.experiment.as_ref().map_or_else(
@@ -126,6 +130,22 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
         found.warnings = list;
     }
     Ok(found)
+}
+
+/// Compiles the model as each part of the experiment's budget makes it.
+fn check_ideals(project: &mut Project, aim: Aim) -> Result<(), Exit> {
+    let Some(name) = project.experiment.clone() else {
+        return Ok(());
+    };
+    let own = project.file.clone();
+    let experiments = own.experiments();
+    let asked = experiments.filter(|known| known.name.text == name);
+    for ideal in asked.flat_map(ideals) {
+        project.file = own.idealised(&name, |other| other.name.text == ideal.name.text);
+        project.compile_silently(aim)?;
+    }
+    project.file = own;
+    Ok(())
 }
 
 /// Lines on states where the equations left a choice, or a start value is no condition of the model.

@@ -5,7 +5,7 @@ use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Aim, Project, Records, complain, print_error, print_output};
 use crate::records;
-use crate::{render, report, run_failure, summary};
+use crate::{asked_figures, forces, render, report, run_failure, summary};
 use hyde_compiler::Compiled;
 use hyde_experiment::{Options, Run, RunError};
 use hyde_program::Program;
@@ -26,12 +26,20 @@ pub(crate) fn run(args: &RunArgs) -> Exit {
 }
 
 /// Loads, compiles and solves.
+pub(crate) fn solved(
+    args: &RunArgs,
+) -> Result<(Project, Compiled, Run, std::time::Duration), Exit> {
+    solved_of(args, project::load(&args.model, Records::Needed)?)
+}
+
+/// Compiles and solves what was loaded.
 #[allow(
     clippy::disallowed_methods,
     reason = "the command line tells how long a run took"
 )]
-pub(crate) fn solved(
+pub(crate) fn solved_of(
     args: &RunArgs,
+    mut project: Project,
 ) -> Result<(Project, Compiled, Run, std::time::Duration), Exit> {
     for (option, value) in [
         ("stop", args.stop),
@@ -43,7 +51,6 @@ pub(crate) fn solved(
             return Err(complain(&args.model, Exit::CommandLine, &reason));
         }
     }
-    let mut project = project::load(&args.model, Records::Needed)?;
     let compiled = project.compile(
         &args.model,
         if args.ledger { Aim::Ledger } else { Aim::Run },
@@ -95,12 +102,21 @@ fn finish(
         return complain(&args.model, Exit::CommandLine, &reason);
     }
     if args.model.json {
-        print_output(&format!("{:#}", summary::json(project, compiled, run)));
+        let mut summary = summary::json(project, compiled, run);
+        if args.forces {
+            summary["forces"] = forces::json(compiled, run);
+        }
+        print_output(&format!("{summary:#}"));
     } else if !args.model.quiet {
         print_output(&summary::text(project, compiled, run, took));
+        if args.forces {
+            print_output(&forces::text(compiled, run));
+        }
         if let Some(folder) = &args.out {
+            let asked = &compiled.program.experiment.figures;
+            let figures: String = asked.iter().map(|f| format!(", {}.png", f.name)).collect();
             print_output(&format!(
-                "\n  results, events.csv, summary.json and report.html are in {}",
+                "\n  results, events.csv, summary.json{figures} and report.html are in {}",
                 folder.display()
             ));
         }
@@ -130,6 +146,8 @@ fn leave(
     files::write(&folder.join("events.csv"), events.as_bytes())?;
     let summary = format!("{:#}\n", summary::json(project, compiled, run));
     files::write(&folder.join("summary.json"), summary.as_bytes())?;
+    let figures = asked_figures::of_run(&compiled.program, run);
+    asked_figures::leave(folder, &figures)?;
     files::write(
         &folder.join("report.html"),
         report::html(project, compiled, run).as_bytes(),

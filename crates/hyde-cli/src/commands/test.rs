@@ -1,6 +1,6 @@
 //! `hyde test`: runs the experiments of a file or a package, looks at what they expect, and at whether effects vanish.
 
-use crate::args::{Format, ModelArgs, RunArgs, TestArgs};
+use crate::args::{ModelArgs, RunArgs, TestArgs};
 use crate::commands::{check, run};
 use crate::exit::Exit;
 use crate::limits::{self, Neutral};
@@ -143,13 +143,8 @@ fn experiment(args: &ModelArgs, tests: &mut Vec<Tested>) -> Exit {
 /// The arguments of a run that prints nothing but errors.
 pub(crate) fn run_args(args: &ModelArgs, rtol: Option<f64>) -> RunArgs {
     RunArgs {
-        model: args.clone(),
-        stop: None,
         rtol,
-        atol: None,
-        out: None,
-        ledger: false,
-        format: Format::Csv,
+        ..RunArgs::of_model(args)
     }
 }
 

@@ -76,3 +76,143 @@ fn every_stage_is_printed() {
     let again = hyde(&["emit", &again, "--stage", "ast", "--record", &record]);
     assert_eq!(text(&again), once);
 }
+
+/// A spring that a force stretches against friction: the way is (F - guide)/c where both act one way.
+const PULLED: &str = r#"package pulled "a table on a spring, drawn against its guideway";
+import SI.*;
+import Translational.*;
+
+model Pulled
+  input Force F;
+  Drive drive(F = F);
+  Mass table(M = 1 [kg]);
+  Guide guide(F = 20 [N], b = 400 [N.s/m]);
+  SpringDamper spring(c = 1e4 [N/m]);
+  Fixed wall;
+equation
+  connect(drive.a, table.a, guide.a, spring.a);
+  connect(spring.b, wall.a);
+end Pulled;
+
+experiment pull of Pulled
+  stimulus F = 100 [N/s]*time;
+  measure Length way = last(table.s);
+  budget rubbing(guide.F = 0) "no friction", spring(spring.c = 2e4 [N/m]) "twice as stiff";
+  figure way = table.s, {drive.F, spring.F} in 0.2 [s] .. 0.8 [s] "the way";
+  figure line = spring.F over table.s;
+  figure contour = circle(table.s, 1 [mm], 5 [mm]);
+  solve ida(rtol = 1e-8) stop 1 [s];
+end pull;
+"#;
+
+#[test]
+fn a_budget_has_the_shares_that_the_closed_form_has() {
+    let folder = Folder::new();
+    let model = folder.file("pulled.hyde", PULLED);
+    let output = hyde(&["budget", &model, "--json", "--out", &folder.path("out")]);
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    let value: Value = serde_json::from_str(&text(&output)).unwrap();
+    let way = &value["measures"][0];
+    let number = |value: &Value| value.as_f64().unwrap() * 1e3;
+    // (100 N - 20 N - b*v)/c with v = (100 N/s)/c, in mm; after 1 s the transient, of 40 ms, has gone.
+    let expected = |friction: f64, c: f64| (100.0 - friction - 400.0 * 100.0 / c) / c * 1e3;
+    let real = expected(20.0, 1e4);
+    let shares = [
+        (
+            "spring",
+            real - expected(20.0, 2e4),
+            expected(0.0, 1e4) - expected(0.0, 2e4),
+        ),
+        (
+            "rubbing",
+            real - expected(0.0, 1e4),
+            expected(20.0, 2e4) - expected(0.0, 2e4),
+        ),
+    ];
+    // Tolerance of the runs, and e^-25 of the transient.
+    let near = |found: f64, expected: f64| (found - expected).abs() < 1e-5;
+    assert!(near(number(&way["value"]), real), "{way}");
+    for (place, (name, share, alone)) in shares.into_iter().enumerate() {
+        let found = &way["shares"][place];
+        assert_eq!(found["name"], name);
+        assert!(near(number(&found["share"]), share), "{found} not {share}");
+        assert!(near(number(&found["alone"]), alone), "{found} not {alone}");
+    }
+    assert!(near(number(&way["left"]), expected(0.0, 2e4)), "{way}");
+    let csv = read(&folder.path("out/budget.csv"));
+    assert_eq!(csv.lines().count(), 5, "{csv}");
+}
+
+#[test]
+fn what_a_budget_lacks_or_cannot_have_is_told() {
+    let folder = Folder::new();
+    let model = folder.file("pulled.hyde", PULLED);
+    let output = hyde(&["budget", &model, "--set", "guide.F=30 [N]"]);
+    assert_eq!(status(&output), 2);
+    assert!(errors(&output).contains("`rubbing`"), "{}", errors(&output));
+    let lag = folder.file("lag.hyde", LAG);
+    let output = hyde(&["budget", &lag]);
+    assert_eq!(status(&output), 2);
+    assert!(
+        errors(&output).contains("has no `budget`"),
+        "{}",
+        errors(&output)
+    );
+    let without = PULLED.replace("  measure Length way = last(table.s);\n", "");
+    let without = folder.file(
+        "without.hyde",
+        &without.replace("package pulled", "package without"),
+    );
+    let output = hyde(&["budget", &without]);
+    assert_eq!(status(&output), 2);
+    assert!(
+        errors(&output).contains("has no `measure`"),
+        "{}",
+        errors(&output)
+    );
+    // A mistake in the budget is one of the file: `check` finds it.
+    let wrong = PULLED
+        .replace("guide.F = 0", "guide.Fc = 0")
+        .replace("package pulled", "package wrong");
+    let wrong = folder.file("wrong.hyde", &wrong);
+    let output = hyde(&["check", &wrong]);
+    assert_eq!(status(&output), 1);
+    assert!(errors(&output).contains("E0402"), "{}", errors(&output));
+}
+
+#[test]
+fn a_run_leaves_the_figures_asked_for_and_tells_forces() {
+    let folder = Folder::new();
+    let model = folder.file("pulled.hyde", PULLED);
+    let out = folder.path("out");
+    let output = hyde(&["run", &model, "--forces", "--json", "--out", &out]);
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    let names = folder.names("out");
+    for name in ["way", "line", "contour"] {
+        for ending in ["svg", "png"] {
+            assert!(names.contains(&format!("{name}.{ending}")), "{names:?}");
+        }
+    }
+    let figure = read(&folder.path("out/way.svg"));
+    for word in ["the way", "table.s [mm]", "drive.F", "spring.F"] {
+        assert!(figure.contains(word), "{word}");
+    }
+    assert!(read(&folder.path("out/contour.svg")).contains("magnified"));
+    assert!(read(&folder.path("out/report.html")).contains("Forces between components"));
+    let value: Value = serde_json::from_str(&text(&output)).unwrap();
+    let forces = value["forces"].as_array().unwrap();
+    let of = |name: &str| {
+        forces
+            .iter()
+            .find(|line| line["connection"] == name)
+            .unwrap()
+    };
+    // Into the drive goes what it gives, with the other sign: a ramp from 0 to 100 N, whose rms is 100/sqrt(3).
+    let drive = of("into drive.a");
+    let number = |line: &Value, key: &str| line[key].as_f64().unwrap();
+    assert!((number(drive, "least") + 100.0).abs() < 1e-6);
+    // The trapezoidal rule on a thousand rows.
+    assert!((number(drive, "rms") - 100.0 / 3f64.sqrt()).abs() < 1e-3);
+    // Of two that are joined one line: into the wall goes what is left of 100 N by 20 N and by 400 N.s/m at 10 mm/s.
+    assert!((number(of("spring.b to wall.a"), "most") - 76.0).abs() < 1e-3); // tolerance of the run
+}

@@ -340,6 +340,13 @@ impl Printer<'_> {
                 outputs.join(", ")
             );
         }
+        for figure in &experiment.figures {
+            let curves: Vec<String> = figure
+                .curves()
+                .map(|curve| self.names.expr(curve.value))
+                .collect();
+            let _ = writeln!(out, "  figure {} = {}", figure.name, curves.join(", "));
+        }
         for (name, value) in &experiment.solve {
             let _ = writeln!(out, "  solve {name} = {}", self.names.expr(*value));
         }

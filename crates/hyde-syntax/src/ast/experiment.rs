@@ -78,6 +78,36 @@ pub enum ExperimentItem {
     Skip(Expr),
     /// `bode from u to y over 1 .. 50 [Hz] in guide = slip;`
     Bode(Bode),
+    /// `figure lag = r - s, {guide.a.f, screw.F} in 0.8 [s] .. 1 [s] "the reversal";`
+    Figure(Figure),
+    /// `budget backlash(gap = 0) "no play", belt(belt.k = 1e9 [N/m]);`
+    Budget(Vec<Ideal>),
+}
+
+/// `figure lag = r - s, {guide.a.f, screw.F} over time in 0.8 [s] .. 1 [s] "the reversal";`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// Its name, and that of its files.
+    pub name: Name,
+    /// One panel each: an expression, a list of them, or `circle(x, y, R)`.
+    pub panels: Vec<Expr>,
+    /// What they are drawn over; time if left out.
+    pub over: Option<Expr>,
+    /// The times shown.
+    pub within: Option<Range>,
+    /// Its title.
+    pub doc: Option<String>,
+}
+
+/// `backlash(gap = 0) "no play"`: a part of the model as it would be without an imperfection.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ideal {
+    /// What it is called in the budget.
+    pub name: Name,
+    /// What is changed in the model.
+    pub changes: Vec<Change>,
+    /// What that means.
+    pub doc: Option<String>,
 }
 
 /// `bode from u to y over 1 .. 50 [Hz] in guide = slip;`

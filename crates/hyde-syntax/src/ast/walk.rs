@@ -161,6 +161,20 @@ fn of_experiment<'a>(experiment: &'a Experiment, visit: &mut dyn FnMut(&'a Expr)
                 bode.outputs.iter().for_each(&mut *visit);
                 of_range(&bode.band, visit);
             }
+            ExperimentItem::Figure(figure) => {
+                figure
+                    .panels
+                    .iter()
+                    .chain(&figure.over)
+                    .for_each(&mut *visit);
+                figure
+                    .within
+                    .iter()
+                    .for_each(|range| of_range(range, visit));
+            }
+            ExperimentItem::Budget(ideals) => ideals
+                .iter()
+                .for_each(|ideal| of_changes(&ideal.changes, visit)),
         }
     }
 }

@@ -108,6 +108,33 @@ impl Printer {
                     outputs.join(", ")
                 )
             }
+            ExperimentItem::Figure(figure) => {
+                let panels: Vec<String> = figure.panels.iter().map(expression).collect();
+                let over = figure
+                    .over
+                    .as_ref()
+                    .map_or_else(String::new, |over| format!(" over {}", expression(over)));
+                let within = figure
+                    .within
+                    .as_ref()
+                    .map_or_else(String::new, |within| format!(" in {}", range(within)));
+                format!(
+                    "figure {} = {}{over}{within}{};",
+                    figure.name.text,
+                    panels.join(", "),
+                    doc(figure.doc.as_deref())
+                )
+            }
+            ExperimentItem::Budget(ideals) => {
+                let ideals: Vec<String> = ideals
+                    .iter()
+                    .map(|ideal| {
+                        let (name, changes) = (&ideal.name.text, modification(&ideal.changes));
+                        format!("{name}{changes}{}", doc(ideal.doc.as_deref()))
+                    })
+                    .collect();
+                format!("budget {};", ideals.join(", "))
+            }
         };
         self.line(&line);
     }

@@ -154,6 +154,8 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_solve
             | R::kw_stop
             | R::kw_bode
+            | R::kw_figure
+            | R::kw_budget
             | R::kw_vary
             | R::kw_skip
     )

@@ -3,8 +3,8 @@
 use super::Parser;
 use super::build::{Builder, Node, has, parts, significant};
 use crate::ast::{
-    Bode, Channel, Drive, Experiment, ExperimentItem, RecordItem, SettingValue, Study, StudyItem,
-    StudyKind, Variation,
+    Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, RecordItem, SettingValue,
+    Study, StudyItem, StudyKind, Variation,
 };
 use crate::grammar::Rule;
 use crate::recover;
@@ -151,6 +151,11 @@ impl Builder<'_> {
             }
             Rule::measure => items.extend(self.measure(parts(node)).map(ExperimentItem::Measure)),
             Rule::bode => items.extend(self.bode(node)),
+            Rule::figure => items.extend(self.figure(node)),
+            Rule::budget => {
+                let ideals = parts(node).filter_map(|ideal| self.ideal(ideal)).collect();
+                items.push(ExperimentItem::Budget(ideals));
+            }
             _ => {
                 for part in parts(node) {
                     items.extend(self.run_part(part));
@@ -232,6 +237,39 @@ impl Builder<'_> {
             band: band?,
             modes,
         }))
+    }
+
+    fn figure(&mut self, node: Node<'_>) -> Option<ExperimentItem> {
+        let mut inner = parts(node);
+        let mut figure = Figure {
+            name: self.name(&inner.next()?),
+            panels: Vec::new(),
+            over: None,
+            within: None,
+            doc: None,
+        };
+        for part in inner {
+            match part.as_rule() {
+                Rule::over_what => figure.over = self.first_expression(part),
+                Rule::within => {
+                    figure.within = parts(part).next().and_then(|range| self.range(range))
+                }
+                Rule::doc => figure.doc = Some(Self::text(part)),
+                _ => figure.panels.push(self.expression(part)),
+            }
+        }
+        Some(ExperimentItem::Figure(figure))
+    }
+
+    fn ideal(&mut self, node: Node<'_>) -> Option<Ideal> {
+        let mut inner = parts(node);
+        Some(Ideal {
+            name: self.name(&inner.next()?),
+            changes: inner
+                .next()
+                .map_or_else(Vec::new, |part| self.changes(part)),
+            doc: inner.next().map(Self::text),
+        })
     }
 
     fn study_item(&mut self, node: Node<'_>, items: &mut Vec<StudyItem>) {

@@ -1,0 +1,62 @@
+//! The experiments that answer a question run to their end: what they expect holds, and their measures are kept.
+
+use hyde_experiment::Options;
+use hyde_tests::Example;
+use std::fmt::Write as _;
+
+/// Files and experiments.
+const EXPERIMENTS: [(&str, &str); 4] = [
+    ("examples/friction/friction.hyde", "beside"),
+    ("examples/machine/machine.hyde", "circle"),
+    ("examples/machine/machine.hyde", "creeping"),
+    ("examples/machine/machine.hyde", "hunting"),
+];
+
+#[test]
+fn experiments_come_out_as_they_did() {
+    let mut out = String::new();
+    for (file, experiment) in EXPERIMENTS {
+        let (compiled, run) = Example::load(file, Some(experiment))
+            .unwrap()
+            .run()
+            .unwrap();
+        let _ = writeln!(out, "{experiment}");
+        for (measure, known) in run
+            .measures
+            .iter()
+            .zip(&compiled.program.experiment.measures)
+        {
+            assert!(measure.holds, "{experiment}: {}", measure.name);
+            if !measure.expectation {
+                let value = known.unit.unit().from_si(measure.value);
+                let _ = writeln!(
+                    out,
+                    "  {} = {value:.3e} {}",
+                    measure.name,
+                    known.unit.text()
+                );
+            }
+        }
+        let figures = &compiled.program.experiment.figures;
+        for figure in figures {
+            let _ = writeln!(out, "  figure {}: {}", figure.name, figure.title);
+        }
+    }
+    insta::assert_snapshot!(out);
+}
+
+#[test]
+fn exact_friction_costs_less_than_the_smoothed_one() {
+    let evaluations = |model: &str| {
+        let example = Example::load("examples/friction/friction.hyde", None).unwrap();
+        let options = Options {
+            stop_s: Some(1.9),
+            ..Options::default()
+        };
+        let (_, run) = example.model(model).run_with(&options).unwrap();
+        run.results.statistics.residual_evaluations
+    };
+    let (exact, smoothed) = (evaluations("ExactAlone"), evaluations("SmoothedAlone"));
+    // A block that ticks every millisecond restarts the solver a thousand times a second.
+    assert!(3 * exact < smoothed, "{exact} and {smoothed}");
+}
