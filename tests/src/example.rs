@@ -66,6 +66,13 @@ impl Example {
         })
     }
 
+    /// Puts other words in the place of some of the file, wherever these stand.
+    #[must_use]
+    pub fn rewritten(mut self, from: &str, to: &str) -> Self {
+        self.text = self.text.replace(from, to);
+        self
+    }
+
     /// Takes another model of the file.
     #[must_use]
     pub fn model(mut self, name: &str) -> Self {

@@ -9,6 +9,7 @@ mod energy;
 mod event_suite;
 mod events;
 mod fixtures;
+mod gradient;
 mod ivp;
 mod ledger;
 mod mode_error;
@@ -51,4 +52,5 @@ pub const FIGURES: &[Figure] = &[
     travelling_nut::DRIFT,
     travelling_nut::RIPPLE,
     ledger::FIGURE,
+    gradient::FIGURE,
 ];

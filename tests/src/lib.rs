@@ -6,6 +6,7 @@ pub mod events;
 mod example;
 pub mod figures;
 mod folder;
+pub mod gradient;
 pub mod ivp;
 pub mod library;
 pub mod msl;

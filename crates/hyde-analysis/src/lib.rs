@@ -42,12 +42,16 @@ mod sliding;
 mod solve;
 mod split;
 mod state_choices;
+mod still;
 mod system;
 mod unroll;
 mod whole_arrays;
 
-pub use partials::{TickWrt, parameter_partials, rows, tick_partials};
+pub use partials::rows;
 pub use sliding::sliding_cells;
+pub use still::{
+    TickWrt, number_slopes, parameter_slopes, start_slopes, still_partials, tick_partials,
+};
 
 use hyde_diag::Diagnostics;
 use hyde_ir::{Dae, FlatModel};

@@ -134,7 +134,7 @@ fn states_of(dae: &Dae, relation: RelationId) -> Option<BTreeSet<usize>> {
                 states.insert(state.then_some(column)?);
             }
             Wrt::Derivative(_) => return None,
-            Wrt::Delayed(_) | Wrt::Time | Wrt::Parameter(_) => {}
+            Wrt::Delayed(_) | Wrt::Time | Wrt::Parameter(_) | Wrt::Memory(_) => {}
         }
     }
     (!states.is_empty()).then_some(states)

@@ -120,6 +120,9 @@ pub(crate) struct RunArgs {
     /// Tell the force, torque or current of every connection
     #[arg(long)]
     pub(crate) forces: bool,
+    /// Leave the derivatives of every column by these parameters beside it
+    #[arg(long, value_name = "PARAMETERS", value_delimiter = ',')]
+    pub(crate) gradient: Vec<String>,
 }
 
 impl RunArgs {
@@ -134,6 +137,7 @@ impl RunArgs {
             format: Format::Csv,
             ledger: false,
             forces: false,
+            gradient: Vec::new(),
         }
     }
 }

@@ -22,6 +22,18 @@ pub(crate) fn diagnostic(
             let message = format!("`{name}` cannot be set: {why}");
             (cannot_set(program, name, message), Exit::CommandLine)
         }
+        RunError::NoGradientBy(name, why) => {
+            let message = format!("there is no gradient by `{name}`: {why}");
+            let diagnostic = Diagnostic::error(Code::NoGradient, message);
+            let diagnostic = match program.parameter(name) {
+                Some((parameter, _)) => {
+                    diagnostic.label(parameter.origin.span, "its value is given here")
+                }
+                None => diagnostic,
+            };
+            let help = "vary it by `--set`, run by run";
+            (diagnostic.help(help), Exit::CommandLine)
+        }
         RunError::NoStop => no_stop(experiment),
         RunError::NotPositive(what, value) => (
             Diagnostic::error(
@@ -188,6 +200,11 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             format!("{message} ({at})"),
             "change the motion or the limit",
         ),
+        FailureKind::NoGradient(what) => (
+            Code::NoGradient,
+            format!("no gradient passes {what}"),
+            "take the differences of runs with `--set`, or leave it out of the model",
+        ),
         FailureKind::Interrupted => (
             Code::SolverFailed,
             format!("the run was interrupted {at}"),
@@ -214,6 +231,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             | FailureKind::TooManyEvents { .. } => "this condition",
             FailureKind::Assert(_) => "does not hold",
             FailureKind::Start(..) => "a condition of the start",
+            FailureKind::NoGradient(_) => "here",
             FailureKind::Inconsistent { .. }
             | FailureKind::Solver(_)
             | FailureKind::NotFinite

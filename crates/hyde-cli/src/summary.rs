@@ -4,7 +4,7 @@ use crate::ledger;
 use crate::project::Project;
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
-use hyde_sim::{Event, EventKind};
+use hyde_sim::{Event, EventKind, GradientEnd, GradientEndKind};
 use hyde_units::{engineering, engineering_as, significant};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
@@ -52,6 +52,10 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
     for (cause, time) in &run.results.sliding {
         let _ = writeln!(out, "  {:<24} sliding {} s", cause, significant(*time, 3));
     }
+    let end = run.results.gradient.as_ref().and_then(|g| g.end.as_ref());
+    if let Some(end) = end {
+        let _ = writeln!(out, "  {}", end_of_gradient(end));
+    }
     if !run.channels.is_empty() {
         let _ = writeln!(
             out,
@@ -97,6 +101,16 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
         out.push_str(&ledger::text(&ledger));
     }
     out
+}
+
+/// From when on a run has no gradient, and why.
+fn end_of_gradient(end: &GradientEnd) -> String {
+    let why = match end.kind {
+        GradientEndKind::Grazing => format!("`{}` hardly crosses zero there", end.cause),
+        GradientEndKind::Sliding => format!("it slides on `{}`", end.cause),
+        GradientEndKind::Singular => "the linearised equations are singular".to_owned(),
+    };
+    format!("no gradient from {} s on: {why}", significant(end.t, 7))
 }
 
 /// The run as JSON: versions, inputs by hash, parameters, statistics, errors, measures.

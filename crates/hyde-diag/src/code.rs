@@ -82,6 +82,7 @@ codes! {
     AssertFailed "E0704" "an assert does not hold";
     TooManyEvents "E0705" "events come faster and faster";
     NotFinite "E0706" "an equation has no finite value";
+    NoGradient "E0707" "a run has no gradient";
     NoColumn "E0801" "a record has no such column";
     NoRecord "E0802" "a record is missing";
     BadRecord "E0803" "a record cannot be read";

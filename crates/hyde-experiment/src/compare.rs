@@ -22,6 +22,8 @@ pub struct Channel {
     pub measured: Vec<f64>,
     /// What the model has.
     pub simulated: Vec<f64>,
+    /// Its derivatives by each parameter of the run's gradient.
+    pub slopes: Vec<Vec<f64>>,
     /// Root mean square of the difference.
     pub rms: f64,
     /// 100 times the norm of the difference over that of the measured signal.
@@ -65,6 +67,8 @@ pub(crate) fn channels(
             .column(measured.output)
             .ok_or_else(|| error("the run did not keep it"))?;
         let (mut time, mut of_record, mut of_model) = (Vec::new(), Vec::new(), Vec::new());
+        let by_parameter = slopes(results, measured.output);
+        let mut slopes = vec![Vec::new(); by_parameter.len()];
         for (&t, &value) in table.time().iter().zip(&signal) {
             if t < skip_s - 1e-12 {
                 continue;
@@ -74,7 +78,11 @@ pub(crate) fn channels(
             };
             time.push(t);
             of_record.push(value);
-            of_model.push(simulated[if measured.clocked { right } else { left }]);
+            let row = if measured.clocked { right } else { left };
+            of_model.push(simulated[row]);
+            for (slopes, column) in slopes.iter_mut().zip(&by_parameter) {
+                slopes.push(column[row]);
+            }
         }
         if time.is_empty() {
             return Err(error("no row of the record lies within the run"));
@@ -95,9 +103,21 @@ pub(crate) fn channels(
             time,
             measured: of_record,
             simulated: of_model,
+            slopes,
         });
     }
     Ok(found)
+}
+
+/// The derivatives of an output's rows, one column a parameter of the gradient.
+fn slopes(results: &Results, output: usize) -> Vec<&[f64]> {
+    match (&results.gradient, results.outputs.binary_search(&output)) {
+        (Some(gradient), Ok(kept)) => {
+            let columns = gradient.columns.iter();
+            columns.map(|columns| columns[kept].as_slice()).collect()
+        }
+        (Some(_), Err(_)) | (None, _) => Vec::new(),
+    }
 }
 
 fn uneven(table: &Table) -> String {

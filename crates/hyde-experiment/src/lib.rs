@@ -28,6 +28,6 @@ pub use linearize::{Linear, LinearizeError, linearize};
 pub use mode_shape::{ModeShape, mode_shape};
 pub use modes::{NaturalMode, modes};
 pub use record::read_record;
-pub use run::{MeasureValue, Options, Run, RunError, parameters, run};
+pub use run::{MeasureValue, Options, Run, RunError, parameters, places, run};
 pub use sampled::{Clocked, Sampled};
 pub use swept::{Swept, swept_response};

@@ -158,7 +158,7 @@ pub fn linearize(
 
     let outputs = Dense::of(program, Function::Outputs, at, &mut work, &places, &held);
     let outputs = parts.through(&outputs);
-    let sampled = clocked(program, at, &mut work, &parts, &held)?;
+    let sampled = clocked(program, at, &mut work, &parts, (&places, &held))?;
     let delayed = if nd == 0 {
         None
     } else if sampled.is_some() {
@@ -196,9 +196,9 @@ fn clocked(
     at: Point<'_>,
     work: &mut Workspace,
     parts: &Parts<'_>,
-    held: &[usize],
+    (inputs, held): (&[usize], &[usize]),
 ) -> Result<Option<Sampled>, LinearizeError> {
-    let Some(found) = sampled(program, at, work, parts, held) else {
+    let Some(found) = sampled(program, at, work, parts, (inputs, held)) else {
         return Ok(None);
     };
     if found.clocks.iter().any(|clock| clock.delay > clock.period) {
@@ -268,9 +268,9 @@ impl Parts<'_> {
 pub(crate) struct Dense {
     pub(crate) by_unknown: DMatrix<f64>,
     pub(crate) by_derivative: DMatrix<f64>,
-    by_input: DMatrix<f64>,
+    pub(crate) by_input: DMatrix<f64>,
     pub(crate) by_held: DMatrix<f64>,
-    by_delayed: DMatrix<f64>,
+    pub(crate) by_delayed: DMatrix<f64>,
 }
 
 impl Dense {
@@ -303,7 +303,7 @@ impl Dense {
                 Wrt::Unknown(column) => dense.by_unknown[(entry.row, column)] += value,
                 Wrt::Derivative(column) => dense.by_derivative[(entry.row, column)] += value,
                 Wrt::Delayed(column) => dense.by_delayed[(entry.row, column)] += value,
-                Wrt::Parameter(_) | Wrt::Time => {}
+                Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Time => {}
             }
         }
         for (entry, value) in program
@@ -316,22 +316,15 @@ impl Dense {
                 dense.by_input[(entry.row, column)] += value;
             }
         }
-        // Held values stand in the memory, by which the kernels do not differentiate: a central difference is exact for
-        // equations linear in them, and a drive's are.
-        for (column, &position) in held.iter().enumerate() {
-            let step = 1e-3 * (1.0 + at.z[position].abs());
-            let mut moved = |by: f64| {
-                let mut z = at.z.to_vec();
-                z[position] += by;
-                let mut out = vec![0.0; rows];
-                program
-                    .kernels
-                    .evaluate(function, Point { z: &z, ..at }, work, &mut out);
-                out
-            };
-            let (up, down) = (moved(step), moved(-step));
-            for row in 0..rows {
-                dense.by_held[(row, column)] = (up[row] - down[row]) / (2.0 * step);
+        let entries = program.kernels.still_entries(function);
+        let mut values = vec![0.0; entries.len()];
+        let kernels = &program.kernels;
+        kernels.still_partials(function, at, work, &mut values);
+        for (entry, value) in entries.iter().zip(values) {
+            if let Wrt::Memory(place) = entry.wrt
+                && let Some(column) = held.iter().position(|&held| held == place)
+            {
+                dense.by_held[(entry.row, column)] += value;
             }
         }
         dense

@@ -22,6 +22,8 @@ pub struct Options {
     pub atol: Option<f64>,
     /// Time between rows of the results in s.
     pub every_s: Option<f64>,
+    /// Names of the parameters by which the run is differentiated; without any there is no gradient.
+    pub gradient: Vec<String>,
     /// Set from outside to end the run after the step under way.
     pub interrupted: Arc<AtomicBool>,
 }
@@ -63,6 +65,8 @@ pub enum RunError {
     NoParameter(String),
     /// The parameter shapes the equations or may not be set: its name and why.
     CannotSet(String, &'static str),
+    /// The parameter shapes the equations, or is a whole array: there is no gradient by it. Its name and why.
+    NoGradientBy(String, &'static str),
     /// Neither the experiment nor the caller says when to stop.
     NoStop,
     /// A number that must be positive is not: which, and its value.
@@ -123,6 +127,8 @@ pub fn run(
     setup.atol = atol;
     setup.max_step_s = max_step;
     setup.rows_s = rows(program, records, stop_s, every);
+    let places = places(program, &options.gradient)?;
+    setup.sensitivities = (!places.is_empty()).then_some(places.as_slice());
     let results = hyde_sim::simulate(program, &setup).map_err(RunError::Failed)?;
     let skip_s = program
         .kernels
@@ -139,6 +145,28 @@ pub fn run(
         channels,
         measures,
     })
+}
+
+/// Positions in the parameter vector of the parameters that a run is to be differentiated by.
+///
+/// # Errors
+/// A name that is no parameter, or one of which there is no gradient.
+pub fn places(program: &Program, names: &[String]) -> Result<Vec<usize>, RunError> {
+    let place = |name: &String| {
+        let Some((parameter, element)) = program.parameter(name) else {
+            return Err(RunError::NoParameter(name.clone()));
+        };
+        if parameter.structural {
+            let why = "the equations are compiled with its value";
+            return Err(RunError::NoGradientBy(name.clone(), why));
+        }
+        if parameter.len > 1 && parameter.name == *name {
+            let why = "it is an array: name one of its elements";
+            return Err(RunError::NoGradientBy(name.clone(), why));
+        }
+        Ok(parameter.place + element)
+    };
+    names.iter().map(place).collect()
 }
 
 /// The parameter vector with some values set and those that a record gives.

@@ -40,7 +40,7 @@ pub(crate) fn sampled(
     at: Point<'_>,
     work: &mut Workspace,
     parts: &Parts<'_>,
-    held: &[usize],
+    (inputs, held): (&[usize], &[usize]),
 ) -> Option<Sampled> {
     if program.clocks.is_empty() || held.is_empty() {
         return None;
@@ -55,6 +55,7 @@ pub(crate) fn sampled(
     written.dedup();
     let place = |position: usize| written.binary_search(&position).ok();
     let size = written.len();
+    let directions = program.kernels.parameter_directions(inputs, at.p);
     let mut clocks = Vec::new();
     for (&clock, partials) in program.clock_order.iter().zip(&partials) {
         let constant = |which| program.kernels.constant(which, at.p).unwrap_or(f64::NAN);
@@ -75,6 +76,12 @@ pub(crate) fn sampled(
                 }
                 TickWrt::Unknown(column) => samples.by_unknown[(row, column)] += value,
                 TickWrt::Derivative(column) => samples.by_derivative[(row, column)] += value,
+                TickWrt::Delayed(column) => samples.by_delayed[(row, column)] += value,
+                TickWrt::Parameter(place) => {
+                    for (column, direction) in directions.iter().enumerate() {
+                        samples.by_input[(row, column)] += value * direction[place];
+                    }
+                }
             }
         }
         let Through {

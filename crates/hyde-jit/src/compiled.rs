@@ -2,7 +2,8 @@
 
 use crate::interpret::{Frame, Interpreter};
 use crate::native::Native;
-use crate::routine::{Leaf, Routine, Slot, Step};
+use crate::routine::{self, Leaf, Routine, Slot, Step};
+use crate::still::Still;
 use hyde_ir::dae::{self, Dae, Space};
 use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, Range, VariableKind};
 use hyde_program::{Constant, Function, Kernels, PartialEntry, Point, TickWrt, Workspace, Wrt};
@@ -30,6 +31,7 @@ pub(crate) struct Compiled {
     /// Parameters in the order of computation.
     parameters: Vec<(ParamId, Interpreter)>,
     start: Interpreter,
+    still: OnceLock<Still>,
 }
 
 /// A kernel, made at its first use.
@@ -38,14 +40,15 @@ struct Kernel {
     code: OnceLock<Code>,
 }
 
-enum Code {
+/// What runs a routine.
+pub(crate) enum Code {
     Native(Box<Native>),
     Interpreter(Interpreter),
 }
 
 impl Code {
     /// Machine code, or the interpreter where it is asked for or Cranelift makes no code for this machine.
-    fn new(dae: &Dae, routine: &Routine, backend: Backend) -> Self {
+    pub(crate) fn new(dae: &Dae, routine: &Routine, backend: Backend) -> Self {
         let native = match backend {
             Backend::Native => Native::new(dae, routine),
             Backend::Interpreter => None,
@@ -56,7 +59,7 @@ impl Code {
         }
     }
 
-    fn run(&self, frame: &mut Frame<'_>) {
+    pub(crate) fn run(&self, frame: &mut Frame<'_>) {
         match self {
             Self::Native(native) => native.run(frame),
             Self::Interpreter(interpreter) => interpreter.run(frame),
@@ -76,7 +79,12 @@ impl Compiled {
             .collect();
         let partials = dae::Function::ALL
             .into_iter()
-            .map(|f| (f, kernel(Routine::partials(&dae, f, dae.partials(f)))))
+            .map(|f| {
+                (
+                    f,
+                    kernel(Routine::partials(&dae, partials_of(f), dae.partials(f))),
+                )
+            })
             .collect();
         let ticks = dae
             .ticks
@@ -99,6 +107,7 @@ impl Compiled {
             conditions,
             parameters,
             start,
+            still: OnceLock::new(),
         }
     }
 
@@ -152,42 +161,7 @@ impl Kernels for Compiled {
     }
 
     fn constant(&self, which: Constant, p: &[f64]) -> Option<f64> {
-        let dae = &self.dae;
-        let experiment = &dae.experiment;
-        let option = |name: &str| {
-            experiment
-                .solve
-                .iter()
-                .find(|(known, _)| known == name)
-                .map(|(_, value)| *value)
-        };
-        let id = match which {
-            Constant::Period(clock) => dae.ticks[ClockId::from_index(clock)].period,
-            Constant::Delay(clock) => dae.ticks[ClockId::from_index(clock)].delay,
-            Constant::Phase(clock) => dae.ticks[ClockId::from_index(clock)].phase,
-            Constant::TimeEvent(relation) => {
-                dae.relations[hyde_ir::RelationId::from_index(relation)].time_event?
-            }
-            Constant::Stop => match experiment.stop {
-                Some(hyde_ir::flat::Stop::At(id)) => id,
-                Some(hyde_ir::flat::Stop::EndOf(_)) | None => return None,
-            },
-            Constant::Every => experiment.every?,
-            Constant::Skip => experiment.skip?,
-            Constant::Rtol => option("rtol")?,
-            Constant::Atol => option("atol")?,
-            Constant::MaxStep => option("max_step")?,
-            Constant::Noise(channel) => experiment.measured.get(channel)?.noise?,
-            Constant::BandFrom(bode) => experiment.bodes.get(bode)?.band.0,
-            Constant::BandTo(bode) => experiment.bodes.get(bode)?.band.1,
-            Constant::Radius(figure) => match experiment.figures.get(figure)?.kind {
-                hyde_ir::flat::FigureKind::Circle(_, radius) => radius,
-                hyde_ir::flat::FigureKind::Panels(..) => return None,
-            },
-            Constant::ShownFrom(figure) => experiment.figures.get(figure)?.within?.0,
-            Constant::ShownTo(figure) => experiment.figures.get(figure)?.within?.1,
-        };
-        self.evaluate_known(id, p, &[])
+        self.evaluate_known(self.constant_value(which)?, p, &[])
     }
 
     fn evaluate(
@@ -228,34 +202,35 @@ impl Kernels for Compiled {
         self.run(&self.partials[&function], at, workspace, out);
     }
 
-    fn parameter_partials(
+    fn still_entries(&self, function: Function) -> Vec<PartialEntry> {
+        self.still().entries(in_dae(function)).to_vec()
+    }
+
+    fn still_partials(
         &self,
         function: Function,
-        parameters: &[usize],
         at: Point<'_>,
         workspace: &mut Workspace,
-    ) -> Vec<(PartialEntry, f64)> {
-        let chosen: Vec<(ParamId, usize)> = parameters
-            .iter()
-            .filter_map(|&position| self.parameter_at(position))
-            .collect();
-        let mut dae = self.dae.clone();
-        let all = hyde_analysis::parameter_partials(&mut dae, &chosen);
-        let list = all
-            .into_iter()
-            .find(|(f, _)| *f == in_dae(function))
-            .map(|(_, list)| list)
-            .unwrap_or_default();
-        let routine = Routine::partials(&dae, in_dae(function), &list);
-        let entries = entries(&list);
-        let mut values = vec![0.0; entries.len()];
+        out: &mut [f64],
+    ) {
         self.check(at, workspace);
-        Code::new(&dae, &routine, self.backend).run(&mut Frame::at(
-            at,
-            &mut workspace.work,
-            &mut values,
-        ));
-        entries.into_iter().zip(values).collect()
+        let still = self.still();
+        still.partials(in_dae(function), at, workspace, out);
+    }
+
+    fn parameter_directions(&self, chosen: &[usize], p: &[f64]) -> Vec<Vec<f64>> {
+        self.still().parameter_directions(chosen, p)
+    }
+
+    fn start_partials(&self, p: &[f64]) -> Vec<(usize, usize, f64)> {
+        self.still().start_partials(p)
+    }
+
+    fn instant_partials(&self, which: Constant, p: &[f64]) -> Vec<(usize, f64)> {
+        match self.constant_value(which) {
+            Some(id) => self.still().instant_partials(id, p),
+            None => Vec::new(),
+        }
     }
 
     fn conditions(&self, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]) {
@@ -277,28 +252,23 @@ impl Kernels for Compiled {
         at: Point<'_>,
         workspace: &mut Workspace,
     ) -> Vec<(usize, TickWrt, f64)> {
-        let mut dae = self.dae.clone();
-        let list = hyde_analysis::tick_partials(&mut dae, ClockId::from_index(clock));
-        let steps = list.iter().zip(0..).map(|(&(_, _, value), row)| Step {
-            range: Range::SCALAR,
-            slot: Slot::Out,
-            target: Index::fixed(row),
-            value,
-        });
-        let interpreter = Interpreter::new(&dae, &Routine::plain("tick_partials", steps.collect()));
-        let mut values = vec![0.0; list.len()];
         self.check(at, workspace);
-        interpreter.run(&mut Frame::at(at, &mut workspace.work, &mut values));
-        list.into_iter()
-            .zip(values)
-            .map(|((row, wrt, _), value)| {
-                let wrt = match wrt {
-                    hyde_analysis::TickWrt::Memory(position) => TickWrt::Memory(position),
-                    hyde_analysis::TickWrt::Unknown(position) => TickWrt::Unknown(position),
-                    hyde_analysis::TickWrt::Derivative(position) => TickWrt::Derivative(position),
-                };
-                (row, wrt, value)
-            })
+        self.still().tick_partials(clock, at, workspace)
+    }
+
+    fn tick_targets(&self, clock: usize) -> Vec<usize> {
+        let place = |assignment: &dae::ClockedAssignment| {
+            let base = self.dae.place(assignment.var)?.base;
+            let elements = assignment.range.iter().map(|c| assignment.index.at(c));
+            let positions = elements.filter_map(|e| Some(base + usize::try_from(e).ok()?));
+            Some(positions.collect::<Vec<_>>())
+        };
+        let ticks = &self.dae.ticks[ClockId::from_index(clock)];
+        ticks
+            .assignments
+            .iter()
+            .filter_map(place)
+            .flatten()
             .collect()
     }
 
@@ -330,13 +300,49 @@ impl Compiled {
         self.dae.exprs.evaluate(id, leaf).ok()
     }
 
-    fn parameter_at(&self, position: usize) -> Option<(ParamId, usize)> {
-        self.dae.parameters.enumerate().find_map(|(id, parameter)| {
-            let place = self.dae.parameter_places[id];
-            (place..place + parameter.size())
-                .contains(&position)
-                .then(|| (id, position - place))
+    /// The expression of a number that parameters alone determine.
+    fn constant_value(&self, which: Constant) -> Option<ExprId> {
+        let dae = &self.dae;
+        let experiment = &dae.experiment;
+        let option = |name: &str| {
+            experiment
+                .solve
+                .iter()
+                .find(|(known, _)| known == name)
+                .map(|(_, value)| *value)
+        };
+        Some(match which {
+            Constant::Period(clock) => dae.ticks[ClockId::from_index(clock)].period,
+            Constant::Delay(clock) => dae.ticks[ClockId::from_index(clock)].delay,
+            Constant::Phase(clock) => dae.ticks[ClockId::from_index(clock)].phase,
+            Constant::TimeEvent(relation) => {
+                dae.relations[hyde_ir::RelationId::from_index(relation)].time_event?
+            }
+            Constant::Stop => match experiment.stop {
+                Some(hyde_ir::flat::Stop::At(id)) => id,
+                Some(hyde_ir::flat::Stop::EndOf(_)) | None => return None,
+            },
+            Constant::Every => experiment.every?,
+            Constant::Skip => experiment.skip?,
+            Constant::Rtol => option("rtol")?,
+            Constant::Atol => option("atol")?,
+            Constant::MaxStep => option("max_step")?,
+            Constant::Noise(channel) => experiment.measured.get(channel)?.noise?,
+            Constant::BandFrom(bode) => experiment.bodes.get(bode)?.band.0,
+            Constant::BandTo(bode) => experiment.bodes.get(bode)?.band.1,
+            Constant::Radius(figure) => match experiment.figures.get(figure)?.kind {
+                hyde_ir::flat::FigureKind::Circle(_, radius) => radius,
+                hyde_ir::flat::FigureKind::Panels(..) => return None,
+            },
+            Constant::ShownFrom(figure) => experiment.figures.get(figure)?.within?.0,
+            Constant::ShownTo(figure) => experiment.figures.get(figure)?.within?.1,
         })
+    }
+
+    /// Derivatives by parameters and memory, made at the first use.
+    fn still(&self) -> &Still {
+        self.still
+            .get_or_init(|| Still::new(&self.dae, self.backend))
     }
 }
 
@@ -345,7 +351,11 @@ pub(crate) fn routines(dae: &Dae) -> Vec<Routine> {
     let mut list = Vec::new();
     for function in dae::Function::ALL {
         list.push(Routine::values(dae, function));
-        list.push(Routine::partials(dae, function, dae.partials(function)));
+        list.push(Routine::partials(
+            dae,
+            partials_of(function),
+            dae.partials(function),
+        ));
     }
     list.push(Routine::conditions(dae));
     list.extend(dae.ticks.ids().map(|clock| Routine::tick(dae, clock)));
@@ -362,7 +372,8 @@ pub(crate) fn entries(partials: &[dae::Partial]) -> Vec<PartialEntry> {
             let wrt = match partial.wrt {
                 dae::Wrt::Unknown(index) => Wrt::Unknown(at(index)),
                 dae::Wrt::Derivative(index) => Wrt::Derivative(at(index)),
-                dae::Wrt::Parameter(position) => Wrt::Parameter(position),
+                dae::Wrt::Parameter(index) => Wrt::Parameter(at(index)),
+                dae::Wrt::Memory(index) => Wrt::Memory(at(index)),
                 dae::Wrt::Delayed(index) => Wrt::Delayed(at(index)),
                 dae::Wrt::Time => Wrt::Time,
             };
@@ -373,6 +384,11 @@ pub(crate) fn entries(partials: &[dae::Partial]) -> Vec<PartialEntry> {
         }
     }
     found
+}
+
+/// The name of a function's derivatives in printed code.
+fn partials_of(function: dae::Function) -> String {
+    format!("{}_partials", routine::name(function))
 }
 
 pub(crate) fn in_dae(function: Function) -> dae::Function {

@@ -92,8 +92,8 @@ impl Routine {
         Self::with_definitions(dae, name(function).to_owned(), rows.collect(), None)
     }
 
-    /// The derivatives of a function, one block of values a [`Partial`].
-    pub(crate) fn partials(dae: &Dae, function: Function, partials: &[Partial]) -> Self {
+    /// Derivatives, one block of values a [`Partial`].
+    pub(crate) fn partials(dae: &Dae, name: String, partials: &[Partial]) -> Self {
         let mut next = 0;
         let mut steps = Vec::new();
         for partial in partials {
@@ -113,7 +113,7 @@ impl Routine {
             });
             next += i32::try_from(partial.range.len()).unwrap_or(0);
         }
-        Self::with_definitions(dae, format!("{}_partials", name(function)), steps, None)
+        Self::with_definitions(dae, name, steps, None)
     }
 
     /// The assignments of a tick.
@@ -251,7 +251,8 @@ impl Routine {
     }
 }
 
-fn name(function: Function) -> &'static str {
+/// The name of a function in printed code.
+pub(crate) fn name(function: Function) -> &'static str {
     match function {
         Function::Residual => "residual",
         Function::Roots => "roots",

@@ -1,6 +1,7 @@
 //! [`Kernels`]: the numbers of a program.
 
-use crate::program::PartialEntry;
+use crate::program::{PartialEntry, Wrt};
+use std::collections::BTreeMap;
 
 /// Where functions are evaluated. Lengths are those of the [`crate::Program`].
 #[derive(Clone, Copy, Debug)]
@@ -72,6 +73,10 @@ pub enum TickWrt {
     Unknown(usize),
     /// The derivative of an unknown.
     Derivative(usize),
+    /// A delayed value, by its number.
+    Delayed(usize),
+    /// A number of the parameter vector.
+    Parameter(usize),
 }
 
 /// A number that parameters alone determine.
@@ -151,15 +156,62 @@ pub trait Kernels: Send + Sync {
         out: &mut [f64],
     );
 
-    /// The derivatives of a function by parameters (positions in `p`, plain ones), with their places. Those given are
+    /// The places of a function's derivatives by what is constant between events, [`crate::Wrt::Parameter`] and
+    /// [`crate::Wrt::Memory`], in the order in which [`Kernels::still_partials`] writes them. Every number of the parameter
+    /// vector counts on its own, derived ones too.
+    fn still_entries(&self, function: Function) -> Vec<PartialEntry>;
+
+    /// The derivatives of a function by parameters and memory, in the order of [`Kernels::still_entries`]. Made when first
+    /// asked for.
+    fn still_partials(
+        &self,
+        function: Function,
+        at: Point<'_>,
+        workspace: &mut Workspace,
+        out: &mut [f64],
+    );
+
+    /// The derivative of the whole parameter vector by each of the `chosen` numbers of it, plain ones. Those are
     /// independent of each other; every other parameter whose value uses them follows.
+    fn parameter_directions(&self, chosen: &[usize], p: &[f64]) -> Vec<Vec<f64>>;
+
+    /// Derivatives of the start values by parameters: row (the solver's vector, then the memory), position in `p`, value.
+    fn start_partials(&self, p: &[f64]) -> Vec<(usize, usize, f64)>;
+
+    /// Derivatives of an instant ([`Constant::Period`], [`Constant::Delay`], [`Constant::Phase`], [`Constant::TimeEvent`]) by
+    /// parameters: position in `p`, value.
+    fn instant_partials(&self, which: Constant, p: &[f64]) -> Vec<(usize, f64)>;
+
+    /// The derivatives of a function by `parameters` (positions in `p`, plain ones), those by way of derived ones included,
+    /// with their places.
     fn parameter_partials(
         &self,
         function: Function,
         parameters: &[usize],
         at: Point<'_>,
         workspace: &mut Workspace,
-    ) -> Vec<(PartialEntry, f64)>;
+    ) -> Vec<(PartialEntry, f64)> {
+        let entries = self.still_entries(function);
+        let mut values = vec![0.0; entries.len()];
+        self.still_partials(function, at, workspace, &mut values);
+        let directions = self.parameter_directions(parameters, at.p);
+        let mut sums: BTreeMap<(usize, usize), f64> = BTreeMap::new();
+        for (entry, value) in entries.iter().zip(values) {
+            let Wrt::Parameter(place) = entry.wrt else {
+                continue;
+            };
+            for (&parameter, direction) in parameters.iter().zip(&directions) {
+                if direction[place] != 0.0 {
+                    *sums.entry((entry.row, parameter)).or_default() += value * direction[place];
+                }
+            }
+        }
+        let entry = |((row, parameter), value)| {
+            let wrt = Wrt::Parameter(parameter);
+            (PartialEntry { row, wrt }, value)
+        };
+        sums.into_iter().map(entry).collect()
+    }
 
     /// Truth (1 or 0) of the condition of every reaction, from the truths in the memory.
     fn conditions(&self, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]);
@@ -175,6 +227,9 @@ pub trait Kernels: Send + Sync {
         at: Point<'_>,
         workspace: &mut Workspace,
     ) -> Vec<(usize, TickWrt, f64)>;
+
+    /// Every position in the memory that a tick of a clock writes.
+    fn tick_targets(&self, clock: usize) -> Vec<usize>;
 
     /// Values of the experiment's measures and expectations (1 or 0), from its reductions.
     fn measures(&self, p: &[f64], reductions: &[f64], out: &mut [f64]);

@@ -102,6 +102,8 @@ pub enum Wrt {
     Derivative(usize),
     /// A parameter, by its position.
     Parameter(usize),
+    /// A value in the memory, by its position.
+    Memory(usize),
     /// A delayed value.
     Delayed(usize),
     /// Time.
@@ -294,6 +296,18 @@ impl Program {
             .then_some((found, number - 1))
     }
 
+    /// The parameter that has an element at a position of the parameter vector, and the name of the element.
+    #[must_use]
+    pub fn parameter_at(&self, place: usize) -> Option<(&Parameter, String)> {
+        let inside = |known: &&Parameter| (known.place..known.place + known.len).contains(&place);
+        let parameter = self.parameters.iter().find(inside)?;
+        let name = match parameter.len {
+            1 => parameter.name.clone(),
+            _ => format!("{}[{}]", parameter.name, place - parameter.place + 1),
+        };
+        Some((parameter, name))
+    }
+
     /// The output of that name.
     #[must_use]
     pub fn output(&self, name: &str) -> Option<usize> {
@@ -319,7 +333,7 @@ impl Program {
                     column,
                     by_derivative: true,
                 }),
-                Wrt::Parameter(_) | Wrt::Delayed(_) | Wrt::Time => None,
+                Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => None,
             })
             .collect();
         Jacobian::new(self.n_unknowns, &entries, &self.kernels.sliding_cells())

@@ -3,6 +3,7 @@
 //! Tick k of a clock is at phase + k*period, computed by one multiplication: no drift. A held value changes with the
 //! tick, or after the clock's delay with the value of its tick.
 
+use crate::sensitivity::{Sensitivities, Slopes};
 use crate::setup::same_instant;
 use crate::state::State;
 use hyde_program::{Constant, Program};
@@ -28,7 +29,20 @@ struct Pending {
     t: f64,
     target: usize,
     values: Vec<f64>,
+    /// Their derivatives by each parameter, if those are asked for.
+    slopes: Vec<Vec<f64>>,
     read: bool,
+}
+
+/// What the clocks did at an instant.
+#[derive(Default)]
+pub(crate) struct Ticked {
+    /// Number of ticks.
+    pub(crate) ticks: u64,
+    /// Whether something that the equations read has changed.
+    pub(crate) changed: bool,
+    /// Every position of the memory that was written.
+    pub(crate) written: Vec<usize>,
 }
 
 impl Schedule {
@@ -114,8 +128,7 @@ impl Schedule {
             || self.pending.iter().any(|p| same_instant(p.t, t))
     }
 
-    /// Runs the clocks that tick now, in data-flow order, and changes what is held. Returns the number of ticks and
-    /// whether something that the equations read has changed.
+    /// Runs the clocks that tick now, in data-flow order, and changes what is held; derivatives by parameters go along.
     pub(crate) fn run(
         &mut self,
         state: &mut State<'_>,
@@ -123,19 +136,24 @@ impl Schedule {
         y: &[f64],
         yp: &[f64],
         delayed: &[f64],
-    ) -> (u64, bool) {
+        mut slopes: Option<(&Sensitivities, &mut Slopes)>,
+    ) -> Ticked {
         let program = state.program;
-        let mut ticks = 0;
+        let mut ticked = Ticked::default();
         for &clock in &program.clock_order {
             if !same_instant(self.clocks[clock].at(), t) {
                 continue;
             }
+            if let Some((sensitivities, slopes)) = &mut slopes {
+                sensitivities.tick(state, clock, (t, y, yp), delayed, slopes);
+                ticked.written.extend(program.kernels.tick_targets(clock));
+            }
             state.tick(clock, t, y, yp, delayed);
             self.clocks[clock].next += 1;
-            ticks += 1;
-            self.hold(program, state, clock, t);
+            ticked.ticks += 1;
+            let slopes = slopes.as_ref().map(|(_, slopes)| &**slopes);
+            self.hold(program, state, clock, t, slopes);
         }
-        let mut changed = false;
         for pending in std::mem::take(&mut self.pending) {
             if pending.t > t && !same_instant(pending.t, t) {
                 self.pending.push(pending);
@@ -147,17 +165,34 @@ impl Schedule {
                 .zip(&pending.values)
                 .any(|(old, new)| old.to_bits() != new.to_bits());
             target.copy_from_slice(&pending.values);
-            changed |= differs && pending.read;
+            ticked.changed |= differs && pending.read;
+            let places = pending.target..pending.target + pending.values.len();
+            if let Some((_, slopes)) = &mut slopes {
+                for (slopes, held) in slopes.z.iter_mut().zip(&pending.slopes) {
+                    slopes[places.clone()].copy_from_slice(held);
+                }
+                ticked.written.extend(places);
+            }
         }
-        (ticks, changed)
+        ticked
     }
 
-    fn hold(&mut self, program: &Program, state: &State<'_>, clock: usize, t: f64) {
+    fn hold(
+        &mut self,
+        program: &Program,
+        state: &State<'_>,
+        clock: usize,
+        t: f64,
+        slopes: Option<&Slopes>,
+    ) {
         for hold in program.holds.iter().filter(|hold| hold.clock == clock) {
+            let source = hold.source..hold.source + hold.len;
+            let slopes = slopes.iter().flat_map(|slopes| &slopes.z);
             self.pending.push(Pending {
+                slopes: slopes.map(|of| of[source.clone()].to_vec()).collect(),
                 t: t + self.clocks[clock].delay,
                 target: hold.target,
-                values: state.z[hold.source..hold.source + hold.len].to_vec(),
+                values: state.z[source].to_vec(),
                 read: hold.read,
             });
         }

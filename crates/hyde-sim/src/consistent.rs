@@ -173,6 +173,25 @@ impl Consistent {
         Some((dy, dyp))
     }
 
+    /// Corrects the derivatives of consistent values by parameters: each right side is what the linearised equations leave,
+    /// and becomes the correction of the rates of states and of the algebraic variables. Whether there is one.
+    pub(crate) fn correct(
+        &mut self,
+        state: &mut State<'_>,
+        (t, y, yp): (f64, &[f64], &[f64]),
+        rights: &mut [Vec<f64>],
+    ) -> bool {
+        let Some(solver) = &mut self.solver else {
+            return true;
+        };
+        state.consistent_matrix(t, y, yp, &mut self.matrix);
+        if solver.factor(&self.matrix).is_err() {
+            return false;
+        }
+        rights.iter_mut().for_each(|right| solver.solve(right));
+        true
+    }
+
     /// Consistent values while sliding, where the weights follow from the rates: those of an interpolant are less exact than
     /// its values. Where there are none, and else, the values stay.
     pub(crate) fn refine(&mut self, state: &mut State<'_>, t: f64, y: &mut [f64], yp: &mut [f64]) {

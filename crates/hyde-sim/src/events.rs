@@ -16,6 +16,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::guards::{current_mode, is_active};
 use crate::results::{Event, EventKind};
 use crate::root_rates::{moment, root_rates, rounding};
+use crate::sensitivity::Sensitivities;
 use crate::state::State;
 use hyde_program::{Function, ReactionKind, RelationUse, Target};
 
@@ -37,6 +38,8 @@ pub(crate) struct Instant<'s, 'a> {
     /// Conditions as they were, to tell which become true.
     pub(crate) conditions: &'s mut Vec<bool>,
     pub(crate) log: &'s mut Vec<Event>,
+    /// Derivatives by parameters, which go along with the instant.
+    pub(crate) sensitivities: Option<&'s mut Sensitivities>,
 }
 
 impl Instant<'_, '_> {
@@ -106,6 +109,10 @@ impl Instant<'_, '_> {
             }
             self.consistent
                 .solve(self.state, self.t, self.y, self.yp, at_start)?;
+            if let Some(sensitivities) = &mut self.sensitivities {
+                let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+                sensitivities.be_consistent(self.state, self.consistent, at);
+            }
             if again {
                 looked_closer = true;
                 seen.drain(..seen.len() - 1);
@@ -316,6 +323,7 @@ impl Instant<'_, '_> {
         self.turn(flipped);
         self.state
             .evaluate(Function::Assignments, self.t, self.y, self.yp, &mut values);
+        let slopes = self.slopes_of_assignments();
         self.turn(flipped);
         let mut entered: Vec<(usize, usize, bool)> = Vec::new();
         for &number in fired {
@@ -342,9 +350,13 @@ impl Instant<'_, '_> {
                 ReactionKind::Edge(_) | ReactionKind::Assert(_) => {}
             }
             for index in reaction.assignments.clone() {
-                match program.assignments[index].target {
+                let target = program.assignments[index].target;
+                match target {
                     Target::State(position) => self.y[position] = values[index],
                     Target::Memory(position) => self.state.z[position] = values[index],
+                }
+                if let Some(sensitivities) = &mut self.sensitivities {
+                    sensitivities.assign(target, &slopes, index);
                 }
             }
         }
@@ -354,6 +366,15 @@ impl Instant<'_, '_> {
             self.state.z[program.automata[automaton].place] = to as f64;
         }
         self.pin(&entered)
+    }
+
+    /// The derivatives by parameters of what events assign and of the values of pins, if they are asked for.
+    fn slopes_of_assignments(&mut self) -> Vec<Vec<f64>> {
+        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let sensitivities = self.sensitivities.as_ref();
+        sensitivities.map_or_else(Vec::new, |sensitivities| {
+            sensitivities.of(Function::Assignments, self.state, at)
+        })
     }
 
     /// Turns the truths of relations over.
@@ -372,6 +393,7 @@ impl Instant<'_, '_> {
         let mut values = vec![0.0; program.rows(Function::Assignments)];
         self.state
             .evaluate(Function::Assignments, self.t, self.y, self.yp, &mut values);
+        let slopes = self.slopes_of_assignments();
         let mut pinned = Vec::new();
         for (number, pin) in program.pins.iter().enumerate() {
             if current_mode(program, &self.state.z, pin.automaton) != pin.mode {
@@ -393,6 +415,10 @@ impl Instant<'_, '_> {
                 }
             }
             pinned.push((pin.state, value));
+            if let Some(sensitivities) = &mut self.sensitivities {
+                let row = program.assignments.len() + number;
+                sensitivities.assign(Target::State(pin.state), &slopes, row);
+            }
         }
         self.state.pinned = pinned;
         self.state.apply_pins(self.y, self.yp);

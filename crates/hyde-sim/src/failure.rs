@@ -46,6 +46,8 @@ pub enum FailureKind {
     Assert(String),
     /// A record is missing or lacks a column.
     Input(String),
+    /// There is no gradient of this run: what it would have to pass.
+    NoGradient(String),
     /// It was ended from outside.
     Interrupted,
 }

@@ -75,7 +75,7 @@ fn shortest_return(
             }
             Wrt::Derivative(column) => rates[entry.row] += value * dyp[column],
             Wrt::Time => rates[entry.row] += value,
-            Wrt::Delayed(_) | Wrt::Parameter(_) => {}
+            Wrt::Delayed(_) | Wrt::Parameter(_) | Wrt::Memory(_) => {}
         }
     }
     // The instant was located to rounding of the time.

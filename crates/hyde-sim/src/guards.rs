@@ -13,9 +13,10 @@ use hyde_program::{Function, Program, RelationUse};
 /// Chebyshev points inside a step.
 const INSIDE: [f64; 3] = [0.146_446_609_406_726_24, 0.5, 0.853_553_390_593_273_8];
 
-/// A located change: its time.
+/// A located change: its time, and the relation; beyond the relations, the margin of a slide.
 pub(crate) struct Crossing {
     pub(crate) t: f64,
+    pub(crate) relation: usize,
 }
 
 /// The relations to watch: in equations, in `when` and `assert`, and in exits of current modes. Scheduled ones are not
@@ -247,7 +248,10 @@ fn locate(
             remaining = changed;
         }
     }
-    Crossing { t: b }
+    Crossing {
+        t: b,
+        relation: remaining[0].number,
+    }
 }
 
 /// Evaluates root functions on the interpolant, and the margins of slides.

@@ -73,40 +73,17 @@ pub(crate) fn solve(
     if round == Round::First && count > 0 {
         guess_relations(state, t, y, yp);
     }
-    let n = program.n_unknowns;
-    let states: Vec<usize> = (0..n).filter(|&i| state.differential[i]).collect();
-    let column_of_rate: Vec<Option<usize>> = {
-        let mut columns = vec![None; n];
-        states
-            .iter()
-            .enumerate()
-            .for_each(|(number, &i)| columns[i] = Some(n + number));
-        columns
-    };
-    let size = n + states.len() + delays;
-    let mut fixed: Vec<usize> = state.pinned.iter().map(|(position, _)| *position).collect();
-    for condition in &program.initial {
-        if let InitialCondition::Fixed {
-            state: first, len, ..
-        } = condition
-        {
-            fixed.extend((*first..*first + *len).filter(|&i| state.differential[i]));
-        }
-    }
-    if count == 0 {
-        fixed.clone_from(&states);
-    }
-    fixed.sort_unstable();
-    fixed.dedup();
+    let Shape {
+        n,
+        states,
+        column_of_rate,
+        fixed,
+        size,
+        pattern,
+        positions,
+        ..
+    } = Shape::new(state, count, t)?;
     let targets: Vec<f64> = fixed.iter().map(|&i| y[i]).collect();
-    if n + count + fixed.len() + delays != size {
-        let kind = FailureKind::Inconsistent {
-            singular: Vec::new(),
-            at_start: true,
-        };
-        return Err(Failure::new(kind, t));
-    }
-    let (pattern, positions) = pattern(state, size, n, count, &fixed, &column_of_rate);
     let mut past = state.delayed_at(t).to_vec();
     let failed = |singular: Vec<String>| {
         let mut failure = Failure::new(
@@ -188,6 +165,88 @@ pub(crate) fn solve(
     Err(failed(Vec::new()))
 }
 
+/// The linearised initial system: unknown are y, the states' y', and the delayed values. Its rows are the residual, the
+/// initial equations, the states with a fixed start value, and what is delayed.
+pub(crate) struct Shape {
+    pub(crate) n: usize,
+    /// Number of initial equations.
+    pub(crate) count: usize,
+    pub(crate) states: Vec<usize>,
+    /// The column of each unknown's derivative.
+    pub(crate) column_of_rate: Vec<Option<usize>>,
+    /// States with a fixed start value.
+    pub(crate) fixed: Vec<usize>,
+    pub(crate) size: usize,
+    pattern: Pattern,
+    positions: Vec<Vec<Option<usize>>>,
+}
+
+impl Shape {
+    /// # Errors
+    /// The system is not square.
+    pub(crate) fn new(state: &State<'_>, count: usize, t: f64) -> Result<Self, Box<Failure>> {
+        let program = state.program;
+        let n = program.n_unknowns;
+        let delays = program.delays.len();
+        let states: Vec<usize> = (0..n).filter(|&i| state.differential[i]).collect();
+        let mut column_of_rate = vec![None; n];
+        for (number, &i) in states.iter().enumerate() {
+            column_of_rate[i] = Some(n + number);
+        }
+        let size = n + states.len() + delays;
+        let mut fixed: Vec<usize> = state.pinned.iter().map(|(position, _)| *position).collect();
+        for condition in &program.initial {
+            if let InitialCondition::Fixed {
+                state: first, len, ..
+            } = condition
+            {
+                fixed.extend((*first..*first + *len).filter(|&i| state.differential[i]));
+            }
+        }
+        if count == 0 {
+            fixed.clone_from(&states);
+        }
+        fixed.sort_unstable();
+        fixed.dedup();
+        if n + count + fixed.len() + delays != size {
+            let kind = FailureKind::Inconsistent {
+                singular: Vec::new(),
+                at_start: true,
+            };
+            return Err(Failure::new(kind, t));
+        }
+        let (pattern, positions) = pattern(state, size, n, count, &fixed, &column_of_rate);
+        Ok(Self {
+            n,
+            count,
+            states,
+            column_of_rate,
+            fixed,
+            size,
+            pattern,
+            positions,
+        })
+    }
+
+    /// Solves the linearised system at a point for several right sides, in place. Whether it could be.
+    pub(crate) fn solve(
+        self,
+        state: &mut State<'_>,
+        (t, y, yp): (f64, &[f64], &[f64]),
+        rights: &mut [Vec<f64>],
+    ) -> bool {
+        let values = values(state, t, y, yp, &self.positions);
+        let Ok(mut solver) = SparseSolver::new(self.pattern, LinearMethod::Auto) else {
+            return false;
+        };
+        if solver.factor(&values).is_err() {
+            return false;
+        }
+        rights.iter_mut().for_each(|right| solver.solve(right));
+        true
+    }
+}
+
 /// Start values that the other conditions have to meet; events at the start may have changed them since.
 fn check(
     state: &mut State<'_>,
@@ -256,7 +315,7 @@ fn pattern(
         Wrt::Unknown(column) => Some(column),
         Wrt::Derivative(column) => column_of_rate[column],
         Wrt::Delayed(number) => Some(first_delayed + number),
-        Wrt::Parameter(_) | Wrt::Time => None,
+        Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Time => None,
     };
     let lists: Vec<Vec<Option<(usize, usize)>>> = vec![
         program

@@ -8,6 +8,7 @@
 //!              events: reactions, ticks, held values, until nothing fires           events.rs, clocks.rs
 //!              what both sides lead back to is slid on                              slides.rs, sliding.rs, surfaces.rs
 //!              consistent values again, then on                                     consistent.rs
+//!              derivatives by parameters carried along, if they are asked for      sensitivity.rs
 //!              what is delayed kept as polynomials, jumps with their arrivals       delays.rs, history.rs
 //! ```
 //! The language is unknown here: a program could as well be written by hand, and the tests of this crate do that. What
@@ -31,6 +32,7 @@ mod operating_point;
 mod results;
 mod root_rates;
 mod selection;
+mod sensitivity;
 mod setup;
 mod simulation;
 mod singular;
@@ -44,7 +46,9 @@ mod time_spent;
 pub use failure::{Failure, FailureKind};
 pub use inputs::InputError;
 pub use operating_point::{OperatingPoint, operating_point};
-pub use results::{Energies, Event, EventKind, Results, Statistics};
+pub use results::{
+    Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Results, Statistics,
+};
 pub use setup::Setup;
 
 use hyde_program::Program;

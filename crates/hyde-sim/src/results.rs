@@ -78,6 +78,41 @@ pub struct Energies {
     pub passed: f64,
 }
 
+/// Why a gradient goes no further than to an instant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum GradientEndKind {
+    /// A root function touches zero there and hardly crosses it: the crossing comes or goes with the least change.
+    Grazing,
+    /// The run slides on a surface from there.
+    Sliding,
+    /// The linearised equations determine nothing there.
+    Singular,
+}
+
+/// From when on there is no gradient.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GradientEnd {
+    /// Time in s.
+    pub t: f64,
+    /// Why.
+    pub kind: GradientEndKind,
+    /// The condition, as written.
+    pub cause: String,
+    /// Where it is written.
+    pub origin: Option<Origin>,
+}
+
+/// The derivatives of the rows by parameters (S1), each row at its time: those of an event do not move with it.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Gradient {
+    /// Positions of the parameters in the parameter vector.
+    pub parameters: Vec<usize>,
+    /// For each parameter one column an output kept, SI; not a number behind its end.
+    pub columns: Vec<Vec<Vec<f64>>>,
+    /// From when on it is not known.
+    pub end: Option<GradientEnd>,
+}
+
 /// What a run leaves.
 #[derive(Clone, Debug, Default)]
 pub struct Results {
@@ -87,6 +122,8 @@ pub struct Results {
     pub time: Vec<f64>,
     /// One column an output kept, SI.
     pub columns: Vec<Vec<f64>>,
+    /// The derivatives by parameters, if they were asked for.
+    pub gradient: Option<Gradient>,
     /// The event log.
     pub events: Vec<Event>,
     /// What the solver did.

@@ -28,7 +28,7 @@ pub(crate) fn rounding(
             Wrt::Derivative(column) => yp[column],
             Wrt::Delayed(number) => delayed[number],
             Wrt::Time => t,
-            Wrt::Parameter(_) => 0.0,
+            Wrt::Parameter(_) | Wrt::Memory(_) => 0.0,
         };
         rounding[entry.row] += 16.0 * f64::EPSILON * (value * argument).abs();
     }
@@ -103,7 +103,7 @@ pub(crate) fn rates_at(
         rates[entry.row] += match entry.wrt {
             Wrt::Unknown(column) => value * dy[column],
             Wrt::Derivative(column) => value * dyp[column],
-            Wrt::Delayed(_) | Wrt::Time | Wrt::Parameter(_) => 0.0,
+            Wrt::Delayed(_) | Wrt::Time | Wrt::Parameter(_) | Wrt::Memory(_) => 0.0,
         };
     }
     // The time itself, and record columns and delayed values that move with it.

@@ -26,6 +26,9 @@ pub struct Setup<'a> {
     pub rows_s: Vec<f64>,
     /// The outputs to keep, by number, ascending; `None` for all.
     pub keep: Option<Vec<usize>>,
+    /// The parameters by which the run is differentiated: positions in the parameter vector, of plain parameters; `None` for
+    /// no gradient, which costs nothing.
+    pub sensitivities: Option<&'a [usize]>,
     /// Set from outside to end the run after the step under way.
     pub interrupted: Arc<AtomicBool>,
 }
@@ -44,6 +47,7 @@ impl<'a> Setup<'a> {
             max_step_s: f64::INFINITY,
             rows_s: Self::rows_every(0.0, stop_s, stop_s / 1000.0),
             keep: None,
+            sensitivities: None,
             interrupted: Arc::default(),
         }
     }

@@ -1,11 +1,11 @@
 //! The run itself: start, steps, events, rows.
 
+mod instant;
 mod rows;
 
 use crate::clocks::Schedule;
 use crate::consistent::Consistent;
 use crate::delays;
-use crate::events::Instant;
 use crate::failure::{Failure, FailureKind};
 use crate::first_step::first_step;
 use crate::guards;
@@ -13,8 +13,9 @@ use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
 use crate::meter::Meter;
-use crate::results::Results;
+use crate::results::{Gradient, Results};
 use crate::selection;
+use crate::sensitivity::{Cause, Sensitivities};
 use crate::setup::{Setup, same_instant};
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
@@ -38,14 +39,7 @@ pub(crate) struct Simulation<'a> {
     outputs: Vec<f64>,
     hurry: Hurry,
     meter: Option<Meter<'a>>,
-}
-
-/// Values at an instant, from one side of it.
-struct Limit {
-    y: Vec<f64>,
-    yp: Vec<f64>,
-    z: Vec<f64>,
-    delayed: Vec<f64>,
+    sensitivities: Option<Sensitivities>,
 }
 
 impl<'a> Simulation<'a> {
@@ -72,11 +66,25 @@ impl<'a> Simulation<'a> {
             &mut yp,
             initial::Round::First,
         )?;
+        let mut sensitivities = match setup.sensitivities {
+            Some(chosen) => Some(Sensitivities::new(&state, chosen, t)?),
+            None => None,
+        };
+        if let Some(sensitivities) = &mut sensitivities {
+            let at = (t, y.as_slice(), yp.as_slice());
+            sensitivities.start(&mut state, &mut consistent, at, initial::Round::First);
+        }
         let keep = setup
             .keep
             .clone()
             .unwrap_or_else(|| (0..program.outputs.len()).collect());
+        let gradient = |parameters: &[usize]| Gradient {
+            parameters: parameters.to_vec(),
+            columns: vec![vec![Vec::new(); keep.len()]; parameters.len()],
+            end: None,
+        };
         let results = Results {
+            gradient: setup.sensitivities.map(gradient),
             columns: vec![Vec::with_capacity(setup.rows_s.len() + 16); keep.len()],
             outputs: keep,
             mode_times: program
@@ -99,6 +107,7 @@ impl<'a> Simulation<'a> {
             outputs: vec![0.0; program.outputs.len()],
             hurry: Hurry::default(),
             meter: Meter::new(&program.experiment.ledger),
+            sensitivities,
         })
     }
 
@@ -126,7 +135,8 @@ impl<'a> Simulation<'a> {
             let arrival = self.integrator.state().delays.next();
             let target = self.schedule.next(t).min(jump).min(arrival).min(stop);
             // The solver is past a located crossing: it starts anew from there whatever happens.
-            let behind = self.advance(target)?;
+            let crossed = self.advance(target)?;
+            let behind = crossed.is_some();
             let t = self.integrator.t;
             let at_target = t >= target || same_instant(t, target);
             let scheduled = if at_target {
@@ -137,7 +147,12 @@ impl<'a> Simulation<'a> {
             let arrives = self.integrator.state().delays.due(t);
             let due = at_target && (self.schedule.due(t) || same_instant(t, jump) || arrives);
             if behind || !scheduled.is_empty() || due {
-                self.instant(&scheduled, behind || same_instant(t, jump))?;
+                let cause = match crossed {
+                    Some(cause) => cause,
+                    None if scheduled.is_empty() => Cause::Time,
+                    None => Cause::Scheduled(scheduled.clone()),
+                };
+                self.instant(&scheduled, behind || same_instant(t, jump), &cause)?;
             }
         }
         Ok(())
@@ -195,6 +210,9 @@ impl<'a> Simulation<'a> {
             let (mut y, mut yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
             let state = self.integrator.state_mut();
             initial::solve(state, &mut self.consistent, t, &mut y, &mut yp, round)?;
+            if let Some(sensitivities) = &mut self.sensitivities {
+                sensitivities.start(state, &mut self.consistent, (t, &y, &yp), round);
+            }
             (self.integrator.y, self.integrator.yp) = (y, yp);
         }
         let kind = FailureKind::Inconsistent {
@@ -204,9 +222,9 @@ impl<'a> Simulation<'a> {
         Err(Failure::new(kind, t))
     }
 
-    /// Steps until `target` or the first crossing; rows on the way are taken. Returns whether there was a crossing; the
-    /// values there are consistent.
-    fn advance(&mut self, target: f64) -> Result<bool, Box<Failure>> {
+    /// Steps until `target` or the first crossing; rows on the way are taken. Returns what there is to work on before the
+    /// target; the values there are consistent.
+    fn advance(&mut self, target: f64) -> Result<Option<Cause>, Box<Failure>> {
         let watched = guards::active(self.integrator.state());
         loop {
             if self.setup.interrupted.load(Ordering::Relaxed) {
@@ -222,7 +240,13 @@ impl<'a> Simulation<'a> {
                 .as_ref()
                 .map_or(self.integrator.t, |crossing| crossing.t);
             self.measure_energy(from, end);
+            if let Some(sensitivities) = &mut self.sensitivities {
+                sensitivities.note_step(&mut self.integrator, from);
+            }
             self.rows_until(end);
+            if let Some(sensitivities) = &mut self.sensitivities {
+                sensitivities.follow(&mut self.integrator, end);
+            }
             count_modes(&mut self.integrator, &mut self.results, end - from);
             delays::record(&mut self.integrator, from, end);
             if let Some(crossing) = crossing {
@@ -240,13 +264,22 @@ impl<'a> Simulation<'a> {
                 self.integrator.t = crossing.t;
                 self.integrator.y = y;
                 self.integrator.yp = yp;
-                return Ok(true);
+                self.advance_sensitivities();
+                let relation = crossing.relation;
+                return Ok(Some(Cause::Crossing { relation, from }));
+            }
+            if let Some(sensitivities) = &mut self.sensitivities {
+                sensitivities.remember_heights(&mut self.integrator);
+            }
+            let there = self.integrator.t >= target || same_instant(self.integrator.t, target);
+            if there || !self.program.selections.is_empty() {
+                self.advance_sensitivities();
             }
             if self.chooses_states_anew()? {
-                return Ok(true);
+                return Ok(Some(Cause::Time));
             }
-            if self.integrator.t >= target || same_instant(self.integrator.t, target) {
-                return Ok(false);
+            if there {
+                return Ok(None);
             }
         }
     }
@@ -268,123 +301,8 @@ impl<'a> Simulation<'a> {
             .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
         self.integrator.y = y;
         self.integrator.yp = yp;
+        self.finish_sensitivities();
         Ok(true)
-    }
-
-    /// Everything that happens at an instant: left limit, events, ticks, events, right limit (C1).
-    fn instant(&mut self, scheduled: &[usize], restart: bool) -> Result<(), Box<Failure>> {
-        let limit = self.limit();
-        let delayed = delays::limits(&mut self.integrator, Some(&mut self.consistent));
-        let left = self.row_values();
-        let before = self.meter.as_ref().map(|_| self.outputs.clone());
-        let events = self.results.events.len();
-        let arrived = delays::arrive(&mut self.integrator, &mut self.consistent)?;
-        let mut changed = arrived.read;
-        changed |= self.iterate(scheduled, false)?;
-        let mut ticked = false;
-        if self.schedule.due(self.integrator.t) {
-            ticked = true;
-            changed |= self.tick(&limit)?;
-            changed |= self.iterate(&[], false)?;
-        }
-        let happened = self.results.events.len() > events;
-        if happened {
-            self.results.statistics.events += 1;
-            self.not_too_many(events)?;
-        }
-        if let Some(before) = before {
-            self.row_values();
-            if let Some(meter) = &mut self.meter {
-                meter.instant(&before, &self.outputs);
-            }
-        }
-        let on_grid = self.row_is_due();
-        let moved = limit
-            .z
-            .iter()
-            .zip(&self.integrator.state().z)
-            .any(|(a, b)| a.to_bits() != b.to_bits());
-        let stepped = arrived.jump || ticked && moved;
-        // Where rows are finer than ticks, what a clock holds is a staircase; coarser rows would be multiplied.
-        let step_shows = on_grid || self.setup.row_spacing() < self.schedule.shortest_period();
-        if happened || (step_shows && stepped) {
-            self.push_row(left);
-            self.row();
-        } else if on_grid {
-            self.row();
-        }
-        if on_grid {
-            self.next_row += 1;
-        }
-        delays::mark(&mut self.integrator, &mut self.consistent, delayed);
-        if changed || restart {
-            self.restart()?;
-        }
-        Ok(())
-    }
-
-    fn iterate(&mut self, scheduled: &[usize], at_start: bool) -> Result<bool, Box<Failure>> {
-        let (t, mut y, mut yp) = (
-            self.integrator.t,
-            std::mem::take(&mut self.integrator.y),
-            std::mem::take(&mut self.integrator.yp),
-        );
-        let largest = self.integrator.largest().to_vec();
-        let outcome = Instant {
-            state: self.integrator.state_mut(),
-            largest: &largest,
-            consistent: &mut self.consistent,
-            t,
-            y: &mut y,
-            yp: &mut yp,
-            conditions: &mut self.conditions,
-            log: &mut self.results.events,
-        }
-        .iterate(scheduled, at_start);
-        self.integrator.y = y;
-        self.integrator.yp = yp;
-        outcome
-    }
-
-    /// The values now.
-    fn limit(&mut self) -> Limit {
-        let t = self.integrator.t;
-        let delayed = self.integrator.state_mut().delayed_at(t).to_vec();
-        Limit {
-            y: self.integrator.y.clone(),
-            yp: self.integrator.yp.clone(),
-            z: self.integrator.state().z.clone(),
-            delayed,
-        }
-    }
-
-    /// Runs the clocks that tick on the left limit, whatever events happened at the instant since (C1); consistent
-    /// values follow if something that the equations read has changed.
-    fn tick(&mut self, left: &Limit) -> Result<bool, Box<Failure>> {
-        let (t, mut y, mut yp) = (
-            self.integrator.t,
-            self.integrator.y.clone(),
-            self.integrator.yp.clone(),
-        );
-        let state = self.integrator.state_mut();
-        let mut now = std::mem::replace(&mut state.z, left.z.clone());
-        let (ticks, changed) = self
-            .schedule
-            .run(state, t, &left.y, &left.yp, &left.delayed);
-        for ((now, after), before) in now.iter_mut().zip(&state.z).zip(&left.z) {
-            if after.to_bits() != before.to_bits() {
-                *now = *after;
-            }
-        }
-        state.z = now;
-        self.results.statistics.ticks += ticks;
-        if changed {
-            self.consistent
-                .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
-            self.integrator.y = y;
-            self.integrator.yp = yp;
-        }
-        Ok(changed)
     }
 
     /// Starts the solver anew, with a first step that the curvature of the solution allows.
@@ -458,6 +376,11 @@ impl<'a> Simulation<'a> {
         statistics.error_test_failures = solver.error_test_failures;
         statistics.nonlinear_failures = solver.nonlinear_failures;
         statistics.restarts = solver.restarts;
+        if let (Some(gradient), Some(sensitivities)) =
+            (&mut self.results.gradient, &mut self.sensitivities)
+        {
+            gradient.end = sensitivities.end.take();
+        }
         self.results.energies = self.meter.as_ref().map(Meter::sums);
         self.results.last = (self.integrator.y.clone(), self.integrator.state().z.clone());
     }

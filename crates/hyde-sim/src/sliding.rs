@@ -335,7 +335,7 @@ impl State<'_> {
             let counts = match entry.wrt {
                 Wrt::Unknown(column) => !self.differential[column],
                 Wrt::Derivative(column) => self.differential[column],
-                Wrt::Delayed(_) | Wrt::Parameter(_) | Wrt::Time => false,
+                Wrt::Delayed(_) | Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Time => false,
             };
             if counts {
                 sizes[entry.row] = sizes[entry.row].max(value.abs());

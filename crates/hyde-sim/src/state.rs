@@ -6,7 +6,7 @@ use crate::inputs::Inputs;
 use crate::setup::Setup;
 use crate::sliding::{Slide, Surface};
 use hyde_ida::{Recoverable, System};
-use hyde_program::{Function, Point, Program, Workspace};
+use hyde_program::{Function, Point, Program, TickWrt, Workspace};
 
 /// The model between and during calls of the solver.
 pub(crate) struct State<'a> {
@@ -126,6 +126,37 @@ impl<'a> State<'a> {
         out
     }
 
+    /// The derivatives of a function by parameters and memory, in the order of the kernel.
+    pub(crate) fn still_partials(
+        &mut self,
+        function: Function,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        out: &mut [f64],
+    ) {
+        self.read_continuous(t);
+        let program = self.program;
+        let (at, workspace) = self.at(t, y, yp);
+        program.kernels.still_partials(function, at, workspace, out);
+    }
+
+    /// The derivatives of a tick, with every column read at `t` and delayed values as they were just before.
+    pub(crate) fn tick_partials(
+        &mut self,
+        clock: usize,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        delayed: &[f64],
+    ) -> Vec<(usize, TickWrt, f64)> {
+        self.inputs.read(t, &mut self.u);
+        self.delayed_mut().copy_from_slice(delayed);
+        let program = self.program;
+        let (at, workspace) = self.at(t, y, yp);
+        program.kernels.tick_partials(clock, at, workspace)
+    }
+
     /// Truth of every reaction's condition with the memory as it is.
     pub(crate) fn conditions(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<bool> {
         let mut out = vec![0.0; self.program.reactions.len()];
@@ -204,6 +235,7 @@ impl<'a> State<'a> {
                 hyde_program::Wrt::Unknown(column) => out[entry.row] += value * dy[column],
                 hyde_program::Wrt::Derivative(column) => out[entry.row] += value * dyp[column],
                 hyde_program::Wrt::Parameter(_)
+                | hyde_program::Wrt::Memory(_)
                 | hyde_program::Wrt::Delayed(_)
                 | hyde_program::Wrt::Time => {}
             }

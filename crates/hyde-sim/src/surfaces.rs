@@ -33,6 +33,7 @@ impl State<'_> {
                 | Wrt::Derivative(_)
                 | Wrt::Delayed(_)
                 | Wrt::Parameter(_)
+                | Wrt::Memory(_)
                 | Wrt::Time => None,
             })
             .collect()
@@ -54,7 +55,11 @@ impl State<'_> {
             rates[entry.row] += match entry.wrt {
                 Wrt::Unknown(column) => value * yp[column],
                 Wrt::Time if !given => value,
-                Wrt::Time | Wrt::Derivative(_) | Wrt::Delayed(_) | Wrt::Parameter(_) => 0.0,
+                Wrt::Time
+                | Wrt::Derivative(_)
+                | Wrt::Delayed(_)
+                | Wrt::Parameter(_)
+                | Wrt::Memory(_) => 0.0,
             };
         }
         if given {
@@ -86,7 +91,7 @@ impl State<'_> {
                     self.differential[column]
                 }
                 Wrt::Derivative(_) => false,
-                Wrt::Delayed(_) | Wrt::Parameter(_) | Wrt::Time => true,
+                Wrt::Delayed(_) | Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Time => true,
             });
         only && any
     }

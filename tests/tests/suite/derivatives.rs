@@ -207,7 +207,7 @@ fn size(
             Wrt::Unknown(k) => (value * at.y[k]).abs(),
             Wrt::Derivative(k) => (value * at.yp[k]).abs(),
             Wrt::Delayed(k) => (value * at.u[at.u.len() - program.delays.len() + k]).abs(),
-            Wrt::Parameter(_) | Wrt::Time => 0.0,
+            Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Time => 0.0,
         };
     }
     size

@@ -19,6 +19,7 @@ mod event_suite;
 mod examples;
 mod experiments;
 mod first_order;
+mod gradients;
 mod ledger;
 mod limit_cycle;
 mod loops;

@@ -113,6 +113,7 @@ pages! {
     AssertFailed "E0704";
     TooManyEvents "E0705";
     NotFinite "E0706";
+    NoGradient "E0707";
     NoColumn "E0801";
     NoRecord "E0802";
     BadRecord "E0803";

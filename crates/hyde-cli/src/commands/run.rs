@@ -11,6 +11,7 @@ use hyde_experiment::{Options, Run, RunError};
 use hyde_program::Program;
 use hyde_signal::{Column, csv, parquet};
 use hyde_sim::Results;
+use hyde_units::NamedUnit;
 use serde_json::{Map, Value, json};
 use std::io::IsTerminal as _;
 use std::path::Path;
@@ -62,6 +63,7 @@ pub(crate) fn solved_of(
         rtol: args.rtol,
         atol: args.atol,
         every_s: None,
+        gradient: args.gradient.clone(),
         interrupted: interrupted(),
     };
     let tables = records::tables(&project.records);
@@ -188,7 +190,7 @@ fn leave_results(
 
 /// Results in the form of a record: time first, every column with its unit.
 fn columns(program: &Program, results: &Results) -> Vec<Column> {
-    let time = hyde_units::NamedUnit::usual(hyde_units::Dimension::TIME);
+    let time = NamedUnit::usual(hyde_units::Dimension::TIME);
     let mut columns = vec![Column::new("t", time, results.time.clone())];
     for (&number, values) in results.outputs.iter().zip(&results.columns) {
         let output = &program.outputs[number];
@@ -198,6 +200,29 @@ fn columns(program: &Program, results: &Results) -> Vec<Column> {
                 output.unit.clone(),
                 values.clone(),
             ));
+        }
+    }
+    columns.extend(gradient_columns(program, results));
+    columns
+}
+
+/// The derivatives of every column by each parameter: `d(x)/d(p)`, in SI.
+fn gradient_columns(program: &Program, results: &Results) -> Vec<Column> {
+    let mut columns = Vec::new();
+    let Some(gradient) = &results.gradient else {
+        return columns;
+    };
+    for (&place, of_parameter) in gradient.parameters.iter().zip(&gradient.columns) {
+        let Some((parameter, name)) = program.parameter_at(place) else {
+            continue;
+        };
+        for (&number, values) in results.outputs.iter().zip(of_parameter) {
+            let output = &program.outputs[number];
+            if !output.auxiliary {
+                let unit = NamedUnit::usual(output.dimension.divide(parameter.dimension));
+                let name = format!("d({})/d({name})", output.name);
+                columns.push(Column::new(name, unit, values.clone()));
+            }
         }
     }
     columns
@@ -215,6 +240,11 @@ fn results_json(program: &Program, results: &Results) -> Value {
             let entry = json!({ "unit": output.dimension.usual_unit(), "values": values });
             columns.insert(output.name.clone(), entry);
         }
+    }
+    for column in gradient_columns(program, results) {
+        let unit = column.unit().map(|unit| unit.unit().dimension.usual_unit());
+        let entry = json!({ "unit": unit, "values": column.values() });
+        columns.insert(column.name().to_owned(), entry);
     }
     Value::Object(columns)
 }

@@ -10,8 +10,10 @@ pub enum Wrt {
     Unknown(Index),
     /// The derivative of an unknown.
     Derivative(Index),
-    /// A parameter, by its position.
-    Parameter(usize),
+    /// A parameter: its position at a value of the counter.
+    Parameter(Index),
+    /// A value in the memory: its position at a value of the counter.
+    Memory(Index),
     /// A delayed value: its number at a value of the counter.
     Delayed(Index),
     /// Time.

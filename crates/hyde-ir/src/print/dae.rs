@@ -112,7 +112,8 @@ pub fn print_dae(dae: &Dae, sources: &Sources) -> String {
             let wrt = match partial.wrt {
                 Wrt::Unknown(index) => by_unknown(dae, index, ""),
                 Wrt::Derivative(index) => by_unknown(dae, index, "der "),
-                Wrt::Parameter(position) => format!("p[{position}]"),
+                Wrt::Parameter(index) => format!("p {}", subscript(index, 0)),
+                Wrt::Memory(index) => format!("z {}", subscript(index, 0)),
                 Wrt::Delayed(index) => format!("delayed {}", subscript(index, 0)),
                 Wrt::Time => "time".to_owned(),
             };

@@ -4,6 +4,15 @@ use super::Simulation;
 use crate::setup::same_instant;
 use hyde_program::Function;
 
+/// A row of the results.
+pub(super) struct Row {
+    t: f64,
+    /// The outputs kept.
+    values: Vec<f64>,
+    /// Their derivatives by each parameter, if they are asked for.
+    slopes: Vec<Vec<f64>>,
+}
+
 impl Simulation<'_> {
     /// Rows of the results up to and including `end`, from the interpolant; one at the end itself waits for its events.
     pub(super) fn rows_until(&mut self, end: f64) {
@@ -18,7 +27,11 @@ impl Simulation<'_> {
             let state = self.integrator.state_mut();
             self.consistent.refine(state, t, &mut y, &mut yp);
             let values = self.values_at(t, &y, &yp);
-            self.push_row((t, values));
+            if let Some(sensitivities) = &mut self.sensitivities {
+                sensitivities.advance(&mut self.integrator, t);
+            }
+            let slopes = self.slopes_at(t, &y, &yp);
+            self.push_row(Row { t, values, slopes });
             self.next_row += 1;
         }
     }
@@ -50,14 +63,31 @@ impl Simulation<'_> {
         self.push_row(values);
     }
 
-    pub(super) fn row_values(&mut self) -> (f64, Vec<f64>) {
+    pub(super) fn row_values(&mut self) -> Row {
         let (t, y, yp) = (
             self.integrator.t,
             self.integrator.y.clone(),
             self.integrator.yp.clone(),
         );
         let values = self.values_at(t, &y, &yp);
-        (t, values)
+        let slopes = self.slopes_at(t, &y, &yp);
+        Row { t, values, slopes }
+    }
+
+    /// The derivatives of the kept outputs by each parameter.
+    fn slopes_at(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<Vec<f64>> {
+        let Some(sensitivities) = &self.sensitivities else {
+            return Vec::new();
+        };
+        let kept = &self.results.outputs;
+        if sensitivities.end.is_some() {
+            let parameters = self.setup.sensitivities.unwrap_or_default();
+            return vec![vec![f64::NAN; kept.len()]; parameters.len()];
+        }
+        let state = self.integrator.state_mut();
+        let all = sensitivities.of(Function::Outputs, state, (t, y, yp));
+        let of_kept = |all: Vec<f64>| kept.iter().map(|&output| all[output]).collect();
+        all.into_iter().map(of_kept).collect()
     }
 
     pub(super) fn values_at(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
@@ -75,10 +105,17 @@ impl Simulation<'_> {
         values
     }
 
-    pub(super) fn push_row(&mut self, (t, values): (f64, Vec<f64>)) {
-        self.results.time.push(t);
-        for (column, value) in self.results.columns.iter_mut().zip(values) {
+    pub(super) fn push_row(&mut self, row: Row) {
+        self.results.time.push(row.t);
+        for (column, value) in self.results.columns.iter_mut().zip(row.values) {
             column.push(value);
+        }
+        let columns = self.results.gradient.iter_mut();
+        let columns = columns.flat_map(|gradient| &mut gradient.columns);
+        for (columns, slopes) in columns.zip(row.slopes) {
+            for (column, slope) in columns.iter_mut().zip(slopes) {
+                column.push(slope);
+            }
         }
     }
 }

@@ -48,6 +48,11 @@ pub(crate) trait Equations: Send + Sync + 'static {
         Vec::new()
     }
 
+    /// The derivatives of the start values by declared parameters: row (vector, then memory), parameter, value.
+    fn start_partials(&self, _p: &[f64]) -> Vec<(usize, usize, f64)> {
+        Vec::new()
+    }
+
     /// Truth of every reaction's condition.
     fn conditions(&self, _z: &[f64]) -> Vec<f64> {
         Vec::new()
@@ -178,6 +183,23 @@ struct ByHand<E> {
     n_memory: usize,
 }
 
+impl<E: Equations> ByHand<E> {
+    /// What is found at some point; places of derivatives are the same at all.
+    fn somewhere<T>(&self, of: impl Fn(Point<'_>) -> T) -> T {
+        let mut p = self.equations.declared();
+        p.extend(self.equations.derived(&p));
+        let (y, z) = (vec![1.0; self.n_unknowns], vec![0.0; self.n_memory]);
+        of(Point {
+            t: 0.0,
+            y: &y,
+            yp: &y,
+            z: &z,
+            u: &[],
+            p: &p,
+        })
+    }
+}
+
 impl<E: Equations> Kernels for ByHand<E> {
     fn parameters(&self, set: &[(usize, f64)], p: &mut [f64]) {
         let mut declared = self.equations.declared();
@@ -203,18 +225,7 @@ impl<E: Equations> Kernels for ByHand<E> {
     }
 
     fn entries(&self, function: Function) -> Vec<PartialEntry> {
-        let mut p = self.equations.declared();
-        p.extend(self.equations.derived(&p));
-        let (y, z) = (vec![1.0; self.n_unknowns], vec![0.0; self.n_memory]);
-        let somewhere = Point {
-            t: 0.0,
-            y: &y,
-            yp: &y,
-            z: &z,
-            u: &[],
-            p: &p,
-        };
-        let partials = self.equations.partials(function, somewhere);
+        let partials = self.somewhere(|at| self.equations.partials(function, at));
         let places = partials.into_iter().map(|(row, wrt, _)| (row, wrt));
         places.map(|(row, wrt)| PartialEntry { row, wrt }).collect()
     }
@@ -227,21 +238,42 @@ impl<E: Equations> Kernels for ByHand<E> {
         }
     }
 
-    fn parameter_partials(
+    fn still_entries(&self, function: Function) -> Vec<PartialEntry> {
+        let partials = self.somewhere(|at| self.equations.parameter_partials(function, at));
+        let places = partials.into_iter().map(|(row, wrt, _)| (row, wrt));
+        places.map(|(row, wrt)| PartialEntry { row, wrt }).collect()
+    }
+
+    fn still_partials(
         &self,
         function: Function,
-        parameters: &[usize],
         at: Point<'_>,
         _: &mut Workspace,
-    ) -> Vec<(PartialEntry, f64)> {
-        let all = self.equations.parameter_partials(function, at);
-        let chosen = all.into_iter().filter(|(_, wrt, _)| {
-            let wanted = |&place: &usize| *wrt == Wrt::Parameter(place);
-            parameters.iter().any(wanted)
-        });
-        chosen
-            .map(|(row, wrt, value)| (PartialEntry { row, wrt }, value))
-            .collect()
+        out: &mut [f64],
+    ) {
+        let partials = self.equations.parameter_partials(function, at);
+        assert_eq!(partials.len(), out.len(), "as many values as entries");
+        for (value, (_, _, partial)) in out.iter_mut().zip(partials) {
+            *value = partial;
+        }
+    }
+
+    /// The derivatives of the equations count those by way of derived parameters.
+    fn parameter_directions(&self, chosen: &[usize], p: &[f64]) -> Vec<Vec<f64>> {
+        let unit = |&place: &usize| {
+            let mut direction = vec![0.0; p.len()];
+            direction[place] = 1.0;
+            direction
+        };
+        chosen.iter().map(unit).collect()
+    }
+
+    fn start_partials(&self, p: &[f64]) -> Vec<(usize, usize, f64)> {
+        self.equations.start_partials(p)
+    }
+
+    fn instant_partials(&self, which: Constant, _p: &[f64]) -> Vec<(usize, f64)> {
+        panic!("no instant of a problem here depends on parameters: {which:?}")
     }
 
     fn conditions(&self, at: Point<'_>, _: &mut Workspace, out: &mut [f64]) {
@@ -259,6 +291,11 @@ impl<E: Equations> Kernels for ByHand<E> {
         _: &mut Workspace,
     ) -> Vec<(usize, TickWrt, f64)> {
         self.equations.tick_partials(clock, at)
+    }
+
+    fn tick_targets(&self, clock: usize) -> Vec<usize> {
+        let partials = self.somewhere(|at| self.equations.tick_partials(clock, at));
+        partials.into_iter().map(|(row, _, _)| row).collect()
     }
 
     fn measures(&self, _p: &[f64], _reductions: &[f64], out: &mut [f64]) {

@@ -1,0 +1,181 @@
+//! What happens at an instant: left limit, events, ticks, events, right limit.
+
+use super::Simulation;
+use crate::clocks::Ticked;
+use crate::delays;
+use crate::events::Instant;
+use crate::failure::Failure;
+use crate::sensitivity::{Cause, Sensitivities, Slopes};
+
+/// Values at an instant, from one side of it.
+pub(super) struct Limit {
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    z: Vec<f64>,
+    delayed: Vec<f64>,
+    slopes: Option<Slopes>,
+}
+
+impl Simulation<'_> {
+    /// Everything that happens at an instant: left limit, events, ticks, events, right limit (C1).
+    pub(super) fn instant(
+        &mut self,
+        scheduled: &[usize],
+        restart: bool,
+        cause: &Cause,
+    ) -> Result<(), Box<Failure>> {
+        let limit = self.limit();
+        let delayed = delays::limits(&mut self.integrator, Some(&mut self.consistent));
+        let left = self.row_values();
+        if let Some(sensitivities) = &mut self.sensitivities {
+            sensitivities.begin(&mut self.integrator, &mut self.consistent, cause);
+        }
+        let before = self.meter.as_ref().map(|_| self.outputs.clone());
+        let events = self.results.events.len();
+        let arrived = delays::arrive(&mut self.integrator, &mut self.consistent)?;
+        let mut changed = arrived.read;
+        changed |= self.iterate(scheduled, false)?;
+        if changed || restart || *cause != Cause::Time {
+            self.finish_sensitivities();
+        }
+        let mut ticked = false;
+        if self.schedule.due(self.integrator.t) {
+            ticked = true;
+            changed |= self.tick(&limit)?;
+            if self.iterate(&[], false)? {
+                changed = true;
+                self.finish_sensitivities();
+            }
+        }
+        let happened = self.results.events.len() > events;
+        if happened {
+            self.results.statistics.events += 1;
+            self.not_too_many(events)?;
+        }
+        if let Some(before) = before {
+            self.row_values();
+            if let Some(meter) = &mut self.meter {
+                meter.instant(&before, &self.outputs);
+            }
+        }
+        let on_grid = self.row_is_due();
+        let moved = limit
+            .z
+            .iter()
+            .zip(&self.integrator.state().z)
+            .any(|(a, b)| a.to_bits() != b.to_bits());
+        let stepped = arrived.jump || ticked && moved;
+        // Where rows are finer than ticks, what a clock holds is a staircase; coarser rows would be multiplied.
+        let step_shows = on_grid || self.setup.row_spacing() < self.schedule.shortest_period();
+        if happened || (step_shows && stepped) {
+            self.push_row(left);
+            self.row();
+        } else if on_grid {
+            self.row();
+        }
+        if on_grid {
+            self.next_row += 1;
+        }
+        delays::mark(&mut self.integrator, &mut self.consistent, delayed);
+        if changed || restart {
+            self.restart()?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn iterate(
+        &mut self,
+        scheduled: &[usize],
+        at_start: bool,
+    ) -> Result<bool, Box<Failure>> {
+        let (t, mut y, mut yp) = (
+            self.integrator.t,
+            std::mem::take(&mut self.integrator.y),
+            std::mem::take(&mut self.integrator.yp),
+        );
+        let largest = self.integrator.largest().to_vec();
+        let outcome = Instant {
+            state: self.integrator.state_mut(),
+            largest: &largest,
+            consistent: &mut self.consistent,
+            t,
+            y: &mut y,
+            yp: &mut yp,
+            conditions: &mut self.conditions,
+            log: &mut self.results.events,
+            sensitivities: self.sensitivities.as_mut(),
+        }
+        .iterate(scheduled, at_start);
+        self.integrator.y = y;
+        self.integrator.yp = yp;
+        outcome
+    }
+
+    /// The values now.
+    pub(super) fn limit(&mut self) -> Limit {
+        let t = self.integrator.t;
+        let delayed = self.integrator.state_mut().delayed_at(t).to_vec();
+        Limit {
+            y: self.integrator.y.clone(),
+            yp: self.integrator.yp.clone(),
+            z: self.integrator.state().z.clone(),
+            delayed,
+            slopes: self.sensitivities.as_ref().map(Sensitivities::snapshot),
+        }
+    }
+
+    /// Runs the clocks that tick on the left limit, whatever events happened at the instant since (C1); consistent
+    /// values follow if something that the equations read has changed.
+    pub(super) fn tick(&mut self, left: &Limit) -> Result<bool, Box<Failure>> {
+        let (t, mut y, mut yp) = (
+            self.integrator.t,
+            self.integrator.y.clone(),
+            self.integrator.yp.clone(),
+        );
+        let state = self.integrator.state_mut();
+        let mut now = std::mem::replace(&mut state.z, left.z.clone());
+        let mut slopes = left.slopes.clone();
+        let along = self.sensitivities.as_ref().zip(slopes.as_mut());
+        let Ticked {
+            ticks,
+            changed,
+            written,
+        } = self
+            .schedule
+            .run(state, t, &left.y, &left.yp, &left.delayed, along);
+        for ((now, after), before) in now.iter_mut().zip(&state.z).zip(&left.z) {
+            if after.to_bits() != before.to_bits() {
+                *now = *after;
+            }
+        }
+        state.z = now;
+        self.results.statistics.ticks += ticks;
+        if changed {
+            self.consistent
+                .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
+        }
+        if let (Some(sensitivities), Some(slopes)) = (&mut self.sensitivities, &slopes) {
+            sensitivities.take_written(slopes, &written);
+            let state = self.integrator.state_mut();
+            sensitivities.be_consistent(state, &mut self.consistent, (t, &y, &yp));
+        }
+        self.integrator.y = y;
+        self.integrator.yp = yp;
+        Ok(changed)
+    }
+
+    /// Brings derivatives by parameters to the time that the run has come to.
+    pub(super) fn advance_sensitivities(&mut self) {
+        if let Some(sensitivities) = &mut self.sensitivities {
+            let t = self.integrator.t;
+            sensitivities.advance(&mut self.integrator, t);
+        }
+    }
+
+    /// Derivatives by parameters at a fixed time again, behind an instant.
+    pub(super) fn finish_sensitivities(&mut self) {
+        if let Some(sensitivities) = &mut self.sensitivities {
+            sensitivities.finish(&mut self.integrator, &mut self.consistent);
+        }
+    }
+}
