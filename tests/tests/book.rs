@@ -230,6 +230,9 @@ fn timeless(text: &str) -> String {
         {
             return unknowns.to_owned();
         }
+        if line.ends_with(" a second") {
+            return line.split("; ").next().unwrap().to_owned();
+        }
         let line = line.split("; the remainders are ").next().unwrap();
         line.trim_end().to_owned()
     };

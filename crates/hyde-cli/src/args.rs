@@ -1,7 +1,10 @@
 //! The command line.
 
+use crate::batch::inputs::{Inputs, Kind};
+use crate::files;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Hyde: feed drives as equations.
 #[derive(Debug, Parser)]
@@ -16,12 +19,14 @@ const AFTER: &str = "Exit status: 0 done; 1 the model or its data are at fault; 
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Check a file, or the files of a package: every experiment, or the last model, without running it
+    /// Check a file, or the files of a package: every experiment and sweep, or the last model, without running it
     Check(CheckArgs),
     /// Run an experiment, compare it with its records, and test its expectations
     Run(RunArgs),
     /// Tell what each imperfection of a model contributes to the measures of an experiment
     Budget(BudgetArgs),
+    /// Run the variants of a sweep, on all cores or on a cluster; run again to go on where it ended
+    Sweep(SweepArgs),
     /// Print what a stage of the compiler makes of a model
     Emit(EmitArgs),
     /// Plot columns of results or of a record
@@ -70,6 +75,9 @@ pub(crate) struct ModelArgs {
     /// Every package of the library is known, named or not.
     #[arg(skip)]
     pub(crate) whole_library: bool,
+    /// The files of the model where they are kept track of, or are not those of the disk.
+    #[arg(skip)]
+    pub(crate) inputs: Option<Arc<Inputs>>,
 }
 
 impl ModelArgs {
@@ -85,6 +93,21 @@ impl ModelArgs {
             json: false,
             quiet: false,
             whole_library: false,
+            inputs: None,
+        }
+    }
+
+    /// Reads a file of the model: `asker` is the place of the file that names it, if one does.
+    pub(crate) fn read(
+        &self,
+        kind: Kind,
+        asker: &str,
+        name: &str,
+        path: &Path,
+    ) -> Result<Vec<u8>, String> {
+        match &self.inputs {
+            Some(inputs) => inputs.read(kind, asker, name, path),
+            None => files::read(path),
         }
     }
 }
@@ -160,6 +183,80 @@ pub(crate) enum Format {
     Parquet,
     /// `results.json`, one list a column
     Json,
+}
+
+#[derive(Clone, Debug, Args)]
+pub(crate) struct SweepArgs {
+    /// The model's file, or the folder that a sweep left
+    pub(crate) file: PathBuf,
+    /// The sweep; the file's only one if left out
+    pub(crate) sweep: Option<String>,
+    /// Set a parameter of all cases: `--set saddle.M='320 [kg]'` (repeatable)
+    #[arg(long = "set", value_name = "PATH=VALUE [UNIT]")]
+    pub(crate) settings: Vec<String>,
+    /// Give a record of the experiment its file: `--record file=strokes.csv` (repeatable)
+    #[arg(long = "record", value_name = "NAME=PATH")]
+    pub(crate) records: Vec<String>,
+    /// Look for records and the table of cases below this folder instead of beside the model
+    #[arg(long, value_name = "DIR")]
+    pub(crate) data: Option<PathBuf>,
+    /// Keep the batch in this folder: what is there is not solved again
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Form of the data set
+    #[arg(long, value_enum, default_value_t = TableFormat::Parquet)]
+    pub(crate) format: TableFormat,
+    /// Cases solved at once; one a core if left out
+    #[arg(long, value_name = "N")]
+    pub(crate) jobs: Option<usize>,
+    /// Seed of the random numbers instead of the sweep's
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Keep a variable of every case over time: `saddle.s`, `guide.*` (repeatable)
+    #[arg(long, value_name = "NAME")]
+    pub(crate) keep: Vec<String>,
+    /// Run this case alone, as `hyde run` does; `--out` takes its files
+    #[arg(long, value_name = "N", conflicts_with_all = ["shard", "engine", "keep"])]
+    pub(crate) case: Option<usize>,
+    /// Solve one part of the cases of a folder: `3/16`, or `auto/16` with the number from the scheduler
+    #[arg(long, value_name = "K/N")]
+    pub(crate) shard: Option<String>,
+    /// Print the shards of N that have cases missing, as a scheduler takes them
+    #[arg(long, value_name = "N", conflicts_with_all = ["shard", "engine", "case"])]
+    pub(crate) missing: Option<usize>,
+    /// Who solves the cases
+    #[arg(long, value_enum, default_value_t = Engine::Local)]
+    pub(crate) engine: Engine,
+    /// Into how many jobs the cases are split for a scheduler
+    #[arg(long, value_name = "N", default_value_t = 16)]
+    pub(crate) shards: usize,
+    /// An option for `sbatch`: `--slurm=--partition=long` (repeatable)
+    #[arg(long = "slurm", value_name = "OPTION", allow_hyphen_values = true)]
+    pub(crate) slurm: Vec<String>,
+    /// Print events and the summary as JSON on standard output, one object a line
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// Who solves the cases of a batch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Engine {
+    /// This process, on its cores
+    Local,
+    /// The cluster, by job arrays
+    Slurm,
+}
+
+/// Form of a data set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum TableFormat {
+    /// `cases.parquet`, units in the metadata
+    Parquet,
+    /// `cases.csv`, a header of `name [unit]` columns
+    Csv,
 }
 
 #[derive(Debug, Args)]

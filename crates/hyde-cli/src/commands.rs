@@ -12,4 +12,5 @@ pub(crate) mod modes;
 pub(crate) mod params;
 pub(crate) mod plot;
 pub(crate) mod run;
+pub(crate) mod sweep;
 pub(crate) mod test;

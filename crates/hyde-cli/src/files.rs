@@ -11,7 +11,11 @@ pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
 
 /// Reads a text file.
 pub(crate) fn read_text(path: &Path) -> Result<String, String> {
-    let bytes = read(path)?;
+    as_text(path, read(path)?)
+}
+
+/// The content of a file as text.
+pub(crate) fn as_text(path: &Path, bytes: Vec<u8>) -> Result<String, String> {
     String::from_utf8(bytes).map_err(|_| format!("`{}` is no UTF-8 text", path.display()))
 }
 
@@ -68,22 +72,74 @@ pub(crate) fn make_folder(path: &Path) -> Result<(), String> {
 
 /// Writes a file beside its place and moves it there once it is complete.
 pub(crate) fn write(path: &Path, content: &[u8]) -> Result<(), String> {
+    write_with(path, |file| file.write_all(content))
+}
+
+/// The same for a file that is made piece by piece.
+pub(crate) fn write_with(
+    path: &Path,
+    make: impl FnOnce(&mut std::fs::File) -> std::io::Result<()>,
+) -> Result<(), String> {
     let folder = path
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty())
         .unwrap_or(Path::new("."));
-    let failed =
-        |error: std::io::Error| format!("cannot write `{}`: {}", path.display(), reason(&error));
+    let failed = |error: std::io::Error| cannot_write(path, &error);
     let mut file = tempfile::Builder::new()
         .prefix(".hyde-")
         .tempfile_in(folder)
         .map_err(failed)?;
-    file.write_all(content)
+    make(file.as_file_mut())
         .and_then(|()| file.as_file().sync_all())
         .map_err(failed)?;
     make_readable(&file).map_err(failed)?;
     file.persist(path).map_err(|error| failed(error.error))?;
-    Ok(())
+    sync_folder(folder)
+}
+
+/// Opens a file for reading.
+#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
+pub(crate) fn open(path: &Path) -> Result<std::fs::File, String> {
+    std::fs::File::open(path).map_err(|error| cannot_read(path, &error))
+}
+
+/// Opens a file for locking, and makes it if it is not there.
+pub(crate) fn open_lock(path: &Path) -> Result<std::fs::File, String> {
+    let options = std::fs::OpenOptions::new()
+        .create(true)
+        .truncate(false)
+        .write(true)
+        .open(path);
+    options.map_err(|error| cannot_write(path, &error))
+}
+
+/// Makes a file with a name that nobody has, for writing.
+pub(crate) fn make_own(folder: &Path, ending: &str) -> Result<(std::fs::File, PathBuf), String> {
+    let failed = |error: std::io::Error| cannot_write(folder, &error);
+    let file = tempfile::Builder::new()
+        .prefix("part-")
+        .suffix(ending)
+        .tempfile_in(folder)
+        .map_err(failed)?;
+    make_readable(&file).map_err(failed)?;
+    file.keep().map_err(|error| failed(error.error))
+}
+
+/// Waits until the names in a folder are on the disk.
+#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
+pub(crate) fn sync_folder(folder: &Path) -> Result<(), String> {
+    let opened = std::fs::File::open(folder).and_then(|folder| folder.sync_all());
+    opened.map_err(|error| cannot_write(folder, &error))
+}
+
+/// That a file cannot be read, and why.
+pub(crate) fn cannot_read(path: &Path, error: &std::io::Error) -> String {
+    format!("cannot read `{}`: {}", path.display(), reason(error))
+}
+
+/// That a file cannot be written, and why.
+pub(crate) fn cannot_write(path: &Path, error: &std::io::Error) -> String {
+    format!("cannot write `{}`: {}", path.display(), reason(error))
 }
 
 /// Removes a file, if there is one.
@@ -113,10 +169,11 @@ fn make_readable(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
 }
 
 fn reason(error: &std::io::Error) -> String {
-    const WORDS: [(ErrorKind, &str); 3] = [
+    const WORDS: [(ErrorKind, &str); 4] = [
         (ErrorKind::NotFound, "no such file or folder"),
         (ErrorKind::PermissionDenied, "permission denied"),
         (ErrorKind::StorageFull, "the disk is full"),
+        (ErrorKind::ReadOnlyFilesystem, "the disk is read-only"),
     ];
     let known = WORDS.iter().find(|(kind, _)| *kind == error.kind());
     known.map_or_else(|| error.to_string(), |(_, words)| (*words).to_owned())

@@ -5,6 +5,7 @@
 
 mod args;
 mod asked_figures;
+mod batch;
 mod commands;
 mod exit;
 mod figures;
@@ -48,6 +49,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Check(args) => commands::check::check(args),
         Command::Run(args) => commands::run::run(args),
         Command::Budget(args) => commands::budget::budget(args),
+        Command::Sweep(args) => commands::sweep::sweep(args),
         Command::Emit(args) => commands::emit::emit(args),
         Command::Plot(args) => commands::plot::plot(args),
         Command::Bode(args) => commands::bode::bode(args),

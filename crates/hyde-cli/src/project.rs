@@ -1,6 +1,7 @@
 //! A model on its way to a program: file, experiment, records, settings.
 
 use crate::args::ModelArgs;
+use crate::batch::inputs::Kind;
 use crate::exit::Exit;
 use crate::files;
 use crate::package::{MANIFEST, Roots};
@@ -57,7 +58,9 @@ pub(crate) fn load_silently(args: &ModelArgs, needed: Records) -> Result<Project
         );
         return Err(complain(args, Exit::CommandLine, &reason));
     }
-    let text = files::read_text(&args.file)
+    let text = args
+        .read(Kind::Model, "", "", &args.file)
+        .and_then(|bytes| files::as_text(&args.file, bytes))
         .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
     let settings: Result<Vec<Setting>, String> = args
         .settings
@@ -151,7 +154,21 @@ pub(crate) fn loaded(
             .collect()
     };
     let packages = hyde_compiler::Packages {
-        find: &|importer, package| roots.find(importer, package),
+        find: &|importer, package| match &args.inputs {
+            Some(inputs) if inputs.is_replayed() => {
+                let found = inputs.found(Kind::Package, importer, package);
+                Ok(found.and_then(|(place, text)| Some((place, String::from_utf8(text).ok()?))))
+            }
+            Some(inputs) => {
+                let found = roots.find(importer, package)?;
+                if let Some((place, text)) = &found {
+                    let content = (place.clone(), text.clone().into_bytes());
+                    inputs.note(Kind::Package, importer, package, content);
+                }
+                Ok(found)
+            }
+            None => roots.find(importer, package),
+        },
         all: &all,
         searched,
         whole_library: args.whole_library,
@@ -162,7 +179,7 @@ pub(crate) fn loaded(
     {
         hyde_compiler::check_name(sources, *id, tree, &name, diagnostics);
     }
-    let tables = tables::read(&mut file, &roots, sources, diagnostics);
+    let tables = tables::read(&mut file, args, &roots, sources, diagnostics);
     (file, tables)
 }
 

@@ -1,7 +1,7 @@
 //! The records of an experiment: which files they are, and their tables.
 
 use crate::args::ModelArgs;
-use crate::files;
+use crate::batch::inputs::Kind;
 use crate::project::Records;
 use hyde_compiler::Header;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
@@ -31,7 +31,7 @@ pub(crate) fn read(
         let Some(path) = path_of(item, &given, args, needed, diagnostics) else {
             continue;
         };
-        let content = match files::read(&path) {
+        let content = match args.read(Kind::Record, "", &path.to_string_lossy(), &path) {
             Ok(content) => content,
             Err(reason) => {
                 diagnostics.push(missing(item, needed, &reason));

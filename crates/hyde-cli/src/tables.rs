@@ -1,6 +1,7 @@
 //! The files of tables: which they are, and their columns.
 
-use crate::files;
+use crate::args::ModelArgs;
+use crate::batch::inputs::Kind;
 use crate::package::Roots;
 use hyde_compiler::{File, TableFile};
 use hyde_diag::{Code, Diagnostic, Diagnostics, Sources, Span};
@@ -17,13 +18,14 @@ pub(crate) struct Table {
 /// Reads the files of every table into `file`. What is missing or wrong is reported.
 pub(crate) fn read(
     file: &mut File,
+    args: &ModelArgs,
     roots: &Roots,
     sources: &Sources,
     diagnostics: &mut Diagnostics,
 ) -> Vec<Table> {
     let mut found: Vec<Table> = Vec::new();
     for (id, name, span) in file.tables_named() {
-        match of_file(roots, &sources.get(id).name, &name, span) {
+        match of_file(args, roots, &sources.get(id).name, &name, span) {
             Ok((table, columns)) => {
                 file.tables.insert((id, name), TableFile { columns });
                 if found.iter().all(|known| known.path != table.path) {
@@ -39,19 +41,25 @@ pub(crate) fn read(
 type Columns = Vec<(String, Option<hyde_units::NamedUnit>, Vec<f64>)>;
 
 fn of_file(
+    args: &ModelArgs,
     roots: &Roots,
     importer: &str,
     name: &str,
     span: Span,
 ) -> Result<(Table, Columns), Diagnostic> {
-    let path = roots
-        .data(importer, name)
-        .map_err(|diagnostic| diagnostic.label(span, "named here"))?;
-    let content = files::read(&path).map_err(|reason| {
-        Diagnostic::error(Code::NotDeclared, format!("a table has no file: {reason}"))
+    let path = match &args.inputs {
+        Some(inputs) if inputs.is_replayed() => PathBuf::from(name),
+        Some(_) | None => roots
+            .data(importer, name)
+            .map_err(|diagnostic| diagnostic.label(span, "named here"))?,
+    };
+    let content =
+        args.read(Kind::Table, importer, name, &path)
+            .map_err(|reason| {
+                Diagnostic::error(Code::NotDeclared, format!("a table has no file: {reason}"))
             .label(span, "named here")
             .help("the path is relative to the manifest's folder, or to the model's without one")
-    })?;
+            })?;
     // A table has no time: its rows are only counted.
     let table = hyde_signal::read(&content, Some(1.0)).map_err(|error| {
         Diagnostic::error(Code::BadRecord, format!("`{}`: {error}", path.display()))

@@ -183,6 +183,14 @@ impl File {
         })
     }
 
+    /// The calibrations, diagnoses and sweeps of the user's file.
+    pub fn studies(&self) -> impl Iterator<Item = &ast::Study> {
+        self.items().filter_map(|item| match item {
+            Item::Study(study) => Some(study),
+            Item::Class(_) | Item::Type(_) | Item::Experiment(_) => None,
+        })
+    }
+
     /// The names of the models of the user's file.
     pub fn models(&self) -> impl Iterator<Item = &str> {
         self.items().filter_map(|item| match item {

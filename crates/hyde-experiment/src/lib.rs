@@ -1,7 +1,10 @@
 //! What is asked of a program beside one solution: a run with its record ([`read_record`]), measures and expectations ([`run`]); the
 //! system linearised about an operating point ([`linearize`]), its frequency response with the sampled loop closed
 //! ([`frequency_response`]) and its modes ([`modes`]); the response swept on the full hybrid model ([`swept_response`]); the
-//! forces between components ([`flows`]) and the error budget ([`BudgetOf`]); the limit test of an effect ([`limit`]).
+//! forces between components ([`flows`]) and the error budget ([`BudgetOf`]); the limit test of an effect ([`limit`]); many
+//! runs planned and kept as one ([`batch`]).
+
+pub mod batch;
 
 mod bode;
 mod budget;

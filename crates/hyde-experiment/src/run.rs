@@ -86,6 +86,33 @@ pub fn run(
     records: &BTreeMap<String, Table>,
     options: &Options,
 ) -> Result<Run, RunError> {
+    let places = places(program, &options.gradient)?;
+    let mut setup = setup(program, records, options)?;
+    setup.sensitivities = (!places.is_empty()).then_some(places.as_slice());
+    let results = hyde_sim::simulate(program, &setup).map_err(RunError::Failed)?;
+    let skip_s = program
+        .kernels
+        .constant(Constant::Skip, &setup.parameters)
+        .unwrap_or(0.0);
+    let channels = compare::channels(program, records, &setup.parameters, &results, skip_s)
+        .map_err(RunError::Compare)?;
+    let measures = measures(program, &setup.parameters, &results);
+    Ok(Run {
+        stop_s: setup.stop_s,
+        tolerances: (setup.rtol, setup.atol),
+        parameters: setup.parameters,
+        results,
+        channels,
+        measures,
+    })
+}
+
+/// What a run is told: parameters, times and tolerances of the experiment, or of the caller where those are given.
+pub(crate) fn setup<'r>(
+    program: &Program,
+    records: &'r BTreeMap<String, Table>,
+    options: &Options,
+) -> Result<Setup<'r>, RunError> {
     let parameters = parameters(program, records, &options.set)?;
     let constant = |which| program.kernels.constant(which, &parameters);
     let stop_s = match (options.stop_s, &program.experiment.stop) {
@@ -127,24 +154,7 @@ pub fn run(
     setup.atol = atol;
     setup.max_step_s = max_step;
     setup.rows_s = rows(program, records, stop_s, every);
-    let places = places(program, &options.gradient)?;
-    setup.sensitivities = (!places.is_empty()).then_some(places.as_slice());
-    let results = hyde_sim::simulate(program, &setup).map_err(RunError::Failed)?;
-    let skip_s = program
-        .kernels
-        .constant(Constant::Skip, &setup.parameters)
-        .unwrap_or(0.0);
-    let channels = compare::channels(program, records, &setup.parameters, &results, skip_s)
-        .map_err(RunError::Compare)?;
-    let measures = measures(program, &setup.parameters, &results);
-    Ok(Run {
-        parameters: setup.parameters,
-        stop_s,
-        tolerances: (rtol, atol),
-        results,
-        channels,
-        measures,
-    })
+    Ok(setup)
 }
 
 /// Positions in the parameter vector of the parameters that a run is to be differentiated by.
@@ -235,7 +245,12 @@ fn rows(
     rows
 }
 
-fn measures(program: &Program, parameters: &[f64], results: &Results) -> Vec<MeasureValue> {
+/// The measures and expectations of a solution, which needs the outputs that they reduce only.
+pub(crate) fn measures(
+    program: &Program,
+    parameters: &[f64],
+    results: &Results,
+) -> Vec<MeasureValue> {
     let experiment = &program.experiment;
     let reductions: Vec<f64> = experiment
         .reductions

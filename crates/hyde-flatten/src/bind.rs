@@ -5,11 +5,15 @@ mod elements;
 use elements::Elements;
 
 use crate::dimension::Dim;
-use crate::instance::{Binding, InstanceId, Lowering, Member, Scope, Setting, Typed};
+use crate::instance::{
+    Binding, InstanceId, Lowering, Member, ParameterNotes, Scope, Setting, Typed,
+};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic, MadeBy};
+use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::flat::{ClockedEquation, Equation};
-use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, ParamId, Range, VarId, VariableKind};
+use hyde_ir::{
+    Expr as Ir, ExprId, Id as _, Index, ParamId, Parameter, Range, Role, VarId, VariableKind,
+};
 use hyde_syntax::ast::Element;
 use hyde_units::Dimension;
 
@@ -237,6 +241,7 @@ impl<'a> Model<'a, '_> {
 
     fn lower_start(&mut self, var: VarId) {
         let Some(start) = self.notes(var).start.clone() else {
+            self.free_start(var, self.flat.variables[var].origin.span);
             return;
         };
         let (dim, truth) = (self.dim(var), self.flat.variables[var].boolean);
@@ -265,6 +270,46 @@ impl<'a> Model<'a, '_> {
             return;
         }
         self.flat.variables[var].start = self.values(&start, len, &dim, truth);
+        self.free_start(var, start.span);
+    }
+
+    /// A start value that is set from outside, as `NAME.start`, is a parameter of that name.
+    fn free_start(&mut self, var: VarId, span: Span) {
+        let variable = &self.flat.variables[var];
+        let name = format!("{}.start", variable.name);
+        if variable.len.is_some() || variable.boolean || !self.input.settings.contains_key(&name) {
+            return;
+        }
+        let notes = self.notes(var);
+        let (instance, dim) = (notes.instance, notes.dim.clone());
+        let quantity = variable.quantity.clone();
+        let value = match variable.start.first() {
+            Some(&value) => value,
+            None => self.flat.exprs.constant(0.0),
+        };
+        self.parameters.push(ParameterNotes {
+            dim,
+            binding: None,
+            state: Lowering::Done,
+            boolean: false,
+            within: None,
+        });
+        let param = self.flat.parameters.push(Parameter {
+            name,
+            len: None,
+            value: vec![value],
+            quantity,
+            structural: false,
+            is_final: false,
+            derived: false,
+            prior: None,
+            role: Role::Plain,
+            range: None,
+            source: None,
+            origin: self.origin(instance, span),
+        });
+        let start = self.flat.exprs.add(Ir::Param(param, Index::SCALAR));
+        self.flat.variables[var].start = vec![start];
     }
 
     /// `Real x = e` as an equation of x.

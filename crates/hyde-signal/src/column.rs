@@ -121,8 +121,12 @@ impl Column {
     }
 }
 
-/// The shortest value that converts to `si`: 15 digits if they do, else the doubles next to the quotient.
-fn in_unit(si: f64, unit: Unit) -> f64 {
+/// The value in a unit: the shortest that converts to `si`, 15 digits if they do, else the doubles next to the quotient.
+#[must_use]
+pub fn in_unit(si: f64, unit: Unit) -> f64 {
+    if unit.is_si() {
+        return si;
+    }
     let value = unit.from_si(si);
     let short = format!("{value:.14e}").parse().unwrap_or(value);
     let candidates = [short, value, value.next_up(), value.next_down()];

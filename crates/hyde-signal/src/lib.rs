@@ -28,7 +28,7 @@ mod record;
 mod signal;
 mod table;
 
-pub use column::{Column, UnitConflict};
+pub use column::{Column, UnitConflict, in_unit};
 pub use record::{RecordError, read};
 pub use signal::{Cursor, Signal};
 pub use table::{Table, TableError};

@@ -25,4 +25,4 @@ pub use expression::{Argument, Binary, Comprehension, Expr, ExprKind, Range, Una
 pub use file::{File, Import, Item, TypeItem};
 pub use modes::{Exit, Mode, Modes};
 pub use name::{Name, Part, Reference, UnitText};
-pub use study::{SettingValue, Study, StudyItem, StudyKind, Variation};
+pub use study::{SettingValue, Study, StudyItem, StudyKind, Variation, Varied};

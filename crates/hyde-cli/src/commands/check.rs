@@ -2,13 +2,18 @@
 
 use super::effects::wrapped;
 use crate::args::{CheckArgs, ModelArgs};
+use crate::batch::inputs::Inputs;
+use crate::batch::order::Order;
+use crate::batch::prepare::Prepared;
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Aim, Project, Records, complain, print_output, report_errors};
 use crate::render;
 use hyde_compiler::{States, ideals};
 use hyde_diag::{Diagnostics, Origin, Sources};
+use hyde_syntax::ast::StudyKind;
 use serde_json::{Value, json};
+use std::sync::Arc;
 
 /// Checks every experiment of a file (its records included), or its last model if it has none; all files of a folder. One
 /// that is wrong does not keep the others from being looked at.
@@ -126,6 +131,7 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
         return Err(exit);
     }
     project.print_warnings(args);
+    found.names.extend(sweeps(args, &project)?);
     if let Value::Array(list) = render::to_json(&project.diagnostics, &project.sources) {
         found.warnings = list;
     }
@@ -146,6 +152,37 @@ fn check_ideals(project: &mut Project, aim: Aim) -> Result<(), Exit> {
     }
     project.file = own;
     Ok(())
+}
+
+/// The sweeps of a file, each laid out.
+fn sweeps(args: &ModelArgs, project: &Project) -> Result<Vec<String>, Exit> {
+    let mut names = Vec::new();
+    for study in project
+        .file
+        .studies()
+        .filter(|study| study.kind == StudyKind::Sweep)
+    {
+        let order = Order {
+            file: args.file.clone(),
+            sweep: study.name.text.clone(),
+            settings: args.settings.clone(),
+            records: args.records.clone(),
+            data: args.data.clone(),
+            seed: None,
+            keep: Vec::new(),
+        };
+        let inputs = Arc::new(Inputs::recording());
+        match Prepared::new(&order, &inputs, Records::IfThere, (args.json, true)) {
+            Ok(batch) => names.push(format!(
+                "sweep {} ({} cases)",
+                order.sweep,
+                batch.plan.count()
+            )),
+            Err(Exit::Done) => {}
+            Err(failed) => return Err(failed),
+        }
+    }
+    Ok(names)
 }
 
 /// Lines on states where the equations left a choice, or a start value is no condition of the model.

@@ -123,4 +123,5 @@ pages! {
     NoStop "E0807";
     BadSolve "E0808";
     BadSet "E0809";
+    BadSweep "E0813";
 }

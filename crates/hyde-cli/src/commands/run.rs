@@ -26,6 +26,14 @@ pub(crate) fn run(args: &RunArgs) -> Exit {
     }
 }
 
+/// The same for a model that is loaded.
+pub(crate) fn run_project(args: &RunArgs, project: Project) -> Exit {
+    match solved_of(args, project) {
+        Ok((project, compiled, run, took)) => finish(args, &project, &compiled, &run, took),
+        Err(exit) => exit,
+    }
+}
+
 /// Loads, compiles and solves.
 pub(crate) fn solved(
     args: &RunArgs,
@@ -78,7 +86,7 @@ pub(crate) fn solved_of(
 }
 
 /// The flag that Ctrl-C sets; a second Ctrl-C ends the process at once.
-fn interrupted() -> Arc<AtomicBool> {
+pub(crate) fn interrupted() -> Arc<AtomicBool> {
     let flag = Arc::new(AtomicBool::new(false));
     let set = Arc::clone(&flag);
     // A process has one handler: a second run of it keeps the first one's, which ends it.

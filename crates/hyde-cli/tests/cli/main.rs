@@ -14,3 +14,4 @@ mod parquet;
 mod printed;
 mod settings;
 mod status;
+mod sweep;

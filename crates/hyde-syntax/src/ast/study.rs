@@ -1,6 +1,6 @@
 //! Studies: calibrations, diagnoses and sweeps.
 
-use super::{Expr, Name, Range, Reference};
+use super::{EffectUse, Expr, Name, Range, Reference};
 use hyde_diag::Span;
 
 /// What kind of study.
@@ -36,6 +36,8 @@ pub struct Study {
 pub enum StudyItem {
     /// `vary saddle.M in 200 .. 400 [kg];`
     Vary(Vec<Variation>),
+    /// `vary effect Stribeck(dF = 150 [N]) on guide;`: without each and with it.
+    VaryEffects(Vec<EffectUse>),
     /// `max_effects 3;`, `fit bench("fit-*.csv");`
     Setting(Name, Vec<SettingValue>),
 }
@@ -43,12 +45,27 @@ pub enum StudyItem {
 /// What is varied, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variation {
-    /// A parameter, or the word `uncertain`.
+    /// Of what kind the target is.
+    pub what: Varied,
+    /// A parameter, a start value, a component, or the word `uncertain`; a stimulus, a record, or the word `model`.
     pub target: Reference,
     /// `in a .. b`
     pub within: Option<Range>,
     /// `= {…}`
     pub values: Option<Expr>,
+}
+
+/// What a variation is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Varied {
+    /// A value or a component of the model.
+    Part,
+    /// `vary stimulus r = {…}`: what drives an input.
+    Stimulus,
+    /// `vary record file = {"a.csv", …}`: the file of a record.
+    Record,
+    /// `vary model = {A, B}`: the model itself.
+    Model,
 }
 
 /// The value of a setting.

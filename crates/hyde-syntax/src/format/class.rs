@@ -4,7 +4,7 @@ use super::declaration::{declaration_text, measure_text, modification};
 use super::expression::{call_arguments, optional_arguments, range};
 use super::name::{doc, reference};
 use super::{Printer, expression};
-use crate::ast::{AccountKind, Class, ClassBody, ClassKind, Element};
+use crate::ast::{AccountKind, Class, ClassBody, ClassKind, EffectUse, Element};
 use std::fmt::Write as _;
 
 impl Printer {
@@ -28,15 +28,8 @@ impl Printer {
                     modification(changes)
                 );
                 for (index, used) in effects.iter().enumerate() {
-                    let sites: Vec<String> = used.sites.iter().map(reference).collect();
                     let lead = if index == 0 { " with " } else { ", " };
-                    let effect = reference(&used.effect);
-                    let _ = write!(
-                        text,
-                        "{lead}{effect}{} on {}",
-                        modification(&used.changes),
-                        sites.join(", ")
-                    );
+                    let _ = write!(text, "{lead}{}", effect_use(used));
                 }
                 self.line(&format!("{text}{};", doc(class.doc.as_deref())));
             }
@@ -149,4 +142,15 @@ impl Printer {
             }
         }
     }
+}
+
+/// `Stribeck(dF = 150 [N]) on guide`
+pub(super) fn effect_use(used: &EffectUse) -> String {
+    let sites: Vec<String> = used.sites.iter().map(reference).collect();
+    let effect = reference(&used.effect);
+    format!(
+        "{effect}{} on {}",
+        modification(&used.changes),
+        sites.join(", ")
+    )
 }

@@ -1,9 +1,10 @@
 //! Studies: calibrations, diagnoses and sweeps.
 
+use super::class::effect_use;
 use super::expression::range;
 use super::name::{doc, reference};
 use super::{Printer, expression};
-use crate::ast::{SettingValue, Study, StudyItem, StudyKind};
+use crate::ast::{SettingValue, Study, StudyItem, StudyKind, Varied};
 
 impl Printer {
     pub(super) fn study(&mut self, study: &Study) {
@@ -33,10 +34,19 @@ impl Printer {
                                     .values
                                     .as_ref()
                                     .map_or_else(String::new, |e| format!(" = {}", expression(e)));
-                                format!("{}{within}{values}", reference(&variation.target))
+                                let what = match variation.what {
+                                    Varied::Stimulus => "stimulus ",
+                                    Varied::Record => "record ",
+                                    Varied::Part | Varied::Model => "",
+                                };
+                                format!("{what}{}{within}{values}", reference(&variation.target))
                             })
                             .collect();
                         format!("vary {};", texts.join(", "))
+                    }
+                    StudyItem::VaryEffects(list) => {
+                        let texts: Vec<String> = list.iter().map(effect_use).collect();
+                        format!("vary effect {};", texts.join(", "))
                     }
                     StudyItem::Setting(name, values) => {
                         let texts: Vec<String> = values

@@ -3,8 +3,8 @@
 use super::Parser;
 use super::build::{Builder, Node, has, parts, significant};
 use crate::ast::{
-    Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, RecordItem, SettingValue,
-    Study, StudyItem, StudyKind, Variation,
+    Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, Part, RecordItem, Reference,
+    SettingValue, Study, StudyItem, StudyKind, Variation, Varied,
 };
 use crate::grammar::Rule;
 use crate::recover;
@@ -274,10 +274,18 @@ impl Builder<'_> {
 
     fn study_item(&mut self, node: Node<'_>, items: &mut Vec<StudyItem>) {
         if node.as_rule() == Rule::vary {
-            let variations = parts(node)
-                .filter_map(|variation| self.variation(variation))
-                .collect();
-            items.push(StudyItem::Vary(variations));
+            let (mut variations, mut effects) = (Vec::new(), Vec::new());
+            for part in parts(node) {
+                if part.as_rule() == Rule::vary_effect {
+                    effects.extend(parts(part).filter_map(|part| self.effect_use(part)));
+                } else {
+                    variations.extend(self.variation(part));
+                }
+            }
+            items.push(match effects.as_slice() {
+                [] => StudyItem::Vary(variations),
+                [..] => StudyItem::VaryEffects(effects),
+            });
             return;
         }
         let mut inner = parts(node);
@@ -301,9 +309,32 @@ impl Builder<'_> {
     }
 
     fn variation(&mut self, node: Node<'_>) -> Option<Variation> {
-        let mut inner = parts(node);
+        let mut inner = parts(node).peekable();
+        let mut what = Varied::Part;
+        let mut target = None;
+        if let Some(word) = inner.next_if(|part| part.as_rule() == Rule::varied_model) {
+            what = Varied::Model;
+            let name = self.name(&word);
+            target = Some(Reference {
+                span: name.span,
+                parts: vec![Part {
+                    name,
+                    subscripts: Vec::new(),
+                }],
+            });
+        } else if let Some(word) = inner.next_if(|part| part.as_rule() == Rule::varied) {
+            what = if has(&word, Rule::kw_stimulus) {
+                Varied::Stimulus
+            } else {
+                Varied::Record
+            };
+        }
         let mut variation = Variation {
-            target: self.reference(inner.next()?),
+            what,
+            target: match target {
+                Some(target) => target,
+                None => self.reference(inner.next()?),
+            },
             within: None,
             values: None,
         };

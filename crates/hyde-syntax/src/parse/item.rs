@@ -297,7 +297,7 @@ impl Builder<'_> {
         })
     }
 
-    fn effect_use(&mut self, node: Node<'_>) -> Option<EffectUse> {
+    pub(super) fn effect_use(&mut self, node: Node<'_>) -> Option<EffectUse> {
         let mut inner = parts(node);
         let effect = self.reference(inner.next()?);
         let mut used = EffectUse {

@@ -1,0 +1,107 @@
+//! [`Inputs`]: every file that a model is made from, as it was read: to tell whether two batches are one, and to make the
+//! same model elsewhere, or later when the files have changed.
+
+use crate::files;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::{Mutex, PoisonError};
+
+/// What a file is to a model.
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
+)]
+#[serde(rename_all = "lowercase")]
+pub(crate) enum Kind {
+    /// The user's file.
+    Model,
+    /// A package that a file names.
+    Package,
+    /// A lookup table that a file names.
+    Table,
+    /// A record of the experiment, or the table of cases.
+    Record,
+}
+
+/// Which file is meant: what it is, the place of the file that names it, and the name there.
+pub(crate) type Key = (Kind, String, String);
+
+/// A file: the place it was read from, and its content.
+pub(crate) type Content = (String, Vec<u8>);
+
+/// Files that were read, or that are to be read instead of those of the disk.
+#[derive(Debug, Default)]
+pub(crate) struct Inputs {
+    replayed: bool,
+    files: Mutex<BTreeMap<Key, Content>>,
+}
+
+impl Inputs {
+    /// Notes what is read.
+    pub(crate) fn recording() -> Self {
+        Self::default()
+    }
+
+    /// Gives these files and no others.
+    pub(crate) fn replaying(files: BTreeMap<Key, Content>) -> Self {
+        Self {
+            replayed: true,
+            files: Mutex::new(files),
+        }
+    }
+
+    /// Whether the files are not those of the disk.
+    pub(crate) fn is_replayed(&self) -> bool {
+        self.replayed
+    }
+
+    /// Reads a file.
+    pub(crate) fn read(
+        &self,
+        kind: Kind,
+        asker: &str,
+        name: &str,
+        path: &Path,
+    ) -> Result<Vec<u8>, String> {
+        if self.replayed {
+            let found = self.found(kind, asker, name).map(|(_, content)| content);
+            return found.ok_or_else(|| {
+                format!("`{}` is not among the files of the batch", path.display())
+            });
+        }
+        let content = files::read(path)?;
+        self.note(
+            kind,
+            asker,
+            name,
+            (path.to_string_lossy().into_owned(), content.clone()),
+        );
+        Ok(content)
+    }
+
+    /// Notes a file that was read otherwise.
+    pub(crate) fn note(&self, kind: Kind, asker: &str, name: &str, content: Content) {
+        let key = (kind, asker.to_owned(), name.to_owned());
+        self.files
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .insert(key, content);
+    }
+
+    /// A file that is known.
+    pub(crate) fn found(&self, kind: Kind, asker: &str, name: &str) -> Option<Content> {
+        let key = (kind, asker.to_owned(), name.to_owned());
+        self.files
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .get(&key)
+            .cloned()
+    }
+
+    /// All of them.
+    pub(crate) fn all(&self) -> BTreeMap<Key, Content> {
+        self.files
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
+            .clone()
+    }
+}

@@ -1,0 +1,179 @@
+//! Makes the data set of a batch from its store: one row a case, in their order, whoever solved them and when.
+
+use super::prepare::Prepared;
+use super::store::Store;
+use crate::args::TableFormat;
+use crate::files;
+use hyde_experiment::batch::{Gathered, Outcome, ROWS, Summary};
+use hyde_signal::parquet::{Field, Kind, Values, Writer};
+use std::fmt::Write as _;
+use std::io::{BufWriter, Write};
+use std::path::Path;
+
+/// Writes the data set of a batch whose store has every case, and sums it up. A file is there whole or not at all.
+pub(crate) fn merge(
+    batch: &Prepared,
+    store: &Store,
+    folder: &Path,
+    format: TableFormat,
+) -> Result<Summary, String> {
+    let mut summary = None;
+    let mut notes = batch.dataset.roles(&batch.plan);
+    for (key, value) in [
+        ("hyde", env!("CARGO_PKG_VERSION").to_owned()),
+        ("batch", batch.parts.whole.to_string()),
+        ("sweep", batch.draft.name.clone()),
+        ("experiment", batch.draft.experiment.clone()),
+        ("model", batch.project.model.clone()),
+    ] {
+        notes.push((key.to_owned(), value));
+    }
+    let name = match format {
+        TableFormat::Parquet => "cases.parquet",
+        TableFormat::Csv => "cases.csv",
+    };
+    let fields = batch.dataset.fields(&batch.plan);
+    files::write_with(&folder.join(name), |file| {
+        let mut out = Table::new(BufWriter::new(file), format, &fields, &notes)?;
+        let mut gathered = Gathered::default();
+        let mut rows: Vec<(usize, Outcome)> = Vec::with_capacity(ROWS);
+        each(batch, store, |case, outcome| {
+            gathered.add(&batch.plan, case, &outcome);
+            let trajectory = None;
+            rows.push((
+                case,
+                Outcome {
+                    trajectory,
+                    ..outcome
+                },
+            ));
+            if rows.len() == ROWS {
+                out.rows(&batch.dataset.rows(&batch.plan, &rows))?;
+                rows.clear();
+            }
+            Ok(())
+        })?;
+        if !rows.is_empty() {
+            out.rows(&batch.dataset.rows(&batch.plan, &rows))?;
+        }
+        summary = Some(gathered.summary(&batch.dataset));
+        out.finish()
+    })?;
+    if !batch.dataset.kept.is_empty() {
+        trajectories(batch, store, folder, format, &notes)?;
+    }
+    Ok(summary.unwrap_or_default())
+}
+
+/// What was kept over time: the rows of each case behind those of the one before, each case a group.
+fn trajectories(
+    batch: &Prepared,
+    store: &Store,
+    folder: &Path,
+    format: TableFormat,
+    notes: &[(String, String)],
+) -> Result<(), String> {
+    let name = match format {
+        TableFormat::Parquet => "trajectories.parquet",
+        TableFormat::Csv => "trajectories.csv",
+    };
+    let fields = batch.dataset.trajectory_fields();
+    files::write_with(&folder.join(name), |file| {
+        let mut out = Table::new(BufWriter::new(file), format, &fields, notes)?;
+        each(batch, store, |case, outcome| match outcome.trajectory {
+            Some(trajectory) => out.rows(&batch.dataset.trajectory_rows(case, &trajectory)),
+            None => Ok(()),
+        })?;
+        out.finish()
+    })
+}
+
+/// Gives the outcome of each case, in their order.
+fn each(
+    batch: &Prepared,
+    store: &Store,
+    mut take: impl FnMut(usize, Outcome) -> std::io::Result<()>,
+) -> std::io::Result<()> {
+    let mut cases = 1..=batch.plan.count();
+    let mut given = |key: &str, bytes: Vec<u8>| {
+        let case = cases.next().filter(|case| Prepared::key(*case) == key);
+        let outcome = Outcome::decode(&bytes);
+        let (case, outcome) = case
+            .zip(outcome)
+            .ok_or_else(|| format!("case {key} is out of place"))?;
+        take(case, outcome).map_err(|error| error.to_string())
+    };
+    store.each(&mut given).map_err(std::io::Error::other)?;
+    match cases.next() {
+        None => Ok(()),
+        Some(case) => Err(std::io::Error::other(format!("case {case} is missing"))),
+    }
+}
+
+/// A table that is written row by row.
+enum Table<W: Write + Send> {
+    Parquet(Box<Writer<W>>),
+    Csv(W),
+}
+
+impl<W: Write + Send> Table<W> {
+    fn new(
+        mut sink: W,
+        format: TableFormat,
+        fields: &[Field],
+        notes: &[(String, String)],
+    ) -> std::io::Result<Self> {
+        match format {
+            TableFormat::Parquet => Ok(Self::Parquet(Box::new(Writer::new(sink, fields, notes)?))),
+            TableFormat::Csv => {
+                let names = fields.iter().map(|field| match (&field.unit, field.kind) {
+                    (Some(unit), _) => quoted(&format!("{} [{unit}]", field.name)),
+                    (None, Kind::Number | Kind::Integer | Kind::Text) => quoted(&field.name),
+                });
+                writeln!(sink, "{}", names.collect::<Vec<_>>().join(","))?;
+                Ok(Self::Csv(sink))
+            }
+        }
+    }
+
+    fn rows(&mut self, values: &[Values]) -> std::io::Result<()> {
+        match self {
+            Self::Parquet(writer) => writer.rows(values),
+            Self::Csv(sink) => {
+                let mut line = String::new();
+                for row in 0..values.first().map_or(0, Values::len) {
+                    line.clear();
+                    for (at, column) in values.iter().enumerate() {
+                        if at > 0 {
+                            line.push(',');
+                        }
+                        // Writing to a string cannot fail.
+                        let _ = match column {
+                            Values::Numbers(list) if list[row].is_nan() => Ok(()),
+                            Values::Numbers(list) => write!(line, "{}", list[row]),
+                            Values::Integers(list) => write!(line, "{}", list[row]),
+                            Values::Texts(list) => write!(line, "{}", quoted(&list[row])),
+                        };
+                    }
+                    writeln!(sink, "{line}")?;
+                }
+                Ok(())
+            }
+        }
+    }
+
+    fn finish(self) -> std::io::Result<()> {
+        match self {
+            Self::Parquet(writer) => writer.finish()?.flush(),
+            Self::Csv(mut sink) => sink.flush(),
+        }
+    }
+}
+
+fn quoted(text: &str) -> String {
+    if text.contains([',', '"', '\n', '\r']) {
+        format!("\"{}\"", text.replace('"', "\"\""))
+    } else {
+        text.to_owned()
+    }
+}

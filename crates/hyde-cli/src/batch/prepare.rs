@@ -1,0 +1,219 @@
+//! From an order to its plan: the model loaded, its first variant compiled, the cases laid out, the identity known.
+
+use super::inputs::{Inputs, Kind};
+use super::order::{Order, Parts};
+use super::variants::{Source, Variants};
+use crate::args::ModelArgs;
+use crate::exit::Exit;
+use crate::files;
+use crate::project::{self, Project, Records, complain, report_errors};
+use hyde_diag::{Code, Diagnostic, Diagnostics, Sources};
+use hyde_experiment::batch::{Dataset, Draft, Model, Plan, record_files};
+use hyde_syntax::ast::{Study, StudyKind};
+use std::path::Path;
+use std::sync::Arc;
+
+/// A batch that can be solved.
+pub(crate) struct Prepared {
+    pub(crate) args: ModelArgs,
+    pub(crate) project: Project,
+    pub(crate) draft: Draft,
+    pub(crate) plan: Plan,
+    pub(crate) dataset: Dataset,
+    pub(crate) variants: Variants,
+    pub(crate) parts: Parts,
+}
+
+impl Prepared {
+    /// Prepares an order. What is wrong with the model or the sweep is reported; a missing record that is not needed ends it
+    /// with nothing said.
+    pub(crate) fn new(
+        order: &Order,
+        inputs: &Arc<Inputs>,
+        needed: Records,
+        (json, quiet): (bool, bool),
+    ) -> Result<Self, Exit> {
+        let mut args = ModelArgs::of_file(&order.file);
+        args.settings.clone_from(&order.settings);
+        args.records.clone_from(&order.records);
+        args.data.clone_from(&order.data);
+        (args.json, args.quiet) = (json, quiet);
+        args.inputs = Some(Arc::clone(inputs));
+        let study = study(&args, &order.sweep)?;
+        args.experiment = Some(study.of.dotted());
+        let mut project = project::load(&args, needed)?;
+        if project.experiment.is_none() {
+            return Err(Exit::Done); // Its records are not there, which was to be no error.
+        }
+        let refuse = |mut project: Project, diagnostic: Diagnostic| {
+            project.diagnostics.push(diagnostic);
+            project.finish_with_errors(&args)
+        };
+        let mut draft = match Draft::read(&study) {
+            Ok(draft) => draft,
+            Err(diagnostic) => return Err(refuse(project, diagnostic)),
+        };
+        draft.keep.extend(order.keep.iter().cloned());
+        let source = Source {
+            project: &project,
+            args: &args,
+            draft: &draft,
+        };
+        let first = vec![0; draft.choices().count()];
+        let ready = match source.compile(&first, &[]) {
+            Ok(ready) => ready,
+            Err(diagnostics) => return Err(report_errors(&args, &project.sources, &diagnostics)),
+        };
+        let cases = match &draft.cases {
+            None => None,
+            Some(name) => {
+                Some(table(&args, name).map_err(|why| complain(&args, Exit::Model, &why))?)
+            }
+        };
+        let parameters = hyde_experiment::parameters(&ready.program, &ready.tables, &project.set());
+        let parameters = match parameters {
+            Ok(parameters) => parameters,
+            Err(error) => {
+                let (diagnostic, exit) =
+                    crate::run_failure::diagnostic(&error, &ready.program, None);
+                return Err(complain(&args, exit, &diagnostic.message));
+            }
+        };
+        let model = Model {
+            program: &ready.program,
+            parameters: &parameters,
+            cases: cases.as_ref(),
+            seed: order.seed,
+        };
+        let plan = match Plan::new(&draft, &model) {
+            Ok(plan) => plan,
+            Err(diagnostic) => return Err(refuse(project, diagnostic)),
+        };
+        let dataset = match Dataset::new(&ready.program, &draft.keep) {
+            Ok(dataset) => dataset,
+            Err(name) => {
+                let diagnostic = Diagnostic::error(Code::BadSweep, format!("`{name}` is to be kept, and no variable is called so"))
+                    .label(study.name.span, "in this sweep")
+                    .help("`hyde run --out DIR` leaves the names of all; `keep guide.*;` keeps those of a part");
+                return Err(refuse(project, diagnostic));
+            }
+        };
+        read_all_records(&source).map_err(|why| complain(&args, Exit::Model, &why))?;
+        if dataset.measures.is_empty() && dataset.kept.is_empty() {
+            let diagnostic = Diagnostic::warning(
+                Code::BadSweep,
+                "the experiment measures nothing, and nothing is kept",
+            )
+            .label(
+                study.of.span,
+                "write `measure Length peak = max(abs(e));` there",
+            );
+            project.diagnostics.push(diagnostic);
+        }
+        project.print_warnings(&args);
+        let parts = order.identity(inputs);
+        Ok(Self {
+            variants: Variants::new(&dataset),
+            args,
+            project,
+            draft,
+            plan,
+            dataset,
+            parts,
+        })
+    }
+
+    /// What its variants are made of.
+    pub(crate) fn source(&self) -> Source<'_> {
+        Source {
+            project: &self.project,
+            args: &self.args,
+            draft: &self.draft,
+        }
+    }
+
+    /// The key of a case in a store.
+    pub(crate) fn key(case: usize) -> String {
+        format!("{case:010}")
+    }
+}
+
+/// The sweep that is meant: the one named, or the file's only one.
+fn study(args: &ModelArgs, name: &str) -> Result<Study, Exit> {
+    let text = args
+        .read(Kind::Model, "", "", &args.file)
+        .and_then(|bytes| files::as_text(&args.file, bytes))
+        .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let (file, _) = project::loaded(args, &mut sources, &text, &mut diagnostics);
+    if diagnostics.has_errors() {
+        return Err(report_errors(args, &sources, &diagnostics));
+    }
+    let all: Vec<&Study> = file
+        .studies()
+        .filter(|study| study.kind == StudyKind::Sweep)
+        .collect();
+    let found = match all.as_slice() {
+        [only] if name.is_empty() => Some(*only),
+        list => list.iter().copied().find(|study| study.name.text == name),
+    };
+    found.cloned().ok_or_else(|| {
+        let names: Vec<String> = all
+            .iter()
+            .map(|study| format!("`{}`", study.name.text))
+            .collect();
+        let has = if names.is_empty() {
+            "none".to_owned()
+        } else {
+            names.join(", ")
+        };
+        let reason = match name {
+            "" => format!("which sweep? the file has {has}"),
+            name => format!("the file has no sweep `{name}`; it has {has}"),
+        };
+        complain(args, Exit::CommandLine, &reason)
+    })
+}
+
+/// The table of cases: looked for as records are.
+fn table(args: &ModelArgs, name: &str) -> Result<hyde_signal::Table, String> {
+    if !crate::package::is_inside(name) {
+        return Err(format!("`{name}` leaves the model's folder"));
+    }
+    let root = args
+        .data
+        .clone()
+        .or_else(|| args.file.parent().map(Path::to_path_buf));
+    let path = root.unwrap_or_default().join(name);
+    let bytes = args.read(Kind::Record, "", &path.to_string_lossy(), &path)?;
+    // A table of cases has no time: its rows are only counted.
+    hyde_signal::read(&bytes, Some(1.0)).map_err(|error| format!("`{}`: {error}", path.display()))
+}
+
+/// Reads the records of every alternative, so that all that the batch reads is known.
+fn read_all_records(source: &Source<'_>) -> Result<(), String> {
+    let counts: Vec<usize> = source
+        .draft
+        .choices()
+        .map(|choice| choice.options.len())
+        .collect();
+    for (at, &count) in counts.iter().enumerate() {
+        for option in 1..count {
+            let mut options = vec![0; counts.len()];
+            options[at] = option;
+            if !record_files(source.draft, &options).is_empty()
+                && source
+                    .draft
+                    .choices()
+                    .nth(at)
+                    .is_some_and(|c| c.name.starts_with("record "))
+            {
+                source.compile(&options, &[]).map_err(|diagnostics| {
+                    let first = diagnostics.iter().next().map(|d| d.message.clone());
+                    first.unwrap_or_default()
+                })?;
+            }
+        }
+    }
+    Ok(())
+}

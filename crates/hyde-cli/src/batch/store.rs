@@ -1,0 +1,327 @@
+//! [`Store`]: bytes by key, durable: what batches and other long studies keep finished tasks in.
+//!
+//! - [`Store::open`] a folder with the identity of the study; one of another identity is refused.
+//! - [`Store::has`] a key? then its task is done and need not be again.
+//! - [`Store::put`] bytes for a key: when it returns they outlive the process, killed however; they outlive the machine once
+//!   [`Store::sync`] has returned after it.
+//! - [`Store::each`] key with its bytes, in the order of keys.
+//!
+//! The folder holds journals (see [`hyde_experiment::batch`]). Each process appends to one of its own, so any number of them
+//! may work in one folder; where two did the same task the first found counts. A record that was cut off is not there. If
+//! the disk is full, the journal is cut back to its last whole record, and `put` says so.
+
+use crate::files;
+use hyde_experiment::batch::{HEADER_LEN, Identity, Scanned, header, record, scan};
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+
+/// Bytes by key in a folder.
+pub(crate) struct Store {
+    folder: PathBuf,
+    identity: Identity,
+    state: Mutex<State>,
+}
+
+#[derive(Default)]
+struct State {
+    journals: Vec<PathBuf>,
+    places: BTreeMap<String, Place>,
+    own: Option<Own>,
+}
+
+/// Where the bytes of a key are.
+#[derive(Clone, Copy)]
+struct Place {
+    journal: usize,
+    at: u64,
+    len: usize,
+}
+
+/// The journal that this process writes.
+struct Own {
+    file: File,
+    number: usize,
+    end: u64,
+    dirty: bool,
+}
+
+impl Store {
+    /// Opens the store of a folder; what is missing is made when something is put in.
+    pub(crate) fn open(folder: &Path, identity: Identity) -> Result<Self, String> {
+        let mut state = State::default();
+        for path in files::below(folder, "journal", "") {
+            let number = state.journals.len();
+            for_each(&path, &identity, |key, at, bytes| {
+                let len = bytes.len();
+                let place = Place {
+                    journal: number,
+                    at,
+                    len,
+                };
+                state.places.entry(key.to_owned()).or_insert(place);
+            })?;
+            state.journals.push(path);
+        }
+        Ok(Self {
+            folder: folder.to_path_buf(),
+            identity,
+            state: Mutex::new(state),
+        })
+    }
+
+    /// Whether a key has bytes.
+    pub(crate) fn has(&self, key: &str) -> bool {
+        self.locked().places.contains_key(key)
+    }
+
+    /// How many keys have bytes.
+    pub(crate) fn len(&self) -> usize {
+        self.locked().places.len()
+    }
+
+    /// Puts bytes in; a key that has some keeps them.
+    pub(crate) fn put(&self, key: &str, bytes: &[u8]) -> Result<(), String> {
+        let record = record(key, bytes);
+        let mut state = self.locked();
+        if state.places.contains_key(key) {
+            return Ok(());
+        }
+        if state.own.is_none() {
+            self.begin(&mut state)?;
+        }
+        let State {
+            journals,
+            places,
+            own,
+        } = &mut *state;
+        let Some(own) = own else { return Ok(()) };
+        if let Err(error) = own.file.write_all(&record) {
+            // The part of the record that was written is taken back; if even that fails, readers stop there.
+            drop(own.file.set_len(own.end));
+            drop(own.file.seek(SeekFrom::Start(own.end)));
+            return Err(files::cannot_write(&journals[own.number], &error));
+        }
+        let at = own.end + (record.len() - bytes.len()) as u64;
+        own.end += record.len() as u64;
+        own.dirty = true;
+        places.insert(
+            key.to_owned(),
+            Place {
+                journal: own.number,
+                at,
+                len: bytes.len(),
+            },
+        );
+        Ok(())
+    }
+
+    /// Waits until all that was put in before is on the disk, and gives the number of keys of then.
+    pub(crate) fn sync(&self) -> Result<usize, String> {
+        let (file, path, count) = {
+            let mut state = self.locked();
+            let count = state.places.len();
+            let State { journals, own, .. } = &mut *state;
+            match own {
+                Some(own) if own.dirty => {
+                    own.dirty = false;
+                    let path = journals[own.number].clone();
+                    let file = own
+                        .file
+                        .try_clone()
+                        .map_err(|error| files::cannot_write(&path, &error))?;
+                    (file, path, count)
+                }
+                Some(_) | None => return Ok(count),
+            }
+        };
+        // Others write meanwhile.
+        file.sync_data()
+            .map_err(|error| files::cannot_write(&path, &error))?;
+        Ok(count)
+    }
+
+    /// The bytes of a key.
+    fn get(&self, key: &str) -> Result<Option<Vec<u8>>, String> {
+        let (path, place) = {
+            let state = self.locked();
+            let Some(place) = state.places.get(key).copied() else {
+                return Ok(None);
+            };
+            (state.journals[place.journal].clone(), place)
+        };
+        let mut file = files::open(&path)?;
+        let mut bytes = vec![0; place.len];
+        file.seek(SeekFrom::Start(place.at))
+            .and_then(|_| file.read_exact(&mut bytes))
+            .map_err(|error| files::cannot_read(&path, &error))?;
+        Ok(Some(bytes))
+    }
+
+    /// Gives each key with its bytes to `take`, in the order of keys.
+    pub(crate) fn each(
+        &self,
+        mut take: impl FnMut(&str, Vec<u8>) -> Result<(), String>,
+    ) -> Result<(), String> {
+        let keys: Vec<String> = self.locked().places.keys().cloned().collect();
+        for key in keys {
+            if let Some(bytes) = self.get(&key)? {
+                take(&key, bytes)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Begins this process's journal: a file that nobody else has.
+    fn begin(&self, state: &mut State) -> Result<(), String> {
+        files::make_folder(&self.folder)?;
+        let (mut file, path) = files::make_own(&self.folder, ".journal")?;
+        let header = header(&self.identity);
+        let begun = file.write_all(&header).and_then(|()| file.sync_all());
+        begun.map_err(|error| files::cannot_write(&path, &error))?;
+        files::sync_folder(&self.folder)?;
+        state.own = Some(Own {
+            file,
+            number: state.journals.len(),
+            end: header.len() as u64,
+            dirty: false,
+        });
+        state.journals.push(path);
+        Ok(())
+    }
+
+    fn locked(&self) -> std::sync::MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+/// Goes through the whole records of a journal: key, place of the bytes, and the bytes.
+fn for_each(
+    path: &Path,
+    identity: &Identity,
+    mut take: impl FnMut(&str, u64, &[u8]),
+) -> Result<(), String> {
+    let mut file = files::open(path)?;
+    let mut head = vec![0; HEADER_LEN];
+    if file.read_exact(&mut head).is_err() {
+        return Ok(()); // It was never begun.
+    }
+    if head != header(identity) {
+        return Err(format!(
+            "`{}` is a journal of another batch",
+            path.display()
+        ));
+    }
+    let (mut buffer, mut at) = (Vec::new(), HEADER_LEN as u64);
+    // As many bytes as the record at hand has, and never less than this at once.
+    let mut wanted = 1 << 16;
+    loop {
+        let before = buffer.len();
+        let missing = (wanted as u64).saturating_sub(before as u64);
+        std::io::Read::by_ref(&mut file)
+            .take(missing)
+            .read_to_end(&mut buffer)
+            .map_err(|error| files::cannot_read(path, &error))?;
+        let ended = buffer.len() == before;
+        let mut used = 0;
+        wanted = 1 << 16;
+        loop {
+            match scan(&buffer[used..]) {
+                Scanned::Record { key, bytes, length } => {
+                    take(key, at + (length - bytes.len()) as u64, bytes);
+                    used += length;
+                    at += length as u64;
+                }
+                Scanned::More(length) => {
+                    wanted = wanted.max(length);
+                    break;
+                }
+                Scanned::End if used == buffer.len() => break,
+                Scanned::End => return Ok(()),
+            }
+        }
+        buffer.drain(..used);
+        if ended {
+            return Ok(());
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use hyde_experiment::batch::digest;
+    use tempfile::TempDir;
+
+    fn all(store: &Store) -> Vec<(String, Vec<u8>)> {
+        let mut found = Vec::new();
+        let took = store.each(|key, bytes| {
+            found.push((key.to_owned(), bytes));
+            Ok(())
+        });
+        took.unwrap();
+        found
+    }
+
+    #[test]
+    fn what_was_put_in_is_there_for_the_next_process() {
+        let folder = TempDir::new().unwrap();
+        let open = || Store::open(folder.path(), digest(&[b"a"])).unwrap();
+        let (one, two) = (open(), open());
+        one.put("b", &[2; 100_000]).unwrap();
+        two.put("a", b"from two").unwrap();
+        one.put("c", b"").unwrap();
+        two.put("b", b"too late").unwrap();
+        assert!(one.has("b") && !one.has("a"));
+        assert_eq!(one.sync().unwrap(), 2);
+        let again = open();
+        assert_eq!(again.len(), 3);
+        let found = all(&again);
+        let keys: Vec<&str> = found.iter().map(|(key, _)| key.as_str()).collect();
+        assert_eq!(keys, ["a", "b", "c"]);
+        assert_eq!(found[0].1, b"from two");
+        // Whichever journal comes first by name: bytes of one task are the same, as tasks are pure.
+        assert!(found[1].1 == vec![2; 100_000] || found[1].1 == b"too late");
+    }
+
+    #[test]
+    fn a_record_that_was_cut_off_is_not_there_and_hides_none_before() {
+        let folder = TempDir::new().unwrap();
+        let identity = digest(&[b"a"]);
+        let store = Store::open(folder.path(), identity).unwrap();
+        for key in ["a", "b", "c"] {
+            store.put(key, key.as_bytes()).unwrap();
+        }
+        drop(store);
+        let journal = files::below(folder.path(), "journal", "").remove(0);
+        let whole = std::fs::metadata(&journal).unwrap().len();
+        let one = (whole - HEADER_LEN as u64) / 3;
+        for cut in 0..whole {
+            let scratch = TempDir::new().unwrap();
+            let copy = scratch.path().join("x.journal");
+            std::fs::copy(&journal, &copy).unwrap();
+            std::fs::OpenOptions::new()
+                .write(true)
+                .open(&copy)
+                .unwrap()
+                .set_len(cut)
+                .unwrap();
+            let store = Store::open(scratch.path(), identity).unwrap();
+            let expected = cut.saturating_sub(HEADER_LEN as u64) / one;
+            assert_eq!(store.len() as u64, expected, "cut at {cut}");
+        }
+    }
+
+    #[test]
+    fn another_batch_is_refused() {
+        let folder = TempDir::new().unwrap();
+        Store::open(folder.path(), digest(&[b"a"]))
+            .unwrap()
+            .put("k", b"v")
+            .unwrap();
+        let error = Store::open(folder.path(), digest(&[b"b"])).err().unwrap();
+        assert!(error.contains("another batch"), "{error}");
+    }
+}

@@ -1,0 +1,179 @@
+//! The programs of a batch: one for each variant, compiled when its first case comes and kept for the others.
+
+use crate::args::ModelArgs;
+use crate::project::{Project, Records};
+use crate::records;
+use crate::run_failure;
+use hyde_compiler::{Backend, Request};
+use hyde_diag::{Diagnostic, Diagnostics, Severity};
+use hyde_experiment::RunError;
+use hyde_experiment::batch::{
+    Case, Dataset, Draft, Fault, Plan, Variant, Wanted, record_files, varied,
+};
+use hyde_program::Program;
+use hyde_signal::Table;
+use hyde_sim::FailureKind;
+use hyde_syntax::ast::Name;
+use std::collections::BTreeMap;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// A program that can be run, with its records.
+pub(crate) struct Ready {
+    pub(crate) program: Program,
+    pub(crate) tables: BTreeMap<String, Table>,
+}
+
+/// The compiled variants of a batch.
+pub(crate) struct Variants {
+    dataset: Dataset,
+    known: Mutex<BTreeMap<Variant, Cell>>,
+}
+
+/// A variant, or why it cannot be compiled; made once.
+type Cell = Arc<OnceLock<Result<(Ready, Wanted), Fault>>>;
+
+impl Variants {
+    /// None yet.
+    pub(crate) fn new(dataset: &Dataset) -> Self {
+        Self {
+            dataset: dataset.clone(),
+            known: Mutex::default(),
+        }
+    }
+
+    /// Gives the program of a case to `with`, compiled if it is the first of its variant. Others that need it wait.
+    pub(crate) fn with<T>(
+        &self,
+        model: &Source<'_>,
+        plan: &Plan,
+        case: &Case,
+        with: impl FnOnce(&Ready, &Wanted) -> T,
+    ) -> Result<T, Fault> {
+        let cell = {
+            let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
+            Arc::clone(known.entry(plan.variant(case)).or_default())
+        };
+        let made = cell.get_or_init(|| {
+            let ready = model.compile(&plan.options(case), &plan.settings(case));
+            let ready = ready.map_err(|diagnostics| model.refused(&diagnostics))?;
+            let wanted = Wanted::of(&ready.program, &self.dataset);
+            Ok((ready, wanted))
+        });
+        made.as_ref()
+            .map(|(ready, wanted)| with(ready, wanted))
+            .map_err(Clone::clone)
+    }
+}
+
+/// What variants are made of.
+pub(crate) struct Source<'p> {
+    pub(crate) project: &'p Project,
+    pub(crate) args: &'p ModelArgs,
+    pub(crate) draft: &'p Draft,
+}
+
+impl Source<'_> {
+    /// Compiles a variant: with these options of the choices, and these values of what is structural.
+    pub(crate) fn compile(
+        &self,
+        options: &[usize],
+        set: &[(String, f64)],
+    ) -> Result<Ready, Diagnostics> {
+        let Self {
+            project,
+            args,
+            draft,
+        } = self;
+        let (file, model) = varied(&project.file, draft, &project.model, options);
+        let mut diagnostics = Diagnostics::new();
+        let mut settings: BTreeMap<String, f64> = project.set().into_iter().collect();
+        // A start value becomes a parameter by being named.
+        settings.extend(draft.starts().map(|name| (name, 0.0)));
+        settings.extend(set.iter().cloned());
+        let others = record_files(draft, options);
+        let read = file
+            .experiments()
+            .find(|e| e.name.text == draft.experiment)
+            .map(|experiment| {
+                let mut experiment = experiment.clone();
+                let mut args = (*args).clone();
+                for (record, path) in others {
+                    args.records
+                        .retain(|text| !text.starts_with(&format!("{record}=")));
+                    for item in experiment
+                        .records
+                        .iter_mut()
+                        .filter(|item| item.name.text == record)
+                    {
+                        let span = item.name.span;
+                        item.default = Some(Name {
+                            text: path.to_owned(),
+                            span,
+                        });
+                    }
+                }
+                records::read(&experiment, &args, Records::Needed, &mut diagnostics)
+            });
+        let read = match read {
+            Some(Ok(read)) if !diagnostics.has_errors() => read,
+            Some(Ok(_)) => return Err(diagnostics),
+            Some(Err(_)) | None => BTreeMap::new(), // Told when the project was loaded.
+        };
+        let headers = records::headers(&read);
+        let request = Request {
+            sources: &project.sources,
+            file: &file,
+            model: &model,
+            experiment: Some(&draft.experiment),
+            settings: &settings,
+            records: &headers,
+            free_inputs: false,
+            ledger: false,
+            backend: Backend::Native,
+        };
+        match hyde_compiler::compile(&request, &mut diagnostics) {
+            Some(compiled) => Ok(Ready {
+                program: compiled.program,
+                tables: records::tables(&read),
+            }),
+            None => Err(diagnostics),
+        }
+    }
+
+    /// A variant that does not compile, as the outcome of its cases.
+    fn refused(&self, diagnostics: &Diagnostics) -> Fault {
+        let first = diagnostics.iter().find(|d| d.severity == Severity::Error);
+        first.map_or_else(Fault::default, |diagnostic| {
+            self.fault(diagnostic, f64::NAN)
+        })
+    }
+
+    /// A case that failed, as its outcome; `None` if it was interrupted.
+    pub(crate) fn failed(&self, error: &RunError, program: &Program) -> Option<Fault> {
+        let time_s = match error {
+            RunError::Failed(failure) if failure.kind == FailureKind::Interrupted => return None,
+            RunError::Failed(failure) => failure.t,
+            RunError::NoParameter(_)
+            | RunError::CannotSet(..)
+            | RunError::NoGradientBy(..)
+            | RunError::NoStop
+            | RunError::NotPositive(..)
+            | RunError::Compare(_) => f64::NAN,
+        };
+        let (diagnostic, _) = run_failure::diagnostic(error, program, None);
+        Some(self.fault(&diagnostic, time_s))
+    }
+
+    fn fault(&self, diagnostic: &Diagnostic, time_s: f64) -> Fault {
+        let sources = &self.project.sources;
+        let span = diagnostic.labels.first().map(|label| label.span);
+        let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
+        Fault {
+            code: diagnostic.code.to_string(),
+            reason: diagnostic.message.clone(),
+            equation: span.map_or_else(String::new, |span| words(sources.text(span))),
+            source: span.map_or_else(String::new, |span| sources.place(span)),
+            time_s,
+        }
+    }
+}

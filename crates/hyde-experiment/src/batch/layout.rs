@@ -1,0 +1,302 @@
+//! [`Layout`]: from what is written to inputs and factors: every name looked up, every unit checked.
+
+use super::draft::{Choice, Draft, Fill, Varying, Written, mistake, path};
+use super::plan::{Factor, Input, Model, Values};
+use super::sample::{Points, SOBOL_LIMITS, Sampling};
+use hyde_diag::{Code, Diagnostic, Span};
+use hyde_program::{Parameter, Prior};
+use hyde_units::Agreement;
+
+/// A plan in the making.
+pub(super) struct Layout<'m> {
+    model: &'m Model<'m>,
+    pub(super) inputs: Vec<Input>,
+    pub(super) factors: Vec<Factor>,
+    /// Input, its bounds and its place in the block.
+    ranges: Vec<(usize, f64, f64, Span)>,
+}
+
+impl<'m> Layout<'m> {
+    /// Lays a draft out for a model.
+    pub(super) fn of(draft: &Draft, model: &'m Model<'m>) -> Result<Self, Diagnostic> {
+        let mut layout = Self {
+            model,
+            inputs: Vec::new(),
+            factors: Vec::new(),
+            ranges: Vec::new(),
+        };
+        for varying in &draft.varying {
+            layout.add(draft, varying)?;
+        }
+        layout.fill(draft)?;
+        Ok(layout)
+    }
+
+    fn add(&mut self, draft: &Draft, varying: &Varying) -> Result<(), Diagnostic> {
+        match varying {
+            Varying::Choice(choice) => {
+                let input = self.choice(choice);
+                let count = choice.options.len();
+                self.factors.push(Factor {
+                    inputs: vec![input],
+                    values: Values::Options,
+                    count,
+                });
+            }
+            Varying::List(target, values) => {
+                let name = path(target);
+                let (input, parameter) = self.number(&name, target.span)?;
+                for value in values {
+                    check(value, &name, parameter)?;
+                }
+                let values: Vec<f64> = values.iter().map(|value| value.value).collect();
+                self.list(input, values);
+            }
+            Varying::Range(target, from, to) => {
+                let name = path(target);
+                let (input, parameter) = self.number(&name, target.span)?;
+                check(from, &name, parameter)?;
+                check(to, &name, parameter)?;
+                self.range(draft, input, (from.value, to.value), target.span);
+            }
+            Varying::Uncertain(span) => {
+                let mut found = false;
+                for parameter in &self.model.program.parameters {
+                    let Some(prior) = parameter.prior else {
+                        continue;
+                    };
+                    if parameter.structural || parameter.is_final {
+                        continue;
+                    }
+                    for element in 0..parameter.len {
+                        let name = match parameter.len {
+                            1 => parameter.name.clone(),
+                            _ => format!("{}[{}]", parameter.name, element + 1),
+                        };
+                        if self.inputs.iter().any(|input| input.name == name) {
+                            continue;
+                        }
+                        let value = self.model.parameters[parameter.place + element];
+                        let spread = match prior {
+                            Prior::Relative(part) => (value * part).abs(),
+                            Prior::Absolute(spread) => spread,
+                        };
+                        let input = self.input(name, parameter);
+                        self.range(draft, input, (value - spread, value + spread), *span);
+                        found = true;
+                    }
+                }
+                if !found {
+                    return Err(
+                        mistake(*span, "no parameter of the model is uncertain", "which?")
+                            .help("give them a spread: `parameter Mass M = 300 [kg] ~ ±8%;`"),
+                    );
+                }
+            }
+            Varying::Cases(span) => self.cases(*span)?,
+        }
+        Ok(())
+    }
+
+    fn choice(&mut self, choice: &Choice) -> usize {
+        self.inputs.push(Input {
+            name: choice.name.clone(),
+            unit: None,
+            structural: true,
+            options: choice.options.clone(),
+        });
+        self.inputs.len() - 1
+    }
+
+    /// A new input for the parameter of that name.
+    fn number(&mut self, name: &str, span: Span) -> Result<(usize, &'m Parameter), Diagnostic> {
+        let program = self.model.program;
+        let Some((parameter, _)) = program.parameter(name) else {
+            let last = name.rsplit('.').next().unwrap_or(name);
+            let known = program.parameters.iter().map(|p| p.name.as_str());
+            let near: Vec<&str> = known
+                .filter(|known| known.rsplit('.').next() == Some(last))
+                .take(3)
+                .collect();
+            let diagnostic = mistake(
+                span,
+                format!("the model has no parameter `{name}`"),
+                "not known",
+            );
+            return Err(match near.as_slice() {
+                [] => diagnostic.help(
+                    "vary a parameter, the start of a variable as `x.start`, or a component by `= {A, B}` of models",
+                ),
+                near => diagnostic.help(format!("did you mean `{}`?", near.join("`, `"))),
+            });
+        };
+        if parameter.is_final {
+            return Err(mistake(span, format!("`{name}` is final"), "cannot vary")
+                .label(parameter.origin.span, "made final here"));
+        }
+        if self.inputs.iter().any(|input| input.name == name) {
+            return Err(mistake(span, format!("`{name}` varies twice"), "again")
+                .help("name it once: in a list, a range or the table of cases"));
+        }
+        Ok((self.input(name.to_owned(), parameter), parameter))
+    }
+
+    fn input(&mut self, name: String, parameter: &Parameter) -> usize {
+        self.inputs.push(Input {
+            name,
+            unit: Some(parameter.unit.clone()),
+            structural: parameter.structural,
+            options: Vec::new(),
+        });
+        self.inputs.len() - 1
+    }
+
+    fn list(&mut self, input: usize, values: Vec<f64>) {
+        let count = values.len();
+        self.factors.push(Factor {
+            inputs: vec![input],
+            values: Values::Lists(vec![values]),
+            count,
+        });
+    }
+
+    /// A range; in a grid a list of points from end to end.
+    fn range(&mut self, draft: &Draft, input: usize, (from, to): (f64, f64), span: Span) {
+        let before = self.ranges.len();
+        self.ranges.push((input, from, to, span));
+        if let Some((Fill::Grid(counts), _)) = &draft.fill {
+            let count = counts.get(before).or(counts.last()).copied().unwrap_or(1);
+            let step = (to - from) / (count.max(2) - 1) as f64;
+            let points = (0..count).map(|k| {
+                if k + 1 == count && k > 0 {
+                    to
+                } else {
+                    from + k as f64 * step
+                }
+            });
+            self.list(input, points.collect());
+        }
+    }
+
+    /// The ranges that are sampled together, as the last factor.
+    fn fill(&mut self, draft: &Draft) -> Result<(), Diagnostic> {
+        let Some(&(.., first)) = self.ranges.first() else {
+            return match &draft.fill {
+                None => Ok(()),
+                Some((_, span)) => {
+                    Err(
+                        mistake(*span, "there is no range to fill", "with points of what?")
+                            .help("write `vary gap in 5 .. 50 [um];`, or leave this out"),
+                    )
+                }
+            };
+        };
+        match &draft.fill {
+            None => Err(mistake(
+                first,
+                "it is not said how ranges are filled",
+                "with how many points?",
+            )
+            .help("write `grid 10;`, `random 500;`, `latin 500;` or `sobol 512;`")),
+            Some((Fill::Grid(counts), span)) => {
+                if counts.len() > 1 && counts.len() != self.ranges.len() {
+                    let message =
+                        format!("{} counts for {} ranges", counts.len(), self.ranges.len());
+                    return Err(mistake(*span, message, "one for all, or one each"));
+                }
+                Ok(())
+            }
+            Some((Fill::Sampled(how, count), span)) => {
+                let (most, dimensions) = SOBOL_LIMITS;
+                if *how == Sampling::Sobol && (*count > most || self.ranges.len() > dimensions) {
+                    return Err(mistake(
+                        *span,
+                        format!(
+                            "a Sobol sequence has at most {most} points of {dimensions} ranges"
+                        ),
+                        "too many",
+                    )
+                    .help("write `latin` or `random` instead"));
+                }
+                if let Some((input, .., span)) = self
+                    .ranges
+                    .iter()
+                    .find(|(input, ..)| self.inputs[*input].structural)
+                {
+                    let name = &self.inputs[*input].name;
+                    return Err(mistake(
+                        *span,
+                        format!("`{name}` shapes the equations: each value compiles anew"),
+                        "sampled",
+                    )
+                    .help(format!("give it few values: `vary {name} = {{…, …}}`")));
+                }
+                let seed = self.model.seed.unwrap_or(draft.seed);
+                let ranges = self.ranges.iter().enumerate();
+                let values = ranges
+                    .map(|(dimension, (_, from, to, _))| {
+                        (*from, *to, Points::new(*how, seed, dimension, *count))
+                    })
+                    .collect();
+                self.factors.push(Factor {
+                    inputs: self.ranges.iter().map(|(input, ..)| *input).collect(),
+                    values: Values::Ranges(values),
+                    count: *count,
+                });
+                Ok(())
+            }
+        }
+    }
+
+    /// A table: each row a case, each column a parameter.
+    fn cases(&mut self, span: Span) -> Result<(), Diagnostic> {
+        let table = self
+            .model
+            .cases
+            .ok_or_else(|| mistake(span, "the table of cases is missing", "named here"))?;
+        let (mut inputs, mut lists) = (Vec::new(), Vec::new());
+        for column in table.columns() {
+            let (input, parameter) = self.number(column.name(), span)?;
+            for &value in column.values() {
+                check(
+                    &Written {
+                        value,
+                        dimension: column.dimension(),
+                        span,
+                    },
+                    column.name(),
+                    parameter,
+                )?;
+            }
+            inputs.push(input);
+            lists.push(column.values().to_vec());
+        }
+        self.factors.push(Factor {
+            inputs,
+            values: Values::Lists(lists),
+            count: table.rows(),
+        });
+        Ok(())
+    }
+}
+
+/// Whether a number fits a parameter.
+fn check(written: &Written, name: &str, parameter: &Parameter) -> Result<(), Diagnostic> {
+    let unit = parameter.unit.text();
+    match written.dimension {
+        None if parameter.dimension.is_dimensionless() || written.value == 0.0 => Ok(()),
+        None => Err(
+            mistake(written.span, format!("`{name}` has a unit"), "has none")
+                .help(format!("write `{} [{unit}]`", written.value)),
+        ),
+        Some(given) if given.agreement(parameter.dimension) == Agreement::Different => {
+            Err(Diagnostic::error(
+                Code::UnitMismatch,
+                format!("`{name}` is in {unit}, not in {given}"),
+            )
+            .label(written.span, format!("in {given}"))
+            .label(parameter.origin.span, format!("in {unit}")))
+        }
+        Some(_) => Ok(()),
+    }
+}

@@ -1,0 +1,223 @@
+//! [`Summary`]: what a batch says as a whole: quantiles, rank correlations, the worst cases.
+
+use super::dataset::Dataset;
+use super::outcome::Outcome;
+use super::plan::{Plan, Value};
+
+/// The probabilities of the quantiles that are told.
+pub const QUANTILES: [f64; 7] = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0];
+
+/// How many of the worst cases of each measure are told.
+const WORST: usize = 3;
+/// How many failed cases are told.
+const FAILED: usize = 10;
+
+/// A measure over all cases.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeasureSummary {
+    /// Its number among the data set's measures.
+    pub measure: usize,
+    /// In how many cases it has a value.
+    pub count: usize,
+    /// Quantiles at [`QUANTILES`], SI.
+    pub quantiles: [f64; 7],
+    /// Spearman's rank correlation with each numerical input that varies, by its number.
+    pub correlations: Vec<(usize, f64)>,
+}
+
+/// A case to look at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worst {
+    /// Its number.
+    pub case: usize,
+    /// The measure of which it has one of the largest magnitudes, and the value, SI.
+    pub measure: usize,
+    /// The value, SI.
+    pub value: f64,
+}
+
+/// What a batch says as a whole.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Summary {
+    /// Cases.
+    pub cases: usize,
+    /// How many failed, and the first of them with their reasons.
+    pub failed: usize,
+    /// The first failed cases, with their reasons.
+    pub failures: Vec<(usize, String)>,
+    /// The measures, expectations apart.
+    pub measures: Vec<MeasureSummary>,
+    /// Each expectation with the number of cases in which it does not hold, and the first of them.
+    pub broken: Vec<(usize, usize, Option<usize>)>,
+    /// The cases with the largest magnitudes, by measure.
+    pub worst: Vec<Worst>,
+}
+
+/// Takes the numbers of cases, in their order.
+#[derive(Clone, Debug, Default)]
+pub struct Gathered {
+    /// Numbers of cases that have values.
+    numbers: Vec<usize>,
+    /// One column an input; NaN of choices.
+    inputs: Vec<Vec<f64>>,
+    /// One column a measure.
+    measures: Vec<Vec<f64>>,
+    summary: Summary,
+}
+
+impl Gathered {
+    /// Takes a case.
+    pub fn add(&mut self, plan: &Plan, number: usize, outcome: &Outcome) {
+        self.summary.cases += 1;
+        if let Some(fault) = &outcome.fault {
+            self.summary.failed += 1;
+            if self.summary.failures.len() < FAILED {
+                self.summary.failures.push((number, fault.reason.clone()));
+            }
+            return;
+        }
+        self.inputs.resize(plan.inputs.len(), Vec::new());
+        self.measures.resize(outcome.measures.len(), Vec::new());
+        self.numbers.push(number);
+        for (column, value) in self.inputs.iter_mut().zip(&plan.case(number).values) {
+            column.push(match value {
+                Value::Number(number) => *number,
+                Value::Option(_) => f64::NAN,
+            });
+        }
+        for (column, &value) in self.measures.iter_mut().zip(&outcome.measures) {
+            column.push(value);
+        }
+    }
+
+    /// Sums up.
+    #[must_use]
+    pub fn summary(self, dataset: &Dataset) -> Summary {
+        let mut summary = self.summary;
+        let ranks: Vec<Option<Vec<f64>>> = self
+            .inputs
+            .iter()
+            .map(|column| varying_ranks(column))
+            .collect();
+        for (measure, column) in self.measures.iter().enumerate() {
+            if dataset.measures[measure].expectation {
+                let broken = self
+                    .numbers
+                    .iter()
+                    .zip(column)
+                    .filter(|(_, value)| **value <= 0.5 || value.is_nan());
+                let broken: Vec<usize> = broken.map(|(number, _)| *number).collect();
+                summary
+                    .broken
+                    .push((measure, broken.len(), broken.first().copied()));
+                continue;
+            }
+            let mut sorted: Vec<f64> = column
+                .iter()
+                .copied()
+                .filter(|value| !value.is_nan())
+                .collect();
+            sorted.sort_unstable_by(f64::total_cmp);
+            let own = varying_ranks(column);
+            let correlations = ranks.iter().enumerate().filter_map(|(input, ranks)| {
+                let value = correlation(ranks.as_ref()?, own.as_ref()?)?;
+                Some((input, value))
+            });
+            summary.measures.push(MeasureSummary {
+                measure,
+                count: sorted.len(),
+                quantiles: QUANTILES.map(|p| quantile(&sorted, p)),
+                correlations: correlations.collect(),
+            });
+            let mut order: Vec<usize> = (0..column.len())
+                .filter(|&at| !column[at].is_nan())
+                .collect();
+            order.sort_by(|&a, &b| column[b].abs().total_cmp(&column[a].abs()));
+            let worst = order.into_iter().take(WORST);
+            summary.worst.extend(worst.map(|at| Worst {
+                case: self.numbers[at],
+                measure,
+                value: column[at],
+            }));
+        }
+        summary
+    }
+}
+
+/// The quantile of sorted values: linear between order statistics (definition 7 of Hyndman and Fan 1996). NaN of none.
+fn quantile(sorted: &[f64], p: f64) -> f64 {
+    let Some(last) = sorted.len().checked_sub(1) else {
+        return f64::NAN;
+    };
+    let at = p * last as f64;
+    let below = at.floor() as usize;
+    let part = at - below as f64;
+    let (low, high) = (sorted[below], sorted[(below + 1).min(last)]);
+    if part > 0.0 {
+        low + part * (high - low)
+    } else {
+        low
+    }
+}
+
+/// Ranks from 1, equal values share their mean; `None` where a value is missing or all are equal.
+fn varying_ranks(values: &[f64]) -> Option<Vec<f64>> {
+    if values.iter().any(|value| value.is_nan()) {
+        return None;
+    }
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.sort_by(|&a, &b| values[a].total_cmp(&values[b]));
+    let mut ranks = vec![0.0; values.len()];
+    let mut groups = 0;
+    let mut at = 0;
+    for group in order.chunk_by(|&a, &b| values[a].total_cmp(&values[b]).is_eq()) {
+        let mean = at as f64 + 0.5 * (group.len() + 1) as f64;
+        for &place in group {
+            ranks[place] = mean;
+        }
+        at += group.len();
+        groups += 1;
+    }
+    (groups > 1).then_some(ranks)
+}
+
+/// Pearson's correlation of ranks, which is Spearman's of the values, with ties.
+fn correlation(a: &[f64], b: &[f64]) -> Option<f64> {
+    let mean = 0.5 * (a.len() + 1) as f64;
+    let product = |x: &[f64], y: &[f64]| -> f64 {
+        x.iter().zip(y).map(|(x, y)| (x - mean) * (y - mean)).sum()
+    };
+    let scale = (product(a, a) * product(b, b)).sqrt();
+    (scale > 0.0 && a.len() == b.len()).then(|| product(a, b) / scale)
+}
+
+#[cfg(test)]
+#[allow(clippy::float_cmp, reason = "small integers and halves are exact")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_the_definition() {
+        // R's default, type 7: quantile(c(1, 2, 4, 8), 0.25) = 1.75 and 0.5 = 3.
+        let sorted = [1.0, 2.0, 4.0, 8.0];
+        assert_eq!(
+            [0.0, 0.25, 0.5, 1.0].map(|p| quantile(&sorted, p)),
+            [1.0, 1.75, 3.0, 8.0]
+        );
+        assert!(quantile(&[], 0.5).is_nan());
+    }
+
+    #[test]
+    fn rank_correlations_see_order_and_share_ties() {
+        let ranks = |values: &[f64]| varying_ranks(values).unwrap();
+        assert_eq!(ranks(&[3.0, 1.0, 3.0, 2.0]), [3.5, 1.0, 3.5, 2.0]);
+        let rising = ranks(&[1.0, 10.0, 100.0]);
+        assert_eq!(correlation(&rising, &ranks(&[0.1, 0.2, 0.3])), Some(1.0));
+        assert_eq!(correlation(&rising, &ranks(&[3.0, 2.0, 1.0])), Some(-1.0));
+        // By hand: ranks 1 2 3 4 and 2 1 4 3, sum of squared differences 4: 1 - 6*4/(4*15) = 0.6.
+        let found =
+            correlation(&ranks(&[1.0, 2.0, 3.0, 4.0]), &ranks(&[2.0, 1.0, 4.0, 3.0])).unwrap();
+        assert!((found - 0.6).abs() < 1e-15); // Small integers: rounding of one root.
+        assert!(varying_ranks(&[1.0, 1.0]).is_none());
+    }
+}
