@@ -290,19 +290,37 @@ pub(crate) enum StageName {
 
 #[derive(Debug, Args)]
 pub(crate) struct PlotArgs {
-    /// A CSV or Parquet file, or a folder that `run --out` left
+    /// A CSV, Parquet or JSON file of results, a record, a response that `bode --out` left, or a folder of `run --out`
     pub(crate) results: PathBuf,
     /// The columns of each panel, separated by commas: `motor.w,screw.w[0]`; a choice if left out
     pub(crate) panels: Vec<String>,
-    /// The first column of each panel over the second instead of over time
+    /// The columns of each panel are pairs, the first over the second: `table.y,table.x`
     #[arg(long)]
     pub(crate) xy: bool,
+    /// With `--xy`: both axes in one scale
+    #[arg(long, requires = "xy")]
+    pub(crate) equal: bool,
+    /// Other results in the same panels, dashed (repeatable)
+    #[arg(long, value_name = "RESULTS")]
+    pub(crate) with: Vec<PathBuf>,
+    /// Whose modes stand below, separated by commas: `guide,nut.contact`; those that change most if left out
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    pub(crate) modes: Vec<String>,
     /// The figure's file, `.svg` or `.png`
     #[arg(long, value_name = "PATH", default_value = "plot.svg")]
     pub(crate) out: PathBuf,
     /// Title of the figure
     #[arg(long)]
     pub(crate) title: Option<String>,
+    /// Width of the figure in mm; 169, or 122 with `--xy`, if left out
+    #[arg(long, value_name = "MM")]
+    pub(crate) width: Option<f64>,
+    /// Height of each panel between its axes in mm
+    #[arg(long, value_name = "MM")]
+    pub(crate) height: Option<f64>,
+    /// Pixels to the inch of a PNG
+    #[arg(long, value_name = "N", default_value_t = 300.0)]
+    pub(crate) dpi: f64,
     /// Only from this time in s
     #[arg(long, value_name = "SECONDS")]
     pub(crate) from: Option<f64>,

@@ -10,6 +10,9 @@ use ttf_parser::OutlineBuilder;
 /// No picture has more pixels; a larger one is scaled down.
 const MOST_PIXELS: f64 = 64e6;
 
+/// CSS pixels to the metre.
+const PIXELS_A_METRE: f64 = 96.0 / 0.0254;
+
 /// The figure as a PNG file, on white, `scale` device pixels for a CSS pixel: 2 for a screen, 3 or 4 for print.
 #[must_use]
 pub fn to_png(figure: &Figure, scale: f64) -> Vec<u8> {
@@ -31,7 +34,26 @@ pub fn to_png(figure: &Figure, scale: f64) -> Vec<u8> {
         font: Font::new(),
     };
     canvas.draw(&drawing);
-    canvas.pixmap.encode_png().unwrap_or_default()
+    encoded(canvas.pixmap, scale).unwrap_or_default()
+}
+
+/// The picture as a file that knows its size on paper: a text processor places it as wide as the SVG.
+fn encoded(pixmap: Pixmap, scale: f64) -> Result<Vec<u8>, png::EncodingError> {
+    let (width, height) = (pixmap.width(), pixmap.height());
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, width, height);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    let a_metre = (scale * PIXELS_A_METRE).round() as u32;
+    encoder.set_pixel_dims(Some(png::PixelDimensions {
+        xppu: a_metre,
+        yppu: a_metre,
+        unit: png::Unit::Meter,
+    }));
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&pixmap.take_demultiplied())?;
+    writer.finish()?;
+    Ok(file)
 }
 
 struct Canvas {

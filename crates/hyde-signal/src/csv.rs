@@ -10,12 +10,14 @@
 //! and lines that start with `#` are skipped. The decimal sign is the point.
 
 mod error;
+mod frame;
 mod header;
 mod read;
 mod rows;
 mod write;
 
 pub use error::ReadError;
+pub use frame::read_frame;
 pub(crate) use header::name_and_unit;
 pub use read::read;
 pub use write::write;

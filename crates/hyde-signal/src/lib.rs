@@ -24,11 +24,13 @@ pub mod spectrum;
 pub mod statistics;
 
 mod column;
+mod frame;
 mod record;
 mod signal;
 mod table;
 
 pub use column::{Column, UnitConflict, in_unit};
-pub use record::{RecordError, read};
+pub use frame::{Field, Frame, Kind, Values};
+pub use record::{RecordError, read, read_frame};
 pub use signal::{Cursor, Signal};
 pub use table::{Table, TableError};

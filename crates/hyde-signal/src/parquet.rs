@@ -8,13 +8,12 @@
 //! time: [`read`] and [`write`]. A number that is not there (NaN) is a null. Equal frames give equal bytes.
 
 mod error;
-mod frame;
 mod read;
 mod record;
 mod write;
 
+pub use crate::frame::{Field, Frame, Kind, Values};
 pub use error::ReadError;
-pub use frame::{Field, Frame, Kind, Values};
 pub use read::read_frame;
 pub use record::{is_parquet, read, write};
 pub use write::Writer;

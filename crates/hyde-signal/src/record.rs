@@ -1,6 +1,6 @@
 //! A record in whichever form its file has.
 
-use crate::{Table, csv, parquet};
+use crate::{Frame, Table, csv, parquet};
 use std::fmt;
 
 /// Why a file is no record.
@@ -21,6 +21,17 @@ pub fn read(bytes: &[u8], every: Option<f64>) -> Result<Table, RecordError> {
         return parquet::read(bytes, every).map_err(RecordError::Parquet);
     }
     csv::read(bytes, every).map_err(RecordError::Csv)
+}
+
+/// Reads a table that need not be over time and may have texts in it: Parquet if the file begins so, else CSV.
+///
+/// # Errors
+/// If the file is no table.
+pub fn read_frame(bytes: &[u8]) -> Result<Frame, RecordError> {
+    if parquet::is_parquet(bytes) {
+        return parquet::read_frame(bytes).map_err(RecordError::Parquet);
+    }
+    csv::read_frame(bytes).map_err(RecordError::Csv)
 }
 
 impl RecordError {

@@ -11,6 +11,7 @@ mod command;
 mod effects;
 mod files;
 mod parquet;
+mod plot;
 mod printed;
 mod settings;
 mod status;

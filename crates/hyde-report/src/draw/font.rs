@@ -88,6 +88,17 @@ impl Font {
         }
     }
 
+    /// `text`, or as much of its end as fits into `width` px behind an ellipsis: of a path, the end tells.
+    pub(crate) fn shortened_ahead(&self, text: &str, size: f64, width: f64) -> String {
+        let ends = text.char_indices().map(|(at, _)| &text[at..]);
+        let fits = |shorter: &String| self.width(shorter, size) <= width;
+        if fits(&text.to_owned()) {
+            return text.to_owned();
+        }
+        let shorter = ends.skip(1).map(|end| format!("…{end}"));
+        shorter.into_iter().find(fits).unwrap_or("…".to_owned())
+    }
+
     fn glyph(&self, letter: char) -> GlyphId {
         // Glyph 0 is the box drawn for letters the font does not have.
         self.face.glyph_index(letter).unwrap_or(GlyphId(0))
@@ -131,6 +142,10 @@ mod tests {
         );
         assert_eq!(font.wrap("", size, width, 2), Vec::<String>::new());
         assert_eq!(font.shortened("word", size, 1.0), "…");
+        let width = font.width("…bearing", size);
+        assert_eq!(font.shortened_ahead("a.b.bearing", size, width), "…bearing");
+        assert_eq!(font.shortened_ahead("bearing", size, width), "bearing");
+        assert_eq!(font.shortened_ahead("bearing", size, 1.0), "…");
     }
 
     #[test]

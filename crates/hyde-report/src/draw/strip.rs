@@ -95,7 +95,7 @@ impl<'a> PlacedStrip<'a> {
             self.draw_spans(row, &band, font, items);
             self.draw_events(row, &band, items);
             let base = top + 0.5 * (ROW + font.cap_height(SMALL));
-            let label = font.shortened(&row.label, SMALL, room - TICK - GAP);
+            let label = font.shortened_ahead(&row.label, SMALL, room - TICK - GAP);
             let at = Point::new(frame.left - TICK - GAP, base);
             items.push(text(at, &label, SMALL, Anchor::End, INK));
         }

@@ -46,6 +46,18 @@ fn svg_height(figure: &Figure) -> usize {
 }
 
 #[test]
+fn the_size_on_paper_is_that_of_the_svg() {
+    // 300 pixels to the inch are 11811 to the metre.
+    let bytes = to_png(&figure(), 300.0 / 96.0);
+    let reader = png::Decoder::new(std::io::Cursor::new(&bytes[..]))
+        .read_info()
+        .unwrap();
+    let dims = reader.info().pixel_dims.unwrap();
+    assert_eq!((dims.xppu, dims.yppu), (11811, 11811));
+    assert_eq!(dims.unit, png::Unit::Meter);
+}
+
+#[test]
 fn the_size_is_that_of_the_svg_times_the_scale() {
     let figure = figure();
     for scale in [1_usize, 2, 3] {

@@ -44,9 +44,9 @@ pub fn read(text: &[u8], every: Option<f64>) -> Result<Table, ReadError> {
     })
 }
 
-type Header = Vec<(String, Option<NamedUnit>)>;
+pub(super) type Header = Vec<(String, Option<NamedUnit>)>;
 
-fn read_header(rows: &Rows<'_>) -> Result<Header, ReadError> {
+pub(super) fn read_header(rows: &Rows<'_>) -> Result<Header, ReadError> {
     let mut header = Header::new();
     for (cell, column) in rows.cells().zip(1..) {
         let cell = str::from_utf8(cell).map_err(|_| ReadError::Encoding { line: rows.line() })?;

@@ -1,8 +1,8 @@
 //! Reads a Parquet file whole.
 
 use super::error::ReadError;
-use super::frame::{Field, Frame, Kind, Values};
 use crate::csv::name_and_unit;
+use crate::frame::{Field, Frame, Kind, Values};
 use hyde_units::NamedUnit;
 use parquet::basic::Type as Physical;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};

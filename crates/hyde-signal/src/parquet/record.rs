@@ -1,9 +1,9 @@
 //! Records as Parquet: columns of numbers over time.
 
 use super::error::ReadError;
-use super::frame::{Field, Values};
 use super::read::read_frame;
 use super::write::Writer;
+use crate::frame::{Field, Values};
 use crate::{Column, Table};
 use hyde_units::{Agreement, Dimension};
 use std::io;

@@ -1,6 +1,6 @@
 //! Writes frames, a group of rows at a time.
 
-use super::frame::{Field, Kind, Values};
+use crate::frame::{Field, Kind, Values};
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::ByteArray;

@@ -1,4 +1,4 @@
-//! [`Frame`]: what a Parquet file holds.
+//! [`Frame`]: named columns of numbers, integers or texts, whatever they are over; what a file holds before it is a record.
 
 use hyde_units::NamedUnit;
 
