@@ -25,6 +25,7 @@ pub struct Example {
     data: Option<PathBuf>,
     free_inputs: bool,
     ledger: bool,
+    observed: bool,
     set: BTreeMap<String, f64>,
     model: Option<String>,
     whole_library: bool,
@@ -60,6 +61,7 @@ impl Example {
             data: None,
             free_inputs: false,
             ledger: false,
+            observed: false,
             set: BTreeMap::new(),
             model: None,
             whole_library: false,
@@ -113,6 +115,13 @@ impl Example {
     #[must_use]
     pub fn free_inputs(mut self) -> Self {
         self.free_inputs = true;
+        self
+    }
+
+    /// Takes the form that an observer runs: replays are made.
+    #[must_use]
+    pub fn observed(mut self) -> Self {
+        self.observed = true;
         self
     }
 
@@ -305,6 +314,7 @@ impl Loaded {
             records: headers,
             free_inputs: example.free_inputs,
             ledger: example.ledger,
+            observed: example.observed,
             backend,
         }
     }

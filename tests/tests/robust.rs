@@ -118,6 +118,7 @@ fn compiled(text: &str) -> Option<String> {
             records: &records,
             free_inputs: true,
             ledger: true,
+            observed: false,
             backend: Backend::Interpreter,
         };
         let mut own = diagnostics.clone();

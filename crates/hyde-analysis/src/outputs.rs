@@ -17,7 +17,9 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
         .iter()
         .filter_map(|group| group.factors)
         .collect();
-    for id in dae.variables.ids().collect::<Vec<_>>() {
+    let observed = system.flat.experiment.observed;
+    let reported: Vec<_> = dae.variables.ids().filter(|_| !observed).collect();
+    for id in reported {
         let variable = dae.variables[id].clone();
         if hidden.contains(&id) || variable.origin.made_by == MadeBy::Expression {
             continue;

@@ -3,11 +3,13 @@
 pub(crate) mod bode;
 pub(crate) mod budget;
 pub(crate) mod check;
+pub(crate) mod diagnose;
 pub(crate) mod doc;
 pub(crate) mod effects;
 mod effects_check;
 pub(crate) mod emit;
 pub(crate) mod explain;
+pub(crate) mod fit;
 pub(crate) mod modes;
 pub(crate) mod params;
 pub(crate) mod plot;

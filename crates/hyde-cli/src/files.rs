@@ -59,6 +59,58 @@ pub(crate) fn below(folder: &Path, ending: &str, border: &str) -> Vec<PathBuf> {
     found
 }
 
+/// The files below a folder that a pattern names, in the order of their names: `*` and `?` stand for any characters of one
+/// file's or folder's name. A pattern that leaves the folder names none.
+#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
+pub(crate) fn matching(folder: &Path, pattern: &str) -> Vec<PathBuf> {
+    let mut found = vec![folder.to_path_buf()];
+    for part in Path::new(pattern).components() {
+        let std::path::Component::Normal(part) = part else {
+            if part == std::path::Component::CurDir {
+                continue;
+            }
+            return Vec::new();
+        };
+        let part = part.to_string_lossy();
+        let mut next = Vec::new();
+        for place in found {
+            let here = if place.as_os_str().is_empty() {
+                Path::new(".")
+            } else {
+                &place
+            };
+            for entry in std::fs::read_dir(here).into_iter().flatten().flatten() {
+                if fits(&entry.file_name().to_string_lossy(), &part) {
+                    next.push(place.join(entry.file_name()));
+                }
+            }
+        }
+        found = next;
+    }
+    found.retain(|path| path.is_file());
+    found.sort();
+    found
+}
+
+/// Whether a name is one that a pattern stands for.
+fn fits(name: &str, pattern: &str) -> bool {
+    let (name, pattern): (Vec<char>, Vec<char>) =
+        (name.chars().collect(), pattern.chars().collect());
+    // Whether the rest of the pattern from `p` stands for the rest of the name from `n`, from the end backwards.
+    let mut rest = vec![vec![false; pattern.len() + 1]; name.len() + 1];
+    rest[name.len()][pattern.len()] = true;
+    for n in (0..=name.len()).rev() {
+        for p in (0..pattern.len()).rev() {
+            rest[n][p] = match pattern[p] {
+                '*' => rest[n][p + 1] || (n < name.len() && rest[n + 1][p]),
+                '?' => n < name.len() && rest[n + 1][p + 1],
+                other => n < name.len() && name[n] == other && rest[n + 1][p + 1],
+            };
+        }
+    }
+    rest[0][0]
+}
+
 /// Makes a folder with all above it.
 pub(crate) fn make_folder(path: &Path) -> Result<(), String> {
     std::fs::create_dir_all(path).map_err(|error| {

@@ -21,6 +21,7 @@ pub mod render;
 mod report;
 mod run_failure;
 mod settings;
+mod study;
 mod summary;
 mod tables;
 
@@ -57,6 +58,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Params(args) => commands::params::params(args),
         Command::Effects(args) => commands::effects::effects(args),
         Command::Test(args) => commands::test::test(args),
+        Command::Fit(args) => commands::fit::fit(args),
+        Command::Diagnose(args) => commands::diagnose::diagnose(args),
         Command::Doc(args) => commands::doc::doc(args),
         Command::Explain(args) => commands::explain::explain(args),
     };

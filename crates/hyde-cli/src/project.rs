@@ -192,6 +192,8 @@ pub(crate) enum Aim {
     Ledger,
     /// The linearised model, its inputs free, with the energies of its parts.
     Linearize,
+    /// What an observer runs: replays made, measured channels alone reported.
+    Observe,
 }
 
 impl Project {
@@ -219,7 +221,8 @@ impl Project {
             settings: &settings,
             records: &headers,
             free_inputs: aim == Aim::Linearize,
-            ledger: aim != Aim::Run,
+            ledger: matches!(aim, Aim::Ledger | Aim::Linearize),
+            observed: aim == Aim::Observe,
             backend: Backend::Native,
         };
         let compiled = hyde_compiler::compile(&request, &mut self.diagnostics);
@@ -256,6 +259,7 @@ impl Project {
             records: &BTreeMap::new(),
             free_inputs: true,
             ledger: false,
+            observed: false,
             backend: Backend::Native,
         };
         let found = hyde_compiler::candidates(&request, &mut self.diagnostics);

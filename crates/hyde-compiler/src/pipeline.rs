@@ -28,6 +28,8 @@ pub struct Request<'a> {
     pub free_inputs: bool,
     /// Make the energy ledger.
     pub ledger: bool,
+    /// The form that an observer runs: replays are made, and measured channels alone are reported.
+    pub observed: bool,
     /// How numbers are made.
     pub backend: Backend,
 }
@@ -117,6 +119,7 @@ pub(crate) fn input<'a>(
         records: request.records,
         free_inputs: request.free_inputs,
         ledger: request.ledger,
+        observed: request.observed,
     }
 }
 

@@ -1,7 +1,7 @@
 //! Every diagnostic code, in one table; codes are never reused.
 //!
 //! E01 syntax, E02 names and types, E03 units, E04 connections and modification, E05 structure, E06 initialisation,
-//! E07 simulation, E08 data and experiments. Each has a page in the book, `book/src/errors/`, a fixture and a test.
+//! E07 simulation, E08 data and experiments, E09 studies. Each has a page in the book, `book/src/errors/`, a fixture and a test.
 
 macro_rules! codes {
     ($($name:ident $code:literal $title:literal;)*) => {
@@ -92,7 +92,12 @@ codes! {
     NoStop "E0807" "it is not said when a run ends";
     BadSolve "E0808" "the solver has no such method, option or value";
     BadSet "E0809" "a value cannot be set";
+    CannotReplay "E0810" "what is replayed has no equation of its own";
     BadSweep "E0813" "a sweep cannot be planned";
+    BadStudy "E0901" "a study does not say what it needs";
+    NoFiles "E0902" "no file is what a study asks for";
+    CannotVary "E0903" "what is to be varied cannot be";
+    CannotObserve "E0904" "a model or a record cannot be observed";
 }
 
 impl std::fmt::Display for Code {

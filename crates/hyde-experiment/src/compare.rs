@@ -134,7 +134,10 @@ fn uneven(table: &Table) -> String {
 }
 
 /// A column low-passed, differentiated and scaled as the experiment says.
-fn prepared(measured: &Measured, table: &Table, values: &[f64]) -> Result<Vec<f64>, String> {
+///
+/// # Errors
+/// What the column lacks for it.
+pub fn prepared(measured: &Measured, table: &Table, values: &[f64]) -> Result<Vec<f64>, String> {
     let mut signal = values.to_vec();
     for step in &measured.preparation {
         let step_s = table

@@ -4,8 +4,12 @@ mod bode;
 mod figure;
 mod measure;
 mod measured;
+mod observed;
 mod record;
+mod replay;
 mod stimulus;
+
+pub(crate) use replay::Replay;
 
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
@@ -36,6 +40,7 @@ impl<'a> Model<'a, '_> {
         };
         self.flat.experiment.name = experiment.name.text.clone();
         self.check_budget(&experiment.items);
+        self.flat.experiment.observed = self.input.observed;
         let at = |setting| Scope {
             records: true,
             ..Scope::new(root, setting)
@@ -50,7 +55,8 @@ impl<'a> Model<'a, '_> {
                 ExperimentItem::Measured(channels) => channels
                     .iter()
                     .for_each(|channel| self.measured(channel, root)),
-                ExperimentItem::Replay(_) => {} // A cut that fit and diagnose make; a run keeps the loop closed.
+                // Found before: effects that wrap the variable act on the column.
+                ExperimentItem::Replay(_) => {}
                 ExperimentItem::Expect(condition, text) => {
                     let scope = at(Setting::Measure);
                     let typed = self.lower(condition, &scope);

@@ -80,6 +80,9 @@ pub struct Input<'a> {
     pub free_inputs: bool,
     /// Make the energy ledger.
     pub ledger: bool,
+    /// The form that an observer runs: replayed columns take the place of what they replay, quantisers of measured
+    /// channels are errors of a known width, and measured channels alone are reported.
+    pub observed: bool,
 }
 
 /// Flattens a model with its experiment.
@@ -106,10 +109,13 @@ fn flat_model(
     let mut model = model::Model::new(input, diagnostics);
     model.offering = offering;
     let root = model.instantiate_root()?;
+    model.find_replays(root);
     model.lower_bindings();
     model.lower_equations();
     model.finish_effects();
+    model.replay_equations(false);
     model.connect();
+    model.replay_equations(true);
     model.free_inputs(root);
     model.experiment(root);
     model.accounts();

@@ -41,6 +41,8 @@ pub(crate) struct Model<'a, 'd> {
     /// Whether effects are offered to what they fit on, and those that were.
     pub(crate) offering: bool,
     pub(crate) offers: Vec<crate::instantiate::Offer<'a>>,
+    /// Variables whose equations recorded columns take the place of.
+    pub(crate) replays: Vec<crate::experiment::Replay<'a>>,
     /// Connectors of effects with those of their hosts: they join connection sets after everything written.
     pub(crate) joined: Vec<crate::connect::Connection>,
     /// Connected connectors and signals, in the order written.
@@ -83,6 +85,7 @@ impl<'a, 'd> Model<'a, 'd> {
             replacements: Vec::new(),
             offering: false,
             offers: Vec::new(),
+            replays: Vec::new(),
             joined: Vec::new(),
             connections: Vec::new(),
             held: BTreeMap::new(),

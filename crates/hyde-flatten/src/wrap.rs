@@ -23,7 +23,7 @@ pub(crate) struct Wrap<'a> {
 impl Model<'_, '_> {
     /// A value with the effects that wrap its variable, in the order written.
     pub(crate) fn wrapped(&mut self, var: VarId, value: Typed, setting: Setting) -> Typed {
-        let mut value = value;
+        let mut value = self.replayed(var, value);
         for number in self.wraps_of(var) {
             self.wraps[number].used = true;
             let Wrap {

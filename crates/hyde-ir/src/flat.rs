@@ -167,6 +167,8 @@ pub struct Measured {
     pub clocked: bool,
     /// Standard deviation of white noise, SI, of parameters alone.
     pub noise: Option<ExprId>,
+    /// Width of the uniform error of its quantiser, SI, of parameters alone; known in the observed form.
+    pub rounding: Option<ExprId>,
     /// Dimension and printed unit.
     pub quantity: Quantity,
     /// Where it is written.
@@ -364,6 +366,8 @@ impl Figure {
 pub struct Experiment {
     /// Its name; empty for a model run as it stands.
     pub name: String,
+    /// The form that an observer runs: measured channels alone are reported.
+    pub observed: bool,
     /// The records it names.
     pub records: Vec<String>,
     /// Measured channels.

@@ -328,6 +328,7 @@ impl Compiled {
             Constant::Atol => option("atol")?,
             Constant::MaxStep => option("max_step")?,
             Constant::Noise(channel) => experiment.measured.get(channel)?.noise?,
+            Constant::Rounding(channel) => experiment.measured.get(channel)?.rounding?,
             Constant::BandFrom(bode) => experiment.bodes.get(bode)?.band.0,
             Constant::BandTo(bode) => experiment.bodes.get(bode)?.band.1,
             Constant::Radius(figure) => match experiment.figures.get(figure)?.kind {

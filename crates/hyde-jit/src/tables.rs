@@ -4,7 +4,7 @@ use crate::compiled::Compiled;
 use crate::{figures, ledger};
 use hyde_ir::dae::{self, Dae};
 use hyde_ir::flat;
-use hyde_ir::{Id as _, VariableKind};
+use hyde_ir::{Id as _, Interpolation, VariableKind};
 use hyde_program::{
     Assignment, Automaton, Bode, Clock, Column, Delay, Derivatives, Experiment, Flow, Hold,
     InitialCondition, Measure, Measured, Output, Parameter, Pin, Preparation, Prior, Program,
@@ -175,22 +175,25 @@ fn columns(dae: &Dae) -> Vec<Column> {
         .chain(dae.outputs.iter().map(|output| output.value))
         .chain(dae.delays.iter().map(|delay| delay.value))
         .collect();
-    let mut read = vec![false; dae.columns.len()];
+    let mut read = vec![(false, false); dae.columns.len()];
     for id in dae.exprs.below(&roots) {
         if let hyde_ir::Expr::Var(var, _) = dae.exprs[id]
-            && let VariableKind::Column(column, _) = dae.variables[var].kind
+            && let VariableKind::Column(column, interpolation) = dae.variables[var].kind
         {
-            read[column.index()] = true;
+            let steps = interpolation == Interpolation::Held || dae.columns[column].next;
+            let read = &mut read[column.index()];
+            *read = (true, read.1 || steps);
         }
     }
     dae.columns
         .iter()
         .zip(read)
-        .map(|(column, continuous)| Column {
+        .map(|(column, (continuous, stepped))| Column {
             record: column.record.clone(),
             column: column.column.clone(),
             next: column.next,
             continuous,
+            stepped,
         })
         .collect()
 }

@@ -104,6 +104,8 @@ pub enum Constant {
     MaxStep,
     /// Standard deviation of a measured channel's noise, SI.
     Noise(usize),
+    /// Width of the uniform error of a measured channel's quantiser, SI; known in the observed form.
+    Rounding(usize),
     /// Lower end of a frequency response in Hz.
     BandFrom(usize),
     /// Upper end of a frequency response in Hz.

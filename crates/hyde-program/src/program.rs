@@ -91,6 +91,8 @@ pub struct Column {
     pub next: bool,
     /// Whether the continuous equations read it, linearly or held.
     pub continuous: bool,
+    /// Whether they read it as it is held, or one row ahead: it steps at every row.
+    pub stepped: bool,
 }
 
 /// With respect to what a function is differentiated.

@@ -19,6 +19,9 @@ pub(crate) struct Inputs<'a> {
     columns: Vec<Input<'a>>,
     /// Numbers of those the continuous equations read.
     continuous: Vec<usize>,
+    /// Numbers of those of them that step at rows, and the instant that they were read at last: between events they stay.
+    stepped: Vec<usize>,
+    since_s: f64,
 }
 
 struct Input<'a> {
@@ -50,12 +53,17 @@ impl<'a> Inputs<'a> {
                 cursor: Cursor::default(),
             });
         }
-        let continuous = (0..columns.len())
-            .filter(|&number| program.columns[number].continuous)
-            .collect();
+        let numbers = |read: &dyn Fn(&hyde_program::Column) -> bool| {
+            let all = program.columns.iter().enumerate();
+            all.filter(|(_, column)| read(column))
+                .map(|(number, _)| number)
+                .collect()
+        };
         Ok(Self {
             columns,
-            continuous,
+            continuous: numbers(&|column| column.continuous),
+            stepped: numbers(&|column| column.stepped),
+            since_s: setup.start_s,
         })
     }
 
@@ -64,6 +72,27 @@ impl<'a> Inputs<'a> {
         for &number in &self.continuous {
             self.columns[number].read(t, &mut u[2 * number..2 * number + 2]);
         }
+        for &number in &self.stepped {
+            let mut held = [0.0; 2];
+            self.columns[number].read(self.since_s, &mut held);
+            u[2 * number + 1] = held[1];
+            if self.columns[number].next {
+                u[2 * number] = held[0];
+            }
+        }
+    }
+
+    /// Reads the columns that step anew at an event. Whether one of them changes.
+    pub(crate) fn enter(&mut self, t: f64) -> bool {
+        let mut changed = false;
+        for &number in &self.stepped {
+            let (mut before, mut after) = ([0.0; 2], [0.0; 2]);
+            self.columns[number].read(self.since_s, &mut before);
+            self.columns[number].read(t, &mut after);
+            changed |= before[1].to_bits() != after[1].to_bits();
+        }
+        self.since_s = t;
+        changed
     }
 
     /// Reads all columns.
@@ -76,10 +105,16 @@ impl<'a> Inputs<'a> {
     /// The next instant after `t` at which a column that the equations read jumps.
     pub(crate) fn next_jump(&self, t: f64) -> f64 {
         let later = |&number: &usize| self.columns[number].signal.jumps().find(|&jump| jump > t);
-        self.continuous
-            .iter()
-            .filter_map(later)
-            .fold(f64::INFINITY, f64::min)
+        let jumps = self.continuous.iter().filter_map(later);
+        let row = |&number: &usize| {
+            let column = &self.columns[number];
+            let mut cursor = column.cursor;
+            column
+                .signal
+                .next_instant(t + 1e-12 + 1e-13 * t.abs(), &mut cursor)
+        };
+        let rows = self.stepped.iter().filter_map(row);
+        jumps.chain(rows).fold(f64::INFINITY, f64::min)
     }
 
     /// A step that does not skip rows of the columns that the equations read.

@@ -25,6 +25,7 @@ mod limit_cycle;
 mod loops;
 mod models;
 mod multirate;
+mod observer;
 mod paper;
 mod points;
 mod reactions;

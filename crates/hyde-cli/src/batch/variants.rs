@@ -129,6 +129,7 @@ impl Source<'_> {
             records: &headers,
             free_inputs: false,
             ledger: false,
+            observed: false,
             backend: Backend::Native,
         };
         match hyde_compiler::compile(&request, &mut diagnostics) {

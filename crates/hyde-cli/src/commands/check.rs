@@ -9,6 +9,7 @@ use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Aim, Project, Records, complain, print_output, report_errors};
 use crate::render;
+use hyde_calibrate::{CalibrationPlan, DiagnosisPlan};
 use hyde_compiler::{States, ideals};
 use hyde_diag::{Diagnostics, Origin, Sources};
 use hyde_syntax::ast::StudyKind;
@@ -123,9 +124,10 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
         }
         last = Some(project);
     }
-    let Some(project) = last else {
+    let Some(mut project) = last else {
         return Ok(found);
     };
+    exit = exit.max(studies(&mut project));
     if exit != Exit::Done {
         project.finish_with_errors(args);
         return Err(exit);
@@ -183,6 +185,20 @@ fn sweeps(args: &ModelArgs, project: &Project) -> Result<Vec<String>, Exit> {
         }
     }
     Ok(names)
+}
+
+/// Whether the studies of a file are in order.
+fn studies(project: &mut Project) -> Exit {
+    let mut in_order = true;
+    for study in project.file.studies() {
+        let diagnostics = &mut project.diagnostics;
+        in_order &= match study.kind {
+            StudyKind::Calibrate => CalibrationPlan::read(study, diagnostics).is_some(),
+            StudyKind::Diagnose => DiagnosisPlan::read(study, diagnostics).is_some(),
+            StudyKind::Sweep => true,
+        };
+    }
+    if in_order { Exit::Done } else { Exit::Model }
 }
 
 /// Lines on states where the equations left a choice, or a start value is no condition of the model.

@@ -23,6 +23,7 @@ pub(crate) fn emit(args: &EmitArgs) -> Exit {
         records: &headers,
         free_inputs: false,
         ledger: false,
+        observed: false,
         backend: Backend::Native,
     };
     let stage = match args.stage {

@@ -123,5 +123,10 @@ pages! {
     NoStop "E0807";
     BadSolve "E0808";
     BadSet "E0809";
+    CannotReplay "E0810";
     BadSweep "E0813";
+    BadStudy "E0901";
+    NoFiles "E0902";
+    CannotVary "E0903";
+    CannotObserve "E0904";
 }

@@ -43,7 +43,11 @@ impl<'a> Model<'a, '_> {
         } else {
             Quantity::usual(dimension)
         };
-        let clocked = !self.clocks_of(value.id).is_empty();
+        let (id, rounding) = match self.input.observed {
+            true => self.observed(value.id),
+            false => (value.id, None),
+        };
+        let clocked = !self.clocks_of(id).is_empty();
         let signal = hyde_syntax::format_expression(&channel.signal);
         let name = match (&channel.doc, signal.split_once('.')) {
             (Some(doc), _) => doc.clone(),
@@ -57,9 +61,10 @@ impl<'a> Model<'a, '_> {
             name,
             column,
             preparation,
-            value: value.id,
+            value: id,
             clocked,
             noise,
+            rounding,
             quantity,
             origin,
         });

@@ -283,6 +283,9 @@ impl Printer<'_> {
             let noise = measured.noise.map_or_else(String::new, |noise| {
                 format!(" ~ {}", self.names.expr(noise))
             });
+            let rounding = measured.rounding.map_or_else(String::new, |width| {
+                format!(", rounded within {}", self.names.expr(width))
+            });
             let when = if measured.clocked {
                 "after the tick"
             } else {
@@ -290,7 +293,7 @@ impl Printer<'_> {
             };
             let _ = writeln!(
                 out,
-                "  measured {}.{}{} = {}{noise} {when}{}",
+                "  measured {}.{}{} = {}{noise}{rounding} {when}{}",
                 column.record,
                 column.column,
                 steps.concat(),

@@ -33,7 +33,9 @@ impl Simulation<'_> {
         let before = self.meter.as_ref().map(|_| self.outputs.clone());
         let events = self.results.events.len();
         let arrived = delays::arrive(&mut self.integrator, &mut self.consistent)?;
-        let mut changed = arrived.read;
+        let t = self.integrator.t;
+        let entered = self.integrator.state_mut().inputs.enter(t);
+        let mut changed = arrived.read | entered;
         changed |= self.iterate(scheduled, false)?;
         if changed || restart || *cause != Cause::Time {
             self.finish_sensitivities();
@@ -64,7 +66,7 @@ impl Simulation<'_> {
             .iter()
             .zip(&self.integrator.state().z)
             .any(|(a, b)| a.to_bits() != b.to_bits());
-        let stepped = arrived.jump || ticked && moved;
+        let stepped = arrived.jump || entered || ticked && moved;
         // Where rows are finer than ticks, what a clock holds is a staircase; coarser rows would be multiplied.
         let step_shows = on_grid || self.setup.row_spacing() < self.schedule.shortest_period();
         if happened || (step_shows && stepped) {

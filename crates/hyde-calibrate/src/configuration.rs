@@ -1,0 +1,212 @@
+//! [`Configuration`]: the model in one combination of modes, linearised once: what a fixed step is made of.
+//!
+//! With the states x and v = (rates of the states, algebraic variables) the model is F(t, x, v) = 0. The inverse of dF/dv
+//! makes v from x by one product where F is linear in v, and dx'/dx = A is the linear part of the flow, which steps carry
+//! exactly ([`crate::exponential`]). What is not linear is added step by step, so a configuration is exact for no model
+//! but a linear one, and needs to be near enough for every other.
+
+use crate::exponential::{Step, steps};
+use hyde_program::{Function, Kernels, Point, Program, Workspace, Wrt};
+use nalgebra::DMatrix;
+
+/// How far from each other derivatives may be that are the same number.
+const SAME: f64 = 1e-9;
+
+/// The places of states and algebraic variables in the solver's vector.
+pub(crate) struct Places {
+    pub(crate) differential: Vec<bool>,
+    pub(crate) states: Vec<usize>,
+    pub(crate) algebraics: Vec<usize>,
+}
+
+/// The model in one combination of modes.
+pub(crate) struct Configuration {
+    /// The inverse of dF/dv.
+    pub(crate) inverse: DMatrix<f64>,
+    /// dF/dv is the same everywhere: v comes from one product.
+    pub(crate) constant: bool,
+    /// F is linear in everything and does not depend on time: a step needs no kernel.
+    pub(crate) affine: bool,
+    /// Derivatives of the states' rates by the states.
+    pub(crate) a: DMatrix<f64>,
+    /// Derivatives of the algebraic variables by the states.
+    pub(crate) algebraic: DMatrix<f64>,
+    /// Steps of a row's time over 1, 2, 4, … .
+    pub(crate) steps: Vec<Step>,
+    /// The same steps where the model is affine: from the rates, how the states change, the rates after it, and how the
+    /// algebraic variables change, one below the other.
+    pub(crate) affine_steps: Vec<DMatrix<f64>>,
+}
+
+impl Places {
+    pub(crate) fn new(program: &Program, memory: &[f64]) -> Self {
+        let differential = program.differential(memory);
+        let chosen = |state: bool| {
+            (0..program.n_unknowns)
+                .filter(|&i| differential[i] == state)
+                .collect()
+        };
+        Self {
+            states: chosen(true),
+            algebraics: chosen(false),
+            differential,
+        }
+    }
+}
+
+impl Configuration {
+    /// Linearises at a point; `None` where the equations do not determine v there.
+    pub(crate) fn new(
+        program: &Program,
+        places: &Places,
+        at: Point<'_>,
+        workspace: &mut Workspace,
+        step_s: f64,
+        levels: usize,
+    ) -> Option<Self> {
+        let here = partials(program, at, workspace);
+        let inverse = consistent(program, places, &here).try_inverse()?;
+        let mut by_state = DMatrix::zeros(program.n_unknowns, places.states.len());
+        let mut column_of = vec![usize::MAX; program.n_unknowns];
+        for (number, &state) in places.states.iter().enumerate() {
+            column_of[state] = number;
+        }
+        for (entry, &value) in program.partials(Function::Residual).iter().zip(&here) {
+            if let Wrt::Unknown(column) = entry.wrt
+                && places.differential[column]
+            {
+                by_state[(entry.row, column_of[column])] += value;
+            }
+        }
+        let v_by_state = -(&inverse * by_state);
+        let a = v_by_state.select_rows(&places.states);
+        let algebraic = v_by_state.select_rows(&places.algebraics);
+        let (constant, affine) = linearity(program, places, at, workspace, &here);
+        let steps = steps(&a, step_s, levels);
+        let stacked = |step: &Step| {
+            let (n, m) = (a.nrows(), algebraic.nrows());
+            let mut all = DMatrix::zeros(2 * n + m, n);
+            all.rows_mut(0, n).copy_from(&step.first);
+            all.rows_mut(n, n).copy_from(&step.exp);
+            all.rows_mut(2 * n, m)
+                .copy_from(&(&algebraic * &step.first));
+            all
+        };
+        Some(Self {
+            affine_steps: steps.iter().filter(|_| affine).map(stacked).collect(),
+            steps,
+            inverse,
+            constant,
+            affine,
+            a,
+            algebraic,
+        })
+    }
+}
+
+/// The derivatives of the residual at a point.
+fn partials(program: &Program, at: Point<'_>, workspace: &mut Workspace) -> Vec<f64> {
+    let mut values = vec![0.0; program.partials(Function::Residual).len()];
+    let kernels: &dyn Kernels = program.kernels.as_ref();
+    kernels.partials(Function::Residual, at, workspace, &mut values);
+    values
+}
+
+/// dF/dv: by the rates of states, by the values of the others.
+fn consistent(program: &Program, places: &Places, partials: &[f64]) -> DMatrix<f64> {
+    let n = program.n_unknowns;
+    let mut matrix = DMatrix::zeros(n, n);
+    for (entry, &value) in program.partials(Function::Residual).iter().zip(partials) {
+        if let Some(column) = v_column(places, entry.wrt) {
+            matrix[(entry.row, column)] += value;
+        }
+    }
+    matrix
+}
+
+fn v_column(places: &Places, wrt: Wrt) -> Option<usize> {
+    match wrt {
+        Wrt::Derivative(column) if places.differential[column] => Some(column),
+        Wrt::Unknown(column) if !places.differential[column] => Some(column),
+        Wrt::Derivative(_)
+        | Wrt::Unknown(_)
+        | Wrt::Parameter(_)
+        | Wrt::Memory(_)
+        | Wrt::Delayed(_)
+        | Wrt::Time => None,
+    }
+}
+
+/// Whether dF/dv, and whether everything, is the same at points near and far, at other times and between rows.
+fn linearity(
+    program: &Program,
+    places: &Places,
+    at: Point<'_>,
+    workspace: &mut Workspace,
+    here: &[f64],
+) -> (bool, bool) {
+    let (mut constant, mut affine) = (true, true);
+    for (number, size) in [1e-3, 0.3, 1.0, 30.0, 1e3].into_iter().enumerate() {
+        // Any numbers without relation to each other.
+        let moved = |values: &[f64], shift: usize| -> Vec<f64> {
+            let pairs = values.iter().enumerate();
+            pairs
+                .map(|(i, &value)| {
+                    let part = (12.9898 * (i + shift) as f64 + 78.233 * number as f64).sin();
+                    value + size * part * (1.0 + value.abs())
+                })
+                .collect()
+        };
+        let (y, yp) = (moved(at.y, 1), moved(at.yp, 1000));
+        let there = partials(
+            program,
+            Point {
+                y: &y,
+                yp: &yp,
+                ..at
+            },
+            workspace,
+        );
+        for ((entry, &a), &b) in program
+            .partials(Function::Residual)
+            .iter()
+            .zip(here)
+            .zip(&there)
+        {
+            let same = (a - b).abs() <= SAME * a.abs().max(b.abs());
+            affine &= same;
+            constant &= same || v_column(places, entry.wrt).is_none();
+        }
+    }
+    let residual = |at: Point<'_>, workspace: &mut Workspace| {
+        let mut out = vec![0.0; program.n_unknowns];
+        program
+            .kernels
+            .evaluate(Function::Residual, at, workspace, &mut out);
+        out
+    };
+    let before = residual(at, workspace);
+    let later = residual(
+        Point {
+            t: at.t + 0.377,
+            ..at
+        },
+        workspace,
+    );
+    let linear: Vec<f64> =
+        at.u.iter()
+            .enumerate()
+            .map(|(i, u)| u + f64::from(u8::from(i % 2 == 0)))
+            .collect();
+    let between = residual(Point { u: &linear, ..at }, workspace);
+    let same = |other: &[f64]| {
+        before
+            .iter()
+            .zip(other)
+            .all(|(a, b)| a.to_bits() == b.to_bits())
+    };
+    (
+        constant,
+        affine && same(&later) && same(&between) && program.delays.is_empty(),
+    )
+}

@@ -1,0 +1,66 @@
+//! [`Hypothesis`]: an effect at a site of the model where it fits.
+
+use hyde_program::Program;
+
+/// A size or a shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Knob {
+    /// Its name in the effect.
+    pub name: String,
+    /// Its declared value, SI.
+    pub value: f64,
+    /// The values it may have, SI.
+    pub range: (f64, f64),
+    /// Whether it counts something.
+    pub integer: bool,
+    /// Its unit in SI.
+    pub unit: String,
+}
+
+/// An effect at a site.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hypothesis {
+    /// The effect's name: its id in reports.
+    pub effect: String,
+    /// Path of the instance it is put on.
+    pub site: String,
+    /// Other connectors that are the same site.
+    pub aliases: Vec<String>,
+    /// Where all of them are 0 it vanishes.
+    pub sizes: Vec<Knob>,
+    /// What says how it looks.
+    pub shapes: Vec<Knob>,
+    /// The shape that is a period in space or an order of an angle, if it has one.
+    pub periodic: Option<usize>,
+}
+
+impl Hypothesis {
+    /// Whether its two sizes are those of a sine and a cosine.
+    #[must_use]
+    pub fn is_pair(&self) -> bool {
+        let [a, b] = self.sizes.as_slice() else {
+            return false;
+        };
+        let stem = |name: &str, ending: char| name.strip_suffix(ending).map(str::to_owned);
+        a.unit == b.unit && stem(&a.name, 's').is_some() && stem(&a.name, 's') == stem(&b.name, 'c')
+    }
+
+    /// Full names of sizes and shapes for an instance at a path.
+    pub(crate) fn names(knobs: &[Knob], path: &str) -> Vec<String> {
+        knobs
+            .iter()
+            .map(|knob| format!("{path}.{}", knob.name))
+            .collect()
+    }
+}
+
+/// A model with effects put on.
+pub struct Built {
+    /// The program in the observed form, the effects kept though their sizes are 0.
+    pub program: Program,
+    /// Paths of the effects' instances, in the order asked for.
+    pub paths: Vec<String>,
+}
+
+/// Puts hypotheses, by number, on the model; `None` where they cannot be together.
+pub type Build<'a> = dyn Fn(&[usize]) -> Option<Built> + Sync + 'a;

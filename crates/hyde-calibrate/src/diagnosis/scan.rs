@@ -1,0 +1,293 @@
+//! [`Score`]: what an effect at a site gains at best, over its shapes and sizes, before anything is fitted.
+//!
+//! How innovations change with a small size is differentiated along one run ([`super::tangent`]). Where the effect is
+//! linear in its sizes the best ones follow at once; what is gained there is then tried by the model itself. An effect
+//! that brings modes of its own, as play does, is nothing to begin with and is tried at sizes all over its range.
+
+use super::hypothesis::{Build, Built, Hypothesis, Knob};
+use super::projection::Projection;
+use super::stage::{Ground, Stage, flat};
+use super::tangent::{Direction, tangents};
+use crate::observer::Innovations;
+use hyde_program::Program;
+
+/// A visible change of innovations: the sum of its squares.
+const VISIBLE: f64 = 100.0;
+/// The part of its range that a size is given to differentiate by it.
+const SMALL: f64 = 1e-4;
+/// Shapes scored at once.
+const CHUNK: usize = 8;
+/// Nodes kept of each effect: where it is fitted from.
+const KEPT: usize = 3;
+/// Nodes of a shape at most, and of one that is a period or an order.
+const NODES: usize = 12;
+const PERIODIC_NODES: usize = 96;
+/// Sizes tried of an effect with modes of its own: halves of its range.
+const HALVINGS: i32 = 9;
+
+/// Where an effect gains, and how much.
+#[derive(Clone, Debug)]
+pub struct Node {
+    /// Values of its shapes, SI.
+    pub shapes: Vec<f64>,
+    /// Values of its sizes, SI.
+    pub sizes: Vec<f64>,
+    /// Sizes that can just be seen, SI.
+    pub(crate) visible: Vec<f64>,
+    /// What is gained of the sum of squares.
+    pub gain: f64,
+}
+
+/// What an effect at a site gains at best.
+#[derive(Clone, Debug)]
+pub struct Score {
+    /// Number of the hypothesis.
+    pub hypothesis: usize,
+    /// Its best nodes, the best first.
+    pub nodes: Vec<Node>,
+    /// Number of nodes tried.
+    pub tried: usize,
+    /// Whether it is linear in its sizes.
+    pub linear: bool,
+    /// The least size that would have been seen, SI: of its first size, where it is linear.
+    pub detectable: Option<f64>,
+}
+
+impl Score {
+    /// What is gained at best.
+    #[must_use]
+    pub fn gain(&self) -> f64 {
+        self.nodes.first().map_or(0.0, |node| node.gain)
+    }
+}
+
+/// Scores a hypothesis beside what a stage has; `None` where it cannot be put on the model.
+pub(crate) fn scan(
+    ground: &Ground<'_>,
+    stage: &Stage,
+    projection: &Projection,
+    hypotheses: &[Hypothesis],
+    number: usize,
+    build: &Build<'_>,
+    gate: f64,
+) -> Option<Score> {
+    let hypothesis = &hypotheses[number];
+    let mut list: Vec<usize> = stage.effects.iter().map(|(effect, _)| *effect).collect();
+    list.push(number);
+    let Built { program, paths } = build(&list)?;
+    let path = paths.last()?;
+    let runs = Runs {
+        ground,
+        program: &program,
+        values: stage.values(),
+        sizes: Hypothesis::names(&hypothesis.sizes, path),
+        shapes: Hypothesis::names(&hypothesis.shapes, path),
+        plain: Vec::new(),
+    };
+    let zeros = vec![0.0; hypothesis.sizes.len()];
+    let declared: Vec<f64> = hypothesis.shapes.iter().map(|shape| shape.value).collect();
+    let plain = runs.innovations(&zeros, &declared)?;
+    let runs = Runs { plain, ..runs };
+    let own_modes = program.automata.len() > stage.program.automata.len()
+        || program.relations.len() > stage.program.relations.len();
+    let shapes = grid(hypothesis);
+    let mut tried = 0;
+    let mut nodes: Vec<Node> = Vec::new();
+    let mut detectable: Option<f64> = None;
+    for chunk in shapes.chunks(CHUNK) {
+        for (shape, columns) in chunk.iter().zip(runs.columns(hypothesis, chunk)?) {
+            tried += 1;
+            let answer = projection.answer(&columns);
+            let own = projection.answer(&columns[..1]);
+            if own.gain > 0.0 && own.sizes[0] != 0.0 {
+                let seen = gate.sqrt() * own.sizes[0].abs() / own.gain.sqrt();
+                detectable = Some(detectable.map_or(seen, |least: f64| least.min(seen)));
+            }
+            let pairs = || hypothesis.sizes.iter().enumerate();
+            nodes.push(Node {
+                shapes: shape.clone(),
+                sizes: pairs()
+                    .map(|(i, size)| inside(answer.sizes[i], size))
+                    .collect(),
+                visible: pairs()
+                    .map(|(i, size)| visible(&columns[i], size))
+                    .collect(),
+                gain: answer.gain,
+            });
+        }
+    }
+    best_first(&mut nodes);
+    nodes.truncate(KEPT);
+    let mut linear = !own_modes;
+    for node in &mut nodes {
+        if node.gain < 0.25 * gate {
+            continue;
+        }
+        let promised = node.gain;
+        node.gain = f64::NEG_INFINITY;
+        for factor in [1.0, 0.5, 2.0] {
+            let sizes: Vec<f64> = node
+                .sizes
+                .iter()
+                .zip(&hypothesis.sizes)
+                .map(|(s, size)| (s * factor).clamp(size.range.0, size.range.1))
+                .collect();
+            let gain = projection.gain(&runs.change(&sizes, &node.shapes)?);
+            tried += 1;
+            if gain > node.gain {
+                (node.gain, node.sizes) = (gain, sizes);
+            }
+            if node.gain > 0.7 * promised {
+                break;
+            }
+            linear = false;
+        }
+    }
+    if own_modes {
+        let largest = largest(&hypothesis.sizes[0]);
+        for halving in 0..HALVINGS {
+            let mut sizes = zeros.clone();
+            sizes[0] = largest * 0.5_f64.powi(halving);
+            let gain = projection.gain(&runs.change(&sizes, &declared)?);
+            tried += 1;
+            nodes.push(Node {
+                shapes: declared.clone(),
+                visible: sizes.iter().map(|s| 0.1 * s.abs()).collect(),
+                sizes,
+                gain,
+            });
+        }
+    }
+    best_first(&mut nodes);
+    nodes.truncate(KEPT);
+    Some(Score {
+        hypothesis: number,
+        nodes,
+        tried,
+        linear,
+        detectable: detectable.filter(|_| linear),
+    })
+}
+
+/// Innovations of a model with the effect at some sizes.
+struct Runs<'s> {
+    ground: &'s Ground<'s>,
+    program: &'s Program,
+    values: Vec<(String, f64)>,
+    sizes: Vec<String>,
+    shapes: Vec<String>,
+    plain: Vec<f64>,
+}
+
+impl Runs<'_> {
+    fn innovations(&self, sizes: &[f64], shapes: &[f64]) -> Option<Vec<f64>> {
+        let set = self.set(sizes, shapes);
+        let each: Option<Vec<Innovations>> = self
+            .ground
+            .recordings
+            .iter()
+            .map(|recording| {
+                Innovations::of(self.program, recording, self.ground.observer, &set).ok()
+            })
+            .collect();
+        Some(flat(&each?))
+    }
+
+    fn change(&self, sizes: &[f64], shapes: &[f64]) -> Option<Vec<f64>> {
+        let mut with = self.innovations(sizes, shapes)?;
+        for (new, old) in with.iter_mut().zip(&self.plain) {
+            *new -= old;
+        }
+        Some(with)
+    }
+
+    /// The changes of innovations a unit of each size, for some shapes.
+    fn columns(&self, hypothesis: &Hypothesis, shapes: &[Vec<f64>]) -> Option<Vec<Vec<Vec<f64>>>> {
+        let count = hypothesis.sizes.len();
+        let zeros = vec![0.0; count];
+        let mut lists: Vec<Vec<f64>> = vec![Vec::new(); shapes.len() * count];
+        for recording in self.ground.recordings {
+            let mut directions = Vec::new();
+            for shape in shapes {
+                for which in 0..count {
+                    let mut sizes = zeros.clone();
+                    sizes[which] = SMALL * largest(&hypothesis.sizes[which]);
+                    directions.push(Direction {
+                        p: recording.parameters(self.program, &self.set(&sizes, shape)),
+                        step: sizes[which],
+                    });
+                }
+            }
+            let set = self.set(&zeros, shapes.first()?);
+            let observer = self.ground.observer;
+            let found = tangents(self.program, recording, observer, &set, &directions)?;
+            for (list, own) in lists.iter_mut().zip(found) {
+                list.extend(own);
+            }
+        }
+        let mut lists = lists.into_iter();
+        let of_shape = |_| lists.by_ref().take(count).collect();
+        Some(shapes.iter().map(of_shape).collect())
+    }
+
+    fn set(&self, sizes: &[f64], shapes: &[f64]) -> Vec<(usize, f64)> {
+        let mut values = self.values.clone();
+        let own = self.sizes.iter().zip(sizes);
+        let own = own.chain(self.shapes.iter().zip(shapes));
+        values.extend(own.map(|(name, &value)| (name.clone(), value)));
+        self.ground.set_in(self.program, &values)
+    }
+}
+
+fn inside(value: f64, size: &Knob) -> f64 {
+    value.clamp(size.range.0, size.range.1)
+}
+
+/// The size at which a change of innovations can be seen.
+fn visible(column: &[f64], size: &Knob) -> f64 {
+    let seen = (VISIBLE / super::projection::dot(column, column).max(1e-300)).sqrt();
+    seen.min(0.5 * largest(size).abs())
+}
+
+fn best_first(nodes: &mut [Node]) {
+    nodes.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+}
+
+fn largest(size: &Knob) -> f64 {
+    // The positive side, where there is one: many sizes cannot be negative.
+    if size.range.1 > 0.0 {
+        size.range.1
+    } else {
+        size.range.0
+    }
+}
+
+/// The values of shapes that are tried: a fine grid of a period or an order, else of the first shape; of the others their
+/// declared values.
+fn grid(hypothesis: &Hypothesis) -> Vec<Vec<f64>> {
+    let declared: Vec<f64> = hypothesis.shapes.iter().map(|shape| shape.value).collect();
+    let Some(axis) = hypothesis.periodic.or((!declared.is_empty()).then_some(0)) else {
+        return vec![declared];
+    };
+    let values = axis_values(&hypothesis.shapes[axis], hypothesis.periodic.is_some());
+    let with = |value: f64| {
+        let mut shapes = declared.clone();
+        shapes[axis] = value;
+        shapes
+    };
+    values.into_iter().map(with).collect()
+}
+
+fn axis_values(shape: &Knob, periodic: bool) -> Vec<f64> {
+    let (low, high) = shape.range;
+    let most = if periodic { PERIODIC_NODES } else { NODES };
+    if shape.integer {
+        let count = (high - low).round().max(0.0) as usize + 1;
+        return (0..count.min(most)).map(|k| low + k as f64).collect();
+    }
+    let parts = (0..most).map(|k| (k as f64 + 0.5) / most as f64);
+    if low > 0.0 && high / low > 4.0 {
+        return parts.map(|part| low * (high / low).powf(part)).collect();
+    }
+    parts.map(|part| low + (high - low) * part).collect()
+}

@@ -1,0 +1,440 @@
+//! [`diagnose`]: takes in one effect after the other, as long as the best passes every gate.
+//!
+//! The gate of a gain is twice what the best of all nodes tried would reach by chance in one of a hundred records without
+//! any effect: the quantile of chi squared for the effect's sizes and shapes, after Bonferroni. It grows with what
+//! innovations tell less than independent ones. A gain on what was not fitted is also to be material: a part of the
+//! number of innovations. Everything is chosen inside the records to fit.
+
+use super::hypothesis::{Build, Built, Hypothesis};
+use super::projection::Projection;
+use super::scan::{Score, scan};
+use super::stage::{Ground, Stage};
+use super::trial::{Rejection, Trial, trial, unseen};
+use crate::fit::{correlation, covariance, inflation};
+use crate::gain::Observer;
+use crate::least_squares::Solution;
+use crate::plant::Unsupported;
+use crate::recording::Recording;
+use crate::varied::Varied;
+use rayon::prelude::*;
+
+/// One of this many sets of records without an effect may pass a single gate by chance, and the margin above that.
+const CHANCE: f64 = 0.01;
+const MARGIN: f64 = 2.0;
+/// The part of the number of innovations that a gain on what was not fitted is to reach.
+const MATERIAL: f64 = 0.002;
+/// Hypotheses fitted in a round at most, and the part of the best score that they must have.
+const SURVIVORS: usize = 8;
+const SURVIVING: f64 = 0.02;
+/// Innovations that are explained: their mean square, and their correlation.
+const EXPLAINED: (f64, f64) = (1.05, 0.1);
+
+/// What gains have to reach.
+#[derive(Clone, Copy, Debug)]
+pub struct Gates {
+    /// Nodes tried so far.
+    pub tried: usize,
+    /// Number of innovations.
+    pub innovations: usize,
+}
+
+impl Gates {
+    /// What a gain of a hypothesis with so many sizes and shapes has to reach.
+    #[must_use]
+    pub fn gain(&self, freedoms: usize) -> f64 {
+        MARGIN * chi_squared(freedoms.max(1), CHANCE / self.tried.max(1) as f64)
+    }
+
+    /// What a gain on what was not fitted has to reach beside that.
+    #[must_use]
+    pub fn material(&self) -> f64 {
+        MATERIAL * self.innovations as f64
+    }
+}
+
+/// A quantity that was found, SI.
+#[derive(Clone, Debug)]
+pub struct Quantity {
+    /// Its name in the effect.
+    pub name: String,
+    /// Its value.
+    pub value: f64,
+    /// Its 95 % interval.
+    pub interval: (f64, f64),
+    /// Its unit.
+    pub unit: String,
+}
+
+/// An effect that was taken in.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    /// Number of the hypothesis.
+    pub hypothesis: usize,
+    /// Its size: of a sine and a cosine their amplitude.
+    pub size: Quantity,
+    /// All its sizes.
+    pub sizes: Vec<Quantity>,
+    /// Its shapes; the phase of a pair behind them.
+    pub shapes: Vec<Quantity>,
+    /// Other hypotheses that the records cannot tell from it.
+    pub alternatives: Vec<usize>,
+}
+
+/// A round of the search.
+pub struct Round {
+    /// Scores, the best first.
+    pub scores: Vec<Score>,
+    /// What was fitted, the best first.
+    pub trials: Vec<Trial>,
+    /// The gates.
+    pub gates: Gates,
+}
+
+/// What was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// Nothing is missing that these records would show.
+    None,
+    /// These effects are missing.
+    Effect,
+    /// One of several that these records cannot tell apart.
+    OneOf,
+    /// Something is missing, and no effect known is it.
+    Unknown,
+}
+
+/// A diagnosis.
+pub struct Diagnosis {
+    /// The verdict.
+    pub verdict: Verdict,
+    /// The effects taken in.
+    pub findings: Vec<Finding>,
+    /// The rounds of the search.
+    pub rounds: Vec<Round>,
+    /// Parameters and costs before any effect, and after all.
+    pub before: Solution,
+    /// The solution with all effects.
+    pub after: Solution,
+    /// The program with all effects.
+    pub program: hyde_program::Program,
+    /// What was varied in the end.
+    pub varied: Vec<Varied>,
+    /// What stays as it is, by name.
+    pub kept: Vec<(String, f64)>,
+    /// Something is left that no effect known explains.
+    pub unexplained: bool,
+}
+
+/// Finds what a model lacks.
+///
+/// # Errors
+/// The model has no fixed-step form.
+#[allow(clippy::too_many_arguments, reason = "a diagnosis is of all of these")]
+pub fn diagnose(
+    recordings: &[Recording],
+    observer: &Observer,
+    varied: &[Varied],
+    set: &[(String, f64)],
+    hypotheses: &[Hypothesis],
+    build: &Build<'_>,
+    max_effects: usize,
+) -> Result<Diagnosis, Unsupported> {
+    let ground = Ground {
+        recordings,
+        observer,
+        set,
+    };
+    let singular = || Unsupported::Start("the equations are singular".to_owned());
+    let Built { program, .. } = build(&[]).ok_or_else(singular)?;
+    let settings = ground.set_in(&program, &[]);
+    let start: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
+    let solution = ground
+        .problem(&program, varied, &settings, None)
+        .solve(&start)?;
+    let before = solution.clone();
+    let mut stage = Stage {
+        program,
+        effects: Vec::new(),
+        varied: varied.to_vec(),
+        kept: Vec::new(),
+        solution,
+    };
+    let innovations = stage
+        .solution
+        .innovations
+        .iter()
+        .flat_map(|i| &i.channels)
+        .map(Vec::len)
+        .sum();
+    let mut gates = Gates {
+        tried: 1,
+        innovations,
+    };
+    let mut rounds = Vec::new();
+    let mut alternatives: Vec<Vec<usize>> = Vec::new();
+    while stage.effects.len() < max_effects {
+        let at = stage.linearise(&ground)?;
+        let projection = Projection::new(&stage, &at).ok_or_else(singular)?;
+        let gate = gates.gain(1);
+        let scored = (0..hypotheses.len()).into_par_iter().filter_map(|number| {
+            scan(
+                &ground,
+                &stage,
+                &projection,
+                hypotheses,
+                number,
+                build,
+                gate,
+            )
+        });
+        let mut scores: Vec<Score> = scored.collect();
+        gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
+        scores.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
+        let best = scores.first().map_or(0.0, Score::gain);
+        let survivors = scores
+            .iter()
+            .take_while(|score| score.gain() >= (SURVIVING * best).max(gates.gain(1)));
+        let mut trials: Vec<Trial> = survivors
+            .take(SURVIVORS)
+            .filter_map(|score| trial(&ground, &stage, hypotheses, score, build))
+            .collect();
+        judge(&ground, &stage, &mut trials, gates);
+        let rank = |trial: &Trial| {
+            (
+                trial.rejected.is_none(),
+                trial.fold_gain.unwrap_or(trial.gain),
+            )
+        };
+        trials.sort_by(|a, b| {
+            let (a, b) = (rank(a), rank(b));
+            b.0.cmp(&a.0).then(b.1.total_cmp(&a.1))
+        });
+        let taken = choice(&trials, gates);
+        let accepted = taken.as_ref().map(|(best, others)| {
+            let others = others
+                .iter()
+                .map(|&other| trials[other].hypothesis)
+                .collect();
+            (*best, others)
+        });
+        match accepted {
+            None => {
+                rounds.push(Round {
+                    scores,
+                    trials,
+                    gates,
+                });
+                break;
+            }
+            Some((best, others)) => {
+                stage = trials[best].stage.clone();
+                alternatives.push(others);
+                rounds.push(Round {
+                    scores,
+                    trials,
+                    gates,
+                });
+            }
+        }
+    }
+    let findings: Vec<Finding> = findings(&stage, hypotheses, &alternatives);
+    let unexplained = !explained(&stage.solution);
+    let verdict = match findings.as_slice() {
+        [] if unexplained => Verdict::Unknown,
+        [] => Verdict::None,
+        list if list.iter().any(|finding| !finding.alternatives.is_empty()) => Verdict::OneOf,
+        _ => Verdict::Effect,
+    };
+    Ok(Diagnosis {
+        verdict,
+        findings,
+        rounds,
+        before,
+        after: stage.solution,
+        program: stage.program,
+        varied: stage.varied,
+        kept: stage.kept,
+        unexplained,
+    })
+}
+
+/// Puts the gates to the trials; halves are fitted only of those that pass the others.
+fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates) {
+    let mut plain: Option<[f64; 2]> = None;
+    for trial in trials {
+        let gate = gates.gain(trial.freedoms) * trial.inflation;
+        trial.rejected = trial
+            .rejected
+            .or((trial.score < gate).then_some(Rejection::Score))
+            .or((trial.gain < gate).then_some(Rejection::Gain));
+        if trial.rejected.is_some() {
+            continue;
+        }
+        plain = plain.or_else(|| unseen(ground, stage));
+        let (Some(before), Some(after)) = (plain, unseen(ground, &trial.stage)) else {
+            trial.rejected = Some(Rejection::Folds);
+            continue;
+        };
+        let gained = before[0] + before[1] - after[0] - after[1];
+        trial.fold_gain = Some(gained);
+        if gained < gate.max(gates.material()) {
+            trial.rejected = Some(Rejection::Folds);
+        }
+    }
+}
+
+/// The trial to take in, and those that cannot be told from it. Of these the one with the fewest sizes and shapes.
+fn choice(trials: &[Trial], gates: Gates) -> Option<(usize, Vec<usize>)> {
+    let passed: Vec<usize> = (0..trials.len())
+        .filter(|&t| trials[t].rejected.is_none())
+        .collect();
+    let gained = |t: usize| trials[t].fold_gain.unwrap_or(0.0);
+    let best = passed
+        .iter()
+        .copied()
+        .max_by(|&a, &b| gained(a).total_cmp(&gained(b)))?;
+    let within = gates.gain(trials[best].freedoms) * trials[best].inflation;
+    let close = |&t: &usize| {
+        gained(t) >= gained(best) - within && trials[t].gain >= trials[best].gain - within
+    };
+    let alike: Vec<usize> = passed.into_iter().filter(close).collect();
+    let simplest = alike.iter().copied().min_by(|&a, &b| {
+        let freedoms = trials[a].freedoms.cmp(&trials[b].freedoms);
+        freedoms.then(gained(b).total_cmp(&gained(a)))
+    })?;
+    let others = alike.into_iter().filter(|&t| t != simplest).collect();
+    Some((simplest, others))
+}
+
+/// Whether innovations are what the noise makes of them.
+fn explained(solution: &Solution) -> bool {
+    let channels = solution.innovations.iter().flat_map(|i| &i.channels);
+    let mut fine = true;
+    for list in channels {
+        let chi = list.iter().map(|r| r * r).sum::<f64>() / (list.len() as f64).max(1.0);
+        fine &= chi <= EXPLAINED.0 && correlation(list) <= EXPLAINED.1;
+    }
+    fine
+}
+
+/// The effects with their quantities and intervals.
+fn findings(stage: &Stage, hypotheses: &[Hypothesis], alternatives: &[Vec<usize>]) -> Vec<Finding> {
+    let covariance = covariance(&stage.solution, inflation(&stage.solution.innovations));
+    let values = stage.values();
+    let number_of = |name: &str| stage.varied.iter().position(|varied| varied.name == name);
+    let quantity = |knob: &super::Knob, name: &str| {
+        let value = values
+            .iter()
+            .rev()
+            .find(|(known, _)| known == name)
+            .map_or(knob.value, |(_, v)| *v);
+        let deviation = number_of(name).map_or(0.0, |number| {
+            covariance[(number, number)].max(0.0).sqrt() * stage.varied[number].scale()
+        });
+        Quantity {
+            name: knob.name.clone(),
+            value,
+            interval: (value - 1.96 * deviation, value + 1.96 * deviation),
+            unit: knob.unit.clone(),
+        }
+    };
+    let each = stage.effects.iter().zip(alternatives);
+    each.map(|((number, path), alternatives)| {
+        let hypothesis = &hypotheses[*number];
+        let of = |knobs: &[super::Knob]| -> Vec<Quantity> {
+            let names = Hypothesis::names(knobs, path);
+            knobs
+                .iter()
+                .zip(names)
+                .map(|(knob, name)| quantity(knob, &name))
+                .collect()
+        };
+        let (sizes, mut shapes) = (of(&hypothesis.sizes), of(&hypothesis.shapes));
+        let mut size = sizes.first().cloned().unwrap_or(Quantity {
+            name: String::new(),
+            value: f64::NAN,
+            interval: (f64::NAN, f64::NAN),
+            unit: String::new(),
+        });
+        if hypothesis.is_pair() {
+            let (s, c) = (sizes[0].value, sizes[1].value);
+            let amplitude = s.hypot(c);
+            let half = |quantity: &Quantity| (quantity.interval.1 - quantity.interval.0) / 2.0;
+            let (a, b) = (half(&sizes[0]), half(&sizes[1]));
+            let width = (s * a).hypot(c * b) / amplitude;
+            let turn = (c * a).hypot(s * b) / (amplitude * amplitude);
+            size = Quantity {
+                name: "amplitude".to_owned(),
+                value: amplitude,
+                interval: (amplitude - width, amplitude + width),
+                unit: sizes[0].unit.clone(),
+            };
+            let phase = c.atan2(s);
+            shapes.push(Quantity {
+                name: "phase".to_owned(),
+                value: phase,
+                interval: (phase - turn, phase + turn),
+                unit: "rad".to_owned(),
+            });
+        }
+        Finding {
+            hypothesis: *number,
+            size,
+            sizes,
+            shapes,
+            alternatives: alternatives.clone(),
+        }
+    })
+    .collect()
+}
+
+/// The value that chi squared with so many degrees of freedom exceeds with a small probability; from three degrees on by
+/// Wilson and Hilferty's cube (Proc. Natl. Acad. Sci. 17, 1931, 684).
+fn chi_squared(freedoms: usize, probability: f64) -> f64 {
+    match freedoms {
+        0 | 1 => normal_quantile(0.5 * probability).powi(2),
+        2 => -2.0 * probability.ln(),
+        _ => {
+            let k = freedoms as f64;
+            let part = 2.0 / (9.0 * k);
+            k * (1.0 - part + normal_quantile(probability) * part.sqrt()).powi(3)
+        }
+    }
+}
+
+/// The value that a normal number exceeds with a small probability: by bisection of the complementary error function's
+/// asymptotic continued fraction (Abramowitz and Stegun 26.2.14).
+fn normal_quantile(probability: f64) -> f64 {
+    let upper = |x: f64| {
+        let mut fraction = x;
+        for k in (1..=60).rev() {
+            fraction = x + f64::from(k) / fraction;
+        }
+        (-0.5 * x * x).exp() / (std::f64::consts::TAU.sqrt() * fraction)
+    };
+    let (mut low, mut high) = (1.0, 12.0);
+    for _ in 0..80 {
+        let middle = 0.5 * (low + high);
+        if upper(middle) > probability {
+            low = middle
+        } else {
+            high = middle
+        }
+    }
+    low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_are_those_of_tables() {
+        // Abramowitz and Stegun, tables 26.6 and 26.8.
+        assert!((normal_quantile(0.001) - 3.0902).abs() < 1e-4);
+        for (freedoms, value) in [(1, 10.828), (2, 13.816), (4, 18.467)] {
+            let found = chi_squared(freedoms, 0.001);
+            assert!((found / value - 1.0).abs() < 0.02, "{freedoms}: {found}");
+        }
+    }
+}

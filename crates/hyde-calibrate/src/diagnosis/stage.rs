@@ -1,0 +1,102 @@
+//! [`Stage`]: the model as far as the search has come: effects taken in, parameters calibrated with them.
+
+use crate::gain::Observer;
+use crate::least_squares::{Fold, Linearised, Problem, Solution};
+use crate::observer::Innovations;
+use crate::plant::Unsupported;
+use crate::recording::Recording;
+use crate::varied::Varied;
+use hyde_program::Program;
+
+/// What never changes in a diagnosis.
+#[derive(Clone, Copy)]
+pub(crate) struct Ground<'a> {
+    pub(crate) recordings: &'a [Recording],
+    pub(crate) observer: &'a Observer,
+    /// Values set from outside, by name, SI.
+    pub(crate) set: &'a [(String, f64)],
+}
+
+/// The model as far as the search has come.
+#[derive(Clone)]
+pub(crate) struct Stage {
+    pub(crate) program: Program,
+    /// Numbers of the hypotheses taken in, with the paths of their instances.
+    pub(crate) effects: Vec<(usize, String)>,
+    pub(crate) varied: Vec<Varied>,
+    /// Values of parameters that stay as they are, by name: whole numbers among the shapes.
+    pub(crate) kept: Vec<(String, f64)>,
+    pub(crate) solution: Solution,
+}
+
+impl Ground<'_> {
+    /// Values set in a program: from outside, and others by name.
+    pub(crate) fn set_in(&self, program: &Program, more: &[(String, f64)]) -> Vec<(usize, f64)> {
+        let all = self.set.iter().chain(more);
+        all.filter_map(|(name, value)| {
+            let (parameter, element) = program.parameter(name)?;
+            (!parameter.structural).then_some((parameter.place + element, *value))
+        })
+        .collect()
+    }
+
+    pub(crate) fn problem<'s>(
+        &'s self,
+        program: &'s Program,
+        varied: &'s [Varied],
+        set: &'s [(usize, f64)],
+        fold: Option<Fold>,
+    ) -> Problem<'s> {
+        Problem {
+            program,
+            recordings: self.recordings,
+            observer: self.observer,
+            varied,
+            set,
+            fold,
+        }
+    }
+}
+
+impl Stage {
+    /// Innovations with their derivatives where the stage is.
+    pub(crate) fn linearise(&self, ground: &Ground<'_>) -> Result<Linearised, Unsupported> {
+        let set = ground.set_in(&self.program, &self.kept);
+        ground
+            .problem(&self.program, &self.varied, &set, None)
+            .linearise(&self.solution.values)
+    }
+
+    /// The parameters of the stage in another program.
+    pub(crate) fn varied_in(&self, program: &Program) -> Vec<Varied> {
+        let each = self.varied.iter().filter_map(|varied| {
+            let (parameter, element) = program.parameter(&varied.name)?;
+            let place = parameter.place + element;
+            Some(Varied {
+                place,
+                ..varied.clone()
+            })
+        });
+        each.collect()
+    }
+
+    /// Everything that the stage sets, by name.
+    pub(crate) fn values(&self) -> Vec<(String, f64)> {
+        let varied = self.varied.iter().zip(&self.solution.values);
+        let mut all: Vec<(String, f64)> = varied
+            .map(|(varied, &value)| (varied.name.clone(), value))
+            .collect();
+        all.extend(self.kept.iter().cloned());
+        all
+    }
+}
+
+/// Innovations of all records behind each other.
+pub(crate) fn flat(innovations: &[Innovations]) -> Vec<f64> {
+    innovations
+        .iter()
+        .flat_map(|i| &i.channels)
+        .flatten()
+        .copied()
+        .collect()
+}

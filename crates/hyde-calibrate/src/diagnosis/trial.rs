@@ -1,0 +1,209 @@
+//! [`Trial`]: a hypothesis fitted together with all parameters, and judged on halves of the records that its fit has not
+//! seen.
+
+use super::hypothesis::{Build, Built, Hypothesis, Knob};
+use super::scan::{Node, Score};
+use super::stage::{Ground, Stage};
+use crate::fit::inflation;
+use crate::least_squares::{Fold, Solution};
+use crate::observer::Innovations;
+use crate::varied::Varied;
+use hyde_program::Program;
+
+/// A shape is visibly another by this part of its value or its range.
+const VISIBLE_SHAPE: f64 = 0.03;
+/// A fit that gains this much more than the scan promised did not find the effect but a better fit of all else.
+const TOO_GOOD: f64 = 3.0;
+
+/// Why a hypothesis was not taken in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Rejection {
+    /// The scan gains too little.
+    Score,
+    /// The fit gains too little.
+    Gain,
+    /// It gains too little on what it was not fitted to.
+    Folds,
+    /// A size or a shape is on its bound.
+    Bound,
+    /// The fit gains far more than the scan, which a linear effect cannot.
+    TooGood,
+}
+
+/// A hypothesis after its fit.
+pub struct Trial {
+    /// Number of the hypothesis.
+    pub hypothesis: usize,
+    /// What the scan gained.
+    pub score: f64,
+    /// What the fit gained of the sum of squares.
+    pub gain: f64,
+    /// What was gained on the halves of the records that fits had not seen.
+    pub fold_gain: Option<f64>,
+    /// By how much innovations tell less than independent ones, after it.
+    pub inflation: f64,
+    /// Number of sizes and shapes fitted.
+    pub freedoms: usize,
+    /// Why it was not taken in.
+    pub rejected: Option<Rejection>,
+    /// Sizes, then shapes, SI.
+    pub values: Vec<f64>,
+    pub(crate) stage: Stage,
+}
+
+/// Fits a hypothesis from its best nodes; `None` where it cannot be run.
+pub(crate) fn trial(
+    ground: &Ground<'_>,
+    stage: &Stage,
+    hypotheses: &[Hypothesis],
+    score: &Score,
+    build: &Build<'_>,
+) -> Option<Trial> {
+    let hypothesis = &hypotheses[score.hypothesis];
+    let mut list: Vec<usize> = stage.effects.iter().map(|(effect, _)| *effect).collect();
+    list.push(score.hypothesis);
+    let Built { program, paths } = build(&list)?;
+    let own_path = paths.last()?.clone();
+    let mut best: Option<(Solution, Vec<Varied>, Vec<(String, f64)>)> = None;
+    for node in &score.nodes {
+        // From where less than half is gained nothing better is reached.
+        if node.gain < 0.5 * score.gain() {
+            continue;
+        }
+        let (varied, start, kept) = unknowns(stage, &program, hypothesis, &own_path, node);
+        let set = ground.set_in(&program, &kept);
+        let Ok(solution) = ground.problem(&program, &varied, &set, None).solve(&start) else {
+            continue;
+        };
+        if best
+            .as_ref()
+            .is_none_or(|(known, ..)| solution.cost < known.cost)
+        {
+            best = Some((solution, varied, kept));
+        }
+    }
+    let (solution, varied, kept) = best?;
+    let own: Vec<usize> = (stage.varied.len()..varied.len()).collect();
+    let at_bound = own.iter().any(|&number| {
+        let (value, (low, high)) = (solution.values[number], varied[number].bounds);
+        let near = 1e-6 * (high - low);
+        value <= low + near || value >= high - near
+    });
+    let gain = stage.solution.cost - solution.cost;
+    let rejected = if at_bound {
+        Some(Rejection::Bound)
+    } else if score.linear && gain > TOO_GOOD * score.gain() {
+        Some(Rejection::TooGood)
+    } else {
+        None
+    };
+    let inflation = inflation(&solution.innovations);
+    let effects = list.into_iter().zip(paths).collect();
+    let new = Stage {
+        program,
+        effects,
+        varied,
+        kept,
+        solution,
+    };
+    let names = [
+        Hypothesis::names(&hypothesis.sizes, &own_path),
+        Hypothesis::names(&hypothesis.shapes, &own_path),
+    ]
+    .concat();
+    let values = new.values();
+    let value = |name: &String| {
+        values
+            .iter()
+            .rev()
+            .find(|(known, _)| known == name)
+            .map_or(f64::NAN, |(_, v)| *v)
+    };
+    Some(Trial {
+        hypothesis: score.hypothesis,
+        score: score.gain(),
+        gain,
+        fold_gain: None,
+        inflation,
+        freedoms: own.len(),
+        rejected,
+        values: names.iter().map(value).collect(),
+        stage: new,
+    })
+}
+
+/// Costs on each half of the records after a fit to the other.
+pub(crate) fn unseen(ground: &Ground<'_>, stage: &Stage) -> Option<[f64; 2]> {
+    let set = ground.set_in(&stage.program, &stage.kept);
+    let half = |odd: bool| {
+        let seen = ground.problem(&stage.program, &stage.varied, &set, Some(Fold { odd }));
+        let solution = seen.solve(&stage.solution.values).ok()?;
+        let other = ground.problem(
+            &stage.program,
+            &stage.varied,
+            &set,
+            Some(Fold { odd }.other()),
+        );
+        let innovations = other.innovations(&solution.values).ok()?;
+        Some(innovations.iter().map(Innovations::sum_of_squares).sum())
+    };
+    Some([half(false)?, half(true)?])
+}
+
+/// What is varied in a fit: the parameters of the stage, the sizes, the shapes that are no whole numbers; with their start,
+/// and what stays.
+fn unknowns(
+    stage: &Stage,
+    program: &Program,
+    hypothesis: &Hypothesis,
+    path: &str,
+    node: &Node,
+) -> (Vec<Varied>, Vec<f64>, Vec<(String, f64)>) {
+    let mut varied = stage.varied_in(program);
+    let mut start = stage.solution.values.clone();
+    let mut kept = stage.kept.clone();
+    let place = |name: &str| {
+        program
+            .parameter(name)
+            .map(|(parameter, element)| parameter.place + element)
+    };
+    let mut vary = |name: String, knob: &Knob, value: f64, visible: f64| {
+        let Some(place) = place(&name) else { return };
+        varied.push(Varied {
+            name,
+            place,
+            nominal: value,
+            prior: None,
+            bounds: knob.range,
+            visible: Some(visible),
+        });
+        start.push(value);
+    };
+    let sizes = Hypothesis::names(&hypothesis.sizes, path)
+        .into_iter()
+        .zip(&hypothesis.sizes);
+    for ((name, knob), (&value, &visible)) in sizes.zip(node.sizes.iter().zip(&node.visible)) {
+        vary(
+            name,
+            knob,
+            value,
+            visible.abs().max(1e-6 * value.abs()).max(f64::MIN_POSITIVE),
+        );
+    }
+    let shapes = Hypothesis::names(&hypothesis.shapes, path)
+        .into_iter()
+        .zip(&hypothesis.shapes);
+    for ((name, knob), &value) in shapes.zip(&node.shapes) {
+        let structural = program
+            .parameter(&name)
+            .is_none_or(|(parameter, _)| parameter.structural);
+        if knob.integer || structural {
+            kept.push((name, value));
+        } else {
+            let range = knob.range.1 - knob.range.0;
+            let visible = VISIBLE_SHAPE * if value == 0.0 { range } else { value.abs() };
+            vary(name, knob, value, visible);
+        }
+    }
+    (varied, start, kept)
+}

@@ -1,0 +1,289 @@
+//! [`Fit`]: a calibration with what it is worth: errors before and after, intervals, what the data cannot tell apart.
+
+use crate::gain::Observer;
+use crate::least_squares::{Problem, Solution};
+use crate::observer::Innovations;
+use crate::plant::Unsupported;
+use crate::recording::Recording;
+use crate::varied::Varied;
+use hyde_program::Program;
+use nalgebra::DMatrix;
+
+/// Parameters are of one group if some pair of their errors is correlated more than this.
+const CORRELATED: f64 = 0.9;
+/// The data say nothing of a parameter whose standard deviation stays above this part of what it was beforehand.
+const UNTOLD: f64 = 0.9;
+/// Half the width of a 95 % interval in standard deviations.
+const TWO_SIDED: f64 = 1.96;
+
+/// A parameter after calibration; numbers are SI.
+#[derive(Clone, Debug)]
+pub struct FittedParameter {
+    /// Its name.
+    pub name: String,
+    /// Position in the parameter vector.
+    pub place: usize,
+    /// Declared value.
+    pub nominal: f64,
+    /// Calibrated value.
+    pub value: f64,
+    /// Its 95 % interval, by the effective number of samples.
+    pub interval: (f64, f64),
+    /// Standard deviation beforehand, if it has a prior.
+    pub prior: Option<f64>,
+    /// Standard deviation after.
+    pub deviation: f64,
+    /// It lies outside its declared range, by more than its interval: it may stand in for something that the model lacks.
+    pub left_range: bool,
+    /// It lies on a bound.
+    pub at_bound: bool,
+    /// What is known of it is what was known before.
+    pub untold: bool,
+}
+
+/// Innovations of a channel in a record.
+#[derive(Clone, Debug)]
+pub struct ChannelError {
+    /// Mean square of whitened innovations.
+    pub chi: f64,
+    /// Root mean square of innovations, SI.
+    pub rms: f64,
+    /// Correlation of successive innovations.
+    pub correlation: f64,
+}
+
+/// Errors of a record, before and after.
+#[derive(Clone, Debug)]
+pub struct RecordErrors {
+    /// The record.
+    pub record: String,
+    /// Only the report has read it.
+    pub holdout: bool,
+    /// With declared values: all channels together, then each.
+    pub before: (f64, Vec<ChannelError>),
+    /// With calibrated ones.
+    pub after: (f64, Vec<ChannelError>),
+}
+
+/// A calibration.
+#[derive(Clone, Debug)]
+pub struct Fit {
+    /// The parameters.
+    pub parameters: Vec<FittedParameter>,
+    /// Numbers of parameters whose errors go together.
+    pub groups: Vec<Vec<usize>>,
+    /// The records: those fitted first.
+    pub records: Vec<RecordErrors>,
+    /// Names of the channels.
+    pub channels: Vec<String>,
+    /// By how much innovations tell less than as many independent ones: mean square times correlation.
+    pub inflation: f64,
+    /// Steps of the least squares, of the best start.
+    pub steps: usize,
+    /// Whether they converged.
+    pub converged: bool,
+    /// How many of the starts ended within a unit of the lowest sum of squares, and how many there were.
+    pub agreeing_starts: (usize, usize),
+    /// Where it ended.
+    pub solution: Solution,
+}
+
+/// Calibrates a program on records, and looks at others.
+///
+/// # Errors
+/// The program has no fixed-step form.
+pub fn fit(
+    program: &Program,
+    fitted: &[Recording],
+    holdout: &[Recording],
+    observer: &Observer,
+    varied: &[Varied],
+    set: &[(usize, f64)],
+    starts: usize,
+) -> Result<Fit, Unsupported> {
+    let problem = Problem {
+        program,
+        recordings: fitted,
+        observer,
+        varied,
+        set,
+        fold: None,
+    };
+    let nominal: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
+    let mut solutions = Vec::new();
+    for start in 0..starts.max(1) {
+        solutions.push(problem.solve(&start_values(varied, start))?);
+    }
+    let lowest = solutions
+        .iter()
+        .map(|s| s.cost)
+        .fold(f64::INFINITY, f64::min);
+    let agreeing = solutions.iter().filter(|s| s.cost < lowest + 1.0).count();
+    let best = solutions.iter().position(|s| s.cost <= lowest).unwrap_or(0);
+    let solution = solutions.swap_remove(best);
+    let after = Problem {
+        recordings: holdout,
+        ..problem
+    }
+    .innovations(&solution.values)?;
+    let after: Vec<&Innovations> = solution.innovations.iter().chain(&after).collect();
+    let before = [
+        problem.innovations(&nominal)?,
+        Problem {
+            recordings: holdout,
+            ..problem
+        }
+        .innovations(&nominal)?,
+    ]
+    .concat();
+    let records = fitted
+        .iter()
+        .chain(holdout)
+        .zip(before.iter().zip(after))
+        .enumerate()
+        .map(|(number, (recording, (before, after)))| RecordErrors {
+            record: recording.name.clone(),
+            holdout: number >= fitted.len(),
+            before: (before.chi(), channel_errors(before, observer)),
+            after: (after.chi(), channel_errors(after, observer)),
+        })
+        .collect();
+    let inflation = inflation(&solution.innovations);
+    let covariance = covariance(&solution, inflation);
+    Ok(Fit {
+        parameters: parameters(varied, &solution, &covariance),
+        groups: groups(&covariance),
+        records,
+        channels: program
+            .experiment
+            .measured
+            .iter()
+            .map(|m| m.name.clone())
+            .collect(),
+        inflation,
+        steps: solution.steps,
+        converged: solution.converged,
+        agreeing_starts: (agreeing, starts.max(1)),
+        solution,
+    })
+}
+
+/// The declared values, then points spread evenly over what is known beforehand (additive recurrence of the roots of
+/// x^(d+1) = x + 1; Roberts 2018, The unreasonable effectiveness of quasirandom sequences).
+fn start_values(varied: &[Varied], number: usize) -> Vec<f64> {
+    if number == 0 {
+        return varied.iter().map(|varied| varied.nominal).collect();
+    }
+    let dimensions = varied.len() as f64;
+    let mut root = 2.0_f64;
+    for _ in 0..60 {
+        root = (1.0 + root).powf(1.0 / (dimensions + 1.0));
+    }
+    let spread = |(axis, varied): (usize, &Varied)| {
+        let part = (number as f64 * root.powi(-(i32::try_from(axis).unwrap_or(0) + 1))).fract();
+        let width = varied.scale() * 3.0_f64.sqrt();
+        varied.nominal + (2.0 * part - 1.0) * width
+    };
+    varied.iter().enumerate().map(spread).collect()
+}
+
+fn channel_errors(innovations: &Innovations, observer: &Observer) -> Vec<ChannelError> {
+    let each = innovations.channels.iter().zip(&observer.deviations);
+    each.map(|(list, deviation)| {
+        let chi = list.iter().map(|r| r * r).sum::<f64>() / (list.len() as f64).max(1.0);
+        ChannelError {
+            chi,
+            rms: chi.sqrt() * deviation,
+            correlation: correlation(list),
+        }
+    })
+    .collect()
+}
+
+/// Correlation of successive values.
+pub(crate) fn correlation(list: &[f64]) -> f64 {
+    let total: f64 = list.iter().map(|r| r * r).sum();
+    let products: f64 = list.windows(2).map(|pair| pair[0] * pair[1]).sum();
+    if total > 0.0 { products / total } else { 0.0 }
+}
+
+/// By how much a sum of squares overstates what is known: the mean square where it is above one, and (1 + rho)/(1 - rho)
+/// for correlated errors (Bartlett, J. R. Stat. Soc. Suppl. 8, 1946, 27), over all channels.
+pub(crate) fn inflation(innovations: &[Innovations]) -> f64 {
+    let (mut sum, mut count) = (0.0, 0.0);
+    for list in innovations.iter().flat_map(|i| &i.channels) {
+        let rho = correlation(list).clamp(0.0, 0.99);
+        let squares: f64 = list.iter().map(|r| r * r).sum();
+        sum += squares * (1.0 + rho) / (1.0 - rho);
+        count += list.len() as f64;
+    }
+    (sum / f64::max(count, 1.0)).max(1.0)
+}
+
+/// The covariance of the parameters, in units of their scales.
+pub(crate) fn covariance(solution: &Solution, inflation: f64) -> DMatrix<f64> {
+    let (data, priors) = &solution.curvature;
+    let n = data.nrows();
+    let floor = 1e-12
+        * data
+            .diagonal()
+            .iter()
+            .fold(1e-300_f64, |most, v| most.max(*v));
+    let matrix = data / inflation + priors + DMatrix::identity(n, n) * floor;
+    matrix
+        .try_inverse()
+        .unwrap_or_else(|| DMatrix::from_element(n, n, f64::NAN))
+}
+
+fn parameters(
+    varied: &[Varied],
+    solution: &Solution,
+    covariance: &DMatrix<f64>,
+) -> Vec<FittedParameter> {
+    let each = varied.iter().zip(&solution.values).enumerate();
+    each.map(|(number, (varied, &value))| {
+        let deviation = covariance[(number, number)].max(0.0).sqrt() * varied.scale();
+        let width = TWO_SIDED * deviation;
+        let (low, high) = varied.bounds;
+        let near = 1e-9 * varied.scale();
+        // The normal distribution that stands for a uniform one has a standard deviation of half its width over sqrt(3).
+        let outside = varied.prior.map_or(0.0, |sd| {
+            (value - varied.nominal).abs() - 3.0_f64.sqrt() * sd
+        });
+        FittedParameter {
+            name: varied.name.clone(),
+            place: varied.place,
+            nominal: varied.nominal,
+            value,
+            interval: (value - width, value + width),
+            prior: varied.prior,
+            deviation,
+            left_range: outside > width,
+            at_bound: value <= low + near || value >= high - near,
+            untold: varied.prior.is_some_and(|sd| deviation > UNTOLD * sd),
+        }
+    })
+    .collect()
+}
+
+/// Parameters whose errors go together: chains of correlated pairs.
+fn groups(covariance: &DMatrix<f64>) -> Vec<Vec<usize>> {
+    let n = covariance.nrows();
+    let mut found: Vec<Vec<usize>> = Vec::new();
+    let correlated = |i: usize, j: usize| {
+        covariance[(i, j)].abs() > CORRELATED * (covariance[(i, i)] * covariance[(j, j)]).sqrt()
+    };
+    for i in 0..n {
+        let (mut joined, others): (Vec<_>, Vec<_>) = found
+            .into_iter()
+            .partition(|group: &Vec<usize>| group.iter().any(|&j| correlated(i, j)));
+        let mut group: Vec<usize> = joined.drain(..).flatten().collect();
+        group.push(i);
+        found = others;
+        found.push(group);
+    }
+    found.retain(|group| group.len() > 1);
+    found.iter_mut().for_each(|group| group.sort_unstable());
+    found.sort();
+    found
+}

@@ -1,0 +1,285 @@
+//! [`Observer`]: the stationary Kalman gain of the linearised model, with friction slipping.
+//!
+//! ```text
+//! x(k+1) = exp(A T) x(k) + w        y(k) = C x(k) + e        K = P C'(C P C' + R)^-1
+//! ```
+//! R is what the experiment declares: white noise, and the variance q^2/12 of a quantiser of step q. Q is what no model of
+//! an axis gets right: a part [`MODEL_NOISE`] of how fast each balance moves in the records, fresh at every row. States
+//! whose rate is another state (an angle, a position) have none. P solves the discrete Riccati equation, by structured
+//! doubling (Chu, Fan, Lin and Wang, Int. J. Control 77, 2004, 767).
+//!
+//! The gain is made once from the nominal model and never again within a study: innovations stay comparable.
+
+use crate::configuration::Configuration;
+use crate::plant::{Plant, Unsupported};
+use crate::recording::Recording;
+use hyde_program::{Constant, Function, Program, Wrt};
+use nalgebra::{DMatrix, DVector};
+
+/// The part of its usual rate that a balance is not known to.
+const MODEL_NOISE: f64 = 0.005;
+
+/// How exact a step is, of the standard deviation of a predicted state.
+const STEP_ERROR: f64 = 0.02;
+
+/// A fixed observer round a model.
+#[derive(Clone, Debug)]
+pub struct Observer {
+    /// What an innovation of a unit changes each state by.
+    pub(crate) gain: DMatrix<f64>,
+    /// Standard deviation of each channel's innovation, SI.
+    pub deviations: Vec<f64>,
+    /// Standard deviation of each channel's noise and rounding, SI.
+    pub noise: Vec<f64>,
+    /// Standard deviation of each predicted state, SI.
+    pub(crate) spread: Vec<f64>,
+    /// The names of the states.
+    states: Vec<String>,
+}
+
+impl Observer {
+    /// The observer of a program, its rates taken from the records.
+    ///
+    /// # Errors
+    /// The program has no fixed-step form.
+    pub fn new(
+        program: &Program,
+        recordings: &[Recording],
+        set: &[(usize, f64)],
+    ) -> Result<Self, Unsupported> {
+        let Some(first) = recordings.first() else {
+            return Err(Unsupported::Start("there is no record".to_owned()));
+        };
+        let p = first.parameters(program, set);
+        let mut plant = Plant::at(program, first, p.clone(), &[])?;
+        let c = output_matrix(&mut plant);
+        let configuration = plant.configuration();
+        let exp = configuration.steps[0].exp.clone();
+        let noise: Vec<f64> = (0..c.nrows())
+            .map(|channel| deviation(program, channel, &p))
+            .collect();
+        let balances = balances(configuration);
+        // Rates by the model alone first, then by the model held to the records.
+        let mut observer = Self {
+            gain: DMatrix::zeros(c.ncols(), c.nrows()),
+            deviations: vec![1.0; c.nrows()],
+            noise: noise.clone(),
+            spread: vec![f64::NAN; c.ncols()],
+            states: state_names(&plant),
+        };
+        for _ in 0..2 {
+            let rates = usual_rates(program, recordings, set, &observer)?;
+            let q = DVector::from_iterator(
+                rates.len(),
+                rates
+                    .iter()
+                    .zip(&balances)
+                    .map(|(rate, balance)| match balance {
+                        true => (MODEL_NOISE * rate * first.step_s).powi(2),
+                        false => 0.0,
+                    }),
+            );
+            let p = riccati(&exp, &c, &q, &noise);
+            let mut s = &c * &p * c.transpose();
+            for (channel, sd) in noise.iter().enumerate() {
+                s[(channel, channel)] += sd * sd;
+            }
+            let inverse = s
+                .clone()
+                .try_inverse()
+                .unwrap_or_else(|| DMatrix::zeros(s.nrows(), s.ncols()));
+            observer.gain = &p * c.transpose() * inverse;
+            observer.deviations = s.diagonal().iter().map(|v| v.sqrt()).collect();
+            observer.spread = p.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
+        }
+        Ok(observer)
+    }
+
+    /// The observer of another model of the same axis: states keep their gain, states that are new have none.
+    pub(crate) fn of(&self, plant: &Plant<'_>) -> Self {
+        let names = state_names(plant);
+        if names == self.states {
+            return self.clone();
+        }
+        let mut gain = DMatrix::zeros(names.len(), self.gain.ncols());
+        let mut spread = vec![f64::INFINITY; names.len()];
+        for (row, name) in names.iter().enumerate() {
+            if let Some(own) = self.states.iter().position(|state| state == name) {
+                gain.set_row(row, &self.gain.row(own));
+                spread[row] = self.spread[own];
+            }
+        }
+        Self {
+            gain,
+            spread,
+            states: names,
+            ..self.clone()
+        }
+    }
+
+    /// How exact a step is to be, one number a state, SI.
+    pub(crate) fn tolerances(&self) -> Option<Vec<f64>> {
+        let known = !self.spread.iter().any(|spread| spread.is_nan());
+        known.then(|| {
+            self.spread
+                .iter()
+                .map(|spread| STEP_ERROR * spread + 1e-15)
+                .collect()
+        })
+    }
+}
+
+fn state_names(plant: &Plant<'_>) -> Vec<String> {
+    plant
+        .places
+        .states
+        .iter()
+        .map(|&state| plant.program.unknown_name(state))
+        .collect()
+}
+
+/// Standard deviation of a channel: declared noise and rounding; without either a ten-thousandth of a unit.
+fn deviation(program: &Program, channel: usize, p: &[f64]) -> f64 {
+    let constant = |which| program.kernels.constant(which, p).unwrap_or(0.0);
+    let (noise, width) = (
+        constant(Constant::Noise(channel)),
+        constant(Constant::Rounding(channel)),
+    );
+    let variance = noise * noise + width * width / 12.0;
+    if variance > 0.0 {
+        variance.sqrt()
+    } else {
+        1e-4
+    }
+}
+
+/// Derivatives of the measured channels by the states.
+pub(crate) fn output_matrix(plant: &mut Plant<'_>) -> DMatrix<f64> {
+    let program = plant.program;
+    let channels = program.experiment.measured.len();
+    let entries = program.partials(Function::Outputs);
+    let mut values = vec![0.0; entries.len()];
+    let (at, workspace) = plant.point();
+    program
+        .kernels
+        .partials(Function::Outputs, at, workspace, &mut values);
+    let (places, configuration) = (&plant.places, plant.configuration());
+    let number_in =
+        |list: &[usize], position: usize| list.iter().position(|&known| known == position);
+    let mut c = DMatrix::zeros(channels, places.states.len());
+    for (entry, value) in entries.iter().zip(values) {
+        let measured = &program.experiment.measured;
+        let Some(channel) = measured.iter().position(|m| m.output == entry.row) else {
+            continue;
+        };
+        let by_state = match entry.wrt {
+            Wrt::Unknown(position) => match number_in(&places.states, position) {
+                Some(state) => {
+                    c[(channel, state)] += value;
+                    None
+                }
+                None => number_in(&places.algebraics, position)
+                    .map(|row| configuration.algebraic.row(row)),
+            },
+            Wrt::Derivative(position) => {
+                number_in(&places.states, position).map(|row| configuration.a.row(row))
+            }
+            Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => None,
+        };
+        if let Some(row) = by_state {
+            let mut own = c.row_mut(channel);
+            own += row * value;
+        }
+    }
+    c
+}
+
+/// The states that a balance moves: all but those whose rate is another state.
+#[allow(
+    clippy::float_cmp,
+    reason = "a rate that is another state is so exactly"
+)]
+fn balances(configuration: &Configuration) -> Vec<bool> {
+    let row = |index: usize| {
+        let row = configuration.a.row(index);
+        let others = row.iter().filter(|&&entry| entry != 0.0).count();
+        let ones = row.iter().filter(|&&entry| entry == 1.0).count();
+        !(others == 1 && ones == 1)
+    };
+    (0..configuration.a.nrows()).map(row).collect()
+}
+
+/// Root mean square of each state's rate over the records.
+fn usual_rates(
+    program: &Program,
+    recordings: &[Recording],
+    set: &[(usize, f64)],
+    observer: &Observer,
+) -> Result<Vec<f64>, Unsupported> {
+    let (mut sums, mut count) = (Vec::new(), 0.0);
+    for recording in recordings {
+        let mut plant = Plant::new(program, recording, set)?;
+        if let Some(tolerances) = observer.tolerances() {
+            plant.tolerances = tolerances;
+        }
+        let mut rates = vec![0.0; plant.places.states.len()];
+        sums.resize(rates.len(), 0.0);
+        crate::observer::run(&mut plant, observer, |plant, _, _| {
+            plant.rates(&mut rates);
+            for (sum, rate) in sums.iter_mut().zip(&rates) {
+                *sum += rate * rate;
+            }
+            count += 1.0;
+        });
+    }
+    Ok(sums
+        .into_iter()
+        .map(|sum: f64| (sum / f64::max(count, 1.0)).sqrt())
+        .collect())
+}
+
+/// The covariance of the prediction.
+fn riccati(exp: &DMatrix<f64>, c: &DMatrix<f64>, q: &DVector<f64>, noise: &[f64]) -> DMatrix<f64> {
+    let n = exp.nrows();
+    // In units in which channels see each state with about their noise, sizes are alike.
+    let largest = |state: usize| {
+        let parts = c
+            .column(state)
+            .iter()
+            .zip(noise)
+            .map(|(c, sd)| c.abs() / sd)
+            .collect::<Vec<_>>();
+        parts
+            .into_iter()
+            .fold(q[state].sqrt().recip().min(1e12), f64::max)
+    };
+    let scale = DVector::from_iterator(n, (0..n).map(|state| 1.0 / largest(state).max(1e-12)));
+    let unscale = scale.map(|s| 1.0 / s);
+    let scaled = DMatrix::from_diagonal(&unscale) * exp * DMatrix::from_diagonal(&scale);
+    let seen = c * DMatrix::from_diagonal(&scale);
+    let weights = DMatrix::from_diagonal(&DVector::from_iterator(
+        noise.len(),
+        noise.iter().map(|sd| 1.0 / (sd * sd)),
+    ));
+    let mut a = scaled.transpose();
+    let mut g = seen.transpose() * weights * seen;
+    let mut h = DMatrix::from_diagonal(&q.component_mul(&unscale).component_mul(&unscale));
+    for _ in 0..60 {
+        let w = DMatrix::identity(n, n) + &g * &h;
+        let Some(inverse) = w.try_inverse() else {
+            break;
+        };
+        let step = a.transpose() * &h * &inverse * &a;
+        let new_a = &a * &inverse * &a;
+        let new_g = &g + &a * &inverse * &g * a.transpose();
+        let size = step.norm();
+        h += step;
+        h = (&h + h.transpose()) * 0.5;
+        g = (&new_g + new_g.transpose()) * 0.5;
+        a = new_a;
+        if size <= 1e-12 * h.norm() {
+            break;
+        }
+    }
+    DMatrix::from_diagonal(&scale) * h * DMatrix::from_diagonal(&scale)
+}

@@ -1,0 +1,39 @@
+//! Observers round a program: how far it is from records, and which parameters bring it nearer.
+//!
+//! ```text
+//! recording      a record, evenly sampled                                         recording.rs
+//! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, stepping.rs, configuration.rs, events.rs
+//! observer       a fixed Kalman gain; whitened innovations                        gain.rs, observer.rs
+//! plan           what a `calibrate` block asks for                                 plan.rs
+//! calibration    bounded least squares on innovations and priors                  least_squares.rs, varied.rs
+//! its worth      errors before and after, intervals, groups                       fit.rs
+//! diagnosis      which effect is missing                                          diagnosis.rs
+//! ```
+
+mod configuration;
+mod dense;
+mod diagnosis;
+mod events;
+mod exponential;
+mod fit;
+mod gain;
+mod least_squares;
+mod observer;
+mod plan;
+mod plant;
+mod recording;
+mod stepping;
+mod varied;
+
+pub use diagnosis::{
+    Build, Built, Diagnosis, Finding, Gates, Hypothesis, Knob, Quantity, Rejection, Round, Score,
+    Trial, Verdict, diagnose,
+};
+pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit};
+pub use gain::Observer;
+pub use least_squares::{Fold, Problem, Solution};
+pub use observer::Innovations;
+pub use plan::{CalibrationPlan, Candidates, DiagnosisPlan, Source, Vary};
+pub use plant::Unsupported;
+pub use recording::{RecordError, Recording};
+pub use varied::Varied;

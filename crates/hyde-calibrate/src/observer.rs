@@ -1,0 +1,97 @@
+//! An observer over a record: predict a row, compare, correct, on.
+
+use crate::gain::Observer;
+use crate::plant::{Plant, Unsupported};
+use crate::recording::Recording;
+use hyde_program::{Function, Program};
+
+/// Whitened innovations of a record: each channel's, row by row, in standard deviations.
+#[derive(Clone, Debug)]
+pub struct Innovations {
+    /// One list a channel, rows from the first that counts.
+    pub channels: Vec<Vec<f64>>,
+}
+
+impl Innovations {
+    /// Those of a program with some parameters set (position and value).
+    ///
+    /// # Errors
+    /// The program has no fixed-step form.
+    pub fn of(
+        program: &Program,
+        recording: &Recording,
+        observer: &Observer,
+        set: &[(usize, f64)],
+    ) -> Result<Self, Unsupported> {
+        let mut plant = Plant::new(program, recording, set)?;
+        let observer = observer.of(&plant);
+        if let Some(tolerances) = observer.tolerances() {
+            plant.tolerances = tolerances;
+        }
+        let rows = recording.rows() - recording.first_row;
+        let mut channels = vec![Vec::with_capacity(rows); recording.channels.len()];
+        run(&mut plant, &observer, |_, row, error| {
+            if row >= recording.first_row {
+                for ((list, error), deviation) in
+                    channels.iter_mut().zip(error).zip(&observer.deviations)
+                {
+                    let whitened = error / deviation;
+                    // What diverged is far off, and no more than that.
+                    list.push(if whitened.is_finite() {
+                        whitened.clamp(-1e6, 1e6)
+                    } else {
+                        1e6
+                    });
+                }
+            }
+        });
+        Ok(Self { channels })
+    }
+
+    /// Their mean square, over all channels.
+    #[must_use]
+    pub fn chi(&self) -> f64 {
+        let count: usize = self.channels.iter().map(Vec::len).sum();
+        self.sum_of_squares() / (count as f64).max(1.0)
+    }
+
+    /// The sum of their squares.
+    #[must_use]
+    pub fn sum_of_squares(&self) -> f64 {
+        self.channels.iter().flatten().map(|r| r * r).sum()
+    }
+}
+
+/// Runs the observer over the record. At each row, before it is corrected, `visit` gets the plant, the row's number and the
+/// innovations in SI.
+pub(crate) fn run(
+    plant: &mut Plant<'_>,
+    observer: &Observer,
+    mut visit: impl FnMut(&Plant<'_>, usize, &[f64]),
+) {
+    let recording = plant.recording;
+    let program = plant.program;
+    let mut outputs = vec![0.0; program.outputs.len()];
+    let mut error = vec![0.0; recording.channels.len()];
+    let mut increment = vec![0.0; plant.places.states.len()];
+    for row in 0..recording.rows() {
+        let (at, workspace) = plant.point();
+        program
+            .kernels
+            .evaluate(Function::Outputs, at, workspace, &mut outputs);
+        for (channel, measured) in program.experiment.measured.iter().enumerate() {
+            error[channel] = recording.channels[channel][row] - outputs[measured.output];
+        }
+        visit(plant, row, &error);
+        // A value that is missing corrects nothing.
+        error
+            .iter_mut()
+            .filter(|e| !e.is_finite())
+            .for_each(|e| *e = 0.0);
+        crate::dense::set_product(&observer.gain, &error, &mut increment);
+        plant.begin_row(&increment);
+        if row + 1 < recording.rows() {
+            plant.advance();
+        }
+    }
+}

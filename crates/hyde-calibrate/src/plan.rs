@@ -1,0 +1,365 @@
+//! [`CalibrationPlan`]: what a `calibrate` block asks for, its words checked.
+
+use hyde_diag::{Code, Diagnostic, Diagnostics, Span};
+use hyde_syntax::ast::{
+    Expr, ExprKind, Name, Range, SettingValue, Study, StudyItem, Unary, Varied,
+};
+use hyde_units::NamedUnit;
+
+/// Records of an experiment: `bench("fit-*.csv")`.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// The experiment.
+    pub experiment: String,
+    /// Patterns of files, each with the record it is for where that is said; none stands for the experiment's own.
+    pub patterns: Vec<(Option<String>, Name)>,
+    /// Where it is written.
+    pub span: Span,
+}
+
+/// What is varied.
+#[derive(Clone, Debug)]
+pub enum Vary {
+    /// Every parameter with a prior.
+    Uncertain(Span),
+    /// A parameter by name, with bounds in SI where they are given.
+    Parameter {
+        /// Its full name.
+        name: String,
+        /// Least and largest value, and the unit they are written in.
+        bounds: Option<(f64, f64, NamedUnit)>,
+        /// Where it is written.
+        span: Span,
+    },
+}
+
+/// `calibrate NAME of MODEL … end NAME;`
+#[derive(Clone, Debug)]
+pub struct CalibrationPlan {
+    /// Its name.
+    pub name: String,
+    /// The model.
+    pub model: String,
+    /// Records to calibrate on.
+    pub fit: Vec<Source>,
+    /// Records that only the report reads.
+    pub holdout: Vec<Source>,
+    /// What is varied.
+    pub vary: Vec<Vary>,
+    /// Number of starts: the declared values, then others within the priors.
+    pub starts: usize,
+    /// Where it is written.
+    pub span: Span,
+}
+
+impl CalibrationPlan {
+    /// Reads a block; what is wrong in it is reported.
+    pub fn read(study: &Study, diagnostics: &mut Diagnostics) -> Option<Self> {
+        let before = diagnostics.error_count();
+        let mut plan = Self {
+            name: study.name.text.clone(),
+            model: study.of.dotted(),
+            fit: Vec::new(),
+            holdout: Vec::new(),
+            vary: Vec::new(),
+            starts: 1,
+            span: study.name.span,
+        };
+        for item in &study.items {
+            match item {
+                StudyItem::Vary(list) => {
+                    for variation in list {
+                        if let Some(values) = &variation.values {
+                            diagnostics.push(wrong(
+                                values.span,
+                                "a calibration finds values itself",
+                                "give a range: `vary guide.F in 100 .. 400 [N];`",
+                            ));
+                        }
+                        if variation.what != Varied::Part {
+                            diagnostics.push(wrong(
+                                variation.target.span,
+                                "a calibration varies parameters",
+                                "write `vary uncertain;`, or name them: `vary guide.F, guide.b;`",
+                            ));
+                        }
+                        let name = variation.target.dotted();
+                        plan.vary.push(match (&variation.within, name.as_str()) {
+                            (None, "uncertain") => Vary::Uncertain(variation.target.span),
+                            (within, _) => Vary::Parameter {
+                                bounds: within
+                                    .as_ref()
+                                    .and_then(|range| bounds(range, diagnostics)),
+                                span: variation.target.span,
+                                name,
+                            },
+                        });
+                    }
+                }
+                StudyItem::VaryEffects(_) => diagnostics.push(wrong(
+                    plan.span,
+                    "a calibration puts no effects on the model",
+                    "calibrate a model that has them: `model B = A with E on site;`",
+                )),
+                StudyItem::Setting(name, values) => match name.text.as_str() {
+                    "fit" => plan.fit.extend(sources(name, values, diagnostics)),
+                    "holdout" => plan.holdout.extend(sources(name, values, diagnostics)),
+                    "starts" => match whole(values) {
+                        Some(count @ 1..=100) => plan.starts = count,
+                        Some(_) | None => diagnostics.push(wrong(
+                            name.span,
+                            "how many starts?",
+                            "write a number from 1 to 100: `starts 4;`",
+                        )),
+                    },
+                    other => diagnostics.push(wrong(
+                        name.span,
+                        &format!("a calibration has no `{other}`"),
+                        "it has `fit`, `holdout`, `vary` and `starts`",
+                    )),
+                },
+            }
+        }
+        if plan.fit.is_empty() {
+            diagnostics.push(wrong(
+                plan.span,
+                "nothing says which records to calibrate on",
+                "write `fit bench(\"fit-*.csv\");`",
+            ));
+        }
+        if plan.vary.is_empty() {
+            diagnostics.push(wrong(
+                plan.span,
+                "nothing says what may be varied",
+                "write `vary uncertain;`, or name parameters: `vary guide.F, guide.b;`",
+            ));
+        }
+        (diagnostics.error_count() == before).then_some(plan)
+    }
+}
+
+/// What `candidates` lets in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Candidates {
+    /// Every effect of a package.
+    Package(String),
+    /// An effect by its name.
+    Effect(String),
+}
+
+/// `diagnose NAME of calibrate CALIBRATION … end NAME;`
+#[derive(Clone, Debug)]
+pub struct DiagnosisPlan {
+    /// Its name.
+    pub name: String,
+    /// The calibration that it begins with.
+    pub calibration: String,
+    /// Which effects may be missing; all where nothing is said.
+    pub candidates: Vec<Candidates>,
+    /// Effects taken in at most.
+    pub max_effects: usize,
+    /// Where it is written.
+    pub span: Span,
+}
+
+impl DiagnosisPlan {
+    /// Reads a block; what is wrong in it is reported.
+    pub fn read(study: &Study, diagnostics: &mut Diagnostics) -> Option<Self> {
+        let before = diagnostics.error_count();
+        let mut plan = Self {
+            name: study.name.text.clone(),
+            calibration: study.of.dotted(),
+            candidates: Vec::new(),
+            max_effects: 3,
+            span: study.name.span,
+        };
+        for item in &study.items {
+            match item {
+                StudyItem::Vary(list) => {
+                    let span = list
+                        .first()
+                        .map_or(plan.span, |variation| variation.target.span);
+                    diagnostics.push(wrong(
+                        span,
+                        "a diagnosis varies what its calibration does",
+                        "write it in the `calibrate` block",
+                    ));
+                }
+                StudyItem::VaryEffects(_) => diagnostics.push(wrong(
+                    plan.span,
+                    "a diagnosis tries every candidate",
+                    "write `candidates Effects.*;`",
+                )),
+                StudyItem::Setting(name, values) => match name.text.as_str() {
+                    "candidates" => {
+                        for value in values {
+                            let found = match value {
+                                SettingValue::Everything(package) => {
+                                    Some(Candidates::Package(package.dotted()))
+                                }
+                                SettingValue::Expr(Expr {
+                                    kind: ExprKind::Reference(effect),
+                                    ..
+                                }) => Some(Candidates::Effect(effect.dotted())),
+                                SettingValue::Expr(_) => None,
+                            };
+                            match found {
+                                Some(found) => plan.candidates.push(found),
+                                None => diagnostics.push(wrong(
+                                    name.span,
+                                    "candidates are effects, or packages of them",
+                                    "write `candidates Effects.*, Stribeck;`",
+                                )),
+                            }
+                        }
+                    }
+                    "max_effects" => match whole(values) {
+                        Some(count @ 0..=10) => plan.max_effects = count,
+                        Some(_) | None => diagnostics.push(wrong(
+                            name.span,
+                            "how many effects at most?",
+                            "write a number up to 10: `max_effects 3;`",
+                        )),
+                    },
+                    "seed" => {
+                        if whole(values).is_none() {
+                            diagnostics.push(wrong(
+                                name.span,
+                                "a seed is a whole number",
+                                "write `seed 1;`",
+                            ));
+                        }
+                    }
+                    other => diagnostics.push(wrong(
+                        name.span,
+                        &format!("a diagnosis has no `{other}`"),
+                        "it has `candidates`, `max_effects` and `seed`",
+                    )),
+                },
+            }
+        }
+        (diagnostics.error_count() == before).then_some(plan)
+    }
+}
+
+fn wrong(span: Span, message: &str, help: &str) -> Diagnostic {
+    Diagnostic::error(Code::BadStudy, message)
+        .label(span, "in this study")
+        .help(help)
+}
+
+/// `bench("fit-*.csv")`, `bench(file = "a.csv", other = "b.csv")`, `bench`.
+fn sources(setting: &Name, values: &[SettingValue], diagnostics: &mut Diagnostics) -> Vec<Source> {
+    let mut found = Vec::new();
+    for value in values {
+        let SettingValue::Expr(expr) = value else {
+            diagnostics.push(not_a_source(setting.span, &setting.text));
+            continue;
+        };
+        match &expr.kind {
+            ExprKind::Reference(experiment) => found.push(Source {
+                experiment: experiment.dotted(),
+                patterns: Vec::new(),
+                span: expr.span,
+            }),
+            ExprKind::Call(experiment, arguments) => {
+                let mut patterns = Vec::new();
+                for argument in arguments {
+                    let ExprKind::String(text) = &argument.value.kind else {
+                        diagnostics.push(not_a_source(argument.value.span, &setting.text));
+                        continue;
+                    };
+                    let record = argument.name.as_ref().map(|name| name.text.clone());
+                    let pattern = Name {
+                        text: text.clone(),
+                        span: argument.value.span,
+                    };
+                    patterns.push((record, pattern));
+                }
+                found.push(Source {
+                    experiment: experiment.dotted(),
+                    patterns,
+                    span: expr.span,
+                });
+            }
+            ExprKind::Number(..)
+            | ExprKind::String(_)
+            | ExprKind::Boolean(_)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::If(..)
+            | ExprKind::Array(..)
+            | ExprKind::Comprehension(_)
+            | ExprKind::Slice(..) => diagnostics.push(not_a_source(expr.span, &setting.text)),
+        }
+    }
+    if values.is_empty() {
+        diagnostics.push(not_a_source(setting.span, &setting.text));
+    }
+    found
+}
+
+fn not_a_source(span: Span, setting: &str) -> Diagnostic {
+    wrong(
+        span,
+        &format!("`{setting}` takes an experiment with the files of its records"),
+        &format!("write `{setting} bench(\"fit-*.csv\");`: patterns are below `--data DIR`"),
+    )
+}
+
+fn whole(values: &[SettingValue]) -> Option<usize> {
+    let [SettingValue::Expr(expr)] = values else {
+        return None;
+    };
+    let (number, unit) = number(expr)?;
+    let whole =
+        unit.is_none() && number.fract().abs() < f64::EPSILON && (0.0..1e6).contains(&number);
+    whole.then_some(number as usize)
+}
+
+/// The bounds of a range of numbers, SI; the unit behind the upper one is that of both (U2).
+fn bounds(range: &Range, diagnostics: &mut Diagnostics) -> Option<(f64, f64, NamedUnit)> {
+    let found = || {
+        let (from, own) = number(&range.from)?;
+        let (to, unit) = number(&range.to)?;
+        let unit = NamedUnit::parse(unit.as_deref().unwrap_or("1")).ok()?;
+        let lower = match own {
+            Some(own) => NamedUnit::parse(&own).ok()?,
+            None => unit.clone(),
+        };
+        let (from, to) = (lower.unit().to_si(from), unit.unit().to_si(to));
+        (lower.unit().dimension == unit.unit().dimension && from < to).then_some((from, to, unit))
+    };
+    let bounds = found();
+    if bounds.is_none() {
+        diagnostics.push(wrong(
+            range.from.span,
+            "the bounds of a parameter are two numbers, the smaller first",
+            "write `vary guide.F in 100 .. 400 [N];`",
+        ));
+    }
+    bounds
+}
+
+/// A number as written, with its unit.
+fn number(expr: &Expr) -> Option<(f64, Option<String>)> {
+    match &expr.kind {
+        ExprKind::Number(value, unit) => {
+            Some((*value, unit.as_ref().map(|unit| unit.text.clone())))
+        }
+        ExprKind::Unary(Unary::Negative, inner) => {
+            number(inner).map(|(value, unit)| (-value, unit))
+        }
+        ExprKind::Unary(Unary::Positive, inner) => number(inner),
+        ExprKind::Unary(Unary::Not, _)
+        | ExprKind::String(_)
+        | ExprKind::Boolean(_)
+        | ExprKind::Reference(_)
+        | ExprKind::Call(..)
+        | ExprKind::Binary(..)
+        | ExprKind::If(..)
+        | ExprKind::Array(..)
+        | ExprKind::Comprehension(_)
+        | ExprKind::Slice(..) => None,
+    }
+}

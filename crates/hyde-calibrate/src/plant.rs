@@ -1,0 +1,323 @@
+//! [`Plant`]: the fixed-step form of a program, driven by a record: as cheap as a search needs it, as exact as one wants.
+//!
+//! Time is divided dyadically: a row's time into 2 steps, each down to 64 parts. In a combination of modes the linear part
+//! of the flow is carried exactly and the rest by two stages (ETD2RK, Cox and Matthews, J. Comput. Phys. 176, 2002, 430),
+//! so a drive with friction in modes needs no small steps: steps get smaller where the rest bends, and where a guard
+//! becomes true, until the event is known to a 64th of a step. Events follow [`crate::events`]. A state that a mode fixes
+//! stays there bitwise.
+
+use crate::configuration::{Configuration, Places};
+use crate::recording::Recording;
+use crate::stepping::{Outcome, Room, gather};
+use hyde_program::{Function, Point, Program, Workspace};
+
+/// Steps of a row's time: the longest is its half, the shortest a 64th of that.
+const LONGEST: usize = 1;
+pub(crate) const LEVELS: usize = 8;
+
+/// How exact a step is before an observer says what is worth it, SI.
+const DEFAULT_TOLERANCE: f64 = 1e-7;
+
+/// Why a program has no fixed-step form.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Unsupported {
+    /// A clocked part drives the axis and is not replayed: its name.
+    Clock(String),
+    /// Quantities are delayed.
+    Delay,
+    /// States are chosen while running.
+    ChosenStates,
+    /// The start has no consistent values.
+    Start(String),
+}
+
+/// A program with its parameters and a record, at an instant.
+pub(crate) struct Plant<'a> {
+    pub(crate) program: &'a Program,
+    pub(crate) recording: &'a Recording,
+    pub(crate) places: Places,
+    pub(crate) p: Vec<f64>,
+    /// How exact a step is to be, one number a state, SI.
+    pub(crate) tolerances: Vec<f64>,
+    /// Combinations of modes met so far, by the numbers that tell them apart.
+    pub(crate) configurations: Vec<(Vec<u64>, Configuration)>,
+    pub(crate) current: usize,
+    /// Places of the memory that tell combinations of modes apart.
+    key_places: Vec<usize>,
+    pub(crate) row: usize,
+    /// Shortest steps since the row.
+    pub(crate) index: usize,
+    /// How short the next step is.
+    pub(crate) level: usize,
+    pub(crate) y: Vec<f64>,
+    pub(crate) yp: Vec<f64>,
+    pub(crate) z: Vec<f64>,
+    pub(crate) u: Vec<f64>,
+    pub(crate) workspace: Workspace,
+    pub(crate) watched: Vec<usize>,
+    pub(crate) conditions: Vec<bool>,
+    /// Positions fixed by modes, with their values.
+    pub(crate) pinned: Vec<(usize, f64)>,
+    pub(crate) room: Room,
+}
+
+impl<'a> Plant<'a> {
+    /// The plant at the first row, with consistent values in its first modes.
+    pub(crate) fn new(
+        program: &'a Program,
+        recording: &'a Recording,
+        set: &[(usize, f64)],
+    ) -> Result<Self, Unsupported> {
+        supported(program)?;
+        let p = recording.parameters(program, set);
+        let (mut y, mut z) = (vec![0.0; program.n_unknowns], vec![0.0; program.n_memory]);
+        program.kernels.start(&p, &mut y, &mut z);
+        let modes: Vec<(usize, usize)> = program
+            .automata
+            .iter()
+            .enumerate()
+            .map(|(number, automaton)| (number, z[automaton.place] as usize))
+            .collect();
+        let mut plant = Self::at(program, recording, p, &modes)?;
+        plant.settle();
+        Ok(plant)
+    }
+
+    /// The plant at the first row in chosen modes; of automata not named, friction slips.
+    pub(crate) fn at(
+        program: &'a Program,
+        recording: &'a Recording,
+        p: Vec<f64>,
+        modes: &[(usize, usize)],
+    ) -> Result<Self, Unsupported> {
+        let start = hyde_sim::operating_point(program, &recording.tables, &p, modes)
+            .map_err(|failure| Unsupported::Start(format!("{:?}", failure.kind)))?;
+        let places = Places::new(program, &start.z);
+        let n_states = places.states.len();
+        let equation =
+            |number: &usize| program.relations[*number].used == hyde_program::RelationUse::Equation;
+        let key_places = (0..program.relations.len())
+            .filter(equation)
+            .chain(program.automata.iter().map(|automaton| automaton.place))
+            .collect();
+        let mut plant = Self {
+            program,
+            recording,
+            tolerances: vec![DEFAULT_TOLERANCE; n_states],
+            configurations: Vec::new(),
+            current: 0,
+            key_places,
+            row: 0,
+            index: 0,
+            level: LONGEST,
+            y: start.y,
+            yp: start.yp,
+            z: start.z,
+            u: vec![0.0; 2 * program.columns.len() + program.delays.len()],
+            workspace: Workspace::new(program.n_work),
+            watched: Vec::new(),
+            conditions: vec![false; program.reactions.len()],
+            pinned: Vec::new(),
+            room: Room::new(program, &places),
+            places,
+            p,
+        };
+        plant.read_inputs(0);
+        plant.pin();
+        plant.enter()?;
+        Ok(plant)
+    }
+
+    /// The combination of modes it is in.
+    pub(crate) fn configuration(&self) -> &Configuration {
+        &self.configurations[self.current].1
+    }
+
+    /// The rates of the states.
+    pub(crate) fn rates(&self, out: &mut [f64]) {
+        gather(&self.yp, &self.places.states, out);
+    }
+
+    /// Time in s.
+    pub(crate) fn time(&self) -> f64 {
+        let part = self.index as f64 / shortest_steps() as f64;
+        self.recording.start_s + self.recording.step_s * (self.row as f64 + part)
+    }
+
+    /// The model where the plant is.
+    pub(crate) fn point(&mut self) -> (Point<'_>, &mut Workspace) {
+        let t = self.time();
+        let at = Point {
+            t,
+            y: &self.y,
+            yp: &self.yp,
+            z: &self.z,
+            u: &self.u,
+            p: &self.p,
+        };
+        (at, &mut self.workspace)
+    }
+
+    /// Begins a row: what drives the axis jumps, the states change by an increment, those that modes fix apart.
+    pub(crate) fn begin_row(&mut self, increment: &[f64]) {
+        self.read_inputs(self.row);
+        for (&position, change) in self.places.states.iter().zip(increment) {
+            self.y[position] += change;
+        }
+        self.apply_pins();
+        self.make_consistent();
+        if self.changed() {
+            self.settle();
+        }
+    }
+
+    /// On to the next row, up to what drives the axis there.
+    pub(crate) fn advance(&mut self) {
+        while self.index < shortest_steps() {
+            while self.index % size_of(self.level) != 0 {
+                self.level += 1;
+            }
+            match self.step(self.level) {
+                Outcome::Taken => {
+                    self.index += size_of(self.level);
+                    if self.level > LONGEST && self.index % size_of(self.level - 1) == 0 {
+                        self.level -= 1;
+                    }
+                }
+                Outcome::TooLong => self.level += 1,
+                Outcome::Event => {
+                    self.index += size_of(self.level);
+                    self.settle();
+                }
+            }
+        }
+        self.row += 1;
+        self.index = 0;
+    }
+
+    /// Whether the truth of a watched relation is another than the memory says.
+    fn changed(&mut self) -> bool {
+        if self.watched.is_empty() {
+            return false;
+        }
+        let mut roots = std::mem::take(&mut self.room.roots);
+        let program = self.program;
+        let (at, workspace) = self.point();
+        program
+            .kernels
+            .evaluate(Function::Roots, at, workspace, &mut roots);
+        let changed = self
+            .watched
+            .iter()
+            .any(|&number| self.differs(number, roots[number]));
+        self.room.roots = roots;
+        changed
+    }
+
+    fn differs(&self, relation: usize, root: f64) -> bool {
+        truth(self.program, relation, root) != (self.z[relation] != 0.0)
+    }
+
+    /// Finds or makes the configuration of the modes it is in.
+    pub(crate) fn enter(&mut self) -> Result<(), Unsupported> {
+        let key: Vec<u64> = self
+            .key_places
+            .iter()
+            .map(|&place| self.z[place].to_bits())
+            .collect();
+        if let Some(known) = self
+            .configurations
+            .iter()
+            .position(|(other, _)| *other == key)
+        {
+            self.current = known;
+        } else {
+            let (t, step_s) = (self.time(), self.recording.step_s);
+            let at = Point {
+                t,
+                y: &self.y,
+                yp: &self.yp,
+                z: &self.z,
+                u: &self.u,
+                p: &self.p,
+            };
+            let made = Configuration::new(
+                self.program,
+                &self.places,
+                at,
+                &mut self.workspace,
+                step_s,
+                LEVELS,
+            );
+            // Modes in which nothing follows: stay with the last ones' linear part.
+            let Some(made) = made else {
+                return Err(Unsupported::Start("the equations are singular".to_owned()));
+            };
+            self.configurations.push((key, made));
+            self.current = self.configurations.len() - 1;
+        }
+        self.watched = crate::events::watched(self.program, &self.z);
+        self.make_consistent();
+        Ok(())
+    }
+
+    pub(crate) fn apply_pins(&mut self) {
+        for &(position, value) in &self.pinned {
+            self.y[position] = value;
+            self.yp[position] = 0.0;
+        }
+    }
+
+    fn read_inputs(&mut self, row: usize) {
+        for (number, column) in self.recording.columns.iter().enumerate() {
+            let value = column[row.min(column.len() - 1)];
+            self.u[2 * number] = value;
+            self.u[2 * number + 1] = value;
+        }
+    }
+
+    /// Linear columns between the rows; `next` ones step.
+    pub(crate) fn interpolate_inputs(&mut self, index: usize) {
+        let part = index as f64 / shortest_steps() as f64;
+        for (number, column) in self.recording.columns.iter().enumerate() {
+            if self.program.columns[number].next || !self.program.columns[number].continuous {
+                continue;
+            }
+            let last = column.len() - 1;
+            let (now, then) = (column[self.row.min(last)], column[(self.row + 1).min(last)]);
+            self.u[2 * number] = now + (then - now) * part;
+        }
+    }
+}
+
+/// The truth of a relation from its root function.
+#[allow(clippy::float_cmp, reason = "a zero that stays zero is exact")]
+pub(crate) fn truth(program: &Program, relation: usize, root: f64) -> bool {
+    root > 0.0 || (root == 0.0 && program.relations[relation].inclusive)
+}
+
+fn supported(program: &Program) -> Result<(), Unsupported> {
+    if let Some(hold) = program.holds.iter().find(|hold| hold.read) {
+        return Err(Unsupported::Clock(program.clocks[hold.clock].name.clone()));
+    }
+    if let Some(measured) = program.experiment.measured.iter().find(|m| m.clocked) {
+        return Err(Unsupported::Clock(measured.name.clone()));
+    }
+    if !program.delays.is_empty() {
+        return Err(Unsupported::Delay);
+    }
+    if !program.selections.is_empty() {
+        return Err(Unsupported::ChosenStates);
+    }
+    Ok(())
+}
+
+/// Shortest steps in a row's time.
+pub(crate) fn shortest_steps() -> usize {
+    1 << (LEVELS - 1)
+}
+
+/// Shortest steps in a step of a level.
+pub(crate) fn size_of(level: usize) -> usize {
+    1 << (LEVELS - 1 - level)
+}

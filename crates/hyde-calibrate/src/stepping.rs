@@ -1,0 +1,314 @@
+//! A step of the fixed-step form: where the model is affine one product, else two stages.
+
+use crate::configuration::{Configuration, Places};
+use crate::dense::{add_product, set_product};
+use crate::plant::{LEVELS, Plant, shortest_steps, size_of, truth};
+use hyde_program::{Function, Point, Program, Workspace};
+
+/// Vectors that steps work in.
+pub(crate) struct Room {
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    residual: Vec<f64>,
+    delta: Vec<f64>,
+    x: Vec<f64>,
+    rate: Vec<f64>,
+    new_x: Vec<f64>,
+    new_rate: Vec<f64>,
+    rest: Vec<f64>,
+    correction: Vec<f64>,
+    stacked: Vec<f64>,
+    pub(crate) roots: Vec<f64>,
+}
+
+impl Room {
+    pub(crate) fn new(program: &Program, places: &Places) -> Self {
+        let n_states = places.states.len();
+        let vector = || vec![0.0; program.n_unknowns];
+        let of_states = || vec![0.0; n_states];
+        Self {
+            y: vector(),
+            yp: vector(),
+            residual: vector(),
+            delta: vector(),
+            x: of_states(),
+            rate: of_states(),
+            new_x: of_states(),
+            new_rate: of_states(),
+            rest: of_states(),
+            correction: of_states(),
+            stacked: vec![0.0; 2 * n_states + places.algebraics.len()],
+            roots: vec![0.0; program.relations.len()],
+        }
+    }
+}
+
+/// What became of a step.
+#[derive(PartialEq, Eq)]
+pub(crate) enum Outcome {
+    Taken,
+    /// Taken, and a guard is true at its end.
+    Event,
+    /// It must be shorter.
+    TooLong,
+}
+
+impl Plant<'_> {
+    /// Rates and algebraic variables where the states are.
+    pub(crate) fn make_consistent(&mut self) {
+        let t = self.time();
+        let Self {
+            program,
+            places,
+            p,
+            configurations,
+            current,
+            y,
+            yp,
+            z,
+            u,
+            workspace,
+            pinned,
+            room,
+            ..
+        } = self;
+        let model = Model {
+            program,
+            places,
+            p,
+            z,
+            u,
+            pinned,
+        };
+        let configuration = &configurations[*current].1;
+        model.rates(
+            configuration,
+            t,
+            y,
+            yp,
+            workspace,
+            &mut room.residual,
+            &mut room.delta,
+        );
+    }
+
+    /// One step of a row's time over 2^level.
+    pub(crate) fn step(&mut self, level: usize) -> Outcome {
+        let end = self.recording.start_s
+            + self.recording.step_s
+                * (self.row as f64
+                    + (self.index + size_of(level)) as f64 / shortest_steps() as f64);
+        self.interpolate_inputs(self.index + size_of(level));
+        let Self {
+            program,
+            places,
+            p,
+            tolerances,
+            configurations,
+            current,
+            y,
+            yp,
+            z,
+            u,
+            workspace,
+            watched,
+            pinned,
+            room,
+            ..
+        } = self;
+        let configuration = &configurations[*current].1;
+        let step = &configuration.steps[level];
+        gather(yp, &places.states, &mut room.rate);
+        room.y.copy_from_slice(y);
+        room.yp.copy_from_slice(yp);
+        let model = Model {
+            program,
+            places,
+            p,
+            z,
+            u,
+            pinned,
+        };
+        if configuration.affine {
+            set_product(
+                &configuration.affine_steps[level],
+                &room.rate,
+                &mut room.stacked,
+            );
+            let (change, rest) = room.stacked.split_at(room.x.len());
+            let (rate, algebraic) = rest.split_at(room.x.len());
+            for ((&position, change), rate) in places.states.iter().zip(change).zip(rate) {
+                room.y[position] += change;
+                room.yp[position] = *rate;
+            }
+            for (&position, change) in places.algebraics.iter().zip(algebraic) {
+                room.y[position] += change;
+            }
+            model.apply_pins(&mut room.y, &mut room.yp);
+        } else {
+            gather(y, &places.states, &mut room.x);
+            room.new_x.copy_from_slice(&room.x);
+            add_product(&step.first, &room.rate, &mut room.new_x);
+            scatter(&room.new_x, &places.states, &mut room.y);
+            model.apply_pins(&mut room.y, &mut room.yp);
+            model.rates(
+                configuration,
+                end,
+                &mut room.y,
+                &mut room.yp,
+                workspace,
+                &mut room.residual,
+                &mut room.delta,
+            );
+            gather(&room.yp, &places.states, &mut room.new_rate);
+            // What the rates changed by beyond the linear part.
+            for index in 0..room.rest.len() {
+                room.rest[index] = room.x[index] - room.new_x[index];
+            }
+            room.correction.copy_from_slice(&room.new_rate);
+            add_product(&configuration.a, &room.rest, &mut room.correction);
+            for (rest, (new, old)) in room
+                .rest
+                .iter_mut()
+                .zip(room.correction.iter().zip(&room.rate))
+            {
+                *rest = new - old;
+            }
+            set_product(&step.second, &room.rest, &mut room.correction);
+            let small = |(value, tolerance): (&f64, &f64)| value.abs() <= 1e-3 * tolerance;
+            if !room.correction.iter().zip(tolerances.iter()).all(small) {
+                for (x, change) in room.new_x.iter_mut().zip(&room.correction) {
+                    *x += change;
+                }
+                scatter(&room.new_x, &places.states, &mut room.y);
+                model.apply_pins(&mut room.y, &mut room.yp);
+                model.rates(
+                    configuration,
+                    end,
+                    &mut room.y,
+                    &mut room.yp,
+                    workspace,
+                    &mut room.residual,
+                    &mut room.delta,
+                );
+                // What the second stage would change again is the error that is left.
+                gather(&room.yp, &places.states, &mut room.rate);
+                for index in 0..room.rest.len() {
+                    room.rest[index] = room.rate[index] - room.new_rate[index];
+                    room.x[index] = -room.correction[index];
+                }
+                add_product(&configuration.a, &room.x, &mut room.rest);
+                set_product(&step.second, &room.rest, &mut room.correction);
+                let fits = |(value, tolerance): (&f64, &f64)| value.abs() <= *tolerance;
+                let exact = room.correction.iter().zip(tolerances.iter()).all(fits);
+                if !exact && level + 1 < LEVELS {
+                    return Outcome::TooLong;
+                }
+            }
+        }
+        let mut event = false;
+        if !watched.is_empty() {
+            let at = Point {
+                t: end,
+                y: &room.y,
+                yp: &room.yp,
+                z,
+                u,
+                p,
+            };
+            program
+                .kernels
+                .evaluate(Function::Roots, at, workspace, &mut room.roots);
+            event = watched
+                .iter()
+                .any(|&number| truth(program, number, room.roots[number]) != (z[number] != 0.0));
+        }
+        if event && level + 1 < LEVELS {
+            return Outcome::TooLong;
+        }
+        std::mem::swap(y, &mut room.y);
+        std::mem::swap(yp, &mut room.yp);
+        if event {
+            Outcome::Event
+        } else {
+            Outcome::Taken
+        }
+    }
+}
+
+/// What rates are made of.
+struct Model<'s> {
+    program: &'s Program,
+    places: &'s Places,
+    p: &'s [f64],
+    z: &'s [f64],
+    u: &'s [f64],
+    pinned: &'s [(usize, f64)],
+}
+
+impl Model<'_> {
+    /// Rates and algebraic variables for the states in y, from a guess of them.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "room is lent by the plant, for nothing is allocated in a step"
+    )]
+    fn rates(
+        &self,
+        configuration: &Configuration,
+        t: f64,
+        y: &mut [f64],
+        yp: &mut [f64],
+        workspace: &mut Workspace,
+        residual: &mut [f64],
+        delta: &mut [f64],
+    ) {
+        let rounds = if configuration.constant { 1 } else { 8 };
+        for _ in 0..rounds {
+            let at = Point {
+                t,
+                y,
+                yp,
+                z: self.z,
+                u: self.u,
+                p: self.p,
+            };
+            self.program
+                .kernels
+                .evaluate(Function::Residual, at, workspace, residual);
+            set_product(&configuration.inverse, residual, delta);
+            let mut settled = true;
+            for (index, &change) in delta.iter().enumerate() {
+                let value = match self.places.differential[index] {
+                    true => &mut yp[index],
+                    false => &mut y[index],
+                };
+                *value -= change;
+                settled &= change.abs() <= 1e-10 * value.abs() + 1e-13;
+            }
+            if settled {
+                break;
+            }
+        }
+        self.apply_pins(y, yp);
+    }
+
+    fn apply_pins(&self, y: &mut [f64], yp: &mut [f64]) {
+        for &(position, value) in self.pinned {
+            y[position] = value;
+            yp[position] = 0.0;
+        }
+    }
+}
+
+/// The values at places.
+pub(crate) fn gather(from: &[f64], places: &[usize], to: &mut [f64]) {
+    for (value, &place) in to.iter_mut().zip(places) {
+        *value = from[place];
+    }
+}
+
+fn scatter(from: &[f64], places: &[usize], to: &mut [f64]) {
+    for (&value, &place) in from.iter().zip(places) {
+        to[place] = value;
+    }
+}

@@ -1,0 +1,86 @@
+//! [`Varied`]: a parameter that calibration may change, with what is known of it beforehand.
+
+use hyde_program::{Prior, Program};
+
+/// A parameter that calibration may change.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Varied {
+    /// Its full name.
+    pub name: String,
+    /// Position in the parameter vector.
+    pub place: usize,
+    /// Declared value, SI.
+    pub nominal: f64,
+    /// Standard deviation of what is known beforehand, SI; `None` if nothing is.
+    pub prior: Option<f64>,
+    /// How far it may go, SI.
+    pub bounds: (f64, f64),
+    /// A change of it that can be seen, SI, where that is known.
+    pub visible: Option<f64>,
+}
+
+impl Varied {
+    /// Every uncertain parameter of a program, those that shape the equations apart. `p` are the declared values.
+    #[must_use]
+    pub fn uncertain(program: &Program, p: &[f64]) -> Vec<Self> {
+        let known = program
+            .parameters
+            .iter()
+            .filter(|q| !q.structural && q.prior.is_some());
+        known
+            .flat_map(|parameter| Self::of(program, &parameter.name, p))
+            .collect()
+    }
+
+    /// The elements of a parameter; none if there is no such, or it cannot be varied.
+    #[must_use]
+    pub fn of(program: &Program, name: &str, p: &[f64]) -> Vec<Self> {
+        let Some((parameter, element)) = program.parameter(name) else {
+            return Vec::new();
+        };
+        if parameter.structural {
+            return Vec::new();
+        }
+        let whole = parameter.name == name;
+        let elements = if whole {
+            0..parameter.len
+        } else {
+            element..element + 1
+        };
+        elements
+            .map(|element| {
+                let nominal = p[parameter.place + element];
+                // `~ ±a%` is uniform; a normal distribution of the same variance takes its place.
+                let prior = parameter.prior.map(|prior| match prior {
+                    Prior::Relative(part) => (part * nominal).abs() / 3.0_f64.sqrt(),
+                    Prior::Absolute(width) => width.abs() / 3.0_f64.sqrt(),
+                });
+                let name = match parameter.len {
+                    1 => parameter.name.clone(),
+                    _ => format!("{}[{}]", parameter.name, element + 1),
+                };
+                Self {
+                    name,
+                    place: parameter.place + element,
+                    nominal,
+                    prior: prior.filter(|sd| *sd > 0.0),
+                    bounds: parameter
+                        .range
+                        .unwrap_or((f64::NEG_INFINITY, f64::INFINITY)),
+                    visible: None,
+                }
+            })
+            .collect()
+    }
+
+    /// What the parameter is measured in: a visible change, its prior, a tenth of its value or of its range.
+    pub(crate) fn scale(&self) -> f64 {
+        let range = self.bounds.1 - self.bounds.0;
+        match self.visible.or(self.prior) {
+            Some(scale) => scale,
+            None if self.nominal != 0.0 => 0.1 * self.nominal.abs(),
+            None if range.is_finite() => 0.1 * range,
+            None => 1.0,
+        }
+    }
+}

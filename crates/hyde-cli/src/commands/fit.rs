@@ -1,0 +1,316 @@
+//! `hyde fit`: calibrates a model on records, and says what that is worth.
+
+use crate::args::FitArgs;
+use crate::exit::Exit;
+use crate::files;
+use crate::project::{complain, print_output};
+use crate::study::{self, Calibration};
+use hyde_calibrate::{Fit, FittedParameter};
+use hyde_units::{engineering, significant};
+use serde_json::{Value, json};
+use std::fmt::Write as _;
+use std::path::Path;
+
+/// Calibrates and tells.
+pub(crate) fn fit(args: &FitArgs) -> Exit {
+    if let Err(reason) = args.study.use_jobs() {
+        return complain(&args.study.model_args(), Exit::CommandLine, &reason);
+    }
+    let mut calibration = match study::load(&args.study, false) {
+        Ok(calibration) => calibration,
+        Err(exit) => return exit,
+    };
+    let found = hyde_calibrate::fit(
+        &calibration.compiled.program,
+        &calibration.fitted,
+        &calibration.holdout,
+        &calibration.observer,
+        &calibration.varied,
+        &calibration.set,
+        calibration.plan.starts,
+    );
+    let found = match found {
+        Ok(found) => found,
+        Err(error) => {
+            let diagnostic = study::unsupported(&error, calibration.plan.span);
+            calibration.project.diagnostics.push(diagnostic);
+            return calibration
+                .project
+                .finish_with_errors(&args.study.model_args());
+        }
+    };
+    let report = report(&calibration, &found);
+    if let Some(folder) = &args.out
+        && let Err(reason) = leave(folder, &calibration, &found, &report)
+    {
+        return complain(&args.study.model_args(), Exit::CommandLine, &reason);
+    }
+    if args.study.json {
+        print_output(&format!("{report:#}"));
+    } else if !args.study.quiet {
+        print_output(&text(&calibration, &found));
+        if let Some(folder) = &args.out {
+            print_output(&format!(
+                "\n  fit.json and {} are in {}",
+                model_file(&calibration),
+                folder.display()
+            ));
+        }
+    }
+    Exit::Done
+}
+
+/// The calibration in lines of at most 80 columns.
+fn text(calibration: &Calibration, fit: &Fit) -> String {
+    let program = &calibration.compiled.program;
+    let mut out = String::new();
+    let end = match fit.converged {
+        true => format!("converged in {} steps", fit.steps),
+        false => format!("NOT CONVERGED in {} steps", fit.steps),
+    };
+    let _ = writeln!(
+        out,
+        "{} of {}: {} parameters on {} records, {end}",
+        calibration.plan.name,
+        calibration.plan.model,
+        fit.parameters.len(),
+        calibration.fitted.len(),
+    );
+    if fit.agreeing_starts.1 > 1 {
+        let (agreeing, all) = fit.agreeing_starts;
+        let _ = writeln!(out, "  {agreeing} of {all} starts ended there");
+    }
+    let _ = writeln!(
+        out,
+        "\n  {:<24} {:>13} {:>13} {:>7}  {:<10}",
+        "parameter", "declared", "calibrated", "±", ""
+    );
+    for parameter in &fit.parameters {
+        let dimension = program.parameter(&parameter.name).map(|(p, _)| p.dimension);
+        let number =
+            |value: f64| dimension.map_or_else(|| significant(value, 5), |d| engineering(value, d));
+        let half = (parameter.interval.1 - parameter.interval.0) / 2.0;
+        let percent = format!(
+            "{} %",
+            significant(100.0 * (half / parameter.value).abs(), 2)
+        );
+        let line = format!(
+            "  {:<24} {:>13} {:>13} {:>7}  {}",
+            parameter.name,
+            number(parameter.nominal),
+            number(parameter.value),
+            percent,
+            remark(parameter)
+        );
+        let _ = writeln!(out, "{}", line.trim_end());
+    }
+    for group in &fit.groups {
+        let names: Vec<&str> = group
+            .iter()
+            .map(|&number| fit.parameters[number].name.as_str())
+            .collect();
+        let _ = writeln!(out, "  the data hardly tell apart: {}", names.join(", "));
+    }
+    let _ = writeln!(
+        out,
+        "\n  {:<32} {:>10} {:>10}   about 1 where all is known",
+        "mean square of innovations", "before", "after"
+    );
+    for record in &fit.records {
+        let name = match record.holdout {
+            true => format!("{} (held out)", record.record),
+            false => record.record.clone(),
+        };
+        let _ = writeln!(
+            out,
+            "  {name:<32} {:>10} {:>10}",
+            significant(record.before.0, 4),
+            significant(record.after.0, 4)
+        );
+    }
+    let _ = writeln!(
+        out,
+        "\n  {:<32} {:>10} {:>10} {:>12}",
+        "rms of innovations", "before", "after", "noise"
+    );
+    for (number, name) in fit.channels.iter().enumerate() {
+        let dimension = program.experiment.measured[number].unit.unit().dimension;
+        let rms = |after: bool| {
+            let errors = fit
+                .records
+                .iter()
+                .map(|record| if after { &record.after } else { &record.before });
+            let squares: Vec<f64> = errors
+                .map(|(_, channels)| channels[number].rms.powi(2))
+                .collect();
+            (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+        };
+        let _ = writeln!(
+            out,
+            "  {name:<32} {:>10} {:>10} {:>12}",
+            engineering(rms(false), dimension),
+            engineering(rms(true), dimension),
+            engineering(calibration.observer.noise[number], dimension)
+        );
+    }
+    out
+}
+
+fn remark(parameter: &FittedParameter) -> &'static str {
+    if parameter.at_bound {
+        "AT ITS BOUND"
+    } else if parameter.left_range {
+        "LEFT ITS RANGE"
+    } else if parameter.untold {
+        "not told"
+    } else {
+        ""
+    }
+}
+
+/// The calibration as JSON; numbers are SI.
+fn report(calibration: &Calibration, fit: &Fit) -> Value {
+    let program = &calibration.compiled.program;
+    let parameters: Vec<Value> = fit
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let unit = program
+                .parameter(&parameter.name)
+                .map(|(p, _)| p.dimension.usual_unit());
+            json!({
+                "name": parameter.name,
+                "unit": unit,
+                "declared": parameter.nominal,
+                "value": parameter.value,
+                "interval": [parameter.interval.0, parameter.interval.1],
+                "prior_deviation": parameter.prior,
+                "deviation": parameter.deviation,
+                "left_range": parameter.left_range,
+                "at_bound": parameter.at_bound,
+                "not_told": parameter.untold,
+            })
+        })
+        .collect();
+    let records: Vec<Value> = fit
+        .records
+        .iter()
+        .map(|record| {
+            let channels: Vec<Value> = record
+                .before
+                .1
+                .iter()
+                .zip(&record.after.1)
+                .enumerate()
+                .map(|(number, (before, after))| {
+                    let measured = &program.experiment.measured[number];
+                    json!({
+                        "channel": measured.name,
+                        "unit": measured.unit.unit().dimension.usual_unit(),
+                        "noise": calibration.observer.noise[number],
+                        "rms_before": before.rms,
+                        "rms_after": after.rms,
+                        "chi_before": before.chi,
+                        "chi_after": after.chi,
+                        "correlation_after": after.correlation,
+                    })
+                })
+                .collect();
+            json!({
+                "record": record.record,
+                "holdout": record.holdout,
+                "chi_before": record.before.0,
+                "chi_after": record.after.0,
+                "channels": channels,
+            })
+        })
+        .collect();
+    let groups: Vec<Vec<&str>> = fit
+        .groups
+        .iter()
+        .map(|group| {
+            group
+                .iter()
+                .map(|&number| fit.parameters[number].name.as_str())
+                .collect()
+        })
+        .collect();
+    json!({
+        "ok": true,
+        "calibration": calibration.plan.name,
+        "model": calibration.plan.model,
+        "model_hash": calibration.project.hash,
+        "converged": fit.converged,
+        "steps": fit.steps,
+        "starts": fit.agreeing_starts.1,
+        "agreeing_starts": fit.agreeing_starts.0,
+        "parameters": parameters,
+        "groups": groups,
+        "records": records,
+        "inflation": fit.inflation,
+    })
+}
+
+/// Leaves the report and the calibrated model.
+fn leave(
+    folder: &Path,
+    calibration: &Calibration,
+    fit: &Fit,
+    report: &Value,
+) -> Result<(), String> {
+    files::make_folder(folder)?;
+    files::write(&folder.join("fit.json"), format!("{report:#}\n").as_bytes())?;
+    files::write(
+        &folder.join(model_file(calibration)),
+        model(calibration, fit).as_bytes(),
+    )
+}
+
+fn model_file(calibration: &Calibration) -> String {
+    format!("{}_fitted.hyde", calibration.plan.model.replace('.', "_"))
+}
+
+/// The model with its calibrated values, as a file that imports the other.
+fn model(calibration: &Calibration, fit: &Fit) -> String {
+    let program = &calibration.compiled.program;
+    let name = &calibration.plan.model;
+    let mut out = String::new();
+    let package = calibration
+        .project
+        .file
+        .files
+        .first()
+        .and_then(|(_, tree)| tree.package.as_ref());
+    match package {
+        Some((path, _)) => {
+            let _ = writeln!(out, "import {}.*;\n", path.dotted());
+        }
+        None => {
+            let _ = writeln!(
+                out,
+                "// For the file of `{name}`: a file without a package cannot be imported."
+            );
+        }
+    }
+    let values: Vec<String> = fit
+        .parameters
+        .iter()
+        .map(|parameter| {
+            let unit = program
+                .parameter(&parameter.name)
+                .map(|(p, _)| p.dimension.usual_unit());
+            let unit = unit
+                .filter(|unit| unit != "1")
+                .map_or_else(String::new, |unit| format!(" [{unit}]"));
+            format!("  {} = {:?}{unit}", parameter.name, parameter.value)
+        })
+        .collect();
+    let _ = writeln!(
+        out,
+        "model {}_fitted = {name}(\n{}\n) \"calibrated by `{}`\";",
+        name.replace('.', "_"),
+        values.join(",\n"),
+        calibration.plan.name
+    );
+    out
+}

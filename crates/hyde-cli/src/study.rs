@@ -1,0 +1,455 @@
+//! A calibration on its way to a report: its block, its records, its program in the observed form.
+
+use crate::args::{ModelArgs, StudyArgs};
+use crate::exit::Exit;
+use crate::files;
+use crate::project::{self, Aim, Project, Records, complain};
+use crate::settings;
+use hyde_calibrate::{
+    CalibrationPlan, Observer, RecordError, Recording, Source, Unsupported, Varied, Vary,
+};
+use hyde_compiler::Compiled;
+use hyde_diag::{Code, Diagnostic, Diagnostics, Sources, Span};
+use hyde_syntax::ast::{Experiment, Study, StudyKind};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// Everything a calibration is made of.
+pub(crate) struct Calibration {
+    pub(crate) project: Project,
+    pub(crate) compiled: Compiled,
+    pub(crate) plan: CalibrationPlan,
+    pub(crate) fitted: Vec<Recording>,
+    pub(crate) holdout: Vec<Recording>,
+    pub(crate) varied: Vec<Varied>,
+    /// Values set from outside: position and value.
+    pub(crate) set: Vec<(usize, f64)>,
+    pub(crate) observer: Observer,
+}
+
+/// Loads the calibration that the arguments name; with every package of the library where effects are looked for.
+pub(crate) fn load(args: &StudyArgs, whole_library: bool) -> Result<Calibration, Exit> {
+    let model_args = ModelArgs {
+        whole_library,
+        ..args.model_args()
+    };
+    let (plan, experiment) = plan(args, &model_args)?;
+    let paths = |sources: &[Source], project: &mut Diagnostics| {
+        let mut found = Vec::new();
+        for source in sources {
+            found.extend(files_of(source, &experiment, &model_args, project));
+        }
+        found
+    };
+    let mut diagnostics = Diagnostics::new();
+    let fitted = paths(&plan.fit, &mut diagnostics);
+    let holdout = paths(&plan.holdout, &mut diagnostics);
+    let first = fitted.first().cloned().unwrap_or_default();
+    let with_record = ModelArgs {
+        experiment: Some(experiment.name.text.clone()),
+        records: first
+            .iter()
+            .map(|(record, path)| format!("{record}={}", path.display()))
+            .collect(),
+        ..model_args.clone()
+    };
+    let mut project = project::load_silently(&with_record, Records::Needed)?;
+    let own = std::mem::take(&mut project.diagnostics);
+    own.iter()
+        .chain(diagnostics.iter())
+        .for_each(|d| project.diagnostics.push(d.clone()));
+    if project.diagnostics.has_errors() {
+        return Err(project.finish_with_errors(&model_args));
+    }
+    let compiled = project.compile(&model_args, Aim::Observe)?;
+    project.print_warnings(&model_args);
+    let program = &compiled.program;
+    let set: Vec<(usize, f64)> = project
+        .set()
+        .iter()
+        .filter_map(|(name, value)| {
+            let (parameter, element) = program.parameter(name)?;
+            (!parameter.structural).then_some((parameter.place + element, *value))
+        })
+        .collect();
+    let mut p = vec![0.0; program.n_parameters];
+    program.kernels.parameters(&set, &mut p);
+    let mut wrong = Vec::new();
+    let varied = varied(&plan, &compiled, &p, &mut wrong);
+    let (mut recordings, mut count) = (Vec::new(), 0);
+    let lists = if wrong.is_empty() {
+        [fitted, holdout]
+    } else {
+        [Vec::new(), Vec::new()]
+    };
+    for (number, list) in lists.into_iter().enumerate() {
+        for files in &list {
+            match recording(files, &experiment, &compiled, plan.span) {
+                Ok(recording) => recordings.push(recording),
+                Err(diagnostic) => wrong.push(*diagnostic),
+            }
+        }
+        if number == 0 {
+            count = recordings.len();
+        }
+    }
+    let holdout = recordings.split_off(count);
+    let fitted = recordings;
+    let observer = match wrong.is_empty() {
+        true => {
+            Observer::new(program, &fitted, &set).map_err(|u| Box::new(unsupported(&u, plan.span)))
+        }
+        false => Err(Box::new(wrong.remove(0))),
+    };
+    match observer {
+        Ok(observer) => Ok(Calibration {
+            project,
+            compiled,
+            plan,
+            fitted,
+            holdout,
+            varied,
+            set,
+            observer,
+        }),
+        Err(first) => {
+            project.diagnostics.push(*first);
+            wrong
+                .into_iter()
+                .for_each(|diagnostic| project.diagnostics.push(diagnostic));
+            Err(project.finish_with_errors(&model_args))
+        }
+    }
+}
+
+/// The block that the arguments name, and the experiment of its records.
+fn plan(args: &StudyArgs, model_args: &ModelArgs) -> Result<(CalibrationPlan, Experiment), Exit> {
+    let text = files::read_text(&args.file)
+        .map_err(|reason| complain(model_args, Exit::CommandLine, &reason))?;
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let (file, _) = project::loaded(model_args, &mut sources, &text, &mut diagnostics);
+    if diagnostics.has_errors() {
+        return Err(project::report_errors(model_args, &sources, &diagnostics));
+    }
+    let studies: Vec<&Study> = file
+        .studies()
+        .filter(|study| study.kind == StudyKind::Calibrate)
+        .collect();
+    let study = chosen(&studies, args.study.as_deref(), "calibration")
+        .map_err(|reason| complain(model_args, Exit::CommandLine, &reason))?;
+    let Some(plan) = CalibrationPlan::read(study, &mut diagnostics) else {
+        return Err(project::report_errors(model_args, &sources, &diagnostics));
+    };
+    let mut found: Option<&Experiment> = None;
+    for source in plan.fit.iter().chain(&plan.holdout) {
+        let known = file
+            .experiments()
+            .find(|experiment| experiment.name.text == source.experiment);
+        let problem = match (known, found) {
+            (None, _) => Some(format!(
+                "the file has no experiment `{}`",
+                source.experiment
+            )),
+            (Some(known), _) if known.model.dotted() != plan.model => Some(format!(
+                "`{}` is an experiment of `{}`, the calibration is of `{}`",
+                source.experiment,
+                known.model.dotted(),
+                plan.model
+            )),
+            (Some(known), Some(found)) if known.name.text != found.name.text => Some(format!(
+                "the records of `{}` and `{}` are of two experiments",
+                found.name.text, known.name.text
+            )),
+            (Some(known), _) => {
+                found = Some(known);
+                None
+            }
+        };
+        if let Some(problem) = problem {
+            diagnostics.push(
+                Diagnostic::error(Code::BadStudy, problem)
+                    .label(source.span, "asked for here")
+                    .help("the records of a calibration are of one experiment of its model"),
+            );
+        }
+    }
+    match found {
+        Some(experiment) if !diagnostics.has_errors() => Ok((plan, experiment.clone())),
+        Some(_) | None => Err(project::report_errors(model_args, &sources, &diagnostics)),
+    }
+}
+
+/// The study meant: the one named, or the only one.
+pub(crate) fn chosen<'s>(
+    studies: &[&'s Study],
+    name: Option<&str>,
+    what: &str,
+) -> Result<&'s Study, String> {
+    let known: Vec<String> = studies
+        .iter()
+        .map(|study| format!("`{}`", study.name.text))
+        .collect();
+    let listed = match known.as_slice() {
+        [] => "it has none".to_owned(),
+        _ => format!("it has {}", known.join(", ")),
+    };
+    match (name, studies) {
+        (Some(name), _) => studies
+            .iter()
+            .copied()
+            .find(|study| study.name.text == name)
+            .ok_or_else(|| format!("the file has no {what} `{name}`; {listed}")),
+        (None, [only]) => Ok(only),
+        (None, _) => Err(format!("which {what}? {listed}")),
+    }
+}
+
+/// The files of a source: for each record set, the files of its records.
+fn files_of(
+    source: &Source,
+    experiment: &Experiment,
+    args: &ModelArgs,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Vec<(String, PathBuf)>> {
+    let folder = args
+        .data
+        .clone()
+        .or_else(|| args.file.parent().map(Path::to_path_buf))
+        .unwrap_or_default();
+    let mut patterns: Vec<(String, String, Span)> = Vec::new();
+    for (number, (record, pattern)) in source.patterns.iter().enumerate() {
+        let own = experiment
+            .records
+            .get(number)
+            .map(|item| item.name.text.clone());
+        let Some(record) = record.clone().or(own) else {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::BadStudy,
+                    format!(
+                        "`{}` has {} record(s)",
+                        source.experiment,
+                        experiment.records.len()
+                    ),
+                )
+                .label(pattern.span, "there is no record for this pattern")
+                .help("give one pattern a record: `fit bench(\"fit-*.csv\");`"),
+            );
+            return Vec::new();
+        };
+        patterns.push((record, pattern.text.clone(), pattern.span));
+    }
+    for item in &experiment.records {
+        if let Some(default) = &item.default
+            && !patterns
+                .iter()
+                .any(|(record, ..)| *record == item.name.text)
+        {
+            patterns.push((item.name.text.clone(), default.text.clone(), source.span));
+        }
+    }
+    let mut sets: Vec<Vec<(String, PathBuf)>> = Vec::new();
+    for (record, pattern, span) in &patterns {
+        let matching = files::matching(&folder, pattern);
+        if matching.is_empty() {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::NoFiles,
+                    format!("no file is called `{pattern}` in `{}`", shown(&folder)),
+                )
+                .label(*span, "asked for here")
+                .help("name the folder of the records: `--data DIR`"),
+            );
+            return Vec::new();
+        }
+        let several = sets.len() > 1;
+        if several && matching.len() != 1 && matching.len() != sets.len() {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::NoFiles,
+                    format!(
+                        "{} files for one record and {} for another",
+                        sets.len(),
+                        matching.len()
+                    ),
+                )
+                .label(*span, "asked for here")
+                .help("give every record as many files, or one file"),
+            );
+            return Vec::new();
+        }
+        let old = if sets.is_empty() {
+            vec![Vec::new()]
+        } else {
+            std::mem::take(&mut sets)
+        };
+        let count = old.len().max(matching.len());
+        for number in 0..count {
+            let mut set = old[number.min(old.len() - 1)].clone();
+            set.push((
+                record.clone(),
+                matching[number.min(matching.len() - 1)].clone(),
+            ));
+            sets.push(set);
+        }
+    }
+    sets
+}
+
+fn shown(folder: &Path) -> String {
+    match folder.as_os_str().is_empty() {
+        true => ".".to_owned(),
+        false => folder.display().to_string(),
+    }
+}
+
+/// Reads the files of a record set.
+fn recording(
+    set: &[(String, PathBuf)],
+    experiment: &Experiment,
+    compiled: &Compiled,
+    span: Span,
+) -> Result<Recording, Box<Diagnostic>> {
+    let mut tables = BTreeMap::new();
+    for (record, path) in set {
+        let item = experiment
+            .records
+            .iter()
+            .find(|item| item.name.text == *record);
+        let Some(item) = item else {
+            let message = format!("`{}` has no record `{record}`", experiment.name.text);
+            return Err(Box::new(
+                Diagnostic::error(Code::BadStudy, message).label(span, "in this study"),
+            ));
+        };
+        let content = files::read(path).map_err(|reason| {
+            Box::new(Diagnostic::error(Code::NoFiles, reason).label(span, "in this study"))
+        })?;
+        let table = hyde_experiment::read_record(item, &path.display().to_string(), &content)
+            .map_err(Box::new)?;
+        tables.insert(record.clone(), table);
+    }
+    let name = set.first().map_or_else(String::new, |(_, path)| {
+        path.file_name()
+            .unwrap_or_default()
+            .to_string_lossy()
+            .into_owned()
+    });
+    Recording::new(&name, &compiled.program, tables)
+        .map_err(|error| Box::new(unreadable(&name, &error, span)))
+}
+
+/// What may be varied, by name.
+fn varied(
+    plan: &CalibrationPlan,
+    compiled: &Compiled,
+    p: &[f64],
+    wrong: &mut Vec<Diagnostic>,
+) -> Vec<Varied> {
+    let program = &compiled.program;
+    let mut found: Vec<Varied> = Vec::new();
+    for vary in &plan.vary {
+        match vary {
+            Vary::Uncertain(span) => {
+                let uncertain = Varied::uncertain(program, p);
+                if uncertain.is_empty() {
+                    wrong.push(
+                        Diagnostic::error(
+                            Code::CannotVary,
+                            "no parameter of the model is uncertain",
+                        )
+                        .label(*span, "asked for here")
+                        .help("say how well one is known: `parameter Mass M = 310 [kg] ~ ±8%;`"),
+                    );
+                }
+                found.extend(uncertain);
+            }
+            Vary::Parameter { name, bounds, span } => {
+                let mut own = Varied::of(program, name, p);
+                let problem = match program.parameter(name) {
+                    None => Some("no such parameter".to_owned()),
+                    Some((parameter, _)) if parameter.structural => {
+                        Some("it shapes the equations: each value is a model of its own".to_owned())
+                    }
+                    Some((parameter, _)) if parameter.is_final => Some("it is final".to_owned()),
+                    Some((parameter, _)) => bounds.as_ref().and_then(|(from, _, unit)| {
+                        let setting = settings::Setting {
+                            path: name.clone(),
+                            value: *from,
+                            dimension: Some(unit.unit().dimension),
+                        };
+                        settings::check(&setting, name, parameter.dimension, &parameter.unit).err()
+                    }),
+                };
+                if let Some(problem) = problem {
+                    wrong.push(
+                        Diagnostic::error(Code::CannotVary, format!("`{name}` cannot be varied"))
+                            .label(*span, problem)
+                            .help("`hyde params FILE` lists the parameters"),
+                    );
+                }
+                if let Some((from, to, _)) = bounds {
+                    own.iter_mut()
+                        .for_each(|varied| varied.bounds = (*from, *to));
+                }
+                found.extend(own);
+            }
+        }
+    }
+    // Named after `uncertain`, a parameter has the bounds given to it.
+    let mut last: Vec<Varied> = Vec::new();
+    for varied in found {
+        last.retain(|other| other.place != varied.place);
+        last.push(varied);
+    }
+    last
+}
+
+fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnostic {
+    let cause = match error {
+        RecordError::NoChannel => "its experiment measures nothing".to_owned(),
+        RecordError::NoColumn(record, column) => {
+            format!("the record `{record}` has no column `{column}`")
+        }
+        RecordError::Uneven(record) => {
+            format!("the rows of the record `{record}` are not evenly spaced")
+        }
+        RecordError::Short(_, rows) => {
+            format!("it has {rows} rows, and an observer settles in 150")
+        }
+        RecordError::Preparation(channel, cause) => format!("the channel `{channel}`: {cause}"),
+    };
+    Diagnostic::error(
+        Code::CannotObserve,
+        format!("`{name}` cannot be observed: {cause}"),
+    )
+    .label(span, "asked for by this study")
+}
+
+/// Why a program has no fixed-step form.
+pub(crate) fn unsupported(error: &Unsupported, span: Span) -> Diagnostic {
+    let (cause, help) = match error {
+        Unsupported::Clock(part) => (
+            format!("the clocked part `{part}` closes the loop"),
+            "replay what it puts out: `replay motor.i_ref = file.i_ref;` in the experiment",
+        ),
+        Unsupported::Delay => (
+            "it delays quantities".to_owned(),
+            "this version observes no model with `delay(u, T)`",
+        ),
+        Unsupported::ChosenStates => (
+            "its states are chosen while running".to_owned(),
+            "this version observes no model whose bodies are tied by changing constraints",
+        ),
+        Unsupported::Start(cause) => (
+            format!("it has no start: {cause}"),
+            "run its experiment first: `hyde run FILE`",
+        ),
+    };
+    Diagnostic::error(
+        Code::CannotObserve,
+        format!("the model cannot be observed: {cause}"),
+    )
+    .label(span, "asked for by this study")
+    .help(help)
+}

@@ -1,0 +1,176 @@
+//! Observers on the bench axis: their fixed steps against the exact run, and what calibration finds in records that the
+//! exact run has made.
+
+use hyde_calibrate::{Innovations, Observer, Problem, Recording, Varied, fit};
+use hyde_compiler::{Backend, Compiled};
+use hyde_experiment::Options;
+use hyde_signal::{Column, Table};
+use hyde_tests::{Example, Loaded};
+use std::collections::BTreeMap;
+
+/// The bench axis as an observer runs it, with few cells: above half the sampling rate a record says nothing.
+fn bench() -> (Example, Loaded, Compiled) {
+    let example = Example::load("examples/bench_axis/axis.hyde", Some("bench")).unwrap();
+    let example = example.observed().set("screw.n", 6.0);
+    let loaded = example.parse().unwrap();
+    let compiled = loaded.compile(&example, Backend::Native).unwrap();
+    (example, loaded, compiled)
+}
+
+/// The record with its measured columns replaced by those of an exact run with the recorded current, and `noise` times
+/// what the experiment declares added to them.
+fn made(
+    example: &Example,
+    loaded: &Loaded,
+    set: &[(&str, f64)],
+    noise: f64,
+) -> BTreeMap<String, Table> {
+    let options = Options {
+        rtol: Some(1e-7),
+        set: set
+            .iter()
+            .map(|(name, value)| ((*name).to_owned(), *value))
+            .collect(),
+        ..Options::default()
+    };
+    let (_, run) = example.run_with(&options).unwrap();
+    let record = &loaded.tables["file"];
+    let deviations = [
+        0.02,
+        1e-4 * std::f64::consts::TAU / 12.0_f64.sqrt(),
+        4e-3 / 0.05,
+        4.2e-7,
+    ];
+    let mut random = Random(1);
+    let columns = record.columns().iter().map(|column| {
+        let Some(channel) = run
+            .channels
+            .iter()
+            .position(|channel| channel.name == column.name())
+        else {
+            return column.clone();
+        };
+        // The tacho channel is measured in volts.
+        let sd = noise
+            * if channel == 2 {
+                4e-3
+            } else {
+                deviations[channel]
+            };
+        let values = run.channels[channel]
+            .simulated
+            .iter()
+            .map(|value| value + sd * random.normal());
+        let values: Vec<f64> = values.collect();
+        assert_eq!(
+            values.len(),
+            column.values().len(),
+            "every row is in the run"
+        );
+        match column.unit() {
+            Some(unit) => Column::new(column.name(), unit.clone(), values),
+            None => Column::raw(column.name(), values),
+        }
+    });
+    let table = Table::every(1e-3, columns.collect()).unwrap();
+    BTreeMap::from([("file".to_owned(), table)])
+}
+
+/// Normal numbers: sums of twelve uniform ones of a linear congruential generator (Knuth, MMIX).
+struct Random(u64);
+
+impl Random {
+    fn normal(&mut self) -> f64 {
+        let mut uniform = || {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+}
+
+fn mean_square(list: &[f64]) -> f64 {
+    list.iter().map(|r| r * r).sum::<f64>() / list.len() as f64
+}
+
+#[test]
+fn fixed_steps_follow_the_exact_run_through_stick_and_slip() {
+    let (example, loaded, compiled) = bench();
+    let program = &compiled.program;
+    let real = Recording::new("strokes", program, loaded.tables.clone()).unwrap();
+    let observer = Observer::new(program, std::slice::from_ref(&real), &[]).unwrap();
+    let exact = Recording::new("exact", program, made(&example, &loaded, &[], 0.0)).unwrap();
+    let innovations = Innovations::of(program, &exact, &observer, &[]).unwrap();
+    for (channel, list) in innovations.channels.iter().enumerate() {
+        // Of the noise: a thousandth of a chi2 unit in a thousand samples. Friction acts some 100 times in the record.
+        let rms = mean_square(list).sqrt();
+        assert!(rms < 3e-2, "channel {channel}: {rms}");
+    }
+}
+
+#[test]
+fn calibration_finds_the_parameters_that_a_record_was_made_with() {
+    let (example, loaded, compiled) = bench();
+    let program = &compiled.program;
+    let truth = [
+        ("saddle.M", 325.0),
+        ("guide.F", 250.0),
+        ("motor.Jm", 8.4e-3),
+    ];
+    let recording = Recording::new("made", program, made(&example, &loaded, &truth, 1.0)).unwrap();
+    let recordings = [recording];
+    let observer = Observer::new(program, &recordings, &[]).unwrap();
+    let mut p = vec![0.0; program.n_parameters];
+    program.kernels.parameters(&[], &mut p);
+    let mut varied = Varied::uncertain(program, &p);
+    assert_eq!(varied.len(), 12);
+    varied.retain(|varied| truth.iter().any(|(name, _)| varied.name == *name));
+    let found = fit(program, &recordings, &[], &observer, &varied, &[], 1).unwrap();
+    assert!(found.converged);
+    for parameter in &found.parameters {
+        let (_, value) = truth
+            .iter()
+            .find(|(name, _)| *name == parameter.name)
+            .unwrap();
+        // Three standard deviations of the three together.
+        let off = (parameter.value - value).abs() / parameter.deviation;
+        assert!(
+            off < 3.5,
+            "{}: {} for {value}, {off} deviations",
+            parameter.name,
+            parameter.value
+        );
+        assert!(
+            !parameter.left_range && !parameter.at_bound && !parameter.untold,
+            "{}",
+            parameter.name
+        );
+    }
+    // Four channels of 10 000 rows: 1 within four times sqrt(2/40000), and what a gain of roundness costs.
+    let after = found.records[0].after.0;
+    assert!((0.97..1.03).contains(&after), "{after}");
+    assert!(found.records[0].before.0 > 1.1);
+    // The same from any number of threads, to the last bit.
+    let problem = Problem {
+        program,
+        recordings: &recordings,
+        observer: &observer,
+        varied: &varied[..2],
+        set: &[],
+        fold: None,
+    };
+    let start = [310.0, 260.0];
+    let of = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new()
+            .num_threads(threads)
+            .build()
+            .unwrap();
+        pool.install(|| problem.solve(&start)).unwrap()
+    };
+    let (one, three) = (of(1), of(3));
+    assert_eq!(one.cost.to_bits(), three.cost.to_bits());
+    assert_eq!(one.values, three.values);
+}
