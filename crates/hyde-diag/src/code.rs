@@ -93,6 +93,7 @@ codes! {
     BadSolve "E0808" "the solver has no such method, option or value";
     BadSet "E0809" "a value cannot be set";
     BadSweep "E0813" "a sweep cannot be planned";
+    BadDiagnosis "E0905" "a diagnosis does not say what it needs";
 }
 
 impl std::fmt::Display for Code {

@@ -9,7 +9,7 @@ use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Aim, Project, Records, complain, print_output, report_errors};
 use crate::render;
-use hyde_compiler::{States, ideals};
+use hyde_compiler::{DiagnosisPlan, States, ideals};
 use hyde_diag::{Diagnostics, Origin, Sources};
 use hyde_syntax::ast::StudyKind;
 use serde_json::{Value, json};
@@ -80,8 +80,17 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
     let mut models: Vec<String> = Vec::new();
     let mut exit = Exit::Done;
     let mut last: Option<Project> = None;
+    let diagnoses = has_diagnoses(args)?;
     for args in each(args, folder)? {
+        // A diagnosis names effects of packages that its model need not use.
+        let args = ModelArgs {
+            whole_library: diagnoses,
+            ..args
+        };
         let mut project = project::load_silently(&args, Records::IfThere)?;
+        if last.is_none() {
+            check_diagnoses(&mut project);
+        }
         let aim = match project.experiment {
             None => Aim::Linearize,
             Some(_) => Aim::Ledger,
@@ -183,6 +192,26 @@ fn sweeps(args: &ModelArgs, project: &Project) -> Result<Vec<String>, Exit> {
         }
     }
     Ok(names)
+}
+
+/// Whether a file has diagnoses.
+fn has_diagnoses(args: &ModelArgs) -> Result<bool, Exit> {
+    let text = files::read_text(&args.file)
+        .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let (file, _) = project::loaded(args, &mut sources, &text, &mut diagnostics);
+    Ok(file
+        .studies()
+        .any(|study| study.kind == StudyKind::Diagnose))
+}
+
+/// Reads every diagnosis of a file for what is wrong in it.
+fn check_diagnoses(project: &mut Project) {
+    let studies = project.file.studies();
+    let diagnoses = studies.filter(|study| study.kind == StudyKind::Diagnose);
+    for study in diagnoses {
+        DiagnosisPlan::read(&project.file, &study.name.text, &mut project.diagnostics);
+    }
 }
 
 /// Lines on states where the equations left a choice, or a start value is no condition of the model.

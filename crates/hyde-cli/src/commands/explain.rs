@@ -124,4 +124,5 @@ pages! {
     BadSolve "E0808";
     BadSet "E0809";
     BadSweep "E0813";
+    BadDiagnosis "E0905";
 }
