@@ -132,7 +132,7 @@ impl Example {
 
     /// Takes another text and experiment for those of the file.
     #[must_use]
-    pub fn rewritten(mut self, text: &str, experiment: &str) -> Self {
+    pub fn replaced(mut self, text: &str, experiment: &str) -> Self {
         text.clone_into(&mut self.text);
         self.experiment = Some(experiment.to_owned());
         self

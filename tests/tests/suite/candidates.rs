@@ -190,7 +190,7 @@ fn what_was_found_is_written_down_and_compiles_to_the_same_numbers() {
         (written.model.as_str(), experiment.as_str()),
         ("Axis2", "bench2")
     );
-    let again = example.rewritten(&written.text, &experiment);
+    let again = example.replaced(&written.text, &experiment);
     let again = again.compile(Backend::Native).unwrap();
     let mut p = vec![0.0; again.program.n_parameters];
     again.program.kernels.parameters(&[], &mut p);
