@@ -132,6 +132,21 @@ impl Example {
         self
     }
 
+    /// Adds to the text of the file.
+    #[must_use]
+    pub fn and(mut self, text: &str) -> Self {
+        self.text.push_str(text);
+        self
+    }
+
+    /// Takes another text and experiment for those of the file.
+    #[must_use]
+    pub fn replaced(mut self, text: &str, experiment: &str) -> Self {
+        text.clone_into(&mut self.text);
+        self.experiment = Some(experiment.to_owned());
+        self
+    }
+
     /// The text of the file.
     #[must_use]
     pub fn text(&self) -> &str {

@@ -159,8 +159,8 @@ impl Case {
 /// As [`Case::compare`].
 pub fn compare_bench(parameters: &[&str]) -> Result<Vec<Compared>, String> {
     let example = Example::load("examples/bench_axis/axis.hyde", Some("bench"))?.rewritten(
-        "floor_to(sample(motor.phi), 1e-4 [rev])",
-        "sample(motor.phi)",
+        "floor_to(sample(encoder.phi), 1e-4 [rev])",
+        "sample(encoder.phi)",
     );
     let loaded = example.parse()?;
     let compiled = loaded.compile(&example, Backend::Native)?;

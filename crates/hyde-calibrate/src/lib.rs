@@ -33,7 +33,7 @@ pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit};
 pub use gain::Observer;
 pub use least_squares::{Fold, Problem, Solution};
 pub use observer::Innovations;
-pub use plan::{CalibrationPlan, Candidates, DiagnosisPlan, Source, Vary};
+pub use plan::{CalibrationPlan, Source, Vary};
 pub use plant::Unsupported;
 pub use recording::{RecordError, Recording};
 pub use varied::Varied;

@@ -191,6 +191,14 @@ impl File {
         })
     }
 
+    /// The package that the user's file is, if it says so.
+    #[must_use]
+    pub fn package(&self) -> Option<String> {
+        let (_, tree) = self.files.first()?;
+        let (path, _) = tree.package.as_ref()?;
+        Some(path.dotted())
+    }
+
     /// The names of the models of the user's file.
     pub fn models(&self) -> impl Iterator<Item = &str> {
         self.items().filter_map(|item| match item {

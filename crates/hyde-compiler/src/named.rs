@@ -111,8 +111,12 @@ fn types_named<'a>(elements: &'a [Element], add: &mut impl FnMut(&'a Reference))
             | Element::InitialEquation(_)
             | Element::Wrap(..)
             | Element::Add(_)
-            | Element::Signature(_)
-            | Element::Confounds(_) => {}
+            | Element::Signature(_) => {}
+            // Effects of other packages are named whole; alone, a name is that of one beside it.
+            Element::Confounds(names) => {
+                let dotted = names.iter().filter(|name| name.as_word().is_none());
+                dotted.for_each(&mut *add);
+            }
         }
     }
 }

@@ -98,6 +98,7 @@ codes! {
     NoFiles "E0902" "no file is what a study asks for";
     CannotVary "E0903" "what is to be varied cannot be";
     CannotObserve "E0904" "a model or a record cannot be observed";
+    BadDiagnosis "E0905" "a diagnosis does not say what it needs";
 }
 
 impl std::fmt::Display for Code {

@@ -18,8 +18,10 @@ pub struct Candidate {
     pub effect: String,
     /// The package it is in.
     pub package: String,
-    /// The type that it is for.
+    /// The type that it is for, as it is written there.
     pub host: String,
+    /// The package of that type.
+    pub host_package: String,
     /// What it is.
     pub doc: String,
     /// Path of the instance that it is put on.
@@ -127,14 +129,20 @@ impl Model<'_, '_> {
                 | Element::Account(..) => {}
             }
         }
-        let package = self.input.files.get(file).and_then(|(_, tree)| {
+        let package_of = |file: usize| {
+            let (_, tree) = self.input.files.get(file)?;
             let (path, _) = tree.package.as_ref()?;
             Some(path.dotted())
-        });
+        };
+        let host = host_of(class);
+        let host_file = host.and_then(|host| self.names.class(file, host));
+        let host_package = host_file.and_then(|(file, _)| package_of(file));
+        let package = package_of(file);
         Candidate {
             effect: full_name(offer.package.as_deref(), &class.name.text),
             package: package.unwrap_or_default(),
-            host: host_of(class).map_or_else(String::new, Reference::dotted),
+            host: host.map_or_else(String::new, Reference::dotted),
+            host_package: host_package.unwrap_or_default(),
             doc: class.doc.clone().unwrap_or_default(),
             site: self.path(offer.host).as_str().to_owned(),
             aliases,

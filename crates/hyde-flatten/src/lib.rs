@@ -18,6 +18,7 @@ mod call;
 mod candidates;
 mod connect;
 mod dimension;
+mod effect_words;
 mod equation;
 mod experiment;
 mod field;
@@ -121,6 +122,7 @@ fn flat_model(
     model.accounts();
     model.finish();
     model.ports();
+    model.check_effect_words();
     let candidates = model.candidates();
     let flat = model.flat;
     (diagnostics.error_count() == before).then_some((flat, candidates))

@@ -7,8 +7,8 @@
 use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic};
-use hyde_ir::VarId;
-use hyde_syntax::ast::{Element, Expr, Prefix, Reference};
+use hyde_ir::{Index, VarId};
+use hyde_syntax::ast::{Element, Expr, ExprKind, Prefix, Reference};
 use std::collections::HashMap;
 
 /// `wrap x by e;`
@@ -29,7 +29,13 @@ impl Model<'_, '_> {
             let Wrap {
                 value: by, effect, ..
             } = self.wraps[number];
-            let new = self.value(by, &Scope::new(effect, setting));
+            let mut scope = Scope::new(effect, setting);
+            if has_a_past(by)
+                && let Some(site) = self.wraps[number].site.as_word()
+            {
+                scope.locals.push((site, self.before(&value, &scope)));
+            }
+            let new = self.value(by, &scope);
             let declared = self.typed(value.id, self.dim(var), value.span);
             self.agree(&declared, &new, "the site and what wraps it are", effect);
             let leaf = self.flat.exprs.var(var);
@@ -37,6 +43,14 @@ impl Model<'_, '_> {
             value.id = self.flat.exprs.rewrite(new.id, &mut memo, |_, _, _| None);
         }
         value
+    }
+
+    /// A variable for the value that a site has without the effect: a delay or a derivative is of a variable.
+    fn before(&mut self, value: &Typed, scope: &Scope<'_>) -> VarId {
+        match self.flat.exprs[value.id].access() {
+            Some((var, Index::SCALAR, false)) => var,
+            Some(_) | None => self.named(value, scope),
+        }
     }
 
     fn wraps_of(&self, var: VarId) -> Vec<usize> {
@@ -151,4 +165,10 @@ impl Model<'_, '_> {
             (None, None) => {}
         }
     }
+}
+
+/// Whether an expression reads more than the value that things have now.
+fn has_a_past(expr: &Expr) -> bool {
+    let own = matches!(&expr.kind, ExprKind::Call(function, _) if matches!(function.as_word(), Some("delay" | "der")));
+    own || expr.children().into_iter().any(has_a_past)
 }

@@ -79,6 +79,10 @@ pub const PACKAGES: &[Package] = &[
         name: "Effects",
         text: include_str!("../models/Effects.hyde"),
     },
+    Package {
+        name: "Effects.Signals",
+        text: include_str!("../models/Effects/Signals.hyde"),
+    },
 ];
 
 /// The package of that name.

@@ -40,8 +40,8 @@ fn agree(chain: &Solved, expected: &[Switch], tolerance: f64) -> Result<(), Stri
     for (event, &(t, mass, sign)) in events.iter().zip(expected) {
         let floor = format!("floor[{}].", mass + 1);
         let cause = match sign {
-            1.0 => format!("{floor}a.f > {floor}Fs"),
-            -1.0 => format!("{floor}a.f < -{floor}Fs"),
+            1.0 => format!("{floor}a.f - {floor}drag > {floor}Fs"),
+            -1.0 => format!("{floor}a.f - {floor}drag < -{floor}Fs"),
             _ => format!("{floor}slip.s*body[{}].v < 0", mass + 1),
         };
         same("condition", &event.cause, &cause)?;

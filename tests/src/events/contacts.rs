@@ -106,7 +106,13 @@ pub(super) fn table() -> Result<(), String> {
 /// A guide holds what is exactly its limit, and lets go of more.
 pub(super) fn limit() -> Result<(), String> {
     let run = solve("events/contacts", "limit")?;
-    run.happened(&[(1.0, "time < 1"), (1.0, "guide.a.f > guide.Fs")], 0.0)?;
+    run.happened(
+        &[
+            (1.0, "time < 1"),
+            (1.0, "guide.a.f - guide.drag > guide.Fs"),
+        ],
+        0.0,
+    )?;
     let (before, _) = run.around("saddle.s", 1.0)?;
     same("place until then", &before, &0.0)?;
     // 0.26 N on 310 kg for 2 s.

@@ -1,6 +1,7 @@
 //! Candidates: every effect at every site of a model where it fits, and models with some of them put on.
 
-use hyde_compiler::{Additions, Backend, Candidate};
+use hyde_compiler::{Additions, Backend, Calibrated, Candidate, DiagnosisPlan, Found, write_back};
+use hyde_diag::Diagnostics;
 use hyde_experiment::Options;
 use hyde_tests::{Example, Loaded};
 
@@ -143,4 +144,90 @@ fn one_program_holds_all_candidates_that_exchange_nothing() {
             "{size}"
         );
     }
+}
+
+#[test]
+fn what_was_found_is_written_down_and_compiles_to_the_same_numbers() {
+    let (example, loaded, candidates) = bench();
+    let of = |effect| of(&candidates, effect)[0];
+    let value = |name: &str, value| (name.to_owned(), value);
+    let found = [
+        Found {
+            candidate: of("Effects.Stribeck"),
+            values: vec![value("dF", 181.25), value("vs", 0.00798)],
+        },
+        Found {
+            candidate: of("Effects.Cogging"),
+            values: vec![value("As", 0.28), value("Ac", -0.1), value("N", 12.0)],
+        },
+        Found {
+            candidate: of("Effects.Cogging"),
+            values: vec![value("As", 0.01), value("N", 24.0)],
+        },
+    ];
+    let plain = loaded.compile(&example, Backend::Native).unwrap();
+    let calibrated = [("saddle.M", 318.25), ("screw.contact.k", 1.6125e8)];
+    let calibrated = calibrated.map(|(path, value)| Calibrated {
+        path: path.to_owned(),
+        value,
+        unit: plain.program.parameter(path).unwrap().0.unit.clone(),
+    });
+    let about = ["Found by a test, from no record.".to_owned()];
+    let written = write_back(
+        &loaded.file,
+        example.text(),
+        ("Axis", Some("bench")),
+        (&found, &calibrated),
+        &about,
+    );
+    let behind = written
+        .text
+        .strip_prefix(example.text().trim_end())
+        .unwrap();
+    insta::assert_snapshot!("written_back", behind);
+    let experiment = written.experiment.unwrap();
+    assert_eq!(
+        (written.model.as_str(), experiment.as_str()),
+        ("Axis2", "bench2")
+    );
+    let again = example.replaced(&written.text, &experiment);
+    let again = again.compile(Backend::Native).unwrap();
+    let mut p = vec![0.0; again.program.n_parameters];
+    again.program.kernels.parameters(&[], &mut p);
+    let expected = [
+        ("guide.Stribeck.dF", 181.25),
+        ("guide.Stribeck.vs", 0.00798),
+        ("motor.shaft.Cogging.N", 12.0),
+        ("motor.shaft.Cogging2.As", 0.01),
+        ("motor.shaft.Cogging2.N", 24.0),
+        ("saddle.M", 318.25),
+        ("screw.contact.k", 1.6125e8),
+    ];
+    for (name, value) in expected {
+        let (parameter, _) = again.program.parameter(name).unwrap();
+        // Seven digits are written.
+        assert!((p[parameter.place] / value - 1.0).abs() < 1e-6, "{name}");
+    }
+}
+
+#[test]
+fn a_diagnosis_says_which_effects_may_be_tried() {
+    let (_, loaded, candidates) = bench();
+    let mut diagnostics = Diagnostics::new();
+    let plan = DiagnosisPlan::read(&loaded.file, "bench", &mut diagnostics).unwrap();
+    assert!(!diagnostics.has_errors());
+    assert_eq!(
+        (plan.calibration.as_str(), plan.max_effects, plan.seed),
+        ("bench", 3, 1)
+    );
+    // `Effects.*` has the packages below it as well.
+    for effect in ["Effects.Stribeck", "Effects.Signals.DeadTime"] {
+        assert!(plan.selects(of(&candidates, effect)[0]), "{effect}");
+    }
+    let single = DiagnosisPlan {
+        candidates: vec!["Effects.Stribeck".to_owned()],
+        ..plan
+    };
+    let selected = candidates.iter().filter(|c| single.selects(c));
+    assert!(selected.map(|c| c.name()).all(|name| name == "Stribeck"));
 }

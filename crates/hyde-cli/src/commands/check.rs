@@ -9,8 +9,8 @@ use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Aim, Project, Records, complain, print_output, report_errors};
 use crate::render;
-use hyde_calibrate::{CalibrationPlan, DiagnosisPlan};
-use hyde_compiler::{States, ideals};
+use hyde_calibrate::CalibrationPlan;
+use hyde_compiler::{DiagnosisPlan, States, ideals};
 use hyde_diag::{Diagnostics, Origin, Sources};
 use hyde_syntax::ast::StudyKind;
 use serde_json::{Value, json};
@@ -81,7 +81,13 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
     let mut models: Vec<String> = Vec::new();
     let mut exit = Exit::Done;
     let mut last: Option<Project> = None;
+    let diagnoses = has_diagnoses(args)?;
     for args in each(args, folder)? {
+        // A diagnosis names effects of packages that its model need not use.
+        let args = ModelArgs {
+            whole_library: diagnoses,
+            ..args
+        };
         let mut project = project::load_silently(&args, Records::IfThere)?;
         let aim = match project.experiment {
             None => Aim::Linearize,
@@ -187,14 +193,27 @@ fn sweeps(args: &ModelArgs, project: &Project) -> Result<Vec<String>, Exit> {
     Ok(names)
 }
 
-/// Whether the studies of a file are in order.
+/// Whether a file has diagnoses.
+fn has_diagnoses(args: &ModelArgs) -> Result<bool, Exit> {
+    let text = files::read_text(&args.file)
+        .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let (file, _) = project::loaded(args, &mut sources, &text, &mut diagnostics);
+    Ok(file
+        .studies()
+        .any(|study| study.kind == StudyKind::Diagnose))
+}
+
+/// Whether the calibrations and diagnoses of a file are in order; what is wrong in them is reported.
 fn studies(project: &mut Project) -> Exit {
     let mut in_order = true;
     for study in project.file.studies() {
         let diagnostics = &mut project.diagnostics;
         in_order &= match study.kind {
             StudyKind::Calibrate => CalibrationPlan::read(study, diagnostics).is_some(),
-            StudyKind::Diagnose => DiagnosisPlan::read(study, diagnostics).is_some(),
+            StudyKind::Diagnose => {
+                DiagnosisPlan::read(&project.file, &study.name.text, diagnostics).is_some()
+            }
             StudyKind::Sweep => true,
         };
     }

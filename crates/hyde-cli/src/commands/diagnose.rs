@@ -1,15 +1,13 @@
 //! `hyde diagnose`: finds the effect that a model lacks.
 
-use crate::args::{DiagnoseArgs, StudyArgs};
+use crate::args::{DiagnoseArgs, ModelArgs, StudyArgs};
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, complain, print_output};
 use crate::records;
 use crate::study::{self, Calibration};
-use hyde_calibrate::{
-    Built, Candidates, Diagnosis, DiagnosisPlan, Hypothesis, Knob, Rejection, Verdict,
-};
-use hyde_compiler::{Additions, Backend, Candidate, Request};
+use hyde_calibrate::{Built, Diagnosis, Hypothesis, Knob, Rejection, Verdict};
+use hyde_compiler::{Additions, Backend, Candidate, DiagnosisPlan, Request};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::{Study, StudyKind};
 use hyde_units::significant;
@@ -41,7 +39,7 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
     };
     let candidates: Vec<Candidate> = candidates
         .into_iter()
-        .filter(|c| lets_in(&plan, c))
+        .filter(|candidate| plan.selects(candidate))
         .collect();
     let hypotheses: Vec<Hypothesis> = candidates.iter().map(hypothesis).collect();
     let found = {
@@ -106,7 +104,11 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
 
 /// The block that the arguments name.
 fn plan(args: &StudyArgs) -> Result<DiagnosisPlan, Exit> {
-    let model_args = args.model_args();
+    // Effects of packages that the model itself need not use may be named.
+    let model_args = ModelArgs {
+        whole_library: true,
+        ..args.model_args()
+    };
     let text = files::read_text(&args.file)
         .map_err(|reason| complain(&model_args, Exit::CommandLine, &reason))?;
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
@@ -120,16 +122,9 @@ fn plan(args: &StudyArgs) -> Result<DiagnosisPlan, Exit> {
         .collect();
     let study = study::chosen(&studies, args.study.as_deref(), "diagnosis")
         .map_err(|reason| complain(&model_args, Exit::CommandLine, &reason))?;
-    DiagnosisPlan::read(study, &mut diagnostics)
+    let name = study.name.text.clone();
+    DiagnosisPlan::read(&file, &name, &mut diagnostics)
         .ok_or_else(|| project::report_errors(&model_args, &sources, &diagnostics))
-}
-
-fn lets_in(plan: &DiagnosisPlan, candidate: &Candidate) -> bool {
-    plan.candidates.is_empty()
-        || plan.candidates.iter().any(|known| match known {
-            Candidates::Package(package) => candidate.package == *package,
-            Candidates::Effect(name) => candidate.effect == *name || candidate.name() == name,
-        })
 }
 
 fn hypothesis(candidate: &Candidate) -> Hypothesis {

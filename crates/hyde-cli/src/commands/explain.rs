@@ -129,4 +129,5 @@ pages! {
     NoFiles "E0902";
     CannotVary "E0903";
     CannotObserve "E0904";
+    BadDiagnosis "E0905";
 }

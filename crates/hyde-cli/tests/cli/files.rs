@@ -70,6 +70,6 @@ fn events_name_cause_modes_and_line() {
     let mut events = events.lines();
     assert_eq!(events.next(), Some("t [s],what,before,after,cause,source"));
     let first = events.next().unwrap();
-    let expected = "floor,stuck,slip,\"floor.a.f > floor.Fs\",Translational.hyde:";
+    let expected = "floor,stuck,slip,\"floor.a.f - floor.drag > floor.Fs\",Translational.hyde:";
     assert!(first.contains(expected), "{first}");
 }

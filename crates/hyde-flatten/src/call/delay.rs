@@ -123,7 +123,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// A variable for an expression that is delayed: its relations are events, and its derivatives are known.
-    fn named(&mut self, u: &Typed, scope: &Scope<'a>) -> VarId {
+    pub(crate) fn named(&mut self, u: &Typed, scope: &Scope<'_>) -> VarId {
         let text = self.input.sources.text(u.span).to_owned();
         let name = self.instances[scope.instance]
             .path

@@ -1,0 +1,173 @@
+//! What the user's effects say of themselves beside equations: the marks they leave, and what they are taken for.
+
+use crate::model::{Model, listed};
+use crate::names::{FileIndex, nearest};
+use hyde_diag::{Code, Diagnostic, Span};
+use hyde_syntax::ast::{
+    Argument, Class, ClassBody, ClassKind, Element, ExprKind, Name, Prefix, Reference,
+};
+
+/// The marks that an effect can leave in measurements, with what stands in parentheses behind each.
+pub(crate) const MARKS: [(&str, &str); 11] = [
+    ("velocity", ""),
+    ("direction", ""),
+    ("reversal", ""),
+    ("offset", ""),
+    ("position", "a period or a place"),
+    ("angle", "a number of times a turn"),
+    ("resonance", "a frequency"),
+    ("time", "a time"),
+    ("current", ""),
+    ("torque", ""),
+    ("delay", ""),
+];
+
+impl<'a> Model<'a, '_> {
+    /// Checks the words of the effects in the user's file, whether they are used or not.
+    pub(crate) fn check_effect_words(&mut self) {
+        for (file, _, class) in self.names.effects() {
+            let ClassBody::Long { elements, .. } = &class.body else {
+                continue;
+            };
+            if file != 0 {
+                continue;
+            }
+            for element in elements {
+                match element {
+                    Element::Signature(marks) => {
+                        for (mark, arguments) in marks {
+                            self.check_mark(file, class, mark, arguments);
+                        }
+                    }
+                    Element::Confounds(names) => {
+                        for name in names {
+                            self.check_confounded(file, class, name);
+                        }
+                    }
+                    Element::Extends(..)
+                    | Element::Declaration(_)
+                    | Element::Domain(_)
+                    | Element::Discretize(_)
+                    | Element::Modes(_)
+                    | Element::Clocked(_)
+                    | Element::Equation(_)
+                    | Element::InitialEquation(_)
+                    | Element::Wrap(..)
+                    | Element::Add(_)
+                    | Element::Replace(..)
+                    | Element::Measure(_)
+                    | Element::Account(..) => {}
+                }
+            }
+        }
+    }
+
+    /// `angle(N)`: a mark that there is, of a shape of the effect.
+    fn check_mark(
+        &mut self,
+        file: FileIndex,
+        class: &'a Class,
+        mark: &Name,
+        arguments: &'a [Argument],
+    ) {
+        let all: Vec<&str> = MARKS.iter().map(|(name, _)| *name).collect();
+        let Some((_, of)) = MARKS.iter().find(|(name, _)| *name == mark.text) else {
+            let diagnostic = Diagnostic::error(
+                Code::UnknownName,
+                format!("`{}` is no mark that an effect leaves", mark.text),
+            )
+            .label(mark.span, "not known");
+            let known = format!("the marks are `{}`", all.join("`, `"));
+            self.report(match nearest(&mark.text, all.iter().copied()) {
+                Some(near) => diagnostic
+                    .help(format!("did you mean `{near}`?"))
+                    .note(known),
+                None => diagnostic.help(known),
+            });
+            return;
+        };
+        let wrong = |span: Span, message: String, help: String| {
+            Diagnostic::error(Code::BadArguments, message)
+                .label(span, "what this mark is measured by")
+                .help(help)
+        };
+        let found = match arguments {
+            [] => return,
+            [only] if !of.is_empty() => only,
+            _ if of.is_empty() => {
+                self.report(wrong(
+                    mark.span,
+                    format!("`{}` has no number of its own", mark.text),
+                    format!("write `{}` alone", mark.text),
+                ));
+                return;
+            }
+            _ => {
+                self.report(wrong(
+                    mark.span,
+                    format!("`{}` is measured by one shape", mark.text),
+                    format!("write {of}: `{}(…)`", mark.text),
+                ));
+                return;
+            }
+        };
+        let shapes = self.shapes(file, class, 0);
+        if let ExprKind::Reference(name) = &found.value.kind
+            && name.as_word().is_some_and(|word| shapes.contains(&word))
+        {
+            return;
+        }
+        let help = match shapes.as_slice() {
+            [] => format!("declare {of} as a `shape`"),
+            shapes => format!("its shapes are {}", listed(shapes)),
+        };
+        let message = format!(
+            "`{}` has no such shape for its mark `{}`",
+            class.name.text, mark.text
+        );
+        self.report(wrong(found.value.span, message, help));
+    }
+
+    /// The names of the shapes of an effect and of what it extends.
+    fn shapes(&self, file: FileIndex, class: &'a Class, depth: usize) -> Vec<&'a str> {
+        let ClassBody::Long { elements, .. } = &class.body else {
+            return Vec::new();
+        };
+        let mut found = Vec::new();
+        for element in elements {
+            if let Element::Declaration(declaration) = element
+                && declaration.prefixes.contains(&Prefix::Shape)
+            {
+                let names = declaration.declarators.iter();
+                found.extend(names.map(|declarator| declarator.name.text.as_str()));
+            }
+            if let Element::Extends(base, _) = element
+                && let Some((file, base)) = self.names.class(file, base)
+                && depth < 40
+            {
+                found.extend(self.shapes(file, base, depth + 1));
+            }
+        }
+        found
+    }
+
+    /// `confounds Stribeck`: another effect that there is.
+    fn check_confounded(&mut self, file: FileIndex, class: &Class, name: &Reference) {
+        let found = self.names.class(file, name);
+        let diagnostic = match found {
+            Some((_, other)) if std::ptr::eq(other, class) => {
+                Diagnostic::error(Code::WrongType, "an effect is not taken for itself")
+                    .label(name.span, "this is the effect it stands in")
+                    .help("name others that leave the same mark, or leave the line out")
+            }
+            Some((_, other)) if other.kind == ClassKind::Effect => return,
+            Some((_, other)) => Diagnostic::error(
+                Code::WrongType,
+                format!("`{}` is no effect", other.name.text),
+            )
+            .label(name.span, "only effects are taken for each other"),
+            None => self.names.unknown(file, name),
+        };
+        self.report(diagnostic);
+    }
+}
