@@ -92,6 +92,7 @@ codes! {
     NoStop "E0807" "it is not said when a run ends";
     BadSolve "E0808" "the solver has no such method, option or value";
     BadSet "E0809" "a value cannot be set";
+    NoResponse "E0810" "there is no frequency response here";
     BadSweep "E0813" "a sweep cannot be planned";
 }
 

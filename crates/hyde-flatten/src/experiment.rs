@@ -5,6 +5,7 @@ mod figure;
 mod measure;
 mod measured;
 mod record;
+mod stepped;
 mod stimulus;
 
 use crate::dimension::Dim;

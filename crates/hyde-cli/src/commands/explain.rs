@@ -123,5 +123,6 @@ pages! {
     NoStop "E0807";
     BadSolve "E0808";
     BadSet "E0809";
+    NoResponse "E0810";
     BadSweep "E0813";
 }
