@@ -145,7 +145,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     if let Some((project, compiled, run, took)) = &run {
         asked.text = summary::text(project, compiled, run, *took);
         asked.holds = run.measures.iter().all(|measure| measure.holds);
-    } else {
+    } else if !args.with.is_empty() {
         let _ = writeln!(asked.text, "{name} of {}", program.name);
     }
     for (number, bode) in program.experiment.bodes.iter().enumerate() {
