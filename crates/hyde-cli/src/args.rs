@@ -31,7 +31,7 @@ pub(crate) enum Command {
     Emit(EmitArgs),
     /// Plot columns of results or of a record
     Plot(PlotArgs),
-    /// Frequency response: linearised, and as swept by the experiment on the full model
+    /// Frequency response: linearised, and as measured on the full model by the experiment's sweep or by stepped sines
     Bode(BodeArgs),
     /// Natural frequencies and dampings of the linearised model
     Modes(ModesArgs),
@@ -346,7 +346,13 @@ pub(crate) struct BodeArgs {
     /// The linearised response only: do not run the experiment
     #[arg(long)]
     pub(crate) linear: bool,
-    /// Number of frequencies
+    /// Draw the responses of another experiment of the file in the same figures, and tell where they part (repeatable)
+    #[arg(long, value_name = "EXPERIMENT")]
+    pub(crate) with: Vec<String>,
+    /// Title of the figures instead of what the experiment says of itself
+    #[arg(long)]
+    pub(crate) title: Option<String>,
+    /// Number of frequencies of the linearised response
     #[arg(long, default_value_t = 400)]
     pub(crate) points: usize,
 }
@@ -361,6 +367,18 @@ pub(crate) struct ModesArgs {
     /// Only below this frequency in Hz
     #[arg(long, value_name = "HZ")]
     pub(crate) below: Option<f64>,
+    /// Put those of another experiment of the file beside them (repeatable)
+    #[arg(long, value_name = "EXPERIMENT")]
+    pub(crate) with: Vec<String>,
+    /// Over a parameter: `--over screw.xn='0.1 .. 0.9 [m]'`
+    #[arg(long, value_name = "PATH=FROM..TO [UNIT]")]
+    pub(crate) over: Option<String>,
+    /// Number of its values
+    #[arg(long, default_value_t = 17)]
+    pub(crate) points: usize,
+    /// With `--over`: leave modes.svg, modes.png and modes.csv in this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

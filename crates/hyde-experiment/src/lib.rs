@@ -1,8 +1,8 @@
 //! What is asked of a program beside one solution: a run with its record ([`read_record`]), measures and expectations ([`run`]); the
 //! system linearised about an operating point ([`linearize`]), its frequency response with the sampled loop closed
-//! ([`frequency_response`]) and its modes ([`modes`]); the response swept on the full hybrid model ([`swept_response`]); the
-//! forces between components ([`flows`]) and the error budget ([`BudgetOf`]); the limit test of an effect ([`limit`]); many
-//! runs planned and kept as one ([`batch`]).
+//! ([`frequency_response`]) and its modes ([`modes`]); the response on the full hybrid model, swept ([`swept_response`]) and
+//! stepped ([`stepped_response`]); the forces between components ([`flows`]) and the error budget ([`BudgetOf`]); the limit
+//! test of an effect ([`limit`]); many runs planned and kept as one ([`batch`]).
 
 pub mod batch;
 
@@ -17,8 +17,10 @@ mod linearize;
 mod mode_shape;
 mod modes;
 mod record;
+mod rows;
 mod run;
 mod sampled;
+mod stepped;
 mod swept;
 
 pub use bode::{BodeError, frequency_response};
@@ -33,4 +35,5 @@ pub use modes::{NaturalMode, modes};
 pub use record::read_record;
 pub use run::{MeasureValue, Options, Run, RunError, parameters, places, run};
 pub use sampled::{Clocked, Sampled};
+pub use stepped::{Level, SteppedOutput, SteppedPoint, Steps, stepped_response};
 pub use swept::{Swept, swept_response};

@@ -1,6 +1,7 @@
 //! The response measured as on the machine: a sine swept through the full hybrid model, friction, backlash and sampling
 //! included, and the spectra of what came out over what went in.
 
+use crate::rows::EvenRows;
 use hyde_program::Bode;
 use hyde_signal::spectrum::{FrequencyResponse, swept_response as response};
 use hyde_sim::Results;
@@ -21,12 +22,16 @@ pub fn swept_response(bode: &Bode, results: &Results, band_hz: (f64, f64)) -> Ve
     let Some(input) = bode.input_output.and_then(|output| results.column(output)) else {
         return Vec::new();
     };
-    let Some((time, rows)) = evenly(results) else {
+    let spacing = results.time.windows(2).map(|t| t[1] - t[0]);
+    let spacing = spacing.filter(|step| *step > 1e-9).fold(0.0, f64::max);
+    let start = results.time.first().copied().unwrap_or(0.0);
+    let rows = EvenRows::of(results, start, spacing);
+    let time = &rows.time;
+    if time.len() <= 64 {
         return Vec::new();
-    };
+    }
     let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    let pick = |values: &[f64]| rows.iter().map(|&row| values[row]).collect::<Vec<f64>>();
-    let driven = pick(input);
+    let driven = rows.values(input);
     let mut found = Vec::new();
     for (name, output) in &bode.outputs {
         let Some(values) = results.column(*output) else {
@@ -34,7 +39,7 @@ pub fn swept_response(bode: &Bode, results: &Results, band_hz: (f64, f64)) -> Ve
         };
         // Neighbouring lines are averaged over about half a percent of the record's lines.
         let neighbours = (time.len() / 2000).max(2);
-        if let Ok(all) = response(&driven, &pick(values), step_s, neighbours) {
+        if let Ok(all) = response(&driven, &rows.values(values), step_s, neighbours) {
             found.push(Swept {
                 output: name.clone(),
                 response: all.between(band_hz.0, band_hz.1),
@@ -42,29 +47,4 @@ pub fn swept_response(bode: &Bode, results: &Results, band_hz: (f64, f64)) -> Ve
         }
     }
     found
-}
-
-/// The rows that are evenly spaced: the last of each instant, those at events between them left out.
-fn evenly(results: &Results) -> Option<(Vec<f64>, Vec<usize>)> {
-    let step = results
-        .time
-        .windows(2)
-        .map(|t| t[1] - t[0])
-        .filter(|step| *step > 1e-9)
-        .fold(0.0_f64, f64::max);
-    let first = *results.time.first()?;
-    let (mut time, mut rows) = (Vec::new(), Vec::new());
-    for (row, &t) in results.time.iter().enumerate() {
-        let number = (t - first) / step;
-        if (number - number.round()).abs() > 1e-6 {
-            continue;
-        }
-        if time.last().is_some_and(|&last: &f64| t - last < 0.5 * step) {
-            *rows.last_mut()? = row;
-        } else {
-            time.push(t);
-            rows.push(row);
-        }
-    }
-    (time.len() > 64).then_some((time, rows))
 }

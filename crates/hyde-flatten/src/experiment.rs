@@ -7,6 +7,7 @@ mod measured;
 mod observed;
 mod record;
 mod replay;
+mod stepped;
 mod stimulus;
 
 pub(crate) use replay::Replay;

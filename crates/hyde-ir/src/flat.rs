@@ -302,6 +302,8 @@ pub struct Bode {
     pub outputs: Vec<(String, ExprId, Quantity)>,
     /// From and to in Hz, of parameters alone.
     pub band: (ExprId, ExprId),
+    /// Measured by stepped sines as well.
+    pub stepped: Option<Stepped>,
     /// Modes of the linearised system: automaton and mode.
     pub modes: Vec<(AutomatonId, usize)>,
     /// Where it is written.
@@ -359,6 +361,21 @@ impl Figure {
         };
         panels.iter_mut().flatten().chain(over).chain(circle)
     }
+}
+
+/// `by stepped(…)`: one run a frequency, driven by a sine. All of parameters alone.
+#[derive(Clone, Debug)]
+pub struct Stepped {
+    /// Amplitude of the input, at most.
+    pub amplitude: ExprId,
+    /// Number of frequencies.
+    pub points: ExprId,
+    /// Time in s before anything counts.
+    pub settle: ExprId,
+    /// Whole periods that count.
+    pub periods: ExprId,
+    /// The output, by its number in the response, whose amplitude is not to be above a level.
+    pub keep: Option<(usize, ExprId)>,
 }
 
 /// What an experiment adds to its model beside equations.

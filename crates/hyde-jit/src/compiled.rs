@@ -311,6 +311,7 @@ impl Compiled {
                 .find(|(known, _)| known == name)
                 .map(|(_, value)| *value)
         };
+        let stepped = |bode: usize| experiment.bodes.get(bode)?.stepped.as_ref();
         Some(match which {
             Constant::Period(clock) => dae.ticks[ClockId::from_index(clock)].period,
             Constant::Delay(clock) => dae.ticks[ClockId::from_index(clock)].delay,
@@ -331,6 +332,11 @@ impl Compiled {
             Constant::Rounding(channel) => experiment.measured.get(channel)?.rounding?,
             Constant::BandFrom(bode) => experiment.bodes.get(bode)?.band.0,
             Constant::BandTo(bode) => experiment.bodes.get(bode)?.band.1,
+            Constant::Amplitude(bode) => stepped(bode)?.amplitude,
+            Constant::Points(bode) => stepped(bode)?.points,
+            Constant::Settle(bode) => stepped(bode)?.settle,
+            Constant::Periods(bode) => stepped(bode)?.periods,
+            Constant::Level(bode) => stepped(bode)?.keep?.1,
             Constant::Radius(figure) => match experiment.figures.get(figure)?.kind {
                 hyde_ir::flat::FigureKind::Circle(_, radius) => radius,
                 hyde_ir::flat::FigureKind::Panels(..) => return None,

@@ -8,8 +8,8 @@ use hyde_ir::{Id as _, Interpolation, VariableKind};
 use hyde_program::{
     Assignment, Automaton, Bode, Clock, Column, Delay, Derivatives, Experiment, Flow, Hold,
     InitialCondition, Measure, Measured, Output, Parameter, Pin, Preparation, Prior, Program,
-    Reaction, ReactionKind, Reduction, ReductionKind, Relation, RelationUse, Selection, Stop,
-    Target, UnknownBlock,
+    Reaction, ReactionKind, Reduction, ReductionKind, Relation, RelationUse, Selection, Stepped,
+    Stop, Target, UnknownBlock,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -413,6 +413,9 @@ fn experiment(dae: &Dae) -> Experiment {
                         .iter()
                         .map(|(automaton, mode)| (automaton.index(), *mode))
                         .collect(),
+                    stepped: bode.stepped.as_ref().map(|stepped| Stepped {
+                        keep: stepped.keep.map(|(output, _)| output),
+                    }),
                     origin: bode.origin.clone(),
                 }
             })

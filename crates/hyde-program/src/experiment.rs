@@ -84,6 +84,8 @@ pub struct Bode {
     pub outputs: Vec<(String, usize)>,
     /// Modes of the linearised system: automaton and mode.
     pub modes: Vec<(usize, usize)>,
+    /// Measured by stepped sines as well.
+    pub stepped: Option<Stepped>,
     /// Where it is written.
     pub origin: Origin,
 }
@@ -125,6 +127,16 @@ pub struct Flow {
     pub name: String,
     /// The output that goes into the connector named last.
     pub output: usize,
+}
+
+/// A response measured by stepped sines: one run a frequency. Its numbers are [`crate::Constant`]s.
+///
+/// A program that is compiled with a value for its parameter `INPUT.frequency` has the input driven by a sine of that
+/// frequency and the amplitude `INPUT.amplitude`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Stepped {
+    /// The output, by its number in the response, whose amplitude is not to be above a level.
+    pub keep: Option<usize>,
 }
 
 /// When a run ends.

@@ -110,6 +110,16 @@ pub enum Constant {
     BandFrom(usize),
     /// Upper end of a frequency response in Hz.
     BandTo(usize),
+    /// Amplitude of a stepped response's input, at most.
+    Amplitude(usize),
+    /// Number of its frequencies.
+    Points(usize),
+    /// Time in s before anything counts, at each frequency.
+    Settle(usize),
+    /// Whole periods that count.
+    Periods(usize),
+    /// What the amplitude of the output that is kept is not to be above.
+    Level(usize),
     /// Radius of the circle that a figure shows, in m.
     Radius(usize),
     /// First time that a figure shows, in s.

@@ -29,7 +29,7 @@ pub use event::{
 };
 pub use experiment::{
     Bode, Curve, Experiment, Figure, FigureKind, Flow, Measure, Measured, Preparation, Reduction,
-    ReductionKind, Stop,
+    ReductionKind, Stepped, Stop,
 };
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Constant, Function, Kernels, Point, TickWrt, Workspace};

@@ -12,20 +12,22 @@ pub struct BodeCurve {
     pub frequency: Vec<f64>,
     /// Real and imaginary part at each frequency, in SI.
     pub response: Vec<(f64, f64)>,
-    /// Solid for a linearised model, points for a measured or swept one.
+    /// Solid for a linearised model, points for a measured or swept one, rings for single frequencies.
     pub style: LineStyle,
     /// Coherence at each frequency, 0 to 1: points fade with it.
     pub coherence: Option<Vec<f64>>,
+    /// Index into the palette; `None`: the curve's place in the plot.
+    pub colour: Option<usize>,
 }
 
-/// Magnitude above phase, over a logarithmic frequency axis in Hz.
+/// Magnitude above phase, over a logarithmic frequency axis in Hz; below them the coherence, if a curve has one.
 ///
 /// `response` is what is shown and its unit: `("x/i", "m/A")`; an empty unit is left out. `resonances` are frequencies
 /// in Hz with the text printed above them.
 ///
 /// Phases are unwrapped along the frequency. The first value of the first joined curve is brought between −270° and
-/// 90°, so that a double integrator begins at −180°; points are brought within 180° of that curve, other joined curves
-/// near it as a whole.
+/// 90°, so that a double integrator begins at −180°; points are brought within 180° of that curve, or of the joined
+/// curve of their colour, other joined curves near it as a whole.
 #[must_use]
 pub fn bode_plot(
     title: impl Into<String>,
@@ -33,15 +35,19 @@ pub fn bode_plot(
     curves: &[BodeCurve],
     resonances: &[(f64, String)],
 ) -> Figure {
-    let guide = curves.iter().find(|curve| curve.style != LineStyle::Points);
-    let guide: Option<Guide> =
-        guide.map(|curve| Guide::new(&curve.frequency, unwrapped(&curve.response, None)));
+    let colour = |index: usize| curves[index].colour.unwrap_or(index);
+    let first = curves.iter().find(|curve| joined(curve));
+    let first: Option<Guide> = first.map(|curve| Guide::of(curve, None));
+    let guides: Vec<(usize, Guide)> = (0..curves.len())
+        .filter(|&index| joined(&curves[index]))
+        .map(|index| (colour(index), Guide::of(&curves[index], first.as_ref())))
+        .collect();
     let line = |index: usize, curve: &BodeCurve, y: Vec<f64>| Line {
         label: curve.label.clone(),
         x: curve.frequency.clone(),
         y,
         style: curve.style,
-        colour: Some(index),
+        colour: Some(colour(index)),
         weight: curve.coherence.clone(),
     };
     let gains = curves
@@ -50,7 +56,10 @@ pub fn bode_plot(
         .map(|(index, curve)| line(index, curve, decibels(&curve.response)))
         .collect();
     let phases = curves.iter().enumerate().map(|(index, curve)| {
-        let phase = phase(curve, guide.as_ref());
+        let mut guides = guides.iter();
+        let own = guides.find(|(of, _)| *of == colour(index));
+        let own = own.map(|(_, guide)| guide).filter(|_| !joined(curve));
+        let phase = phase(curve, own.or(first.as_ref()));
         Line {
             label: String::new(),
             ..line(index, curve, phase)
@@ -80,12 +89,39 @@ pub fn bode_plot(
         resonances.iter().map(mark).collect()
     };
     let mut gain = Panel::new(frequency.clone(), gain_axis, gains);
-    let mut phase = Panel::new(frequency, phase_axis, phases.collect());
+    let mut phase = Panel::new(frequency.clone(), phase_axis, phases.collect());
     (gain.height, phase.height) = (Some(190.0), Some(130.0));
     (gain.references, phase.references) = (marks(true), marks(false));
+    let mut panels = vec![gain, phase];
+    let coherences: Vec<Line> = curves
+        .iter()
+        .enumerate()
+        .filter_map(|(index, curve)| {
+            let coherence = curve.coherence.clone()?;
+            Some(Line {
+                label: String::new(),
+                weight: None,
+                ..line(index, curve, coherence)
+            })
+        })
+        .collect();
+    if !coherences.is_empty() {
+        let axis = Axis::new("coherence", "").with_range(0.0, 1.05);
+        let mut coherence = Panel::new(frequency, axis, coherences);
+        (coherence.height, coherence.references) = (Some(70.0), marks(false));
+        panels.push(coherence);
+    }
     Figure {
         shared_x: true,
-        ..Figure::new(vec![gain, phase]).with_title(title)
+        ..Figure::new(panels).with_title(title)
+    }
+}
+
+/// Whether its values are joined, so that its phase has no gaps.
+fn joined(curve: &BodeCurve) -> bool {
+    match curve.style {
+        LineStyle::Solid | LineStyle::Dashed | LineStyle::Steps => true,
+        LineStyle::Points | LineStyle::Rings => false,
     }
 }
 
@@ -100,7 +136,7 @@ fn decibels(response: &[(f64, f64)]) -> Vec<f64> {
 /// Phase in degrees.
 fn phase(curve: &BodeCurve, guide: Option<&Guide>) -> Vec<f64> {
     let radians = match (curve.style, guide) {
-        (LineStyle::Points, Some(guide)) => {
+        (LineStyle::Points | LineStyle::Rings, Some(guide)) => {
             let near = |(frequency, (re, im)): (&f64, &(f64, f64))| {
                 near(im.atan2(*re), guide.at(*frequency))
             };
@@ -111,16 +147,18 @@ fn phase(curve: &BodeCurve, guide: Option<&Guide>) -> Vec<f64> {
                 .map(near)
                 .collect()
         }
-        (LineStyle::Points, None) => unwrapped(&curve.response, None),
+        (LineStyle::Points | LineStyle::Rings, None) => unwrapped(&curve.response, None),
         (LineStyle::Solid | LineStyle::Dashed | LineStyle::Steps, _) => {
-            let start = curve
-                .frequency
-                .first()
-                .and_then(|frequency| guide.map(|guide| guide.at(*frequency)));
-            unwrapped(&curve.response, start)
+            unwrapped(&curve.response, start(curve, guide))
         }
     };
     radians.into_iter().map(f64::to_degrees).collect()
+}
+
+/// Where a joined curve is to begin: near the guide.
+fn start(curve: &BodeCurve, guide: Option<&Guide>) -> Option<f64> {
+    let first = curve.frequency.first()?;
+    guide.map(|guide| guide.at(*first))
 }
 
 /// Phase in rad without jumps of more than half a turn; the first value within half a turn of `start`, or of −90°.
@@ -153,8 +191,11 @@ struct Guide {
 }
 
 impl Guide {
-    fn new(frequency: &[f64], phase: Vec<f64>) -> Self {
-        let points = frequency
+    /// The phase of a joined curve that begins near another.
+    fn of(curve: &BodeCurve, near: Option<&Self>) -> Self {
+        let phase = unwrapped(&curve.response, start(curve, near));
+        let points = curve
+            .frequency
             .iter()
             .zip(phase)
             .filter(|(frequency, phase)| **frequency > 0.0 && phase.is_finite());
@@ -210,6 +251,7 @@ mod tests {
             response,
             style,
             coherence: None,
+            colour: None,
         }
     }
 

@@ -116,7 +116,7 @@ pub struct Line {
     pub style: LineStyle,
     /// Index into the palette; `None`: the line's place in the panel.
     pub colour: Option<usize>,
-    /// Weight of each point from 0 (faded) to 1, for [`LineStyle::Points`]: the coherence of a measured response.
+    /// Weight of each point from 0 (faded) to 1, for [`LineStyle::Points`] and [`LineStyle::Rings`]: the coherence of a measured response.
     pub weight: Option<Vec<f64>>,
 }
 
@@ -163,6 +163,8 @@ pub enum LineStyle {
     Dashed,
     /// One dot for each value.
     Points,
+    /// One ring for each value, where they are few and single.
+    Rings,
     /// Each value holds until the next abscissa: clocked signals.
     Steps,
 }

@@ -9,6 +9,8 @@
 //! * [`swept_response`]: one sweep from rest to rest. The whole record is one segment, so that what the resonance
 //!   rings after the sweep has passed it counts; neighbouring lines are averaged instead.
 //!
+//! What is not linear in a steady sine is told by [`harmonic_distortion`].
+//!
 //! All three are the estimate H1, which is unbiased if the noise is on the output alone. In a closed loop the noise is
 //! on the input too: take the responses of both to the injected signal, and divide them with
 //! [`FrequencyResponse::over`] (the joint input-output estimate; Pintelon and Schoukens, System
@@ -19,7 +21,7 @@ mod sweep;
 mod welch;
 
 pub use realfft::num_complex::Complex;
-pub use sine_fit::response_at;
+pub use sine_fit::{harmonic_distortion, response_at};
 pub use sweep::swept_response;
 pub use welch::{power_spectral_density, welch_response};
 

@@ -1,47 +1,121 @@
-//! `hyde bode`: the frequency responses an experiment asks for, linearised and as swept on the full hybrid model.
+//! `hyde bode`: the frequency responses an experiment asks for, of the linearised model and as measured on the full hybrid
+//! one by the sweep of its stimulus or by stepped sines; beside them those of other experiments.
 
-use crate::args::{BodeArgs, RunArgs};
+mod draw;
+mod response;
+mod seen;
+mod stepped;
+
+use self::response::{Response, band, frequencies, linearised};
+use crate::args::{BodeArgs, ModelArgs, RunArgs};
 use crate::commands::run;
 use crate::exit::Exit;
-use crate::figures::shown;
-use crate::files;
 use crate::project::{self, Aim, Records, complain, print_output};
 use crate::records;
 use crate::summary;
-use hyde_experiment::{
-    BodeError, LinearizeError, Swept, frequency_response, linearize, parameters, swept_response,
-};
-use hyde_program::{Bode, Constant, Program};
-use hyde_report::{BodeCurve, Figure, LineStyle, bode_plot, to_png, to_svg};
+use hyde_diag::{Code, Diagnostic};
+use hyde_experiment::{parameters, swept_response};
 use hyde_units::significant;
-use serde_json::json;
+use serde_json::{Value, json};
 use std::fmt::Write as _;
-use std::path::Path;
 
-/// A linearised response: frequencies in Hz, and real and imaginary part of each output.
-struct LinearResponse {
-    frequency: Vec<f64>,
-    outputs: Vec<(String, Vec<(f64, f64)>)>,
-    resonances: Vec<(f64, f64)>,
+/// What one experiment asks for.
+struct Asked {
+    title: String,
+    /// One list for each `bode`, one response in it for each output.
+    bodes: Vec<Vec<Response>>,
+    text: String,
+    /// Every expectation held.
+    holds: bool,
 }
 
-/// Prints and plots the frequency responses of an experiment.
+/// Prints and plots the frequency responses of an experiment, and of those beside it.
 pub(crate) fn bode(args: &BodeArgs) -> Exit {
     match responses(args) {
-        Ok(text) => {
+        Ok((text, holds)) => {
             print_output(&text);
-            Exit::Done
+            if holds { Exit::Done } else { Exit::Expectation }
         }
         Err(exit) => exit,
     }
 }
 
-fn responses(args: &BodeArgs) -> Result<String, Exit> {
-    let mut project = project::load(&args.model, Records::Needed)?;
-    let compiled = project.compile(&args.model, Aim::Linearize)?;
-    project.print_warnings(&args.model);
+fn responses(args: &BodeArgs) -> Result<(String, bool), Exit> {
+    let mut all = vec![asked(args, &args.model)?];
+    for name in &args.with {
+        let model = ModelArgs {
+            experiment: Some(name.clone()),
+            ..args.model.clone()
+        };
+        all.push(asked(args, &model)?);
+    }
+    let holds = all.iter().all(|asked| asked.holds);
+    let every: Vec<&Response> = all
+        .iter()
+        .flat_map(|asked| asked.bodes.iter().flatten())
+        .collect();
+    if args.model.json {
+        let found: Vec<Value> = all
+            .iter()
+            .flat_map(|asked| &asked.bodes)
+            .map(|bode| json(bode))
+            .collect();
+        return Ok((
+            format!("{:#}", json!({ "ok": true, "responses": found })),
+            holds,
+        ));
+    }
+    let mut text: String = all.iter().map(|asked| asked.text.as_str()).collect();
+    let mut drawn: Vec<(&str, &str)> = Vec::new();
+    for first in &every {
+        let key = (first.input.as_str(), first.output.as_str());
+        if drawn.contains(&key) {
+            continue;
+        }
+        drawn.push(key);
+        let same: Vec<&Response> = every
+            .iter()
+            .copied()
+            .filter(|other| (other.input.as_str(), other.output.as_str()) == key)
+            .collect();
+        let mut told: Vec<&str> = vec![&first.experiment];
+        for other in &same {
+            if !told.contains(&other.experiment.as_str()) {
+                told.push(&other.experiment);
+                let _ = writeln!(
+                    text,
+                    "{}: {} is {}",
+                    key.1,
+                    other.experiment,
+                    seen::apart(first, other)
+                );
+            }
+        }
+        if let Some(folder) = &args.out {
+            let alone = every
+                .iter()
+                .all(|other| (other.input.as_str(), other.output.as_str()) == key);
+            let stem = if alone {
+                "bode".to_owned()
+            } else {
+                format!("bode-{}", file_name(&first.output))
+            };
+            let title = args.title.as_deref().unwrap_or(&all[0].title);
+            draw::leave(folder, &stem, title, &same)
+                .map_err(|reason| complain(&args.model, Exit::CommandLine, &reason))?;
+            let _ = writeln!(text, "{}", folder.join(format!("{stem}.svg")).display());
+        }
+    }
+    Ok((text, holds))
+}
+
+/// The responses of one experiment.
+fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
+    let mut project = project::load(model, Records::Needed)?;
+    let compiled = project.compile(model, Aim::Linearize)?;
+    project.print_warnings(model);
     let program = &compiled.program;
-    let wrong = |reason: String| complain(&args.model, Exit::CommandLine, &reason);
+    let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
     if program.experiment.bodes.is_empty() {
         return Err(wrong(
             "the experiment asks for no response: write `bode from u to y over 1 .. 50 [Hz];`"
@@ -51,305 +125,127 @@ fn responses(args: &BodeArgs) -> Result<String, Exit> {
     let tables = records::tables(&project.records);
     let p = parameters(program, &tables, &project.set())
         .map_err(|_| wrong("a parameter cannot be set".to_owned()))?;
-    let run = if args.linear {
+    let by_stimulus = program
+        .experiment
+        .bodes
+        .iter()
+        .any(|bode| bode.stepped.is_none());
+    let run = if args.linear || !by_stimulus {
         None
     } else {
-        Some(run::solved(&RunArgs::of_model(&args.model))?)
+        Some(run::solved(&RunArgs::of_model(model))?)
     };
-    let mut text = run
-        .as_ref()
-        .map_or_else(String::new, |(project, compiled, run, took)| {
-            summary::text(project, compiled, run, *took)
-        });
-    let mut found = Vec::new();
+    let name = project.experiment.clone().unwrap_or_default();
+    let mut asked = Asked {
+        title: title(&project, &name, &program.name),
+        bodes: Vec::new(),
+        text: String::new(),
+        holds: true,
+    };
+    if let Some((project, compiled, run, took)) = &run {
+        asked.text = summary::text(project, compiled, run, *took);
+        asked.holds = run.measures.iter().all(|measure| measure.holds);
+    } else if !args.with.is_empty() {
+        let _ = writeln!(asked.text, "{name} of {}", program.name);
+    }
     for (number, bode) in program.experiment.bodes.iter().enumerate() {
         let band = band(program, number, &p)
             .ok_or_else(|| wrong("the band of frequencies is empty".to_owned()))?;
-        let linear = linear(program, bode, &tables, &p, band, args.points).map_err(wrong)?;
-        let swept = match &run {
-            Some((_, compiled, run, _)) => {
-                let own = &compiled.program.experiment.bodes[number];
-                swept_response(own, &run.results, band)
+        let frequency = frequencies(band, args.points);
+        let found = linearised(&name, program, bode, &tables, &p, &frequency);
+        let mut responses = found.map_err(|reason| {
+            let diagnostic = Diagnostic::error(Code::NoResponse, reason);
+            let diagnostic = diagnostic.label(bode.origin.span, "there is no response from here");
+            project.diagnostics.push(diagnostic);
+            project.finish_with_errors(model)
+        })?;
+        if let (None, Some((_, compiled, run, _))) = (&bode.stepped, &run) {
+            let own = &compiled.program.experiment.bodes[number];
+            for swept in swept_response(own, &run.results, band) {
+                let mut of = responses.iter_mut();
+                if let Some(response) = of.find(|response| response.output == swept.output) {
+                    response.swept = Some(swept.response);
+                }
             }
-            None => Vec::new(),
-        };
-        let _ = writeln!(
-            text,
-            "from {} over {} .. {} Hz",
-            bode.input,
-            significant(band.0, 3),
-            significant(band.1, 3)
-        );
-        for (frequency, damping) in &linear.resonances {
+        }
+        let told = asked.bodes.iter().flatten().any(|known| {
+            let new = responses.first();
+            new.is_some_and(|new| known.input == new.input && known.output == new.output)
+        });
+        let stepped = bode.stepped.is_some() && !args.linear;
+        if stepped || !told {
             let _ = writeln!(
-                text,
+                asked.text,
+                "from {} over {} .. {} Hz{}",
+                bode.input,
+                significant(band.0, 3),
+                significant(band.1, 3),
+                if stepped { ", stepped" } else { "" }
+            );
+        }
+        let first = responses
+            .first()
+            .map_or(&[][..], |response| &response.resonances);
+        for (frequency, damping) in first.iter().filter(|_| !told) {
+            let _ = writeln!(
+                asked.text,
                 "  mode at {:>8} Hz, damping {:<8} {}",
                 significant(*frequency, 4),
                 significant(*damping, 2),
-                where_seen(*frequency, &linear)
+                seen::where_seen(*frequency, &responses)
             );
         }
-        for (output, (name, response)) in linear.outputs.iter().enumerate() {
-            let peaks = peaks(&linear.frequency, response);
-            let list: Vec<String> = peaks
+        for response in responses.iter().filter(|_| !told) {
+            let _ = writeln!(
+                asked.text,
+                "  {}: {}",
+                response.output,
+                seen::peaks_told(response)
+            );
+        }
+        if stepped {
+            let (text, holds) = stepped::measured(model, &mut project, number, &mut responses)?;
+            asked.text.push_str(&text);
+            asked.holds &= holds;
+        }
+        asked.bodes.push(responses);
+    }
+    Ok(asked)
+}
+
+/// What the experiment says of itself, else its name.
+fn title(project: &project::Project, name: &str, model: &str) -> String {
+    let mut experiments = project.file.experiments();
+    let own = experiments.find(|experiment| experiment.name.text == name);
+    own.and_then(|experiment| experiment.doc.clone())
+        .unwrap_or_else(|| format!("{name} of {model}"))
+}
+
+fn json(bode: &[Response]) -> Value {
+    let outputs: Vec<Value> = bode
+        .iter()
+        .map(|response| {
+            let stepped: Vec<Value> = response
+                .stepped
                 .iter()
-                .map(|f| format!("{} Hz", significant(*f, 3)))
+                .map(|(f, amplitude, found)| {
+                    json!({
+                        "frequency_hz": f, "amplitude": amplitude, "re_im": [found.response.re, found.response.im],
+                        "coherence": found.coherence, "distortion": found.distortion,
+                    })
+                })
                 .collect();
-            let seen = if list.is_empty() {
-                "no peak".to_owned()
-            } else {
-                format!("peaks at {}", list.join(", "))
-            };
-            let _ = writeln!(text, "  {name}: {seen}");
-            if let Some(folder) = &args.out {
-                let unit = response_unit(program, bode, output);
-                let figure = drawn(name, &unit, &linear, output, swept.get(output));
-                let stem = if program.experiment.bodes.len() * linear.outputs.len() == 1 {
-                    "bode".to_owned()
-                } else {
-                    format!("bode-{}", file_name(name))
-                };
-                leave(folder, &stem, &figure, &linear, output, swept.get(output)).map_err(wrong)?;
-                let _ = writeln!(text, "    {}", folder.join(format!("{stem}.svg")).display());
-            }
-        }
-        let outputs: Vec<_> = linear
-            .outputs
-            .iter()
-            .map(|(name, response)| json!({ "name": name, "re_im": response }))
-            .collect();
-        found.push(json!({ "input": bode.input, "frequency_hz": linear.frequency, "outputs": outputs, "modes": linear.resonances }));
-    }
-    if args.model.json {
-        return Ok(format!("{:#}", json!({ "ok": true, "responses": found })));
-    }
-    Ok(text)
-}
-
-fn band(program: &Program, number: usize, p: &[f64]) -> Option<(f64, f64)> {
-    let from = program.kernels.constant(Constant::BandFrom(number), p)?;
-    let to = program.kernels.constant(Constant::BandTo(number), p)?;
-    (from > 0.0 && to > from).then_some((from, to))
-}
-
-fn linear(
-    program: &Program,
-    bode: &Bode,
-    tables: &std::collections::BTreeMap<String, hyde_signal::Table>,
-    p: &[f64],
-    band: (f64, f64),
-    points: usize,
-) -> Result<LinearResponse, String> {
-    let system = linearize(
-        program,
-        tables,
-        p,
-        std::slice::from_ref(&bode.input),
-        &bode.modes,
-    )
-    .map_err(|error| match error {
-        LinearizeError::NoInput(name) => format!("`{name}` is no free input"),
-        LinearizeError::TooLarge(n) => {
-            format!("{n} unknowns are too many for a dense linearised system")
-        }
-        LinearizeError::NoCommonPeriod => {
-            "clocks that never tick together again have no common frequency response".to_owned()
-        }
-        LinearizeError::LongDelay => {
-            "a clock whose held values change more than a period later has no response".to_owned()
-        }
-        LinearizeError::DelayAndClock => {
-            "a model with both `delay` and a clocked part has no linearised response".to_owned()
-        }
-        LinearizeError::Singular => {
-            "the algebraic variables are not determined in these modes".to_owned()
-        }
-        LinearizeError::Failed(failure) => {
-            format!("no operating point was found: {:?}", failure.kind)
-        }
-    })?;
-    let count = points.max(2);
-    let frequency: Vec<f64> = (0..count)
-        .map(|k| band.0 * (band.1 / band.0).powf(k as f64 / (count - 1) as f64))
-        .collect();
-    let outputs: Vec<usize> = bode.outputs.iter().map(|(_, output)| *output).collect();
-    let all = frequency_response(&system, 0, &outputs, &frequency).map_err(|error| match error {
-        BodeError::AboveNyquist(f, limit) => format!(
-            "{} Hz is above half the sampling rate, {} Hz: the sampled loop has no response there",
-            significant(f, 3),
-            significant(limit, 3)
-        ),
-        BodeError::Singular(f) => format!("the system is singular at {} Hz", significant(f, 3)),
-    })?;
-    let outputs = bode
-        .outputs
-        .iter()
-        .zip(all)
-        .map(|((name, _), response)| {
-            (
-                name.clone(),
-                response
-                    .into_iter()
-                    .map(|value| (value.re, value.im))
-                    .collect(),
-            )
+            json!({ "name": response.output, "re_im": response.linear, "stepped": stepped })
         })
         .collect();
-    let resonances = hyde_experiment::modes(&system)
-        .into_iter()
-        .filter(|mode| mode.damping < 0.3 && (0.5 * band.0..=band.1).contains(&mode.frequency_hz))
-        .map(|mode| (mode.frequency_hz, mode.damping))
-        .collect();
-    Ok(LinearResponse {
-        frequency,
-        outputs,
-        resonances,
+    let first = bode.first();
+    json!({
+        "experiment": first.map(|response| &response.experiment),
+        "input": first.map(|response| &response.input),
+        "frequency_hz": first.map(|response| &response.frequency),
+        "modes": first.map(|response| &response.resonances),
+        "outputs": outputs,
     })
-}
-
-/// At which outputs a mode is seen: by how much each response stands out there.
-fn where_seen(frequency_hz: f64, linear: &LinearResponse) -> String {
-    let seen: Vec<String> = linear
-        .outputs
-        .iter()
-        .filter_map(|(name, response)| {
-            let height = prominence(frequency_hz, &linear.frequency, response)?;
-            Some(format!("{name} {height:+.1} dB"))
-        })
-        .collect();
-    seen.join(", ")
-}
-
-/// The magnitude at a frequency over the straight line in the Bode plot from 3/4 to 4/3 of it, in dB; the largest within a tenth around.
-fn prominence(at: f64, frequency: &[f64], response: &[(f64, f64)]) -> Option<f64> {
-    let gain = |f: f64| {
-        let k = frequency.partition_point(|other| *other < f);
-        let (re, im) = *response.get(k)?;
-        (k > 0).then(|| 20.0 * re.hypot(im).log10())
-    };
-    let (low, high) = (gain(at * 0.75)?, gain(at / 0.75)?);
-    (-10..=10)
-        .filter_map(|k| {
-            let f = at * 1.1_f64.powf(f64::from(k) / 10.0);
-            let along = (f / (0.75 * at)).ln() / (1.0 / (0.75 * 0.75_f64)).ln();
-            Some(gain(f)? - (low + along * (high - low)))
-        })
-        .max_by(|a, b| a.abs().total_cmp(&b.abs()))
-}
-
-/// Frequencies at which the magnitude stands out by more than a decibel from its valleys on both sides.
-fn peaks(frequency: &[f64], response: &[(f64, f64)]) -> Vec<f64> {
-    let gain: Vec<f64> = response
-        .iter()
-        .map(|(re, im)| 20.0 * re.hypot(*im).log10())
-        .collect();
-    let mut found = Vec::new();
-    for k in 1..gain.len().saturating_sub(1) {
-        if gain[k] < gain[k - 1] || gain[k] <= gain[k + 1] {
-            continue;
-        }
-        // Down to the valley on either side, as long as nothing higher stands between.
-        let valley = |side: &mut dyn Iterator<Item = &f64>| {
-            side.take_while(|value| **value <= gain[k])
-                .fold(gain[k], |least, value| least.min(*value))
-        };
-        let left = valley(&mut gain[..k].iter().rev());
-        let right = valley(&mut gain[k + 1..].iter());
-        if gain[k] - left.max(right) > 1.0 {
-            found.push(frequency[k]);
-        }
-    }
-    found
-}
-
-fn response_unit(program: &Program, bode: &Bode, output: usize) -> String {
-    let input = program
-        .parameters
-        .iter()
-        .find(|parameter| parameter.name == bode.input);
-    let Some(input) = input else {
-        return String::new();
-    };
-    let output = program.outputs[bode.outputs[output].1].dimension;
-    let (of, per) = (output.usual_unit(), input.dimension.usual_unit());
-    match (shown(&of), shown(&per)) {
-        (of, "") => of.to_owned(),
-        ("", per) => format!("1/{per}"),
-        (of, per) => format!("{of} per {per}"),
-    }
-}
-
-fn drawn(
-    name: &str,
-    unit: &str,
-    linear: &LinearResponse,
-    output: usize,
-    swept: Option<&Swept>,
-) -> Figure {
-    let mut curves = vec![BodeCurve {
-        label: "linearised".to_owned(),
-        frequency: linear.frequency.clone(),
-        response: linear.outputs[output].1.clone(),
-        style: LineStyle::Solid,
-        coherence: None,
-    }];
-    if let Some(swept) = swept {
-        curves.push(BodeCurve {
-            label: "swept".to_owned(),
-            frequency: swept.response.frequency_hz.clone(),
-            response: swept
-                .response
-                .response
-                .iter()
-                .map(|value| (value.re, value.im))
-                .collect(),
-            style: LineStyle::Points,
-            coherence: Some(swept.response.coherence.clone()),
-        });
-    }
-    let (from, to) = (
-        linear.frequency[0],
-        linear.frequency[linear.frequency.len() - 1],
-    );
-    let resonances: Vec<(f64, String)> = linear
-        .resonances
-        .iter()
-        .filter(|(f, damping)| *damping < 0.1 && (from..=to).contains(f))
-        .map(|(f, _)| (*f, format!("{} Hz", significant(*f, 3))))
-        .collect();
-    bode_plot(name, (name, unit), &curves, &resonances)
-}
-
-fn leave(
-    folder: &Path,
-    stem: &str,
-    figure: &Figure,
-    linear: &LinearResponse,
-    output: usize,
-    swept: Option<&Swept>,
-) -> Result<(), String> {
-    files::make_folder(folder)?;
-    files::write(
-        &folder.join(format!("{stem}.svg")),
-        to_svg(figure).as_bytes(),
-    )?;
-    files::write(&folder.join(format!("{stem}.png")), &to_png(figure, 2.0))?;
-    let mut csv = String::from("kind,f [Hz],re,im,coherence\n");
-    for (f, (re, im)) in linear.frequency.iter().zip(&linear.outputs[output].1) {
-        let _ = writeln!(csv, "linearised,{f},{re},{im},1");
-    }
-    if let Some(swept) = swept {
-        let response = &swept.response;
-        for ((f, value), coherence) in response
-            .frequency_hz
-            .iter()
-            .zip(&response.response)
-            .zip(&response.coherence)
-        {
-            let _ = writeln!(csv, "swept,{f},{},{},{coherence}", value.re, value.im);
-        }
-    }
-    files::write(&folder.join(format!("{stem}.csv")), csv.as_bytes())
 }
 
 fn file_name(name: &str) -> String {

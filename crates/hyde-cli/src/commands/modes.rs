@@ -1,9 +1,13 @@
-//! `hyde modes`: natural frequencies and dampings of the linearised model.
+//! `hyde modes`: natural frequencies and dampings of the linearised model; of several experiments side by side, and over a
+//! parameter.
 
-use crate::args::ModesArgs;
+mod over;
+
+use crate::args::{ModelArgs, ModesArgs};
 use crate::exit::Exit;
 use crate::project::{self, Aim, Records, complain, print_output};
 use crate::records;
+use crate::settings::Setting;
 use hyde_experiment::{
     Linear, ModeShape, NaturalMode, linearize, mode_shape, modes as natural_modes, parameters,
 };
@@ -27,12 +31,59 @@ pub(crate) fn modes(args: &ModesArgs) -> Exit {
     }
 }
 
+/// The modes of one experiment.
+pub(crate) struct Found {
+    /// Its name, else that of the model.
+    pub(crate) name: String,
+    pub(crate) modes: Vec<NaturalMode>,
+    shapes: Vec<Option<ModeShape>>,
+    json: Vec<Value>,
+    /// The unit of each parameter, in SI.
+    pub(crate) units: Vec<(String, String)>,
+}
+
 fn table(args: &ModesArgs) -> Result<String, Exit> {
-    let mut project = project::load(&args.model, Records::Needed)?;
-    let compiled = project.compile(&args.model, Aim::Linearize)?;
-    project.print_warnings(&args.model);
+    let experiments =
+        std::iter::once(args.model.clone()).chain(args.with.iter().map(|name| ModelArgs {
+            experiment: Some(name.clone()),
+            ..args.model.clone()
+        }));
+    let experiments: Vec<ModelArgs> = experiments.collect();
+    if let Some(over) = &args.over {
+        return over::table(args, &experiments, over);
+    }
+    let all: Result<Vec<Found>, Exit> = experiments
+        .iter()
+        .map(|model| found(args, model, None))
+        .collect();
+    let all = all?;
+    if args.model.json {
+        let listed = |found: &Found| json!({ "experiment": found.name, "modes": found.json });
+        let (first, others) = (&all[0], &all[1..]);
+        let mut value = json!({ "ok": true, "modes": first.json });
+        if !others.is_empty() {
+            value["with"] = others.iter().map(listed).collect();
+        }
+        return Ok(format!("{value:#}"));
+    }
+    Ok(match all.as_slice() {
+        [one] => with_energy(one),
+        several => side_by_side(several),
+    })
+}
+
+/// The modes of an experiment, with one more parameter set if so.
+pub(crate) fn found(
+    args: &ModesArgs,
+    model: &ModelArgs,
+    set: Option<&Setting>,
+) -> Result<Found, Exit> {
+    let mut project = project::load(model, Records::Needed)?;
+    project.settings.extend(set.cloned());
+    let compiled = project.compile(model, Aim::Linearize)?;
+    project.print_warnings(model);
     let program = &compiled.program;
-    let wrong = |reason: String| complain(&args.model, Exit::CommandLine, &reason);
+    let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
     let tables = records::tables(&project.records);
     let p = parameters(program, &tables, &project.set())
         .map_err(|_| wrong("a parameter cannot be set".to_owned()))?;
@@ -47,24 +98,34 @@ fn table(args: &ModesArgs) -> Result<String, Exit> {
     }
     let linear = linearize(program, &tables, &p, &[], &chosen)
         .map_err(|error| wrong(format!("the model could not be linearised: {error:?}")))?;
-    let found: Vec<_> = natural_modes(&linear)
+    let modes: Vec<_> = natural_modes(&linear)
         .into_iter()
         .filter(|mode| args.below.is_none_or(|limit| mode.frequency_hz < limit))
         .collect();
-    let shapes: Vec<_> = found
+    let shapes: Vec<_> = modes
         .iter()
         .map(|mode| mode_shape(program, &p, &linear, mode))
         .collect();
-    if args.model.json {
-        let list: Vec<_> = found
-            .iter()
-            .zip(&shapes)
-            .map(|(mode, shape)| json(program, &linear, mode, shape.as_ref()))
-            .collect();
-        return Ok(format!("{:#}", json!({ "ok": true, "modes": list })));
-    }
+    let json = modes
+        .iter()
+        .zip(&shapes)
+        .map(|(mode, shape)| json(program, &linear, mode, shape.as_ref()))
+        .collect();
+    let unit = |parameter: &hyde_program::Parameter| {
+        (parameter.name.clone(), parameter.dimension.usual_unit())
+    };
+    Ok(Found {
+        name: project.experiment.clone().unwrap_or(program.name.clone()),
+        units: program.parameters.iter().map(unit).collect(),
+        modes,
+        shapes,
+        json,
+    })
+}
+
+fn with_energy(found: &Found) -> String {
     let mut text = format!("{:>12} {:>10}   energy\n", "f [Hz]", "damping");
-    for (mode, shape) in found.iter().zip(&shapes) {
+    for (mode, shape) in found.modes.iter().zip(&found.shapes) {
         let line = format!(
             "{:>12} {:>10}   {}",
             significant(mode.frequency_hz, 5),
@@ -73,7 +134,34 @@ fn table(args: &ModesArgs) -> Result<String, Exit> {
         );
         let _ = writeln!(text, "{}", line.trim_end());
     }
-    Ok(text)
+    text
+}
+
+/// The frequencies of several experiments in Hz, in order, and by how much each differs from that of the first.
+fn side_by_side(all: &[Found]) -> String {
+    let mut text = String::new();
+    let (first, others) = (&all[0], &all[1..]);
+    let _ = write!(text, "{:>12}", format!("{} [Hz]", first.name));
+    for other in others {
+        let _ = write!(text, " {:>24}", format!("{} [Hz]", other.name));
+    }
+    text.push('\n');
+    let most = all.iter().map(|found| found.modes.len()).max().unwrap_or(0);
+    for k in 0..most {
+        let own = first.modes.get(k).map(|mode| mode.frequency_hz);
+        let shown = own.map_or_else(String::new, |f| significant(f, 5));
+        let mut line = format!("{shown:>12}");
+        for other in others {
+            let found = other.modes.get(k).map(|mode| mode.frequency_hz);
+            let shown = found.map_or_else(String::new, |f| significant(f, 5));
+            let differs = own.zip(found).map_or_else(String::new, |(own, found)| {
+                format!("{:+.3} %", 100.0 * (found / own - 1.0))
+            });
+            let _ = write!(line, " {shown:>12} {differs:>11}");
+        }
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    text
 }
 
 /// Where the energy is, the largest shares first: `97 % table.rocking`.

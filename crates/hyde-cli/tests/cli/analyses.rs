@@ -216,3 +216,81 @@ fn a_run_leaves_the_figures_asked_for_and_tells_forces() {
     // Of two that are joined one line: into the wall goes what is left of 100 N by 20 N and by 400 N.s/m at 10 mm/s.
     assert!((number(of("spring.b to wall.a"), "most") - 76.0).abs() < 1e-3); // tolerance of the run
 }
+
+#[test]
+fn responses_of_several_experiments_are_drawn_together() {
+    let folder = Folder::new();
+    let out = folder.path("bode");
+    let axis = "examples/screw_waves/axis.hyde";
+    let output = hyde(&[
+        "bode", axis, "waves", "--with", "rigid", "--linear", "--points", "60", "--out", &out,
+    ]);
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    assert!(text(&output).contains("motor.w: rigid is more than 3 dB from waves over"));
+    let figure = std::fs::read_to_string(folder.path("bode/bode-motor.w.svg")).unwrap();
+    assert!(figure.contains("waves, linearised") && figure.contains("rigid, linearised"));
+    assert!(figure.contains("Screw of 1 m as a field"));
+}
+
+#[test]
+fn a_stepped_sine_tells_where_an_expectation_does_not_hold() {
+    let folder = Folder::new();
+    let out = folder.path("bode");
+    let output = hyde(&["bode", "tests/models/stepped.hyde", "plain", "--out", &out]);
+    assert_eq!(status(&output), 4, "{}", errors(&output));
+    let said = text(&output);
+    assert!(
+        said.contains("expect a cube of less than 7: DOES NOT HOLD at 1 Hz"),
+        "{said}"
+    );
+    assert!(said.contains("peak = 8 .. 8"), "{said}");
+    let numbers = std::fs::read_to_string(folder.path("bode/bode-y.csv")).unwrap();
+    let stepped = numbers
+        .lines()
+        .filter(|line| line.starts_with("plain,stepped,"));
+    assert_eq!(stepped.count(), 4);
+    // What does not move is said to, and 0.2 s to settle are enough to know it.
+    let stuck = text(&hyde(&["bode", "tests/models/stepped.hyde", "stuck"]));
+    assert_eq!(stuck.matches("does not move").count(), 3, "{stuck}");
+}
+
+#[test]
+fn modes_are_told_over_a_parameter() {
+    let folder = Folder::new();
+    let out = folder.path("modes");
+    let output = hyde(&[
+        "modes",
+        "examples/screw_waves/axis.hyde",
+        "waves",
+        "--with",
+        "modules",
+        "--set",
+        "damped=0",
+        "--below",
+        "200",
+        "--over",
+        "xn=0.1 .. 0.5 [m]",
+        "--points",
+        "3",
+        "--out",
+        &out,
+    ]);
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    let numbers = std::fs::read_to_string(folder.path("modes/modes.csv")).unwrap();
+    // Two experiments, three places, three modes; at a tenth the known 34.72, 90.22 and 181.26 Hz.
+    assert_eq!(numbers.lines().count(), 1 + 2 * 3 * 3);
+    assert!(
+        text(&output).contains("34.721    90.217    181.26"),
+        "{}",
+        text(&output)
+    );
+    let wrong = hyde(&[
+        "modes",
+        "examples/screw_waves/axis.hyde",
+        "waves",
+        "--over",
+        "xn=0.1",
+    ]);
+    assert_eq!(status(&wrong), 2);
+    assert!(errors(&wrong).contains("write `path=from..to [unit]`"));
+}

@@ -62,10 +62,16 @@ impl<'a> Model<'a, '_> {
             .collect();
         let origin = self.origin(root, input.span).made_by(MadeBy::Experiment);
         let band = (from.id, to.id);
+        let names: Vec<&str> = list.iter().map(|(name, ..)| name.as_str()).collect();
+        let stepped = bode
+            .steps
+            .as_ref()
+            .and_then(|(method, arguments)| self.stepped(driven, method, arguments, &names, root));
         self.flat.experiment.bodes.push(Bode {
             input: driven,
             outputs: list,
             band,
+            stepped,
             modes,
             origin,
         });

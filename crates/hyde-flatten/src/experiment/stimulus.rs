@@ -1,11 +1,12 @@
 //! Free inputs: driven by stimuli, made parameters for linearisation, or reported.
 
 use crate::bind::short;
+use crate::dimension::Dim;
 use crate::instance::{InstanceId, Lowering, Member, ParameterNotes, Scope, Setting};
 use crate::model::{Model, listed};
-use hyde_diag::{Code, Diagnostic, MadeBy};
+use hyde_diag::{Code, Diagnostic, MadeBy, Origin};
 use hyde_ir::flat::Equation;
-use hyde_ir::{Expr as Ir, Id as _, Parameter, Range, VarId};
+use hyde_ir::{Expr as Ir, ExprId, Id as _, Parameter, Quantity, Range, VarId};
 use hyde_syntax::ast::Drive;
 
 impl<'a> Model<'a, '_> {
@@ -39,6 +40,10 @@ impl<'a> Model<'a, '_> {
             });
             return;
         };
+        // A stepped sine takes its place.
+        if self.is_stepped(word) {
+            return;
+        }
         let scope = Scope {
             records: true,
             ..Scope::new(root, Setting::Equation)
@@ -56,6 +61,40 @@ impl<'a> Model<'a, '_> {
             rhs: value.id,
             origin,
         });
+    }
+
+    /// A parameter that the model does not declare, for what drives it from outside.
+    pub(super) fn outer_parameter(
+        &mut self,
+        name: String,
+        dim: Dim,
+        quantity: Quantity,
+        value: ExprId,
+        origin: &Origin,
+    ) -> ExprId {
+        self.parameters.push(ParameterNotes {
+            dim,
+            binding: None,
+            state: Lowering::Done,
+            boolean: false,
+            within: None,
+        });
+        let param = self.flat.parameters.push(Parameter {
+            name,
+            len: None,
+            value: vec![value],
+            quantity,
+            structural: false,
+            is_final: false,
+            derived: false,
+            prior: None,
+            role: hyde_ir::Role::Plain,
+            range: None,
+            source: None,
+            origin: origin.clone(),
+        });
+        let parameter = Ir::Param(param, hyde_ir::Index::SCALAR);
+        self.flat.exprs.add(parameter)
     }
 
     /// Makes every free input a parameter of its name with the value zero: what a linearised model is driven by.
@@ -76,38 +115,12 @@ impl<'a> Model<'a, '_> {
             .filter(|&var| self.flat.variables[var].input && self.notes(var).binding.is_none())
             .collect();
         for var in members {
-            let (dim, quantity) = (self.dim(var), self.flat.variables[var].quantity.clone());
+            let variable = &self.flat.variables[var];
+            let origin = variable.origin.clone().made_by(MadeBy::Experiment);
+            let (name, quantity) = (variable.name.clone(), variable.quantity.clone());
             let zero = self.flat.exprs.constant(0.0);
-            self.parameters.push(ParameterNotes {
-                dim,
-                binding: None,
-                state: Lowering::Done,
-                boolean: false,
-                within: None,
-            });
-            let origin = self.flat.variables[var]
-                .origin
-                .clone()
-                .made_by(MadeBy::Experiment);
-            let param = self.flat.parameters.push(Parameter {
-                name: self.flat.variables[var].name.clone(),
-                len: None,
-                value: vec![zero],
-                quantity,
-                structural: false,
-                is_final: false,
-                derived: false,
-                prior: None,
-                role: hyde_ir::Role::Plain,
-                range: None,
-                source: None,
-                origin: origin.clone(),
-            });
+            let rhs = self.outer_parameter(name, self.dim(var), quantity, zero, &origin);
             let lhs = self.flat.exprs.var(var);
-            let rhs = self
-                .flat
-                .exprs
-                .add(Ir::Param(param, hyde_ir::Index::SCALAR));
             self.flat.equations.push(Equation {
                 range: Range::SCALAR,
                 lhs,

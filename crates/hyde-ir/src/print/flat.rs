@@ -342,6 +342,16 @@ impl Printer<'_> {
                 "  bode from {input} to {} over {from} .. {to} Hz",
                 outputs.join(", ")
             );
+            if let Some(stepped) = &bode.stepped {
+                let _ = writeln!(
+                    out,
+                    "    stepped: {} times {} over {} periods behind {} s",
+                    self.names.expr(stepped.points),
+                    self.names.expr(stepped.amplitude),
+                    self.names.expr(stepped.periods),
+                    self.names.expr(stepped.settle),
+                );
+            }
         }
         for figure in &experiment.figures {
             let curves: Vec<String> = figure

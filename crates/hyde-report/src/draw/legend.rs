@@ -5,7 +5,7 @@ use super::flow::flow;
 use super::font::Font;
 use super::geometry::{Point, Rect};
 use super::palette::{GRID, INK, WHITE, line_colour, line_dash};
-use super::sizes::{CURVE, DOT, LEADING, TEXT};
+use super::sizes::{CURVE, DOT, LEADING, RING, TEXT};
 use super::tints::{Tints, band_labels};
 use super::trace::{Trace, covered};
 use crate::{Line, LineStyle, Panel};
@@ -39,6 +39,7 @@ pub(crate) struct Entry {
 enum Sample {
     Line(Stroke),
     Dots(Fill),
+    Ring(Fill),
     Patch(Fill),
 }
 
@@ -97,7 +98,7 @@ impl Legend {
         }
         for (entry, corner) in &self.entries {
             let middle = corner.shifted(origin.x, origin.y + 0.5 * ROW);
-            items.push(entry.sample.item(middle));
+            items.extend(entry.sample.items(middle));
             items.push(Item::Text(Text {
                 at: middle.shifted(SAMPLE + SAMPLE_GAP, 0.5 * font.cap_height(TEXT)),
                 text: entry.text.clone(),
@@ -112,26 +113,42 @@ impl Legend {
 
 impl Sample {
     /// The sample with its left end at `at`.
-    fn item(&self, at: Point) -> Item {
+    fn items(&self, at: Point) -> Vec<Item> {
         match self {
-            Self::Line(stroke) => Item::Polyline {
+            Self::Line(stroke) => vec![Item::Polyline {
                 points: vec![at, at.shifted(SAMPLE, 0.0)],
                 stroke: *stroke,
-            },
+            }],
             Self::Dots(fill) => {
                 let centres = [0.2, 0.5, 0.8].map(|part| at.shifted(part * SAMPLE, 0.0));
-                Item::Dots {
+                vec![Item::Dots {
                     centres: centres.to_vec(),
                     radius: DOT,
                     fill: *fill,
-                }
+                }]
             }
+            Self::Ring(fill) => rings(vec![at.shifted(0.5 * SAMPLE, 0.0)], *fill),
             Self::Patch(fill) => {
                 let area = Rect::at(at.x, at.y - 0.35 * TEXT, SAMPLE, 0.7 * TEXT);
-                Item::Area { area, fill: *fill }
+                vec![Item::Area { area, fill: *fill }]
             }
         }
     }
+}
+
+/// Rings round some points, white inside.
+pub(crate) fn rings(centres: Vec<Point>, fill: Fill) -> Vec<Item> {
+    let inside = Item::Dots {
+        centres: centres.clone(),
+        radius: RING.1,
+        fill: Fill::solid(WHITE),
+    };
+    let outside = Item::Dots {
+        centres,
+        radius: RING.0,
+        fill,
+    };
+    vec![outside, inside]
 }
 
 /// How the curve of a line is drawn.
@@ -165,6 +182,7 @@ pub(crate) fn entries(panel: &Panel, tints: &Tints<'_>, width: f64, font: &Font)
             let stroke = stroke_of(line, place);
             let sample = match line.style {
                 LineStyle::Points => Sample::Dots(Fill::solid(stroke.colour)),
+                LineStyle::Rings => Sample::Ring(Fill::solid(stroke.colour)),
                 LineStyle::Solid | LineStyle::Dashed | LineStyle::Steps => Sample::Line(stroke),
             };
             (sample, line.label.as_str())

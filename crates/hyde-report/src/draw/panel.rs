@@ -3,16 +3,16 @@
 use super::drawing::{Anchor, Fill, Item, Stroke, Text};
 use super::font::Font;
 use super::geometry::{Point, Rect};
-use super::legend::{Legend, entries, legend, stroke_of};
+use super::legend::{Legend, entries, legend, rings, stroke_of};
 use super::note::{FLAG_ROW, Flag, Note, flags, notes, point};
-use super::palette::{Colour, INK, REFERENCE, WHITE};
+use super::palette::{Colour, INK, REFERENCE};
 use super::shown_axis::ShownAxis;
 use super::sizes::{
     DOT, FINE_GRID_STROKE, FRAME_STROKE, GAP, GRID_STROKE, REFERENCE_STROKE, TEXT, TICK,
 };
 use super::tints::Tints;
 use super::trace::{Trace, trace};
-use crate::{Direction, Panel};
+use crate::{Direction, LineStyle, Panel};
 
 /// A panel with everything placed, relative to the top left corner of its frame.
 pub(crate) struct PlacedPanel<'a> {
@@ -166,11 +166,15 @@ impl<'a> PlacedPanel<'a> {
                     colour: stroke.colour,
                     opacity,
                 };
-                items.push(Item::Dots {
-                    centres,
-                    radius: DOT,
-                    fill,
-                });
+                if self.panel.lines[place].style == LineStyle::Rings {
+                    items.extend(rings(centres, fill));
+                } else {
+                    items.push(Item::Dots {
+                        centres,
+                        radius: DOT,
+                        fill,
+                    });
+                }
             }
         }
     }
@@ -206,16 +210,7 @@ impl<'a> PlacedPanel<'a> {
             .filter_map(|marker| place(marker.x, marker.y));
         let centres: Vec<_> = places.map(|at| at.shifted(origin.x, origin.y)).collect();
         if !centres.is_empty() {
-            items.push(Item::Dots {
-                centres: centres.clone(),
-                radius: 3.4,
-                fill: Fill::solid(INK),
-            });
-            items.push(Item::Dots {
-                centres,
-                radius: 2.4,
-                fill: Fill::solid(WHITE),
-            });
+            items.extend(rings(centres, Fill::solid(INK)));
         }
     }
 }

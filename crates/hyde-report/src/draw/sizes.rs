@@ -23,6 +23,8 @@ pub(crate) const GAP: f64 = 4.0;
 pub(crate) const CURVE: f64 = 1.25;
 /// Radius of a dot.
 pub(crate) const DOT: f64 = 1.4;
+/// Outer and inner radius of a ring.
+pub(crate) const RING: (f64, f64) = (3.4, 2.4);
 
 pub(crate) const FRAME_STROKE: Stroke = Stroke {
     colour: AXIS,

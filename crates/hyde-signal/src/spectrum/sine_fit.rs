@@ -52,6 +52,34 @@ pub fn response_at(
     Ok(result)
 }
 
+/// The amplitudes of the harmonics 2 to 10 together over that of the fundamental (IEC 61000-4-7, total harmonic
+/// distortion), each fitted as [`response_at`] does it. Harmonics at or above half the mean sampling rate are left out.
+///
+/// # Errors
+/// As of [`response_at`], for the fundamental.
+pub fn harmonic_distortion(
+    frequency_hz: f64,
+    time: &[f64],
+    values: &[f64],
+) -> Result<f64, SpectrumError> {
+    response_at(&[frequency_hz], time, values, values)?;
+    let duration = time[time.len() - 1] - time[0];
+    let highest_hz = 0.5 * (time.len() - 1) as f64 / duration;
+    let fundamental = SineFit::new(frequency_hz, time);
+    let rest = fundamental.without(values);
+    let amplitude = |order: u32| {
+        let frequency_hz = f64::from(order) * frequency_hz;
+        let below = frequency_hz < highest_hz;
+        below.then(|| SineFit::new(frequency_hz, time).amplitude(&rest).0.norm())
+    };
+    let harmonics = (2..=10).filter_map(amplitude);
+    let together = harmonics
+        .map(|harmonic| harmonic * harmonic)
+        .sum::<f64>()
+        .sqrt();
+    Ok(together / fundamental.amplitude(values).0.norm())
+}
+
 const MIN_SAMPLES: usize = 5;
 
 /// Orthonormal sequences that span a constant, a slope, cosine and sine, in this order, all of them weighted.
@@ -112,6 +140,16 @@ impl SineFit {
         let sine = q3 / self.sine[1];
         let cosine = (q2 - self.sine[0] * sine) / self.cosine;
         (Complex::new(cosine, -sine), (q2 * q2 + q3 * q3) / variance)
+    }
+
+    /// What the fit leaves of the values: without drift and sine.
+    fn without(&self, values: &[f64]) -> Vec<f64> {
+        let mut rest = product(values, &self.weight);
+        for direction in &self.basis {
+            remove(direction, &mut rest);
+        }
+        let unweighted = rest.iter().zip(&self.weight);
+        unweighted.map(|(rest, weight)| rest / weight).collect()
     }
 }
 

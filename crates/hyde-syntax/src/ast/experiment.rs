@@ -119,6 +119,8 @@ pub struct Bode {
     pub outputs: Vec<Expr>,
     /// The band of frequencies.
     pub band: Range,
+    /// `by stepped(…)`: the name and its arguments.
+    pub steps: Option<(Name, Vec<Argument>)>,
     /// The modes in which the linearised system is taken: instance and mode.
     pub modes: Vec<(Reference, Name)>,
 }

@@ -160,6 +160,9 @@ fn of_experiment<'a>(experiment: &'a Experiment, visit: &mut dyn FnMut(&'a Expr)
             ExperimentItem::Bode(bode) => {
                 bode.outputs.iter().for_each(&mut *visit);
                 of_range(&bode.band, visit);
+                if let Some((_, arguments)) = &bode.steps {
+                    of_arguments(arguments, visit);
+                }
             }
             ExperimentItem::Figure(figure) => {
                 figure

@@ -103,8 +103,14 @@ impl Printer {
                     format!(" in {}", modes.join(", "))
                 };
                 let (input, band) = (reference(&bode.input), range(&bode.band));
+                let steps = bode
+                    .steps
+                    .as_ref()
+                    .map_or_else(String::new, |(name, arguments)| {
+                        format!(" by {}{}", name.text, optional_arguments(arguments))
+                    });
                 format!(
-                    "bode from {input} to {} over {band}{modes};",
+                    "bode from {input} to {} over {band}{steps}{modes};",
                     outputs.join(", ")
                 )
             }

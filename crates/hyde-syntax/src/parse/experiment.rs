@@ -218,9 +218,16 @@ impl Builder<'_> {
         let mut inner = parts(node);
         let input = self.reference(inner.next()?);
         let (mut outputs, mut band, mut modes) = (Vec::new(), None, Vec::new());
+        let mut steps = None;
         for part in inner {
             match part.as_rule() {
                 Rule::range => band = self.range(part),
+                Rule::by_steps => {
+                    let mut words = parts(part);
+                    let name = self.name(&words.next()?);
+                    let arguments = words.next().map(|list| self.arguments(list));
+                    steps = Some((name, arguments.unwrap_or_default()));
+                }
                 Rule::in_modes => {
                     for mode in parts(part) {
                         let mut words = parts(mode);
@@ -235,6 +242,7 @@ impl Builder<'_> {
             input,
             outputs,
             band: band?,
+            steps,
             modes,
         }))
     }

@@ -1,0 +1,144 @@
+//! One response of an experiment: of the linearised model, and as measured on the hybrid one.
+
+use hyde_experiment::{
+    BodeError, Linear, LinearizeError, NaturalMode, SteppedOutput, frequency_response, linearize,
+    modes,
+};
+use hyde_program::{Bode, Constant, Program};
+use hyde_signal::Table;
+use hyde_signal::spectrum::FrequencyResponse;
+use hyde_units::significant;
+use std::collections::BTreeMap;
+
+/// From an input to one output.
+pub(crate) struct Response {
+    /// The experiment.
+    pub(crate) experiment: String,
+    /// The input.
+    pub(crate) input: String,
+    /// The output, as it is written.
+    pub(crate) output: String,
+    /// Output per input.
+    pub(crate) unit: String,
+    /// Frequencies of the linearised response in Hz.
+    pub(crate) frequency: Vec<f64>,
+    /// Its real and imaginary parts, SI.
+    pub(crate) linear: Vec<(f64, f64)>,
+    /// Frequencies in Hz and dampings of the modes that swing.
+    pub(crate) resonances: Vec<(f64, f64)>,
+    /// By the sweep of the stimulus.
+    pub(crate) swept: Option<FrequencyResponse>,
+    /// By stepped sines: frequency, amplitude of the input, what came out.
+    pub(crate) stepped: Vec<(f64, f64, SteppedOutput)>,
+}
+
+/// The band of a response in Hz.
+pub(crate) fn band(program: &Program, number: usize, p: &[f64]) -> Option<(f64, f64)> {
+    let from = program.kernels.constant(Constant::BandFrom(number), p)?;
+    let to = program.kernels.constant(Constant::BandTo(number), p)?;
+    (from > 0.0 && to > from).then_some((from, to))
+}
+
+/// So many frequencies from one end of a band to the other, evenly along their logarithm.
+pub(crate) fn frequencies(band: (f64, f64), count: usize) -> Vec<f64> {
+    let count = count.max(2);
+    let at = |k: usize| band.0 * (band.1 / band.0).powf(k as f64 / (count - 1) as f64);
+    (0..count).map(at).collect()
+}
+
+/// The linearised responses of an experiment's request, one an output; why there are none, where there are not.
+pub(crate) fn linearised(
+    experiment: &str,
+    program: &Program,
+    bode: &Bode,
+    tables: &BTreeMap<String, Table>,
+    p: &[f64],
+    frequency: &[f64],
+) -> Result<Vec<Response>, String> {
+    let input = std::slice::from_ref(&bode.input);
+    let system =
+        linearize(program, tables, p, input, &bode.modes).map_err(|error| why_not(&error))?;
+    let outputs: Vec<usize> = bode.outputs.iter().map(|(_, output)| *output).collect();
+    let all = frequency_response(&system, 0, &outputs, frequency).map_err(|error| match error {
+        BodeError::AboveNyquist(f, limit) => format!(
+            "{} Hz is above half the sampling rate, {} Hz: the sampled loop has no response there",
+            significant(f, 3),
+            significant(limit, 3)
+        ),
+        BodeError::Singular(f) => format!("the system is singular at {} Hz", significant(f, 3)),
+    })?;
+    let resonances = resonances(&system, frequency);
+    let responses = bode
+        .outputs
+        .iter()
+        .zip(all)
+        .map(|((name, output), response)| Response {
+            experiment: experiment.to_owned(),
+            input: bode.input.clone(),
+            output: name.clone(),
+            unit: unit(program, bode, *output),
+            frequency: frequency.to_vec(),
+            linear: response
+                .into_iter()
+                .map(|value| (value.re, value.im))
+                .collect(),
+            resonances: resonances.clone(),
+            swept: None,
+            stepped: Vec::new(),
+        });
+    Ok(responses.collect())
+}
+
+fn why_not(error: &LinearizeError) -> String {
+    match error {
+        LinearizeError::NoInput(name) => format!("`{name}` is no free input"),
+        LinearizeError::TooLarge(n) => {
+            format!("{n} unknowns are too many for a dense linearised system")
+        }
+        LinearizeError::NoCommonPeriod => {
+            "clocks that never tick together again have no common frequency response".to_owned()
+        }
+        LinearizeError::LongDelay => {
+            "a clock whose held values change more than a period later has no response".to_owned()
+        }
+        LinearizeError::DelayAndClock => {
+            "a model with both `delay` and a clocked part has no linearised response".to_owned()
+        }
+        LinearizeError::Singular => {
+            "the algebraic variables are not determined in these modes".to_owned()
+        }
+        LinearizeError::Failed(failure) => {
+            format!("no operating point was found: {:?}", failure.kind)
+        }
+    }
+}
+
+/// The modes that swing, from an octave below the band to its end.
+fn resonances(system: &Linear, frequency: &[f64]) -> Vec<(f64, f64)> {
+    let (Some(from), Some(to)) = (frequency.first(), frequency.last()) else {
+        return Vec::new();
+    };
+    let swings =
+        |mode: &NaturalMode| mode.damping < 0.3 && (0.5 * from..=*to).contains(&mode.frequency_hz);
+    let found = modes(system).into_iter().filter(swings);
+    found
+        .map(|mode| (mode.frequency_hz, mode.damping))
+        .collect()
+}
+
+/// The unit of an output over that of the input, for people.
+fn unit(program: &Program, bode: &Bode, output: usize) -> String {
+    let mut parameters = program.parameters.iter();
+    let Some(input) = parameters.find(|parameter| parameter.name == bode.input) else {
+        return String::new();
+    };
+    let (of, per) = (
+        program.outputs[output].dimension.usual_unit(),
+        input.dimension.usual_unit(),
+    );
+    match (crate::figures::shown(&of), crate::figures::shown(&per)) {
+        (of, "") => of.to_owned(),
+        ("", per) => format!("1/{per}"),
+        (of, per) => format!("{of} per {per}"),
+    }
+}
