@@ -41,10 +41,11 @@ pub fn frequency_response(
         nyquist_hz(linear, sampled, outputs)
     });
     let period = clocked.and_then(|sampled| CommonPeriod::new(linear, sampled));
+    let highest = frequencies_hz.iter().copied().fold(0.0, f64::max);
+    if highest > limit_hz {
+        return Err(BodeError::AboveNyquist(highest, limit_hz));
+    }
     for &f in frequencies_hz {
-        if f > limit_hz {
-            return Err(BodeError::AboveNyquist(f, limit_hz));
-        }
         let s = Complex::new(0.0, std::f64::consts::TAU * f);
         let identity = Matrix::identity(linear.a.nrows(), linear.a.nrows());
         let plant = (identity * s - complex(&linear.a)).lu();
