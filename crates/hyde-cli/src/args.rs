@@ -31,6 +31,8 @@ pub(crate) enum Command {
     Emit(EmitArgs),
     /// Plot columns of results or of a record
     Plot(PlotArgs),
+    /// Make the page of a batch: what its inputs do to its measures, what failed, and which cases to look at
+    Report(ReportArgs),
     /// Frequency response: linearised, and as measured on the full model by the experiment's sweep or by stepped sines
     Bode(BodeArgs),
     /// Natural frequencies and dampings of the linearised model
@@ -290,6 +292,15 @@ pub(crate) enum StageName {
     Clif,
     /// Assembly of this machine
     Asm,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ReportArgs {
+    /// The folder that `sweep --out` left
+    pub(crate) folder: PathBuf,
+    /// The page's file; `report.html` in the folder if left out
+    #[arg(long, value_name = "PATH")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

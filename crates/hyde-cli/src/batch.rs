@@ -6,13 +6,14 @@
 //! DIR/cases.parquet, …          made of the journals once no case is missing                 merge
 //! ```
 //! `prepare` makes plan and programs of an order, `work` solves what is missing on all cores, `slurm` has it done elsewhere,
-//! `tell` says what came of it.
+//! `tell` says what came of it; `report` makes its page of the files.
 
 pub(crate) mod inputs;
 pub(crate) mod merge;
 pub(crate) mod order;
 pub(crate) mod prepare;
 pub(crate) mod progress;
+pub(crate) mod report;
 pub(crate) mod slurm;
 pub(crate) mod store;
 pub(crate) mod tell;

@@ -13,6 +13,7 @@ pub(crate) mod fit;
 pub(crate) mod modes;
 pub(crate) mod params;
 pub(crate) mod plot;
+pub(crate) mod report;
 pub(crate) mod run;
 pub(crate) mod sweep;
 pub(crate) mod test;

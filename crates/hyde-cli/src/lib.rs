@@ -53,6 +53,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Sweep(args) => commands::sweep::sweep(args),
         Command::Emit(args) => commands::emit::emit(args),
         Command::Plot(args) => commands::plot::plot(args),
+        Command::Report(args) => commands::report::report(args),
         Command::Bode(args) => commands::bode::bode(args),
         Command::Modes(args) => commands::modes::modes(args),
         Command::Params(args) => commands::params::params(args),

@@ -7,13 +7,14 @@
 //! Case  --varied-> a file to compile          variant.rs     models, components, effects, stimuli; once per variant
 //!       --solve--> Outcome                    solve.rs       measures, or why there are none: never an end of the batch
 //!       --encode-> bytes in a journal         outcome.rs, journal.rs
-//! all   --rows---> the data set, its summary  dataset.rs, summary.rs
+//! all   --rows---> the data set, its summary  dataset.rs, summary.rs; over time as quantiles: envelope.rs
 //! ```
 //! Nothing here depends on the order in which cases are solved, nor on who solves them: `identity.rs` says when two batches
 //! are one, `shard.rs` which cases are whose. The command line keeps the bytes.
 
 mod dataset;
 mod draft;
+mod envelope;
 mod identity;
 mod journal;
 mod layout;
@@ -28,6 +29,7 @@ mod vary;
 
 pub use dataset::{Dataset, Measured, ROWS};
 pub use draft::{Choice, Draft};
+pub use envelope::{Enveloped, envelope};
 pub use identity::{Identity, digest};
 pub use journal::{HEADER_LEN, Scanned, header, record, scan};
 pub use outcome::{Fault, Outcome, Trajectory};

@@ -75,6 +75,8 @@ pub struct Panel {
     pub lines: Vec<Line>,
     /// Shaded spans of x, behind everything.
     pub bands: Vec<Band>,
+    /// Shaded areas between two curves, behind the lines.
+    pub between: Vec<Between>,
     /// Straight lines across the panel: resonances, limits.
     pub references: Vec<Reference>,
     /// Single points with a text.
@@ -95,6 +97,7 @@ impl Panel {
             y,
             lines,
             bands: Vec::new(),
+            between: Vec::new(),
             references: Vec::new(),
             markers: Vec::new(),
             height: None,
@@ -178,6 +181,23 @@ pub struct Band {
     pub to: f64,
     /// Named so in the legend; not listed if empty.
     pub label: String,
+}
+
+/// What lies between two curves over one x, such as most of many trajectories.
+///
+/// Axes reach as far as the lines of the panel need, not its areas.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Between {
+    /// Abscissae, rising, in SI; the shortest of the three lists counts.
+    pub x: Vec<f64>,
+    /// Lower ordinates; a value that is not finite leaves a gap.
+    pub low: Vec<f64>,
+    /// Upper ordinates.
+    pub high: Vec<f64>,
+    /// Index into the palette of lines.
+    pub colour: usize,
+    /// 0 to 1.
+    pub opacity: f64,
 }
 
 /// A thin dashed line across the panel with its label.

@@ -99,13 +99,25 @@ fn write_section(place: usize, section: &Section) -> String {
             .collect();
         let grid = run.first().is_some_and(in_grid);
         html += &if grid {
-            format!("<div class=\"figures\">\n{blocks}</div>\n")
+            let class = if run.iter().all(is_small) {
+                "figures small"
+            } else {
+                "figures"
+            };
+            format!("<div class=\"{class}\">\n{blocks}</div>\n")
         } else {
             blocks
         };
         number += run.len();
     }
     html + "</section>\n"
+}
+
+/// Figures of at most this width in px stand three beside each other on a wide screen.
+const SMALL: f64 = 400.0;
+
+fn is_small(block: &Block) -> bool {
+    matches!(block, Block::Figure(figure) if figure.shown_width() <= SMALL)
 }
 
 fn write_block(section: usize, number: usize, block: &Block) -> String {

@@ -22,6 +22,7 @@
 //! Lengths on paper are CSS pixels (1/96 in). Values are SI; an [`Axis`] says by which factor they are shown.
 
 mod axis;
+mod batch_report;
 mod bode_plot;
 mod circle_plot;
 mod draw;
@@ -39,11 +40,14 @@ mod time_plot;
 mod xy_plot;
 
 pub use axis::{Axis, Scale};
+pub use batch_report::{
+    BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, Envelope, FailedCase, WorstCase,
+};
 pub use bode_plot::{BodeCurve, bode_plot};
 pub use circle_plot::circle_plot;
 pub use escape::escape;
 pub use event_strip::{EventRow, EventStrip, Span};
-pub use figure::{Band, Direction, Figure, Line, LineStyle, Marker, Panel, Reference};
+pub use figure::{Band, Between, Direction, Figure, Line, LineStyle, Marker, Panel, Reference};
 pub use html::to_html;
 pub use page::{Align, Block, Column, Outcome, Page, Section, Table, Verdict};
 pub use png::to_png;

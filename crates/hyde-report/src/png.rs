@@ -68,6 +68,7 @@ impl Canvas {
             match item {
                 Item::Polyline { points, stroke } => self.polyline(points, stroke),
                 Item::Rule { from, to, stroke } => self.rule(*from, *to, stroke),
+                Item::Polygon { points, fill } => self.polygon(points, fill),
                 Item::Area { area, fill } => self.area(area, fill),
                 Item::Dots {
                     centres,
@@ -127,6 +128,24 @@ impl Canvas {
                 Rect::at(start, across(from.y), end - start, thickness)
             };
             self.fill(&bar, &paint_sharp(stroke.colour), Transform::identity());
+        }
+    }
+
+    fn polygon(&mut self, points: &[Point], fill: &Fill) {
+        let mut path = PathBuilder::new();
+        for (place, point) in points.iter().enumerate() {
+            let (x, y) = (point.x as f32, point.y as f32);
+            if place == 0 {
+                path.move_to(x, y)
+            } else {
+                path.line_to(x, y)
+            }
+        }
+        path.close();
+        if let Some(path) = path.finish() {
+            let paint = paint(fill.colour, fill.opacity);
+            let (rule, zoom) = (FillRule::Winding, self.zoom());
+            self.pixmap.fill_path(&path, &paint, rule, zoom, None);
         }
     }
 

@@ -84,6 +84,11 @@ fn write_items(svg: &mut String, drawing: &Drawing) {
                 let stroke = stroke_attributes(stroke);
                 push(svg, format_args!("<path d=\"{path}\"{stroke}/>\n"));
             }
+            Item::Polygon { points, fill } => {
+                let path = path(points.iter().copied(), true);
+                let fill = fill_attributes(fill);
+                push(svg, format_args!("<path d=\"{path}z\"{fill}/>\n"));
+            }
             Item::Area { area, fill } => {
                 let place = format!("x=\"{}\" y=\"{}\"", number(area.left), number(area.top));
                 let size = format!(

@@ -177,7 +177,7 @@ fn from_source(order: &Order) -> String {
 }
 
 /// A word as a shell reads it, quoted if it has to be.
-fn word(text: &str) -> String {
+pub(crate) fn word(text: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
     match text.chars().all(plain) && !text.is_empty() {
         true => text.to_owned(),

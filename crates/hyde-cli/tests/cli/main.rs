@@ -13,6 +13,7 @@ mod files;
 mod parquet;
 mod plot;
 mod printed;
+mod report;
 mod settings;
 mod status;
 mod sweep;

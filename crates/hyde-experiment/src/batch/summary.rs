@@ -145,7 +145,7 @@ impl Gathered {
 }
 
 /// The quantile of sorted values: linear between order statistics (definition 7 of Hyndman and Fan 1996). NaN of none.
-fn quantile(sorted: &[f64], p: f64) -> f64 {
+pub(super) fn quantile(sorted: &[f64], p: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else {
         return f64::NAN;
     };

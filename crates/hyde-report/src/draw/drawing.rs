@@ -22,6 +22,8 @@ pub(crate) enum Item {
         to: Point,
         stroke: Stroke,
     },
+    /// A filled polygon.
+    Polygon { points: Vec<Point>, fill: Fill },
     /// A filled rectangle.
     Area { area: Rect, fill: Fill },
     /// Filled circles.

@@ -5,7 +5,7 @@ use super::font::Font;
 use super::geometry::{Point, Rect};
 use super::legend::{Legend, entries, legend, rings, stroke_of};
 use super::note::{FLAG_ROW, Flag, Note, flags, notes, point};
-use super::palette::{Colour, INK, REFERENCE};
+use super::palette::{Colour, INK, REFERENCE, WHITE, line_colour};
 use super::shown_axis::ShownAxis;
 use super::sizes::{
     DOT, FINE_GRID_STROKE, FRAME_STROKE, GAP, GRID_STROKE, REFERENCE_STROKE, TEXT, TICK,
@@ -75,6 +75,7 @@ impl<'a> PlacedPanel<'a> {
         let frame = Rect::at(origin.x, origin.y, self.size.0, self.size.1);
         self.draw_bands(&frame, items);
         self.draw_grid(&frame, items);
+        self.draw_between(origin, items);
         self.draw_references(&frame, items);
         for (place, traced) in self.traces.iter().enumerate() {
             self.draw_trace(place, traced, origin, items);
@@ -114,6 +115,41 @@ impl<'a> PlacedPanel<'a> {
                         ..*frame
                     },
                     fill,
+                });
+            }
+        }
+    }
+
+    /// Each area as one polygon: along its lower curve, and back along the upper one.
+    fn draw_between(&self, origin: Point, items: &mut Vec<Item>) {
+        let (width, height) = self.size;
+        for between in &self.panel.between {
+            let place = |x: f64, y: f64| {
+                let part = |axis: &ShownAxis, at: f64| axis.fraction(at * axis.factor);
+                let across = part(&self.x, x).clamp(0.0, 1.0) * width;
+                let down = (1.0 - part(&self.y, y).clamp(0.0, 1.0)) * height;
+                Point::new(origin.x + across, origin.y + down)
+            };
+            let edges = between.low.iter().zip(&between.high);
+            let rows: Vec<(f64, f64, f64)> = between
+                .x
+                .iter()
+                .zip(edges)
+                .map(|(x, (low, high))| (*x, *low, *high))
+                .collect();
+            let whole = |row: &(f64, f64, f64)| (row.0 + row.1 + row.2).is_finite();
+            for run in rows.chunk_by(|a, b| whole(a) && whole(b)) {
+                if run.len() < 2 {
+                    continue;
+                }
+                let there = run.iter().map(|(x, low, _)| place(*x, *low));
+                let back = run.iter().rev().map(|(x, _, high)| place(*x, *high));
+                items.push(Item::Polygon {
+                    points: there.chain(back).collect(),
+                    fill: Fill {
+                        colour: line_colour(between.colour),
+                        opacity: between.opacity,
+                    },
                 });
             }
         }

@@ -1,0 +1,354 @@
+//! What the page of a batch shows, from its data set, its trajectories and its summary: no model is needed.
+
+use super::order::Order;
+use crate::commands::sweep::word;
+use crate::figures::shown;
+use crate::files;
+use hyde_experiment::batch::envelope;
+use hyde_report::{
+    BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, Envelope, FailedCase, Outcome, Verdict,
+    WorstCase,
+};
+use hyde_signal::{Field, Frame, Values};
+use hyde_units::{NamedUnit, engineering_as, significant};
+use serde_json::Value;
+use std::path::Path;
+
+/// The columns of a case behind its inputs and measures: status, code, reason, equation, source, failed_at, steps, events.
+const BEHIND: usize = 8;
+/// Instants of an envelope: one for about three pixels.
+const INSTANTS: usize = 200;
+/// Inputs told of a case in words.
+const TOLD: usize = 6;
+
+/// The report of the batch in a folder.
+///
+/// # Errors
+/// If the folder has no data set of a batch.
+pub(crate) fn of_folder(folder: &Path) -> Result<BatchReport, String> {
+    if !Order::is_in(folder) {
+        return Err(format!(
+            "`{}` holds no batch: `hyde sweep FILE --out DIR` leaves one; the page of a run is `report.html`",
+            folder.display()
+        ));
+    }
+    let again = format!("hyde sweep {}", word(&folder.to_string_lossy()));
+    let frame = table(folder, "cases")?;
+    let summary = files::read_text(&folder.join("summary.json"));
+    let (Some(frame), Ok(summary)) = (frame, summary) else {
+        return Err(format!(
+            "the batch in `{}` is not finished: `{again}` does what is missing",
+            folder.display()
+        ));
+    };
+    let summary: Value = serde_json::from_str(&summary)
+        .map_err(|error| format!("`summary.json` of the batch: {error}"))?;
+    let cases = Cases::new(frame, &summary)
+        .ok_or_else(|| format!("the data set in `{}` is no batch's", folder.display()))?;
+    let text = |key: &str| summary[key].as_str().unwrap_or_default().to_owned();
+    let count = |key: &str| summary[key].as_u64().unwrap_or_default();
+    let facts = [
+        ("Sweep", text("sweep")),
+        ("Experiment", text("experiment")),
+        ("Model", text("model")),
+        (
+            "Cases",
+            format!("{}, {} failed", count("cases"), count("failed")),
+        ),
+        ("Batch", text("batch")),
+    ];
+    let (inputs, choices) = cases.inputs();
+    Ok(BatchReport {
+        title: format!(
+            "{} of {} of {}",
+            text("sweep"),
+            text("experiment"),
+            text("model")
+        ),
+        facts: facts.map(|(name, value)| (name.to_owned(), value)).into(),
+        verdicts: verdicts(&summary),
+        inputs,
+        choices,
+        measures: cases.measures(&summary),
+        failed: cases.failed.clone(),
+        envelopes: match table(folder, "trajectories")? {
+            Some(over_time) => envelopes(&over_time, &cases),
+            None => Vec::new(),
+        },
+        worst: cases.worst(&summary, &again),
+        failures: cases.failures(&again),
+        footer: format!("Hyde {}, {again}", env!("CARGO_PKG_VERSION")),
+    })
+}
+
+/// A table of the folder in whichever form it has.
+fn table(folder: &Path, name: &str) -> Result<Option<Frame>, String> {
+    let forms = ["parquet", "csv"].map(|form| folder.join(format!("{name}.{form}")));
+    let Some(path) = forms.iter().find(|path| files::is_file(path)) else {
+        return Ok(None);
+    };
+    let frame = hyde_signal::read_frame(&files::read(path)?);
+    let frame = frame.map_err(|error| format!("`{}`: {error}", path.display()))?;
+    Ok(Some(frame))
+}
+
+fn verdicts(summary: &Value) -> Vec<Verdict> {
+    let expectations = summary["expectations"].as_array().into_iter().flatten();
+    let verdict = |expectation: &Value| {
+        let text = expectation["text"].as_str().unwrap_or_default();
+        match expectation["first"].as_u64() {
+            None => Verdict {
+                outcome: Outcome::Passed,
+                text: format!("{text}: in all cases solved"),
+            },
+            Some(first) => Verdict {
+                outcome: Outcome::Failed,
+                text: format!(
+                    "{text}: not in {} cases, the first is {first}",
+                    expectation["broken"]
+                ),
+            },
+        }
+    };
+    expectations.map(verdict).collect()
+}
+
+/// The rows of the cases.
+struct Cases {
+    frame: Frame,
+    numbers: Vec<usize>,
+    failed: Vec<bool>,
+    /// Places of the columns behind inputs and measures, of the inputs, and of the measures without expectations.
+    behind: usize,
+    inputs: std::ops::Range<usize>,
+    measures: Vec<usize>,
+}
+
+impl Cases {
+    fn new(frame: Frame, summary: &Value) -> Option<Self> {
+        let behind = frame.fields.len().checked_sub(BEHIND)?;
+        let listed = |key: &str| summary[key].as_array().map_or(0, Vec::len);
+        let measured = listed("measures") + listed("expectations");
+        let inputs = 1..behind.checked_sub(measured)?;
+        let expectations: Vec<&str> = summary["expectations"]
+            .as_array()
+            .into_iter()
+            .flatten()
+            .filter_map(|expectation| expectation["text"].as_str())
+            .collect();
+        // A column that would be called as one before it has a mark behind its name.
+        let is_measure = |at: &usize| {
+            let name = &frame.fields[*at].name;
+            let plain = name.trim_end_matches('_');
+            !expectations
+                .iter()
+                .any(|text| *text == name || *text == plain)
+        };
+        let measures: Vec<usize> = (inputs.end..behind).filter(is_measure).collect();
+        let numbers = whole_numbers(frame.values.first()?);
+        let status = texts(frame.values.get(behind)?);
+        let failed: Vec<bool> = status?.iter().map(|status| status == "failed").collect();
+        Some(Self {
+            numbers,
+            failed,
+            behind,
+            inputs,
+            measures,
+            frame,
+        })
+    }
+
+    /// What varies, as numbers and as choices.
+    fn inputs(&self) -> (Vec<CaseColumn>, Vec<ChoiceColumn>) {
+        let (mut numbers, mut choices) = (Vec::new(), Vec::new());
+        for at in self.inputs.clone() {
+            let (field, values) = (&self.frame.fields[at], &self.frame.values[at]);
+            match values {
+                Values::Texts(values) => choices.push(ChoiceColumn {
+                    name: field.name.clone(),
+                    values: values.clone(),
+                }),
+                Values::Numbers(_) | Values::Integers(_) => {
+                    numbers.push(column(field, values, self.failed.len()));
+                }
+            }
+        }
+        (numbers, choices)
+    }
+
+    fn measures(&self, summary: &Value) -> Vec<CaseMeasure> {
+        let known = summary["measures"].as_array().into_iter().flatten();
+        let measure = |(at, known): (&usize, &Value)| {
+            let field = &self.frame.fields[*at];
+            let to_si = |value: f64| {
+                field
+                    .unit
+                    .as_ref()
+                    .map_or(value, |unit| unit.unit().to_si(value))
+            };
+            let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+            let quantiles = known["quantiles"].as_array().into_iter().flatten();
+            let correlations = known["rank_correlations"].as_array().into_iter().flatten();
+            CaseMeasure {
+                column: column(field, &self.frame.values[*at], self.failed.len()),
+                quantiles: quantiles
+                    .map(|known| (number(&known["p"]), to_si(number(&known["value"]))))
+                    .collect(),
+                correlations: correlations
+                    .filter_map(|known| {
+                        let input = known["input"].as_str()?;
+                        Some((input.to_owned(), known["spearman"].as_f64()?))
+                    })
+                    .collect(),
+            }
+        };
+        self.measures.iter().zip(known).map(measure).collect()
+    }
+
+    fn worst(&self, summary: &Value, again: &str) -> Vec<WorstCase> {
+        let worst = summary["worst"].as_array().into_iter().flatten();
+        let case = |worst: &Value| {
+            let case = usize::try_from(worst["case"].as_u64()?).ok()?;
+            let unit = NamedUnit::parse(worst["unit"].as_str()?).ok()?;
+            let value = unit.unit().to_si(worst["value"].as_f64()?);
+            let value = engineering_as(value, &unit);
+            Some(WorstCase {
+                what: format!("{} = {value}", worst["measure"].as_str()?),
+                case,
+                inputs: self.told(self.numbers.iter().position(|known| *known == case)?),
+                command: format!("{again} --case {case}"),
+            })
+        };
+        worst.filter_map(case).collect()
+    }
+
+    fn failures(&self, again: &str) -> Vec<FailedCase> {
+        let cell = |behind: usize, row: usize| {
+            let values = self.frame.values.get(self.behind + behind);
+            let texts = values.and_then(texts).unwrap_or_default();
+            texts.get(row).cloned().unwrap_or_default()
+        };
+        let times = self.frame.values.get(self.behind + 5).and_then(numbers);
+        let joined = |parts: [String; 2], between: &str| {
+            let parts = parts.into_iter().filter(|part| !part.is_empty());
+            parts.collect::<Vec<_>>().join(between)
+        };
+        let rows = (0..self.failed.len()).filter(|row| self.failed[*row]);
+        rows.map(|row| FailedCase {
+            case: self.numbers[row],
+            reason: joined([cell(1, row), cell(2, row)], ": "),
+            place: joined(
+                [cell(3, row).trim_end_matches(';').to_owned(), cell(4, row)],
+                ", ",
+            ),
+            time_s: times.map_or(f64::NAN, |times| times[row]),
+            inputs: self.told(row),
+            command: format!("{again} --case {}", self.numbers[row]),
+        })
+        .collect()
+    }
+
+    /// What a case was given, in words.
+    fn told(&self, row: usize) -> String {
+        let one = |at: usize| {
+            let field = &self.frame.fields[at];
+            let value = match (&self.frame.values[at], &field.unit) {
+                (Values::Numbers(values), Some(unit)) => {
+                    engineering_as(unit.unit().to_si(values[row]), unit)
+                }
+                (Values::Numbers(values), None) => significant(values[row], 4),
+                (Values::Integers(values), _) => values[row].to_string(),
+                (Values::Texts(values), _) => values[row].clone(),
+            };
+            format!("{} = {value}", field.name)
+        };
+        let mut list: Vec<String> = self.inputs.clone().take(TOLD).map(one).collect();
+        if self.inputs.len() > TOLD {
+            list.push("…".to_owned());
+        }
+        list.join(", ")
+    }
+}
+
+/// A column as SI values; without numbers, as of a batch of which all cases failed, there are none.
+fn column(field: &Field, values: &Values, rows: usize) -> CaseColumn {
+    let unit = field.unit.as_ref().map(NamedUnit::unit);
+    let raw: Vec<f64> = match values {
+        Values::Numbers(values) => values.clone(),
+        Values::Integers(values) => values.iter().map(|value| *value as f64).collect(),
+        Values::Texts(_) => vec![f64::NAN; rows],
+    };
+    let to_si = |value: f64| unit.map_or(value, |unit| unit.to_si(value));
+    let name = unit.map_or(String::new(), |unit| unit.dimension.usual_unit());
+    CaseColumn {
+        name: field.name.clone(),
+        unit: shown(&name).to_owned(),
+        values: raw.into_iter().map(to_si).collect(),
+    }
+}
+
+/// Each variable that was kept, over all cases that were solved.
+fn envelopes(over_time: &Frame, cases: &Cases) -> Vec<Envelope> {
+    let [of, time, kept @ ..] = over_time.values.as_slice() else {
+        return Vec::new();
+    };
+    let (of, Some(time)) = (whole_numbers(of), numbers(time)) else {
+        return Vec::new();
+    };
+    let solved = |case: usize| {
+        let row = cases.numbers.binary_search(&case);
+        row.is_ok_and(|row| !cases.failed[row])
+    };
+    let mut ranges = Vec::new();
+    let mut at = 0;
+    for run in of.chunk_by(|a, b| a == b) {
+        if solved(run[0]) {
+            ranges.push(at..at + run.len());
+        }
+        at += run.len();
+    }
+    let mut found = Vec::new();
+    for (field, values) in over_time.fields[2..].iter().zip(kept) {
+        let column = column(field, values, of.len());
+        let rows = ranges
+            .iter()
+            .map(|rows| (&time[rows.clone()], &column.values[rows.clone()]));
+        let rows: Vec<(&[f64], &[f64])> = rows.collect();
+        let enveloped = envelope(&rows, INSTANTS);
+        if !enveloped.time.is_empty() {
+            found.push(Envelope {
+                name: column.name,
+                unit: column.unit,
+                time: enveloped.time,
+                quantiles: enveloped.quantiles,
+            });
+        }
+    }
+    found
+}
+
+fn numbers(values: &Values) -> Option<&[f64]> {
+    match values {
+        Values::Numbers(values) => Some(values),
+        Values::Integers(_) | Values::Texts(_) => None,
+    }
+}
+
+fn texts(values: &Values) -> Option<&[String]> {
+    match values {
+        Values::Texts(values) => Some(values),
+        Values::Numbers(_) | Values::Integers(_) => None,
+    }
+}
+
+/// Numbers of cases, which CSV has as doubles.
+fn whole_numbers(values: &Values) -> Vec<usize> {
+    match values {
+        Values::Integers(values) => values
+            .iter()
+            .map(|value| usize::try_from(*value).unwrap_or(0))
+            .collect(),
+        Values::Numbers(values) => values.iter().map(|value| *value as usize).collect(),
+        Values::Texts(_) => Vec::new(),
+    }
+}
