@@ -1,6 +1,7 @@
 //! The promises of the project as numbers that can be measured: one small file a promise.
 
 mod backends;
+mod batches;
 mod bench;
 mod clif_growth;
 mod compile;
@@ -52,5 +53,10 @@ pub const FIGURES: &[Figure] = &[
     travelling_nut::DRIFT,
     travelling_nut::RIPPLE,
     ledger::FIGURE,
+    batches::OVERHEAD,
+    batches::TWO_CORES,
+    batches::KILLS,
+    batches::SLURM,
+    batches::MEMORY,
     gradient::FIGURE,
 ];

@@ -1,6 +1,8 @@
 //! What the tests across crates and the figures share: the examples, compiled as the command line compiles them.
 
+pub mod batches;
 mod closed_form;
+mod cluster;
 mod data;
 pub mod events;
 mod example;

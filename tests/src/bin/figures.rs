@@ -11,6 +11,10 @@ use std::process::ExitCode;
 )]
 fn main() -> ExitCode {
     let names: Vec<String> = std::env::args().skip(1).collect();
+    // Figures of batches run this very program as the command.
+    if names.first().is_some_and(|name| name == "sweep") {
+        return hyde_cli::main(std::env::args_os());
+    }
     let mut chosen: Vec<&Figure> = Vec::new();
     for name in &names {
         match FIGURES.iter().find(|figure| figure.name == name) {

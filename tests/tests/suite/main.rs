@@ -4,6 +4,7 @@
 mod arrays;
 mod backends;
 mod bar;
+mod batches;
 mod bouncing_ball;
 mod candidates;
 mod chosen_states;

@@ -94,20 +94,16 @@ fn each(
     store: &Store,
     mut take: impl FnMut(usize, Outcome) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
-    let mut cases = 1..=batch.plan.count();
-    let mut given = |key: &str, bytes: Vec<u8>| {
-        let case = cases.next().filter(|case| Prepared::key(*case) == key);
-        let outcome = Outcome::decode(&bytes);
-        let (case, outcome) = case
-            .zip(outcome)
-            .ok_or_else(|| format!("case {key} is out of place"))?;
-        take(case, outcome).map_err(|error| error.to_string())
-    };
-    store.each(&mut given).map_err(std::io::Error::other)?;
-    match cases.next() {
-        None => Ok(()),
-        Some(case) => Err(std::io::Error::other(format!("case {case} is missing"))),
+    for case in 1..=batch.plan.count() {
+        let bytes = store
+            .get(&Prepared::key(case))
+            .map_err(std::io::Error::other)?;
+        let outcome = bytes.and_then(|bytes| Outcome::decode(&bytes));
+        let outcome =
+            outcome.ok_or_else(|| std::io::Error::other(format!("case {case} is missing")))?;
+        take(case, outcome)?;
     }
+    Ok(())
 }
 
 /// A table that is written row by row.

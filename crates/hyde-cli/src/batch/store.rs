@@ -4,14 +4,14 @@
 //! - [`Store::has`] a key? then its task is done and need not be again.
 //! - [`Store::put`] bytes for a key: when it returns they outlive the process, killed however; they outlive the machine once
 //!   [`Store::sync`] has returned after it.
-//! - [`Store::each`] key with its bytes, in the order of keys.
+//! - [`Store::get`] the bytes of a key.
 //!
 //! The folder holds journals (see [`hyde_experiment::batch`]). Each process appends to one of its own, so any number of them
 //! may work in one folder; where two did the same task the first found counts. A record that was cut off is not there. If
 //! the disk is full, the journal is cut back to its last whole record, and `put` says so.
 
 use crate::files;
-use hyde_experiment::batch::{HEADER_LEN, Identity, Scanned, header, record, scan};
+use hyde_experiment::batch::{HEADER_LEN, Identity, Scanned, digest, header, record, scan};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
@@ -28,16 +28,31 @@ pub(crate) struct Store {
 #[derive(Default)]
 struct State {
     journals: Vec<PathBuf>,
-    places: BTreeMap<String, Place>,
+    /// By the digest of the key, the same few bytes for each: a batch has many.
+    places: BTreeMap<[u8; 16], Place>,
+    /// The journal that was read last.
+    opened: Option<(u32, File)>,
     own: Option<Own>,
 }
 
 /// Where the bytes of a key are.
 #[derive(Clone, Copy)]
 struct Place {
-    journal: usize,
     at: u64,
-    len: usize,
+    len: u32,
+    journal: u32,
+}
+
+impl Place {
+    fn new(journal: usize, at: u64, len: usize) -> Self {
+        // More journals, or longer bytes, than a u32 counts are no batch of this world.
+        let short = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+        Self {
+            at,
+            len: short(len),
+            journal: short(journal),
+        }
+    }
 }
 
 /// The journal that this process writes.
@@ -55,13 +70,8 @@ impl Store {
         for path in files::below(folder, "journal", "") {
             let number = state.journals.len();
             for_each(&path, &identity, |key, at, bytes| {
-                let len = bytes.len();
-                let place = Place {
-                    journal: number,
-                    at,
-                    len,
-                };
-                state.places.entry(key.to_owned()).or_insert(place);
+                let place = Place::new(number, at, bytes.len());
+                state.places.entry(short(key)).or_insert(place);
             })?;
             state.journals.push(path);
         }
@@ -74,7 +84,7 @@ impl Store {
 
     /// Whether a key has bytes.
     pub(crate) fn has(&self, key: &str) -> bool {
-        self.locked().places.contains_key(key)
+        self.locked().places.contains_key(&short(key))
     }
 
     /// How many keys have bytes.
@@ -86,7 +96,7 @@ impl Store {
     pub(crate) fn put(&self, key: &str, bytes: &[u8]) -> Result<(), String> {
         let record = record(key, bytes);
         let mut state = self.locked();
-        if state.places.contains_key(key) {
+        if state.places.contains_key(&short(key)) {
             return Ok(());
         }
         if state.own.is_none() {
@@ -96,6 +106,7 @@ impl Store {
             journals,
             places,
             own,
+            ..
         } = &mut *state;
         let Some(own) = own else { return Ok(()) };
         if let Err(error) = own.file.write_all(&record) {
@@ -107,14 +118,7 @@ impl Store {
         let at = own.end + (record.len() - bytes.len()) as u64;
         own.end += record.len() as u64;
         own.dirty = true;
-        places.insert(
-            key.to_owned(),
-            Place {
-                journal: own.number,
-                at,
-                len: bytes.len(),
-            },
-        );
+        places.insert(short(key), Place::new(own.number, at, bytes.len()));
         Ok(())
     }
 
@@ -143,35 +147,23 @@ impl Store {
         Ok(count)
     }
 
-    /// The bytes of a key.
-    fn get(&self, key: &str) -> Result<Option<Vec<u8>>, String> {
-        let (path, place) = {
-            let state = self.locked();
-            let Some(place) = state.places.get(key).copied() else {
-                return Ok(None);
-            };
-            (state.journals[place.journal].clone(), place)
+    /// The bytes of a key, if it has some.
+    pub(crate) fn get(&self, key: &str) -> Result<Option<Vec<u8>>, String> {
+        let mut state = self.locked();
+        let Some(place) = state.places.get(&short(key)).copied() else {
+            return Ok(None);
         };
-        let mut file = files::open(&path)?;
-        let mut bytes = vec![0; place.len];
+        let path = state.journals[place.journal as usize].clone();
+        // Neighbours are mostly in one journal.
+        let file = match &mut state.opened {
+            Some((number, file)) if *number == place.journal => file,
+            opened => &mut opened.insert((place.journal, files::open(&path)?)).1,
+        };
+        let mut bytes = vec![0; place.len as usize];
         file.seek(SeekFrom::Start(place.at))
             .and_then(|_| file.read_exact(&mut bytes))
             .map_err(|error| files::cannot_read(&path, &error))?;
         Ok(Some(bytes))
-    }
-
-    /// Gives each key with its bytes to `take`, in the order of keys.
-    pub(crate) fn each(
-        &self,
-        mut take: impl FnMut(&str, Vec<u8>) -> Result<(), String>,
-    ) -> Result<(), String> {
-        let keys: Vec<String> = self.locked().places.keys().cloned().collect();
-        for key in keys {
-            if let Some(bytes) = self.get(&key)? {
-                take(&key, bytes)?;
-            }
-        }
-        Ok(())
     }
 
     /// Begins this process's journal: a file that nobody else has.
@@ -195,6 +187,13 @@ impl Store {
     fn locked(&self) -> std::sync::MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
+}
+
+/// Keys in few bytes: 128 bits of their digest, which no two share.
+fn short(key: &str) -> [u8; 16] {
+    let mut short = [0; 16];
+    short.copy_from_slice(&digest(&[key.as_bytes()]).0[..16]);
+    short
 }
 
 /// Goes through the whole records of a journal: key, place of the bytes, and the bytes.
@@ -252,18 +251,7 @@ fn for_each(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use hyde_experiment::batch::digest;
     use tempfile::TempDir;
-
-    fn all(store: &Store) -> Vec<(String, Vec<u8>)> {
-        let mut found = Vec::new();
-        let took = store.each(|key, bytes| {
-            found.push((key.to_owned(), bytes));
-            Ok(())
-        });
-        took.unwrap();
-        found
-    }
 
     #[test]
     fn what_was_put_in_is_there_for_the_next_process() {
@@ -278,12 +266,13 @@ mod tests {
         assert_eq!(one.sync().unwrap(), 2);
         let again = open();
         assert_eq!(again.len(), 3);
-        let found = all(&again);
-        let keys: Vec<&str> = found.iter().map(|(key, _)| key.as_str()).collect();
-        assert_eq!(keys, ["a", "b", "c"]);
-        assert_eq!(found[0].1, b"from two");
+        let get = |key| again.get(key).unwrap();
+        assert_eq!(get("a"), Some(b"from two".to_vec()));
+        assert_eq!(get("c"), Some(Vec::new()));
+        assert_eq!(get("d"), None);
         // Whichever journal comes first by name: bytes of one task are the same, as tasks are pure.
-        assert!(found[1].1 == vec![2; 100_000] || found[1].1 == b"too late");
+        let either = [vec![2; 100_000], b"too late".to_vec()];
+        assert!(either.contains(&get("b").unwrap()));
     }
 
     #[test]

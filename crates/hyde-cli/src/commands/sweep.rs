@@ -99,10 +99,12 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
         }
         return Ok(Exit::Done);
     }
-    let took = match args.engine {
+    let (took, store) = match args.engine {
         Engine::Local => {
             let store = open().map_err(failed)?;
-            solve_missing(&batch, &store, 1..=batch.plan.count(), &how).map_err(ended)?
+            let all = 1..=batch.plan.count();
+            let took = solve_missing(&batch, &store, all, &how).map_err(ended)?;
+            (took, store)
         }
         Engine::Slurm => {
             if args.out.is_none() && !kept {
@@ -110,10 +112,10 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
                     "`--engine slurm` needs `--out DIR`, a folder that all nodes see".to_owned(),
                 ));
             }
-            by_slurm(args, &batch, &folder, &how)?
+            by_slurm(args, &batch, &folder, &how)?;
+            (Took::default(), open().map_err(failed)?)
         }
     };
-    let store = open().map_err(failed)?;
     let summary = merge(&batch, &store, &folder, args.format).map_err(failed)?;
     let rerun = match (&args.out, kept) {
         (None, false) => from_source(&order),
@@ -253,7 +255,7 @@ fn missing_shards(batch: &Prepared, store: &Store, count: usize) -> Vec<usize> {
     missing.map(|(_, number)| number).collect()
 }
 
-fn by_slurm(args: &SweepArgs, batch: &Prepared, folder: &Path, how: &How) -> Result<Took, Exit> {
+fn by_slurm(args: &SweepArgs, batch: &Prepared, folder: &Path, how: &How) -> Result<(), Exit> {
     let array = Array {
         folder,
         identity: batch.parts.whole.to_string(),
@@ -273,7 +275,7 @@ fn by_slurm(args: &SweepArgs, batch: &Prepared, folder: &Path, how: &How) -> Res
         }
     };
     match array.run(missing, &how.interrupted, tell) {
-        Ok(()) => Ok(Took::default()),
+        Ok(()) => Ok(()),
         Err(slurm::Ended::Failed(reason)) => Err(complain(args, Exit::Solver, &reason)),
         Err(slurm::Ended::Interrupted) => {
             let reason = "interrupted; the jobs go on: run the same command again to wait for them";

@@ -76,8 +76,17 @@ impl Gathered {
             }
             return;
         }
-        self.inputs.resize(plan.inputs.len(), Vec::new());
-        self.measures.resize(outcome.measures.len(), Vec::new());
+        if self.numbers.is_empty() {
+            // Room for all at once: growing would take twice as much.
+            let room = |columns: usize| -> Vec<Vec<f64>> {
+                (0..columns)
+                    .map(|_| Vec::with_capacity(plan.count()))
+                    .collect()
+            };
+            self.numbers.reserve_exact(plan.count());
+            self.inputs = room(plan.inputs.len());
+            self.measures = room(outcome.measures.len());
+        }
         self.numbers.push(number);
         for (column, value) in self.inputs.iter_mut().zip(&plan.case(number).values) {
             column.push(match value {
