@@ -174,13 +174,13 @@ impl<'a> Plant<'a> {
     /// On to the next row, up to what drives the axis there.
     pub(crate) fn advance(&mut self) {
         while self.index < shortest_steps() {
-            while self.index % size_of(self.level) != 0 {
+            while !self.index.is_multiple_of(size_of(self.level)) {
                 self.level += 1;
             }
             match self.step(self.level) {
                 Outcome::Taken => {
                     self.index += size_of(self.level);
-                    if self.level > LONGEST && self.index % size_of(self.level - 1) == 0 {
+                    if self.level > LONGEST && self.index.is_multiple_of(size_of(self.level - 1)) {
                         self.level -= 1;
                     }
                 }

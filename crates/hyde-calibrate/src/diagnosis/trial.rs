@@ -15,6 +15,9 @@ const VISIBLE_SHAPE: f64 = 0.03;
 /// A fit that gains this much more than the scan promised did not find the effect but a better fit of all else.
 const TOO_GOOD: f64 = 3.0;
 
+/// A refit, what it varied, and the shapes it kept fixed.
+type Refit = (Solution, Vec<Varied>, Vec<(String, f64)>);
+
 /// Why a hypothesis was not taken in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Rejection {
@@ -64,7 +67,7 @@ pub(crate) fn trial(
     list.push(score.hypothesis);
     let Built { program, paths } = build(&list)?;
     let own_path = paths.last()?.clone();
-    let mut best: Option<(Solution, Vec<Varied>, Vec<(String, f64)>)> = None;
+    let mut best: Option<Refit> = None;
     for node in &score.nodes {
         // From where less than half is gained nothing better is reached.
         if node.gain < 0.5 * score.gain() {

@@ -5,7 +5,7 @@ use super::font::Font;
 use super::geometry::{Point, Rect};
 use super::legend::{Legend, entries, legend, rings, stroke_of};
 use super::note::{FLAG_ROW, Flag, Note, flags, notes, point};
-use super::palette::{Colour, INK, REFERENCE, WHITE, line_colour};
+use super::palette::{Colour, INK, REFERENCE, line_colour};
 use super::shown_axis::ShownAxis;
 use super::sizes::{
     DOT, FINE_GRID_STROKE, FRAME_STROKE, GAP, GRID_STROKE, REFERENCE_STROKE, TEXT, TICK,
