@@ -5,6 +5,7 @@ use crate::summary;
 use crate::{figures, forces};
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
+use hyde_program::Method;
 use hyde_report::{
     ChannelError, Event, EventTable, Outcome, Parameter, RunReport, Verdict, to_html,
 };
@@ -99,7 +100,12 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
     let solver = vec![
         (
             "method".to_owned(),
-            format!("IDA, SUNDIALS {}", hyde_ida::sundials_version()),
+            match statistics.method {
+                Method::Ida | Method::Auto => {
+                    format!("IDA, SUNDIALS {}", hyde_ida::sundials_version())
+                }
+                Method::Esdirk => "ESDIRK5(4)7L[2]SA2, a Runge-Kutta method".to_owned(),
+            },
         ),
         (
             "relative tolerance".to_owned(),

@@ -4,6 +4,7 @@ use crate::ledger;
 use crate::project::Project;
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
+use hyde_program::Method;
 use hyde_sim::{Event, EventKind, GradientEnd, GradientEndKind};
 use hyde_units::{engineering, engineering_as, significant};
 use serde_json::{Map, Value, json};
@@ -29,9 +30,13 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
     );
     let _ = writeln!(
         out,
-        "  {} unknowns, {} steps, {} events, {} ticks, {} restarts",
+        "  {} unknowns, {} steps{}, {} events, {} ticks, {} restarts",
         program.n_unknowns,
         statistics.steps,
+        match statistics.method {
+            Method::Ida | Method::Auto => "",
+            Method::Esdirk => " by esdirk",
+        },
         statistics.events,
         statistics.ticks,
         statistics.restarts
@@ -195,6 +200,10 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         "rtol": run.tolerances.0,
         "atol": run.tolerances.1,
         "unknowns": program.n_unknowns,
+        "method": match statistics.method {
+            Method::Ida | Method::Auto => "ida",
+            Method::Esdirk => "esdirk",
+        },
         "statistics": {
             "steps": statistics.steps,
             "residual_evaluations": statistics.residual_evaluations,

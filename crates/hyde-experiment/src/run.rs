@@ -150,6 +150,7 @@ pub(crate) fn setup<'r>(
     }
     let mut setup = Setup::new(parameters, records, stop_s);
     setup.interrupted = Arc::clone(&options.interrupted);
+    setup.method = program.experiment.method;
     setup.rtol = rtol;
     setup.atol = atol;
     setup.max_step_s = max_step;

@@ -16,7 +16,7 @@ use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
-use hyde_ir::flat::Stop;
+use hyde_ir::flat::{Method, Stop};
 use hyde_syntax::ast::{self, ExperimentItem, Expr, ExprKind};
 use hyde_units::Dimension;
 
@@ -121,16 +121,19 @@ impl<'a> Model<'a, '_> {
     }
 
     fn solve(&mut self, method: &'a ast::Name, arguments: &'a [ast::Argument], root: InstanceId) {
-        if !matches!(method.text.as_str(), "ida" | "auto") {
-            self.report(
-                Diagnostic::error(
-                    Code::BadSolve,
-                    format!("no method is called `{}`", method.text),
-                )
-                .label(method.span, "not known")
-                .help("write `solve ida(rtol = 1e-6)`"),
-            );
-        }
+        self.flat.experiment.method = match method.text.as_str() {
+            "ida" => Method::Ida,
+            "esdirk" => Method::Esdirk,
+            "auto" => Method::Auto,
+            other => {
+                self.report(
+                    Diagnostic::error(Code::BadSolve, format!("no method is called `{other}`"))
+                        .label(method.span, "not known")
+                        .help("methods are `ida`, `esdirk` and `auto`: `solve ida(rtol = 1e-6)`"),
+                );
+                Method::Ida
+            }
+        };
         for argument in arguments {
             let name = argument.name.as_ref().map_or("", |name| name.text.as_str());
             if !matches!(name, "rtol" | "atol" | "max_step") {

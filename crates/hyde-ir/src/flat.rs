@@ -284,6 +284,18 @@ pub struct Flow {
     pub var: VarId,
 }
 
+/// How the continuous equations are integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// `ida`: backward differentiation, the default.
+    #[default]
+    Ida,
+    /// `esdirk`: a Runge-Kutta method.
+    Esdirk,
+    /// `auto`: what suits the model.
+    Auto,
+}
+
 /// When a run ends.
 #[derive(Clone, Debug)]
 pub enum Stop {
@@ -407,6 +419,8 @@ pub struct Experiment {
     pub every: Option<ExprId>,
     /// Time in s before which measured channels are not compared, of parameters alone.
     pub skip: Option<ExprId>,
+    /// The method of the solver.
+    pub method: Method,
     /// Options of the solver by name (`rtol`), of parameters alone.
     pub solve: Vec<(String, ExprId)>,
 }

@@ -7,9 +7,9 @@ use hyde_ir::flat;
 use hyde_ir::{Id as _, Interpolation, VariableKind};
 use hyde_program::{
     Assignment, Automaton, Bode, Clock, Column, Delay, Derivatives, Experiment, Flow, Hold,
-    InitialCondition, Measure, Measured, Output, Parameter, Pin, Preparation, Prior, Program,
-    Reaction, ReactionKind, Reduction, ReductionKind, Relation, RelationUse, Selection, Stepped,
-    Stop, Target, UnknownBlock,
+    InitialCondition, Measure, Measured, Method, Output, Parameter, Pin, Preparation, Prior,
+    Program, Reaction, ReactionKind, Reduction, ReductionKind, Relation, RelationUse, Selection,
+    Stepped, Stop, Target, UnknownBlock,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -427,6 +427,11 @@ fn experiment(dae: &Dae) -> Experiment {
             flat::Stop::At(_) => Stop::At,
             flat::Stop::EndOf(record) => Stop::EndOf(record.clone()),
         }),
+        method: match known.method {
+            flat::Method::Ida => Method::Ida,
+            flat::Method::Esdirk => Method::Esdirk,
+            flat::Method::Auto => Method::Auto,
+        },
     }
 }
 

@@ -139,6 +139,18 @@ pub struct Stepped {
     pub keep: Option<usize>,
 }
 
+/// How the continuous equations are integrated.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// Backward differentiation of variable order, by IDA of SUNDIALS.
+    #[default]
+    Ida,
+    /// An implicit Runge-Kutta method of order 5, which starts anew at an event at no cost.
+    Esdirk,
+    /// What suits the program.
+    Auto,
+}
+
 /// When a run ends.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Stop {
@@ -171,4 +183,6 @@ pub struct Experiment {
     pub flows: Vec<Flow>,
     /// When it ends.
     pub stop: Option<Stop>,
+    /// The method asked for.
+    pub method: Method,
 }

@@ -28,8 +28,8 @@ pub use event::{
     Relation, RelationUse, Selection, Target,
 };
 pub use experiment::{
-    Bode, Curve, Experiment, Figure, FigureKind, Flow, Measure, Measured, Preparation, Reduction,
-    ReductionKind, Stepped, Stop,
+    Bode, Curve, Experiment, Figure, FigureKind, Flow, Measure, Measured, Method, Preparation,
+    Reduction, ReductionKind, Stepped, Stop,
 };
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Constant, Function, Kernels, Point, TickWrt, Workspace};

@@ -221,7 +221,7 @@ fn now(integrator: &mut Integrator<'_>, t: f64) -> Vec<f64> {
     let program = integrator.state().program;
     let n = program.n_unknowns;
     let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-    integrator.interpolate(t, &mut y, &mut yp);
+    integrator.solution(t, &mut y, &mut yp);
     let mut out = vec![0.0; program.rows(Function::Delayed)];
     integrator
         .state_mut()

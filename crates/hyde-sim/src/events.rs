@@ -40,6 +40,8 @@ pub(crate) struct Instant<'s, 'a> {
     pub(crate) log: &'s mut Vec<Event>,
     /// Derivatives by parameters, which go along with the instant.
     pub(crate) sensitivities: Option<&'s mut Sensitivities>,
+    /// The relations whose crossing this instant was located at.
+    pub(crate) crossed: Vec<usize>,
 }
 
 impl Instant<'_, '_> {
@@ -65,8 +67,14 @@ impl Instant<'_, '_> {
         let mut switched: Vec<usize> = Vec::new();
         for round in 0..MAX_ROUNDS {
             changed |= self.leave_slides(&mut located)?;
-            let (truths, roots) = self.truths(scheduled, &located)?;
+            let (mut truths, mut roots) = self.truths(scheduled, &located)?;
             if seen.is_empty() {
+                let short = self.short_of_zero(&truths);
+                if !short.is_empty() {
+                    located.extend(short);
+                    (truths, roots) = self.truths(scheduled, &located)?;
+                }
+
                 let now = self.guards_that_became_true(&truths, &roots);
                 self.remember_located(&now);
                 located.extend(now);
@@ -219,6 +227,24 @@ impl Instant<'_, '_> {
             .filter(|(_, (truth, root))| **root != 0.0 && (**root > 0.0) != **truth)
             .map(|(number, (_, root))| (number, 2.0 * root.abs()))
             .collect();
+    }
+
+    /// The crossed relations whose truth is as before: consistent values may fall short of a zero by rounding that the step
+    /// to it did not show. As far as the instant can be known they are at it.
+    fn short_of_zero(&mut self, truths: &[bool]) -> Vec<(usize, f64)> {
+        let state = &self.state;
+        let stays = |relation: &usize| {
+            let truth = truths.get(*relation);
+            truth.is_some_and(|truth| *truth == (state.z[*relation] != 0.0))
+        };
+        let stay: Vec<usize> = self.crossed.iter().copied().filter(stays).collect();
+        if stay.is_empty() {
+            return Vec::new();
+        }
+        let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
+        let known = 0.5e-12 * (1.0 + self.t.abs());
+        let within = |relation: usize| (relation, known * rates[relation].abs());
+        stay.into_iter().map(within).collect()
     }
 
     /// Guards that lead in a circle may do so by rounding alone: a diode's current is zero where its voltage is. Those that

@@ -13,18 +13,26 @@ use hyde_program::{Function, Wrt};
 /// The part of the way back to zero that the first step may be.
 const PART_OF_RETURN: f64 = 0.02;
 
-/// The first step in s from consistent values. The algebraic variables get their slopes along the flow, which the
+/// What bounds the first step, in s.
+pub(crate) struct FirstStep {
+    /// A step of order 1 is as exact as the tolerance asks.
+    pub(crate) by_curvature_s: f64,
+    /// Longer ones may step over what has just begun.
+    pub(crate) longest_s: f64,
+}
+
+/// The first step from consistent values. The algebraic variables get their slopes along the flow, which the
 /// solver's first guess of them follows.
 pub(crate) fn first_step(
     integrator: &mut Integrator<'_>,
     consistent: &mut Consistent,
     setup: &Setup<'_>,
-) -> f64 {
+) -> FirstStep {
     let t = integrator.t;
     let span = (setup.stop_s - t).max(1e-12);
     let (y, yp) = (integrator.y.clone(), integrator.yp.clone());
     let flow = consistent.flow(integrator.state_mut(), t, &y, &yp);
-    let mut step = 1e-2 * span;
+    let (mut by_curvature_s, mut longest_s) = (f64::INFINITY, 1e-2 * span);
     if let Some((dy, dyp)) = flow {
         for (index, slope) in dy.iter().enumerate() {
             if !integrator.state().differential[index] && slope.is_finite() {
@@ -39,13 +47,16 @@ pub(crate) fn first_step(
         }
         let norm = (square / y.len().max(1) as f64).sqrt();
         if norm.is_finite() && norm > 0.0 {
-            step = step.min((0.5 / norm).sqrt());
+            by_curvature_s = (0.5 / norm).sqrt();
         }
         let back = shortest_return(integrator.state_mut(), t, (&y, &yp), (&dy, &dyp));
-        step = step.min(PART_OF_RETURN * back);
+        longest_s = longest_s.min(PART_OF_RETURN * back);
     }
     let least = 64.0 * f64::EPSILON * (1e-3 + t.abs());
-    step.max(least)
+    FirstStep {
+        by_curvature_s: by_curvature_s.max(least),
+        longest_s: longest_s.max(least),
+    }
 }
 
 /// The shortest time in s after which a root function that is zero now, and leaves zero, comes back.

@@ -13,10 +13,10 @@ use hyde_program::{Function, Program, RelationUse};
 /// Chebyshev points inside a step.
 const INSIDE: [f64; 3] = [0.146_446_609_406_726_24, 0.5, 0.853_553_390_593_273_8];
 
-/// A located change: its time, and the relation; beyond the relations, the margin of a slide.
+/// A located change: its time, and the relations that change; beyond the relations, the margin of a slide.
 pub(crate) struct Crossing {
     pub(crate) t: f64,
-    pub(crate) relation: usize,
+    pub(crate) relations: Vec<usize>,
 }
 
 /// The relations to watch: in equations, in `when` and `assert`, and in exits of current modes. Scheduled ones are not
@@ -106,7 +106,7 @@ pub(crate) fn first_change(
 }
 
 /// Halvings of a piece of a step in which a root function may reach zero between two points.
-const MAX_HALVINGS: usize = 6;
+const MAX_HALVINGS: usize = 12;
 
 /// The search for the first change.
 struct Search<'s> {
@@ -248,10 +248,8 @@ fn locate(
             remaining = changed;
         }
     }
-    Crossing {
-        t: b,
-        relation: remaining[0].number,
-    }
+    let relations = remaining.iter().map(|watched| watched.number).collect();
+    Crossing { t: b, relations }
 }
 
 /// Evaluates root functions on the interpolant, and the margins of slides.

@@ -1,12 +1,13 @@
 //! [`Integrator`]: the state, with a solver if there is anything to solve.
 //!
-//! The places left open for speed (own Newton iteration with the model's own linear solver, time events without restart)
-//! are here and in hyde-ida, behind this type.
+//! What the tolerances of a step are is decided here; how a step is taken, by the [`Solver`] inside.
 
 use crate::failure::{Failure, FailureKind};
+use crate::first_step::FirstStep;
 use crate::setup::Setup;
+use crate::solver::Solver;
 use crate::state::State;
-use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern};
+use hyde_ida::Error;
 
 /// The state of a run and the solver that advances it.
 pub(crate) struct Integrator<'a> {
@@ -15,8 +16,6 @@ pub(crate) struct Integrator<'a> {
     pub(crate) y: Vec<f64>,
     pub(crate) yp: Vec<f64>,
     tolerances: (f64, f64),
-    /// Factor of the tolerances that the solver gets.
-    share: f64,
     /// Steps since the last start, and the part of the tolerances that a step is given.
     steps: u32,
     part: u32,
@@ -33,12 +32,8 @@ const SMOOTH_AFTER: u32 = 12;
 const LEAST_PART: u32 = 512;
 const LEAST_RTOL: f64 = 2e-11;
 const LEAST_ATOL: f64 = 1e-2 * LEAST_RTOL;
-
-enum Solver<'a> {
-    /// No continuous unknowns: time passes in strides, for guards may still move with it.
-    Nothing(Box<State<'a>>, f64),
-    Ida(Box<Ida<State<'a>>>),
-}
+/// The same for algebraic variables, of the largest value they had: a force is a difference of large ones.
+const LEAST_OF_DIFFERENCES: f64 = 1e-9;
 
 impl<'a> Integrator<'a> {
     /// Starts a solver from consistent values.
@@ -50,64 +45,18 @@ impl<'a> Integrator<'a> {
         yp: Vec<f64>,
         first_step_s: f64,
     ) -> Result<Self, Box<Failure>> {
-        let program = state.program;
-        let stride = state.delays.max_step_s();
-        if program.n_unknowns == 0 {
-            return Ok(Self {
-                solver: Solver::Nothing(
-                    Box::new(state),
-                    setup.max_step_s.min(setup.row_spacing()).min(stride),
-                ),
-                t,
-                y,
-                yp,
-                tolerances: (setup.rtol, setup.atol),
-                share: 1.0,
-                steps: 0,
-                part: 1,
-                largest: Vec::new(),
-                allowed: Vec::new(),
-            });
-        }
-        // A force that holds a state still must bound the steps, or its guards are stepped over. Without guards it need
-        // not, and a transistor amplifier at rtol 1e-8 takes 47 times the steps with it. Without states nothing else would.
-        let guarded = program.relations.iter().any(|relation| !relation.scheduled);
-        let moves = state.differential.contains(&true);
-        let states_alone = moves && (!guarded || !program.selections.is_empty());
-        let share = if states_alone {
-            share_of_states(&state)
-        } else {
-            1.0
-        };
-        let mut options = Options::new(
-            share * setup.rtol,
-            vec![share * setup.atol; program.n_unknowns],
-            state.differential.clone(),
-        );
-        options.max_step_s = setup.max_step_s.min(state.inputs.max_step_s()).min(stride);
-        options.suppress_algebraic = states_alone;
-        options.first_step_s = Some(first_step_s);
-        options.linear_method = LinearMethod::Auto;
-        let failed = |error: Error| Failure::new(FailureKind::Solver(error.to_string()), t);
-        let jacobian = program.jacobian();
-        let pattern = Pattern::new(
-            program.n_unknowns,
-            jacobian.column_starts.clone(),
-            jacobian.rows.clone(),
-        );
-        let pattern = pattern.map_err(|error| failed(Error::from(error)))?;
-        let ida = Ida::new(state, pattern, options, t, &y, &yp).map_err(failed)?;
+        let n = y.len();
+        let solver = Solver::new(state, setup, (t, &y, &yp), first_step_s)?;
         Ok(Self {
-            solver: Solver::Ida(Box::new(ida)),
+            solver,
             t,
             y,
             yp,
             tolerances: (setup.rtol, setup.atol),
-            share,
             steps: 0,
             part: 1,
-            largest: vec![0.0; program.n_unknowns],
-            allowed: vec![0.0; program.n_unknowns],
+            largest: vec![0.0; n],
+            allowed: vec![0.0; n],
         })
     }
 
@@ -117,17 +66,11 @@ impl<'a> Integrator<'a> {
     }
 
     pub(crate) fn state(&self) -> &State<'a> {
-        match &self.solver {
-            Solver::Nothing(state, _) => state,
-            Solver::Ida(ida) => ida.system(),
-        }
+        self.solver.state()
     }
 
     pub(crate) fn state_mut(&mut self) -> &mut State<'a> {
-        match &mut self.solver {
-            Solver::Nothing(state, _) => state,
-            Solver::Ida(ida) => ida.system_mut(),
-        }
+        self.solver.state_mut()
     }
 
     /// One step, never past `stop`. Returns where the step began.
@@ -144,16 +87,9 @@ impl<'a> Integrator<'a> {
         } else if self.has_grown() {
             self.set_tolerances(self.part)?;
         }
-        match &mut self.solver {
-            Solver::Nothing(_, stride) => self.t = stop.min(before + *stride),
-            Solver::Ida(ida) => {
-                if let Err(error) = ida.step(stop) {
-                    return Err(self.failure(&error));
-                }
-                self.t = ida.t();
-                self.y.copy_from_slice(ida.y());
-                self.yp.copy_from_slice(ida.yp());
-            }
+        match self.solver.step(before, stop, &mut self.y, &mut self.yp) {
+            Ok(t) => self.t = t,
+            Err(error) => return Err(self.failure(&error)),
         }
         self.apply_pins();
         for (largest, value) in self.largest.iter_mut().zip(&self.y) {
@@ -162,22 +98,36 @@ impl<'a> Integrator<'a> {
         Ok(before)
     }
 
+    /// Takes the last step once more, to end at `end`; returns false where the method cannot.
+    pub(crate) fn step_again(&mut self, end: f64) -> Result<bool, Box<Failure>> {
+        match self.solver.step_again(end, &mut self.y, &mut self.yp) {
+            Ok(None) => return Ok(false),
+            Ok(Some(t)) => self.t = t,
+            Err(error) => return Err(self.failure(&error)),
+        }
+        self.apply_pins();
+        Ok(true)
+    }
+
     /// The solution at a time within the last step.
+    pub(crate) fn solution(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) {
+        let inside = t.to_bits() != self.t.to_bits();
+        let found = inside && self.solver.solution(t, y, yp);
+        self.finish(found, t, y, yp);
+    }
+
+    /// The same, good enough to look for events.
     pub(crate) fn interpolate(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) {
-        match &self.solver {
-            Solver::Ida(ida) if t.to_bits() != self.t.to_bits() => {
-                let inside = ida
-                    .interpolate(t, 0, y)
-                    .and_then(|()| ida.interpolate(t, 1, yp));
-                if inside.is_err() {
-                    y.copy_from_slice(&self.y);
-                    yp.copy_from_slice(&self.yp);
-                }
-            }
-            Solver::Ida(_) | Solver::Nothing(..) => {
-                y.copy_from_slice(&self.y);
-                yp.copy_from_slice(&self.yp);
-            }
+        let inside = t.to_bits() != self.t.to_bits();
+        let found = inside && self.solver.interpolate(t, y, yp);
+        self.finish(found, t, y, yp);
+    }
+
+    /// Exact values where they are known; at the end of a step those that are there.
+    fn finish(&mut self, found: bool, t: f64, y: &mut [f64], yp: &mut [f64]) {
+        if !found {
+            y.copy_from_slice(&self.y);
+            yp.copy_from_slice(&self.yp);
         }
         let state = self.state_mut();
         state.apply_pins(y, yp);
@@ -185,23 +135,14 @@ impl<'a> Integrator<'a> {
     }
 
     /// Starts anew after an event.
-    pub(crate) fn restart(&mut self, first_step_s: f64) -> Result<(), Box<Failure>> {
+    pub(crate) fn restart(&mut self, first: &FirstStep) -> Result<(), Box<Failure>> {
         self.apply_pins();
         if self.steps >= 2 * SMOOTH_AFTER || self.has_grown() {
             self.set_tolerances(1)?;
         }
         self.steps = 0;
-        if let Solver::Ida(ida) = &mut self.solver {
-            // States chosen anew are the ones whose errors count from here.
-            let differential = ida.system().differential.clone();
-            let started = ida
-                .set_differential(&differential)
-                .and_then(|()| ida.reinit(self.t, &self.y, &self.yp, Some(first_step_s)));
-            if let Err(error) = started {
-                return Err(self.failure(&error));
-            }
-        }
-        Ok(())
+        let started = self.solver.restart(self.t, &self.y, &self.yp, first);
+        started.map_err(|error| self.failure(&error))
     }
 
     /// The largest value of each unknown so far; none where there is nothing to solve.
@@ -210,10 +151,7 @@ impl<'a> Integrator<'a> {
     }
 
     pub(crate) fn statistics(&self) -> hyde_ida::Statistics {
-        match &self.solver {
-            Solver::Ida(ida) => ida.statistics(),
-            Solver::Nothing(..) => hyde_ida::Statistics::default(),
-        }
+        self.solver.statistics()
     }
 
     /// Whether an algebraic variable is twice as large as the tolerances know.
@@ -230,27 +168,24 @@ impl<'a> Integrator<'a> {
         let (rtol, atol) = self.tolerances;
         self.part = part;
         let part = f64::from(part);
-        if let Solver::Ida(ida) = &mut self.solver {
-            let least = atol.min(LEAST_ATOL);
-            self.allowed.copy_from_slice(&self.largest);
-            let differential = &ida.system().differential;
-            let atol: Vec<f64> = differential
-                .iter()
-                .zip(&self.allowed)
-                .map(|(state, largest)| {
-                    let own = if *state {
-                        atol
-                    } else {
-                        atol.max(rtol * largest)
-                    };
-                    self.share * (own / part).max(least)
-                })
-                .collect();
-            if let Err(error) = ida.set_tolerances(self.share * rtol / part, &atol) {
-                return Err(self.failure(&error));
-            }
-        }
-        Ok(())
+        let least = atol.min(LEAST_ATOL);
+        self.allowed.copy_from_slice(&self.largest);
+        let differential = &self.solver.state().differential;
+        let each: Vec<f64> = differential
+            .iter()
+            .zip(&self.allowed)
+            .map(|(state, largest)| {
+                let (own, least) = if *state {
+                    (atol, least)
+                } else {
+                    let own = atol.max(rtol * largest);
+                    (own, own.min(LEAST_OF_DIFFERENCES * largest))
+                };
+                (own / part).max(least)
+            })
+            .collect();
+        let set = self.solver.set_tolerances(rtol / part, &each);
+        set.map_err(|error| self.failure(&error))
     }
 
     /// Exact values where modes fix states, and on the surfaces that the run slides on.
@@ -258,10 +193,7 @@ impl<'a> Integrator<'a> {
         let Self {
             solver, t, y, yp, ..
         } = self;
-        let state: &mut State<'_> = match solver {
-            Solver::Nothing(state, _) => state,
-            Solver::Ida(ida) => ida.system_mut(),
-        };
+        let state = solver.state_mut();
         state.apply_pins(y, yp);
         state.put_on_surfaces(*t, y, yp);
     }
@@ -306,11 +238,4 @@ impl<'a> Integrator<'a> {
         }
         failure
     }
-}
-
-/// Where the errors of states alone count, IDA leaves the others out of the norm but divides by the number of all
-/// unknowns. The factor undoes that: the norm is the mean over the states.
-fn share_of_states(state: &State<'_>) -> f64 {
-    let states = state.differential.iter().filter(|&&is| is).count();
-    (states as f64 / state.differential.len() as f64).sqrt()
 }

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! initial      start values, initial equations, first modes                         initial.rs
-//! loop         one step of IDA, never past the next instant known beforehand        integrator.rs
+//! loop         one step, never past the next instant known beforehand               integrator.rs
+//!              of IDA, or of a method that starts anew at no cost                   solver.rs, runge_kutta.rs
 //!              states chosen anew where constraints tie them                     selection.rs
 //!              guards checked on the step's interpolant; the first crossing located guards.rs
 //!              events: reactions, ticks, held values, until nothing fires           events.rs, clocks.rs
@@ -31,6 +32,7 @@ mod meter;
 mod operating_point;
 mod results;
 mod root_rates;
+mod runge_kutta;
 mod selection;
 mod sensitivity;
 mod setup;
@@ -38,6 +40,7 @@ mod simulation;
 mod singular;
 mod slides;
 mod sliding;
+mod solver;
 mod start_modes;
 mod state;
 mod surfaces;

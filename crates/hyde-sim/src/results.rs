@@ -1,6 +1,7 @@
 //! [`Results`]: rows over time, the event log, and what the solver did.
 
 use hyde_diag::Origin;
+use hyde_program::Method;
 
 /// What happened.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +46,8 @@ pub struct Event {
 /// What the solver did.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Statistics {
+    /// The method that was taken.
+    pub method: Method,
     /// Accepted steps.
     pub steps: u64,
     /// Evaluations of the residual by the solver.

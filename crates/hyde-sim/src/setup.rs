@@ -1,5 +1,6 @@
 //! [`Setup`]: what a run is told beside its program.
 
+use hyde_program::Method;
 use hyde_signal::Table;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -16,6 +17,8 @@ pub struct Setup<'a> {
     pub start_s: f64,
     /// Stop in s.
     pub stop_s: f64,
+    /// The method.
+    pub method: Method,
     /// Relative tolerance.
     pub rtol: f64,
     /// Absolute tolerance, SI.
@@ -42,6 +45,7 @@ impl<'a> Setup<'a> {
             records,
             start_s: 0.0,
             stop_s,
+            method: Method::default(),
             rtol: 1e-6,
             atol: 1e-8,
             max_step_s: f64::INFINITY,

@@ -8,7 +8,7 @@ use crate::consistent::Consistent;
 use crate::delays;
 use crate::failure::{Failure, FailureKind};
 use crate::first_step::first_step;
-use crate::guards;
+use crate::guards::{self, Crossing};
 use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
@@ -17,6 +17,7 @@ use crate::results::{Gradient, Results};
 use crate::selection;
 use crate::sensitivity::{Cause, Sensitivities};
 use crate::setup::{Setup, same_instant};
+use crate::solver::method;
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
 use crate::time_spent::count_modes;
@@ -25,6 +26,9 @@ use std::sync::atomic::Ordering;
 
 /// Relations that are not settled after so many solutions of the initial equations contradict them.
 const MAX_ROUNDS_AT_START: usize = 20;
+
+/// How far behind its event a step that is taken once more ends, as a part of it.
+const JUST_BEHIND: f64 = 0.01;
 
 /// A run under way.
 pub(crate) struct Simulation<'a> {
@@ -37,6 +41,8 @@ pub(crate) struct Simulation<'a> {
     results: Results,
     next_row: usize,
     outputs: Vec<f64>,
+    /// The relations that brought the run where it is.
+    crossed: Vec<usize>,
     hurry: Hurry,
     meter: Option<Meter<'a>>,
     sensitivities: Option<Sensitivities>,
@@ -105,6 +111,7 @@ impl<'a> Simulation<'a> {
             results,
             next_row: 0,
             outputs: vec![0.0; program.outputs.len()],
+            crossed: Vec::new(),
             hurry: Hurry::default(),
             meter: Meter::new(&program.experiment.ledger),
             sensitivities,
@@ -234,8 +241,7 @@ impl<'a> Simulation<'a> {
             if let Some(kind) = self.hurry.no_way(self.integrator.t, self.setup) {
                 return Err(self.no_way(kind, target));
             }
-            let crossing =
-                guards::first_change(&mut self.integrator, &mut self.consistent, &watched, from);
+            let crossing = self.first_crossing(&watched, from)?;
             let end = crossing
                 .as_ref()
                 .map_or(self.integrator.t, |crossing| crossing.t);
@@ -265,7 +271,8 @@ impl<'a> Simulation<'a> {
                 self.integrator.y = y;
                 self.integrator.yp = yp;
                 self.advance_sensitivities();
-                let relation = crossing.relation;
+                let relation = crossing.relations[0];
+                self.crossed = crossing.relations;
                 return Ok(Some(Cause::Crossing { relation, from }));
             }
             if let Some(sensitivities) = &mut self.sensitivities {
@@ -280,6 +287,27 @@ impl<'a> Simulation<'a> {
             }
             if there {
                 return Ok(None);
+            }
+        }
+    }
+
+    /// The first crossing in the last step, which began at `from`. A one-step method takes a step that ends in an event once
+    /// more, so that it ends just behind it: there its interpolant is as exact as its ends.
+    fn first_crossing(
+        &mut self,
+        watched: &[usize],
+        from: f64,
+    ) -> Result<Option<Crossing>, Box<Failure>> {
+        loop {
+            let (integrator, consistent) = (&mut self.integrator, &mut self.consistent);
+            let found = guards::first_change(integrator, consistent, watched, from);
+            let Some(crossing) = &found else {
+                return Ok(None);
+            };
+            let (before, behind) = (crossing.t - from, integrator.t - crossing.t);
+            let at_an_end = before.min(behind) < 2.0 * JUST_BEHIND * (before + behind);
+            if at_an_end || !integrator.step_again(crossing.t + JUST_BEHIND * before)? {
+                return Ok(found);
             }
         }
     }
@@ -308,7 +336,7 @@ impl<'a> Simulation<'a> {
     /// Starts the solver anew, with a first step that the curvature of the solution allows.
     fn restart(&mut self) -> Result<(), Box<Failure>> {
         let step = first_step(&mut self.integrator, &mut self.consistent, self.setup);
-        self.integrator.restart(step)
+        self.integrator.restart(&step)
     }
 
     /// Adds a stretch of the last step to the energy ledger.
@@ -319,7 +347,7 @@ impl<'a> Simulation<'a> {
         let n = self.program.n_unknowns;
         let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
         let outputs = Meter::times(from, to).map(|t| {
-            self.integrator.interpolate(t, &mut y, &mut yp);
+            self.integrator.solution(t, &mut y, &mut yp);
             let state = self.integrator.state_mut();
             self.consistent.refine(state, t, &mut y, &mut yp);
             self.values_at(t, &y, &yp);
@@ -369,6 +397,7 @@ impl<'a> Simulation<'a> {
     fn close(&mut self) {
         let solver = self.integrator.statistics();
         let statistics = &mut self.results.statistics;
+        statistics.method = method(self.program, self.setup.method);
         statistics.steps = solver.steps;
         statistics.residual_evaluations = solver.residual_evaluations;
         statistics.jacobian_evaluations = solver.jacobian_evaluations;

@@ -43,7 +43,8 @@ fn a_bridge_of_four_switching_resistances() {
         close(source, (first - p) / on + first / off, 1e-6);
         close((first - p) / on + (second - p) / off, p / r, 1e-6);
         close(source, (p - second) / off - second / on, 1e-6);
-        assert!(p >= -1e-12, "the load's voltage is rectified: {p}");
+        // Where it switches it changes by 60 V/s, and an instant is known to 1e-12 s.
+        assert!(p >= -1e-10, "the load's voltage is rectified: {p}");
     }
 }
 

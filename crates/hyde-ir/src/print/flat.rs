@@ -1,7 +1,7 @@
 //! Prints a [`FlatModel`].
 
 use super::{Names, comment, counted};
-use crate::flat::{Action, Equation, FlatModel, Preparation, ReductionKind, Stop};
+use crate::flat::{Action, Equation, FlatModel, Method, Preparation, ReductionKind, Stop};
 
 use crate::{Interpolation, VariableKind};
 use hyde_diag::Sources;
@@ -359,6 +359,11 @@ impl Printer<'_> {
                 .map(|curve| self.names.expr(curve.value))
                 .collect();
             let _ = writeln!(out, "  figure {} = {}", figure.name, curves.join(", "));
+        }
+        match experiment.method {
+            Method::Ida => {}
+            Method::Esdirk => out.push_str("  solve esdirk\n"),
+            Method::Auto => out.push_str("  solve auto\n"),
         }
         for (name, value) in &experiment.solve {
             let _ = writeln!(out, "  solve {name} = {}", self.names.expr(*value));

@@ -106,6 +106,7 @@ impl Simulation<'_> {
             conditions: &mut self.conditions,
             log: &mut self.results.events,
             sensitivities: self.sensitivities.as_mut(),
+            crossed: std::mem::take(&mut self.crossed),
         }
         .iterate(scheduled, at_start);
         self.integrator.y = y;

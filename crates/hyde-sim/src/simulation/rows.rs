@@ -23,7 +23,7 @@ impl Simulation<'_> {
             let t = t.min(end);
             let n = self.program.n_unknowns;
             let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-            self.integrator.interpolate(t, &mut y, &mut yp);
+            self.integrator.solution(t, &mut y, &mut yp);
             let state = self.integrator.state_mut();
             self.consistent.refine(state, t, &mut y, &mut yp);
             let values = self.values_at(t, &y, &yp);

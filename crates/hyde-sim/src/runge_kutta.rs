@@ -1,0 +1,301 @@
+//! [`RungeKutta`]: a one-step method for `0 = F(t, y, y')`, which starts anew at an event at no cost.
+//!
+//! Backward differentiation begins at order 1 with small steps wherever something jumps; where a clock ticks every few
+//! milliseconds that is most of its work. A one-step method has no past to lose: it goes on with the step it had.
+//!
+//! Six implicit stages ([`stages`]) of order 5; the last stage is the end of the step, so algebraic variables satisfy
+//! their equations there, and what is infinitely stiff is damped out at once ([`tableau`]). The step follows the estimated
+//! error (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.8), but is kept while it is nearly
+//! right, for each new one takes a factorization.
+
+mod stages;
+mod tableau;
+
+use hyde_ida::{
+    Error, Failure, FailureKind, LinearMethod, Pattern, SparseSolver, Statistics, System,
+};
+use stages::Obstacle;
+use tableau::{BUBBLE, STAGES};
+
+/// Of the step that the estimated error allows, the part that is taken.
+const SAFETY: f64 = 0.9;
+/// The factors between which a step may be to the one before. After a step that failed it does not grow.
+const SHRINK: f64 = 0.2;
+const GROW: f64 = 6.0;
+/// A step that could be longer by less is kept.
+const KEEP: f64 = 1.2;
+/// What an obstacle other than the error makes of a step.
+const RETREAT: f64 = 0.25;
+/// Attempts at a step.
+const MAX_ATTEMPTS: usize = 40;
+/// The last slope: y' at the end of the step.
+const LAST: usize = STAGES - 1;
+
+/// A solver of one system, standing at the end of a step. Time runs forward.
+pub(crate) struct RungeKutta<S> {
+    system: S,
+    linear: SparseSolver,
+    matrix: Vec<f64>,
+    /// The step, in s, that the factors are for; none if they are of no use.
+    factored_s: Option<f64>,
+    /// Whether the factors are of the point where the step begins.
+    fresh: bool,
+    /// What an iteration of Newton's method leaves of the error, as last measured.
+    contraction: Option<f64>,
+    rtol: f64,
+    atol: Vec<f64>,
+    /// The unknowns whose errors count, and those that are states.
+    counts: Vec<bool>,
+    differential: Vec<bool>,
+    /// The largest value of each unknown at the end of a step.
+    largest: Vec<f64>,
+    max_step_s: f64,
+    next_step_s: f64,
+    from: f64,
+    before: Vec<f64>,
+    t: f64,
+    y: Vec<f64>,
+    /// y' of each stage, and room for those of another step.
+    slopes: Vec<Vec<f64>>,
+    others: Vec<Vec<f64>>,
+    /// Whether the interpolant of the last step is as exact as its end: so it is for what is neither stiff nor algebraic.
+    smooth: bool,
+    /// 1 over the tolerance of each unknown.
+    weights: Vec<f64>,
+    stage: Vec<f64>,
+    base: Vec<f64>,
+    correction: Vec<f64>,
+    statistics: Statistics,
+}
+
+impl<S: System> RungeKutta<S> {
+    /// A solver that stands at consistent values at `t` (in s). The errors of states count, those of algebraic variables
+    /// where they are `watched`.
+    pub(crate) fn new(
+        system: S,
+        pattern: Pattern,
+        differential: Vec<bool>,
+        watched: bool,
+        max_step_s: f64,
+        (t, y, yp): (f64, &[f64], &[f64]),
+    ) -> Result<Self, Error> {
+        let (n, entries) = (pattern.n(), pattern.n_entries());
+        let mut slopes = vec![vec![0.0; n]; STAGES];
+        slopes[LAST].copy_from_slice(yp);
+        Ok(Self {
+            system,
+            linear: SparseSolver::new(pattern, LinearMethod::Auto)?,
+            matrix: vec![0.0; entries],
+            factored_s: None,
+            fresh: false,
+            contraction: None,
+            rtol: 0.0,
+            atol: vec![1.0; n],
+            counts: differential.iter().map(|is| *is || watched).collect(),
+            differential,
+            largest: y.iter().map(|value| value.abs()).collect(),
+            max_step_s,
+            next_step_s: f64::INFINITY,
+            from: t,
+            before: y.to_vec(),
+            t,
+            y: y.to_vec(),
+            others: slopes.clone(),
+            slopes,
+            smooth: true,
+            weights: vec![0.0; n],
+            stage: vec![0.0; n],
+            base: vec![0.0; n],
+            correction: vec![0.0; n],
+            statistics: Statistics::default(),
+        })
+    }
+
+    pub(crate) fn system(&self) -> &S {
+        &self.system
+    }
+
+    pub(crate) fn system_mut(&mut self) -> &mut S {
+        &mut self.system
+    }
+
+    /// Time in s, unknowns and their derivatives at the end of the last step.
+    pub(crate) fn end(&self) -> (f64, &[f64], &[f64]) {
+        (self.t, &self.y, &self.slopes[LAST])
+    }
+
+    pub(crate) fn statistics(&self) -> Statistics {
+        self.statistics
+    }
+
+    /// The relative tolerance, and the absolute one of each unknown.
+    pub(crate) fn set_tolerances(&mut self, rtol: f64, atol: &[f64]) {
+        self.rtol = rtol;
+        self.atol.copy_from_slice(atol);
+    }
+
+    /// Goes on from other values, or with other equations, with the step it had or this one (in s) if that is shorter.
+    pub(crate) fn restart(&mut self, t: f64, y: &[f64], yp: &[f64], first_step_s: f64) {
+        self.t = t;
+        self.y.copy_from_slice(y);
+        self.slopes[LAST].copy_from_slice(yp);
+        self.next_step_s = self.next_step_s.min(first_step_s);
+        self.factored_s = None;
+        self.contraction = None;
+        self.statistics.restarts += 1;
+    }
+
+    /// One step, never past `stop` (in s).
+    pub(crate) fn step(&mut self, stop: f64) -> Result<(), Error> {
+        self.from = self.t;
+        std::mem::swap(&mut self.before, &mut self.y);
+        self.slopes.swap(0, LAST);
+        for (index, weight) in self.weights.iter_mut().enumerate() {
+            // An algebraic variable is the difference of large ones wherever it passes zero.
+            let size = match self.differential[index] {
+                true => self.before[index].abs(),
+                false => self.largest[index],
+            };
+            *weight = 1.0 / (self.rtol * size + self.atol[index]);
+        }
+        let (wanted, left) = (self.next_step_s.min(self.max_step_s), stop - self.from);
+        let step = if left <= wanted * (1.0 + 1e-9) {
+            left
+        } else if left < 2.0 * wanted {
+            0.5 * left
+        } else {
+            wanted
+        };
+        let grown = self.take(step, stop)?;
+        // A step cut short says nothing against a longer one.
+        self.next_step_s = if step < wanted && grown >= step {
+            grown.max(wanted)
+        } else {
+            grown
+        };
+        Ok(())
+    }
+
+    /// Takes the last step once more, to end at `end` (in s) inside it or before; the next one is as long as it would
+    /// have been.
+    pub(crate) fn step_again(&mut self, end: f64) -> Result<(), Error> {
+        self.take(end - self.from, end)?;
+        self.statistics.steps -= 1;
+        Ok(())
+    }
+
+    /// Takes a step of this length in s, or as long as it can be. Returns the length of the next.
+    fn take(&mut self, mut step: f64, stop: f64) -> Result<f64, Error> {
+        let (to_stop, mut obstacle) = (step >= stop - self.from, None);
+        for _ in 0..MAX_ATTEMPTS {
+            if step <= 16.0 * f64::EPSILON * self.from.abs() {
+                break;
+            }
+            let met = match self.attempt(step) {
+                Ok((error, worst)) => {
+                    let factor = SAFETY * error.max(f64::MIN_POSITIVE).powf(-0.2);
+                    if error <= 1.0 {
+                        std::mem::swap(&mut self.y, &mut self.stage);
+                        let whole = to_stop && obstacle.is_none();
+                        self.t = if whole { stop } else { self.from + step };
+                        self.statistics.steps += 1;
+                        for (largest, value) in self.largest.iter_mut().zip(&self.y) {
+                            *largest = largest.max(value.abs());
+                        }
+                        let most = if obstacle.is_some() { 1.0 } else { GROW };
+                        let factor = factor.clamp(SHRINK, most);
+                        let keep = (1.0..KEEP).contains(&factor);
+                        return Ok(if keep { step } else { step * factor });
+                    }
+                    self.statistics.error_test_failures += 1;
+                    step *= factor.clamp(SHRINK, SAFETY);
+                    Obstacle::Error(worst)
+                }
+                Err(met) => {
+                    self.statistics.nonlinear_failures += 1;
+                    step *= RETREAT;
+                    met
+                }
+            };
+            obstacle = Some(met);
+        }
+        Err(self.failure(obstacle, step))
+    }
+
+    fn failure(&self, obstacle: Option<Obstacle>, step_s: f64) -> Error {
+        let (kind, unknown, equation) = match obstacle {
+            Some(Obstacle::Residual(equation)) => (FailureKind::Residual, None, equation),
+            Some(Obstacle::Jacobian) => (FailureKind::Jacobian, None, None),
+            Some(Obstacle::Singular(unknown)) => {
+                (FailureKind::SingularJacobian, Some(unknown), None)
+            }
+            Some(Obstacle::Convergence(unknown)) => (FailureKind::Convergence, Some(unknown), None),
+            Some(Obstacle::Error(unknown)) => (FailureKind::ErrorTest, Some(unknown), None),
+            None => (FailureKind::ErrorTest, None, None),
+        };
+        Error::Failed(Box::new(Failure {
+            kind,
+            t: self.from,
+            step_s,
+            unknown,
+            equation,
+            root: None,
+            flag: "",
+            message: String::new(),
+        }))
+    }
+
+    /// The solution at a time (in s) within the last step, as exact as at its end: the end of a shorter step where the
+    /// interpolant is not.
+    pub(crate) fn solution(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) {
+        let smooth = self.smooth;
+        if !smooth {
+            std::mem::swap(&mut self.slopes, &mut self.others);
+            self.slopes[0].copy_from_slice(&self.others[0]);
+            let reached = self.attempt(t - self.from).is_ok();
+
+            if reached {
+                y.copy_from_slice(&self.stage);
+                yp.copy_from_slice(&self.slopes[LAST]);
+            }
+            std::mem::swap(&mut self.slopes, &mut self.others);
+            self.smooth = smooth;
+            if reached {
+                return;
+            }
+        }
+        self.interpolate(t, y, yp);
+    }
+
+    /// The same by the interpolant: a polynomial of degree 4, which meets both ends with their
+    /// slopes. Good enough to see what happens inside a step.
+    pub(crate) fn interpolate(&self, t: f64, y: &mut [f64], yp: &mut [f64]) {
+        let h = self.t - self.from;
+        let s = (t - self.from) / h;
+        let rest = 1.0 - s;
+        // Of the value and of the slope: the share of the rise, of both slopes, and of what is beyond the cubic.
+        let rise = (s * s * (3.0 - 2.0 * s), 6.0 * s * rest / h);
+        let first = (h * s * rest * rest, rest * (1.0 - 3.0 * s));
+        let last = (-h * s * s * rest, s * (3.0 * s - 2.0));
+        let bubble = (h * (s * rest).powi(2), 2.0 * s * rest * (1.0 - 2.0 * s));
+        let mut shares = BUBBLE.map(|part| (part * bubble.0, part * bubble.1));
+        for (share, more) in [(0, first), (LAST, last)] {
+            shares[share].0 += more.0;
+            shares[share].1 += more.1;
+        }
+        for index in 0..y.len() {
+            let step = self.y[index] - self.before[index];
+            y[index] = self.before[index] + rise.0 * step;
+            yp[index] = rise.1 * step;
+        }
+        for ((value, rate), slopes) in shares.into_iter().zip(&self.slopes) {
+            for ((y, yp), slope) in y.iter_mut().zip(yp.iter_mut()).zip(slopes) {
+                *y += value * slope;
+                *yp += rate * slope;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,232 @@
+//! The stages of a step, each solved by Newton's method, and the estimated error.
+//!
+//! ```text
+//! Y[i] = y + h*sum(a[i][j]*K[j] for j in 0..i),   0 = F(t + c[i]*h, Y[i], K[i])
+//! ```
+//!
+//! K[0] is y' where the step begins. All stages share one matrix, `dF/dy + 1/(h*gamma) dF/dy'`: it is factored when the
+//! step changes, and when the iteration contracts slowly. A linear system is solved by the first iteration, so the
+//! contraction measured last decides whether one is enough; the last stage is always iterated twice, which measures it.
+
+use super::tableau::{A, C, ERROR, GAMMA, INSIDE, STAGES};
+use super::{LAST, RungeKutta};
+use hyde_ida::System;
+
+/// Newton iterations of a stage at most.
+const MAX_ITERATIONS: usize = 7;
+/// What the iteration may leave, in units of the tolerance of a step.
+const LEFT: f64 = 0.02;
+/// What it may have left where it trusted a contraction that was better than the next one measured.
+const MOST_LEFT: f64 = 0.1;
+/// Corrections below this, in the same units, are rounding.
+const ROUNDING: f64 = 1e-8;
+/// A contraction slower than this asks for a new matrix, one slower than that gives up.
+const SLOW: f64 = 0.2;
+const TOO_SLOW: f64 = 0.9;
+
+/// Inside a step what is stiff or algebraic may be wrong by this part of the largest value it had: guards are found, and
+/// located where a step ends.
+const SEEN: f64 = 1e-3;
+
+/// Why a step cannot be as long as tried.
+pub(super) enum Obstacle {
+    /// The residual has no value: that of an equation, if it is known.
+    Residual(Option<usize>),
+    /// The Jacobian has no value.
+    Jacobian,
+    /// The matrix has no pivot for an unknown.
+    Singular(usize),
+    /// Newton's method does not converge; the unknown corrected most.
+    Convergence(usize),
+    /// The estimated error is too large; the unknown with the largest.
+    Error(usize),
+}
+
+impl<S: System> RungeKutta<S> {
+    /// The stages of a step of `h` s from where it begins. Leaves its end in `stage`; returns the estimated error in units
+    /// of the tolerance, and the unknown with the largest.
+    pub(super) fn attempt(&mut self, h: f64) -> Result<(f64, usize), Obstacle> {
+        self.fresh = false;
+        loop {
+            if self.factored_s != Some(h) {
+                self.factor(h)?;
+            }
+            match self.stages(h) {
+                Ok(()) => break,
+                Err(obstacle) => {
+                    self.factored_s = None;
+                    self.contraction = None;
+                    if self.fresh {
+                        return Err(obstacle);
+                    }
+                }
+            }
+        }
+        if self.contraction.is_some_and(|rate| rate > SLOW) && !self.fresh {
+            self.factored_s = None;
+        }
+        self.error(h)
+    }
+
+    fn factor(&mut self, h: f64) -> Result<(), Obstacle> {
+        self.statistics.jacobian_evaluations += 1;
+        self.factored_s = None;
+        let cj = 1.0 / (GAMMA * h);
+        let (y, yp) = (&self.before, &self.slopes[0]);
+        let evaluated = self.system.jacobian(self.from, cj, y, yp, &mut self.matrix);
+        if evaluated.is_err() || self.matrix.iter().any(|entry| !entry.is_finite()) {
+            return Err(Obstacle::Jacobian);
+        }
+        self.linear
+            .factor(&self.matrix)
+            .map_err(|singular| Obstacle::Singular(singular.unknown))?;
+        self.factored_s = Some(h);
+        self.fresh = true;
+        Ok(())
+    }
+
+    fn stages(&mut self, h: f64) -> Result<(), Obstacle> {
+        // Once more if the contraction turns out to be less than the one that earlier stages trusted.
+        for _ in 0..2 {
+            let mut trusted = 0.0_f64;
+            for i in 1..STAGES {
+                self.predict(i, h);
+                trusted = trusted.max(self.iterate(i, h)?);
+            }
+            let left = self.contraction.map_or(0.0, |rate| rate * trusted);
+            if left <= MOST_LEFT {
+                return Ok(());
+            }
+        }
+        Err(Obstacle::Convergence(self.most_corrected()))
+    }
+
+    /// What the earlier stages say of a stage, and a first guess: a slope that goes on as in the first two.
+    fn predict(&mut self, i: usize, h: f64) {
+        let (earlier, slope) = self.slopes.split_at_mut(i);
+        self.base.copy_from_slice(&self.before);
+        for (weight, slope) in A[i].iter().zip(&*earlier) {
+            let factor = h * weight;
+            for (base, slope) in self.base.iter_mut().zip(slope) {
+                *base += factor * slope;
+            }
+        }
+        let (first, second) = (&earlier[0], &earlier[1.min(i - 1)]);
+        let (part, diagonal) = (C[i] / C[1], h * GAMMA);
+        for (index, slope) in slope[0].iter_mut().enumerate() {
+            *slope = first[index] + part * (second[index] - first[index]);
+            self.stage[index] = self.base[index] + diagonal * *slope;
+        }
+    }
+
+    /// Newton's method for a stage. Returns the size of the only correction, or 0 if there were more.
+    fn iterate(&mut self, i: usize, h: f64) -> Result<f64, Obstacle> {
+        let (t, cj) = (self.from + C[i] * h, 1.0 / (GAMMA * h));
+        let mut last = f64::INFINITY;
+        for iteration in 0..MAX_ITERATIONS {
+            self.statistics.residual_evaluations += 1;
+            self.statistics.nonlinear_iterations += 1;
+            let slope = &mut self.slopes[i];
+            self.system
+                .residual(t, &self.stage, slope, &mut self.correction)
+                .map_err(|_| Obstacle::Residual(None))?;
+            if let Some(row) = self.correction.iter().position(|value| !value.is_finite()) {
+                return Err(Obstacle::Residual(Some(row)));
+            }
+            self.linear.solve(&mut self.correction);
+            for (index, correction) in self.correction.iter().enumerate() {
+                self.stage[index] -= correction;
+                slope[index] -= cj * correction;
+            }
+            let size = self.size_of_correction();
+            if !size.is_finite() {
+                break;
+            }
+            if iteration > 0 {
+                // It falls slowly, for the next stage may be worse.
+                let before = self.contraction.unwrap_or(0.0);
+                self.contraction = Some((size / last).max(0.5 * before));
+                // What no longer contracts but is small is rounding.
+                if size > TOO_SLOW * last {
+                    if size > LEFT {
+                        break;
+                    }
+                    return Ok(0.0);
+                }
+            }
+            let measures = i + 1 == STAGES && iteration == 0;
+            let converged = self
+                .contraction
+                .is_some_and(|rate| rate < TOO_SLOW && rate * size <= LEFT * (1.0 - rate));
+            if size <= ROUNDING || converged && !measures {
+                return Ok(if iteration == 0 { size } else { 0.0 });
+            }
+            last = size;
+        }
+        Err(Obstacle::Convergence(self.most_corrected()))
+    }
+
+    /// The root mean square of the estimated errors that count, and the unknown with the largest.
+    ///
+    /// The difference of the two formulas is one of states, and too large where they are stiff (L. F. Shampine, Math. Comp.
+    /// 33 (1979) 521: it grows with h times the Jacobian). What Newton's method makes of it as a change of y' is right
+    /// there, and is the error of algebraic variables as well, as far as it comes from states.
+    fn error(&mut self, h: f64) -> Result<(f64, usize), Obstacle> {
+        let cj = 1.0 / (GAMMA * h);
+        let (earlier, last) = self.slopes.split_at(LAST);
+        let end = &last[0];
+        let (mut unseen, mut rough) = ((0.0, 0), 0.0_f64);
+        for (index, slope) in self.base.iter_mut().enumerate() {
+            let (mut error, mut inside) = (ERROR[LAST] * end[index], INSIDE[LAST] * end[index]);
+            for ((part, within), slopes) in ERROR.iter().zip(INSIDE).zip(earlier) {
+                error += part * slopes[index];
+                inside += within * slopes[index];
+            }
+            *slope = end[index] + cj * h * error;
+            rough = rough.max((h * error * self.weights[index]).abs());
+            if self.counts[index] {
+                let largest = self.largest[index].max(self.stage[index].abs());
+                let part = h * inside.abs() / (SEEN * largest + self.atol[index]);
+                if part > unseen.0 {
+                    unseen = (part, index);
+                }
+            }
+        }
+        self.smooth = rough <= 1.0;
+        self.statistics.residual_evaluations += 1;
+        self.system
+            .residual(self.from + h, &self.stage, &self.base, &mut self.correction)
+            .map_err(|_| Obstacle::Residual(None))?;
+        self.linear.solve(&mut self.correction);
+        let error = self.size_of_correction();
+        if !error.is_finite() {
+            return Err(Obstacle::Residual(None));
+        }
+        Ok(if unseen.0 > error {
+            unseen
+        } else {
+            (error, self.most_corrected())
+        })
+    }
+
+    /// The root mean square over the unknowns that count, in units of their tolerances.
+    fn size_of_correction(&self) -> f64 {
+        let (mut square, mut count) = (0.0, 0.0);
+        for (index, correction) in self.correction.iter().enumerate() {
+            if self.counts[index] {
+                square += (correction * self.weights[index]).powi(2);
+                count += 1.0;
+            }
+        }
+        (square / f64::max(count, 1.0)).sqrt()
+    }
+
+    fn most_corrected(&self) -> usize {
+        let sizes = self.correction.iter().zip(&self.weights);
+        let largest = sizes
+            .map(|(correction, weight)| (correction * weight).abs())
+            .enumerate()
+            .max_by(|a, b| a.1.total_cmp(&b.1));
+        largest.map_or(0, |(index, _)| index)
+    }
+}

@@ -1,0 +1,233 @@
+//! [`Solver`]: what advances the state, chosen by the run's setup.
+
+use crate::failure::{Failure, FailureKind};
+use crate::first_step::FirstStep;
+use crate::runge_kutta::RungeKutta;
+use crate::setup::Setup;
+use crate::state::State;
+use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern, Statistics};
+use hyde_program::{Method, Program};
+
+/// A solver that owns the state.
+pub(crate) enum Solver<'a> {
+    /// No continuous unknowns: time passes in strides, in s, for guards may still move with it.
+    Nothing {
+        state: Box<State<'a>>,
+        stride_s: f64,
+    },
+    Ida {
+        ida: Box<Ida<State<'a>>>,
+        /// Factor of the tolerances that it gets.
+        share: f64,
+    },
+    RungeKutta(Box<RungeKutta<State<'a>>>),
+}
+
+/// Of the step that is right for order 1, how many times it a Runge-Kutta method may begin with (measured on axes with a
+/// clock: between 10 and 100 it makes little difference, and a step too long is only taken again).
+const LONGER_FIRST_STEP: f64 = 20.0;
+
+/// The method for a program: where clocks tick, one that starts anew at no cost. States that are chosen anew need slopes
+/// of them all, which a Runge-Kutta method has not.
+pub(crate) fn method(program: &Program, asked: Method) -> Method {
+    match asked {
+        Method::Auto if program.clocks.is_empty() => Method::Ida,
+        Method::Auto | Method::Esdirk if program.selections.is_empty() => Method::Esdirk,
+        Method::Auto | Method::Esdirk | Method::Ida => Method::Ida,
+    }
+}
+
+impl<'a> Solver<'a> {
+    /// A solver that stands at consistent values at `t`.
+    pub(crate) fn new(
+        state: State<'a>,
+        setup: &Setup<'_>,
+        (t, y, yp): (f64, &[f64], &[f64]),
+        first_step_s: f64,
+    ) -> Result<Self, Box<Failure>> {
+        let program = state.program;
+        let stride = state.delays.max_step_s();
+        if program.n_unknowns == 0 {
+            let stride_s = setup.max_step_s.min(setup.row_spacing()).min(stride);
+            let state = Box::new(state);
+            return Ok(Self::Nothing { state, stride_s });
+        }
+        // A force that holds a state still must bound the steps, or its guards are stepped over. Without guards it need
+        // not, and a transistor amplifier at rtol 1e-8 takes 47 times the steps with it. Without states nothing else would.
+        let guarded = program.relations.iter().any(|relation| !relation.scheduled);
+        let moves = state.differential.contains(&true);
+        let states_alone = moves && (!guarded || !program.selections.is_empty());
+        let failed = |error: Error| Failure::new(FailureKind::Solver(error.to_string()), t);
+        let jacobian = program.jacobian();
+        let pattern = Pattern::new(
+            program.n_unknowns,
+            jacobian.column_starts.clone(),
+            jacobian.rows.clone(),
+        );
+        let pattern = pattern.map_err(|error| failed(Error::from(error)))?;
+        let max_step_s = setup.max_step_s.min(state.inputs.max_step_s()).min(stride);
+        let atol = vec![setup.atol; program.n_unknowns];
+        if method(program, setup.method) == Method::Esdirk {
+            let (states, watched) = (state.differential.clone(), !states_alone);
+            let start = (t, y, yp);
+            let solver = RungeKutta::new(state, pattern, states, watched, max_step_s, start);
+            let mut solver = Self::RungeKutta(Box::new(solver.map_err(failed)?));
+            solver.set_tolerances(setup.rtol, &atol).map_err(failed)?;
+            return Ok(solver);
+        }
+        let share = if states_alone {
+            share_of_states(&state)
+        } else {
+            1.0
+        };
+        let scaled = atol.iter().map(|atol| share * atol).collect();
+        let mut options = Options::new(share * setup.rtol, scaled, state.differential.clone());
+        options.max_step_s = max_step_s;
+        options.suppress_algebraic = states_alone;
+        options.first_step_s = Some(first_step_s);
+        options.linear_method = LinearMethod::Auto;
+        let ida = Ida::new(state, pattern, options, t, y, yp).map_err(failed)?;
+        let ida = Box::new(ida);
+        Ok(Self::Ida { ida, share })
+    }
+
+    pub(crate) fn state(&self) -> &State<'a> {
+        match self {
+            Self::Nothing { state, .. } => state,
+            Self::Ida { ida, .. } => ida.system(),
+            Self::RungeKutta(solver) => solver.system(),
+        }
+    }
+
+    pub(crate) fn state_mut(&mut self) -> &mut State<'a> {
+        match self {
+            Self::Nothing { state, .. } => state,
+            Self::Ida { ida, .. } => ida.system_mut(),
+            Self::RungeKutta(solver) => solver.system_mut(),
+        }
+    }
+
+    /// One step from `t`, never past `stop`; writes its end to `y` and `yp`, and returns its time.
+    pub(crate) fn step(
+        &mut self,
+        t: f64,
+        stop: f64,
+        y: &mut [f64],
+        yp: &mut [f64],
+    ) -> Result<f64, Error> {
+        match self {
+            Self::Nothing { stride_s, .. } => return Ok(stop.min(t + *stride_s)),
+            Self::Ida { ida, .. } => {
+                ida.step(stop)?;
+            }
+            Self::RungeKutta(solver) => solver.step(stop)?,
+        }
+        Ok(self.end(t, y, yp))
+    }
+
+    /// Takes the last step once more, to end at `end`. `None` where the method cannot.
+    pub(crate) fn step_again(
+        &mut self,
+        end: f64,
+        y: &mut [f64],
+        yp: &mut [f64],
+    ) -> Result<Option<f64>, Error> {
+        let Self::RungeKutta(solver) = self else {
+            return Ok(None);
+        };
+        solver.step_again(end)?;
+        Ok(Some(self.end(end, y, yp)))
+    }
+
+    fn end(&self, t: f64, y: &mut [f64], yp: &mut [f64]) -> f64 {
+        let (t, end, rates) = match self {
+            Self::Nothing { .. } => return t,
+            Self::Ida { ida, .. } => (ida.t(), ida.y(), ida.yp()),
+            Self::RungeKutta(solver) => solver.end(),
+        };
+        y.copy_from_slice(end);
+        yp.copy_from_slice(rates);
+        t
+    }
+
+    /// Writes the solution at a time inside the last step; returns false if there is none.
+    pub(crate) fn solution(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
+        match self {
+            Self::Nothing { .. } | Self::Ida { .. } => self.interpolate(t, y, yp),
+            Self::RungeKutta(solver) => {
+                solver.solution(t, y, yp);
+                true
+            }
+        }
+    }
+
+    /// The same, good enough to see what happens inside a step.
+    pub(crate) fn interpolate(&self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
+        match self {
+            Self::Nothing { .. } => false,
+            Self::Ida { ida, .. } => {
+                let values = ida.interpolate(t, 0, y);
+                values.and_then(|()| ida.interpolate(t, 1, yp)).is_ok()
+            }
+            Self::RungeKutta(solver) => {
+                solver.interpolate(t, y, yp);
+                true
+            }
+        }
+    }
+
+    /// Starts anew after an event.
+    pub(crate) fn restart(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        first: &FirstStep,
+    ) -> Result<(), Error> {
+        match self {
+            Self::Nothing { .. } => Ok(()),
+            Self::Ida { ida, .. } => {
+                // States chosen anew are the ones whose errors count from here.
+                let differential = ida.system().differential.clone();
+                ida.set_differential(&differential)?;
+                let step_s = first.by_curvature_s.min(first.longest_s);
+                ida.reinit(t, y, yp, Some(step_s))
+            }
+            Self::RungeKutta(solver) => {
+                let step_s = LONGER_FIRST_STEP * first.by_curvature_s;
+                solver.restart(t, y, yp, step_s.min(first.longest_s));
+                Ok(())
+            }
+        }
+    }
+
+    /// The relative tolerance of a step, and the absolute one of each unknown.
+    pub(crate) fn set_tolerances(&mut self, rtol: f64, atol: &[f64]) -> Result<(), Error> {
+        match self {
+            Self::Nothing { .. } => Ok(()),
+            Self::Ida { ida, share } => {
+                let atol: Vec<f64> = atol.iter().map(|atol| *share * atol).collect();
+                ida.set_tolerances(*share * rtol, &atol)
+            }
+            Self::RungeKutta(solver) => {
+                solver.set_tolerances(rtol, atol);
+                Ok(())
+            }
+        }
+    }
+
+    pub(crate) fn statistics(&self) -> Statistics {
+        match self {
+            Self::Nothing { .. } => Statistics::default(),
+            Self::Ida { ida, .. } => ida.statistics(),
+            Self::RungeKutta(solver) => solver.statistics(),
+        }
+    }
+}
+
+/// Where the errors of states alone count, IDA leaves the others out of the norm but divides by the number of all
+/// unknowns. The factor undoes that: the norm is the mean over the states.
+fn share_of_states(state: &State<'_>) -> f64 {
+    let states = state.differential.iter().filter(|&&is| is).count();
+    (states as f64 / state.differential.len() as f64).sqrt()
+}
