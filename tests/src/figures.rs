@@ -17,6 +17,7 @@ mod mode_error;
 mod msl;
 mod paper_rows;
 mod promise;
+mod realtime;
 mod residual_cost;
 mod start;
 mod stick;
@@ -42,6 +43,7 @@ pub const FIGURES: &[Figure] = &[
     msl::FIGURE,
     paper_rows::FIGURE,
     mode_error::FIGURE,
+    realtime::FIGURE,
     ivp::PROBLEMS,
     ivp::MIN_DIGITS,
     compile::Y_AXIS,
