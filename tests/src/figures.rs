@@ -22,6 +22,7 @@ mod residual_cost;
 mod start;
 mod stick;
 mod travelling_nut;
+mod two_mass;
 
 pub use promise::{Figure, Measured, Promise, Session};
 pub use start::{START, first_step};
@@ -38,6 +39,10 @@ pub const FIGURES: &[Figure] = &[
     bench::TABLE,
     bench::TACHO,
     bench::ANGLE,
+    two_mass::MOTOR,
+    two_mass::LOAD,
+    two_mass::MOTOR_WITHOUT_DELAY,
+    two_mass::LOAD_WITHOUT_DELAY,
     energy::FIGURE,
     backends::FIGURE,
     msl::FIGURE,

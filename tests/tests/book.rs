@@ -70,6 +70,7 @@ fn commands_print_what_is_shown() {
             .unwrap_or(first.len())
     });
     for (_, text) in &pages {
+        write_data(text, here);
         for block in blocks(text, "```hyde\n") {
             keep(&block.code, here);
         }
@@ -244,10 +245,11 @@ fn timeless(text: &str) -> String {
 /// import it. Its records are those of the bench.
 fn check(code: &str, folder: &Path) -> Output {
     let name = keep(code, folder);
+    let strokes = root().join("examples/bench_axis/strokes.csv");
+    std::fs::copy(strokes, folder.join("strokes.csv")).unwrap();
     Command::new(env!("CARGO_BIN_EXE_hyde-tested"))
         .current_dir(folder)
-        .args(["check", &name, "--data"])
-        .arg(root().join("examples/bench_axis"))
+        .args(["check", &name])
         .output()
         .unwrap()
 }

@@ -1,6 +1,6 @@
 //! [`Recording`]: a record as an observer reads it: evenly sampled, what drives the model beside what was measured.
 
-use hyde_program::{Constant, Program};
+use hyde_program::{Constant, Program, RecordValueKind};
 use hyde_signal::{Cursor, Table};
 use std::collections::BTreeMap;
 
@@ -19,6 +19,9 @@ pub enum RecordError {
     Preparation(String, String),
 }
 
+/// Record and column, which number of it, and the number.
+type RecordedValue = ((String, String), RecordValueKind, f64);
+
 /// A record, at the rows of the first measured channel's table.
 #[derive(Clone, Debug)]
 pub struct Recording {
@@ -33,7 +36,7 @@ pub struct Recording {
     /// Measured channels at the rows, SI.
     pub channels: Vec<Vec<f64>>,
     /// First values of columns, by record and column.
-    first_values: Vec<((String, String), f64)>,
+    record_values: Vec<RecordedValue>,
     /// Driving columns at the rows.
     pub(crate) columns: Vec<Vec<f64>>,
     /// The first row that counts.
@@ -97,16 +100,16 @@ impl Recording {
                 .values();
             columns.push(at_rows(table, values, &time, column.next));
         }
-        let mut first_values = Vec::new();
-        for (_, record, column) in &program.first_values {
-            let source = (record.clone(), column.clone());
-            let table = tables.get(record).ok_or_else(|| missing(&source))?;
-            let column = table.column(column).ok_or_else(|| missing(&source))?;
-            if let Some(&first) = column.values().first() {
-                first_values.push((source, first));
-            }
+        let mut record_values = Vec::new();
+        for known in &program.record_values {
+            let source = (known.record.clone(), known.column.clone());
+            let table = tables.get(&known.record).ok_or_else(|| missing(&source))?;
+            let column = table
+                .column(&known.column)
+                .ok_or_else(|| missing(&source))?;
+            record_values.push((source, known.kind, known.kind.of(column.values())));
         }
-        let p = parameters(program, &first_values, &[]);
+        let p = parameters(program, &record_values, &[]);
         let skip_s = program.kernels.constant(Constant::Skip, &p).unwrap_or(0.0);
         let first_row = time
             .partition_point(|&t| t < skip_s - 1e-12)
@@ -117,7 +120,7 @@ impl Recording {
             start_s: time[0],
             tables,
             channels,
-            first_values,
+            record_values,
             columns,
             first_row,
         })
@@ -131,22 +134,22 @@ impl Recording {
 
     /// The whole parameter vector with some values set (position and value).
     pub(crate) fn parameters(&self, program: &Program, set: &[(usize, f64)]) -> Vec<f64> {
-        parameters(program, &self.first_values, set)
+        parameters(program, &self.record_values, set)
     }
 }
 
-/// The whole parameter vector of a program, with first values of columns and some values set.
+/// The whole parameter vector of a program, with the values that records give and some values set.
 fn parameters(
     program: &Program,
-    first_values: &[((String, String), f64)],
+    record_values: &[RecordedValue],
     set: &[(usize, f64)],
 ) -> Vec<f64> {
     let mut all = Vec::new();
-    for (place, record, column) in &program.first_values {
-        let known = first_values
-            .iter()
-            .find(|((r, c), _)| r == record && c == column);
-        all.extend(known.map(|(_, first)| (*place, *first)));
+    for wanted in &program.record_values {
+        let known = record_values.iter().find(|((record, column), kind, _)| {
+            (record, column, kind) == (&wanted.record, &wanted.column, &wanted.kind)
+        });
+        all.extend(known.map(|(.., value)| (wanted.place, *value)));
     }
     all.extend_from_slice(set);
     let mut p = vec![0.0; program.n_parameters];

@@ -35,7 +35,7 @@ pub(crate) enum Command {
     Report(ReportArgs),
     /// Frequency response: linearised, and as measured on the full model by the experiment's sweep or by stepped sines
     Bode(BodeArgs),
-    /// Natural frequencies and dampings of the linearised model
+    /// Natural frequencies and dampings of the linearised model, and parameters from measured ones
     Modes(ModesArgs),
     /// List the parameters with their values, units, priors and sources
     Params(ParamsArgs),
@@ -390,6 +390,41 @@ pub(crate) struct ModesArgs {
     /// With `--over`: leave modes.svg, modes.png and modes.csv in this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Find parameters from measured natural frequencies: `--measured 34.7,87.8:0.02`, damping ratios behind a colon
+    #[arg(long, value_name = "HZ[:RATIO],…", value_delimiter = ',')]
+    pub(crate) measured: Vec<String>,
+    /// The parameters to find: `--vary belt.k,screw.contact.k`
+    #[arg(
+        long,
+        value_name = "PATH,…",
+        value_delimiter = ',',
+        requires = "measured"
+    )]
+    pub(crate) vary: Vec<String>,
+    /// The number of the mode of each frequency, from 1 as `hyde modes` lists them; by order and nearness if left out
+    #[arg(
+        long,
+        value_name = "NUMBER,…",
+        value_delimiter = ',',
+        requires = "measured"
+    )]
+    pub(crate) pair: Vec<usize>,
+    /// Standard deviation of the measured frequencies in percent
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        default_value_t = 1.0,
+        requires = "measured"
+    )]
+    pub(crate) spread: f64,
+    /// Standard deviation of the measured damping ratios in percent
+    #[arg(
+        long,
+        value_name = "PERCENT",
+        default_value_t = 20.0,
+        requires = "measured"
+    )]
+    pub(crate) damping_spread: f64,
 }
 
 #[derive(Debug, Args)]

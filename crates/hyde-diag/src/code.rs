@@ -93,6 +93,7 @@ codes! {
     BadSolve "E0808" "the solver has no such method, option or value";
     BadSet "E0809" "a value cannot be set";
     CannotReplay "E0810" "what is replayed has no equation of its own";
+    BadResponse "E0811" "a measured frequency response is none";
     NoResponse "E0812" "there is no frequency response here";
     BadSweep "E0813" "a sweep cannot be planned";
     BadStudy "E0901" "a study does not say what it needs";

@@ -120,14 +120,14 @@ fn slopes(results: &Results, output: usize) -> Vec<&[f64]> {
     }
 }
 
-fn uneven(table: &Table) -> String {
+pub(crate) fn uneven(table: &Table, what: &str) -> String {
     let steps = table.time().windows(2).map(|pair| pair[1] - pair[0]);
     let (least, most) = steps.fold((f64::INFINITY, 0.0_f64), |(least, most), step| {
         (least.min(step), most.max(step))
     });
     let shown = |step| hyde_units::significant(step, 3);
     format!(
-        "its rows are {} to {} s apart, and `lowpass` and `slope` need even ones: resample the record, or declare `every`",
+        "its rows are {} to {} s apart, and {what} even ones: resample the record, or declare `every`",
         shown(least),
         shown(most)
     )
@@ -150,7 +150,9 @@ pub fn prepared(measured: &Measured, table: &Table, values: &[f64]) -> Result<Ve
             .windows(2)
             .all(|pair| (pair[1] - pair[0] - step_s).abs() <= 0.1 * step_s);
         match *step {
-            Preparation::Lowpass(_) if !even => return Err(uneven(table)),
+            Preparation::Lowpass(_) if !even => {
+                return Err(uneven(table, "`lowpass` and `slope` need"));
+            }
             Preparation::Lowpass(corner) => {
                 let filter = LowPass::butterworth(4, corner, 1.0 / step_s)
                     .map_err(|error| error.to_string())?;
@@ -158,7 +160,7 @@ pub fn prepared(measured: &Measured, table: &Table, values: &[f64]) -> Result<Ve
                     .zero_phase(&signal)
                     .map_err(|error| error.to_string())?;
             }
-            Preparation::Slope if !even => return Err(uneven(table)),
+            Preparation::Slope if !even => return Err(uneven(table, "`lowpass` and `slope` need")),
             Preparation::Slope => signal = central_difference(&signal, step_s),
             Preparation::Scale(factor) => signal.iter_mut().for_each(|value| *value *= factor),
         }

@@ -1,7 +1,8 @@
 //! What is asked of a program beside one solution: a run with its record ([`read_record`]), measures and expectations ([`run`]); the
 //! system linearised about an operating point ([`linearize`]), its frequency response with the sampled loop closed
 //! ([`frequency_response`]) and its modes ([`modes`]); the response on the full hybrid model, swept ([`swept_response`]) and
-//! stepped ([`stepped_response`]); the forces between components ([`flows`]) and the error budget ([`BudgetOf`]); the limit
+//! stepped ([`stepped_response`]), and measured ones ([`measured_curve`]); parameters from measured modes
+//! ([`fit_modes`]); the forces between components ([`flows`]) and the error budget ([`BudgetOf`]); the limit
 //! test of an effect ([`limit`]); many runs planned and kept as one ([`batch`]).
 
 pub mod batch;
@@ -14,8 +15,11 @@ mod flows;
 mod ledger;
 mod limit;
 mod linearize;
+mod measured_response;
+mod mode_fit;
 mod mode_shape;
 mod modes;
+mod pencil;
 mod record;
 mod rows;
 mod run;
@@ -30,6 +34,11 @@ pub use flows::{FlowLine, flows};
 pub use ledger::{EnergyLedger, LedgerEntry};
 pub use limit::{Answer, LIMIT_LEFT, LIMIT_PART, limit};
 pub use linearize::{Linear, LinearizeError, linearize};
+pub use measured_response::{MeasuredCurve, curve_of_run, measured_curve};
+pub use mode_fit::{
+    Combination, FoundParameter, MeasuredMode, ModeFit, ModeFitError, ModeFitRequest, PairedMode,
+    fit_modes,
+};
 pub use mode_shape::{ModeShape, mode_shape};
 pub use modes::{NaturalMode, modes};
 pub use record::read_record;

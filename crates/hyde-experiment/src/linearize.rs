@@ -284,7 +284,7 @@ impl Dense {
         }
     }
 
-    fn of(
+    pub(crate) fn of(
         program: &Program,
         function: Function,
         at: Point<'_>,

@@ -2,7 +2,9 @@
 //! what it is compared with.
 
 use crate::compare::{self, Channel, CompareError};
-use hyde_program::{Constant, Parameter, Program, Reduction, ReductionKind, Stop};
+use hyde_program::{
+    Constant, Parameter, Program, RecordedResponse, Reduction, ReductionKind, Stop,
+};
 use hyde_signal::Table;
 use hyde_sim::{Failure, Results, Setup};
 use std::collections::BTreeMap;
@@ -190,13 +192,12 @@ pub fn parameters(
     set: &[(String, f64)],
 ) -> Result<Vec<f64>, RunError> {
     let mut values = Vec::new();
-    for (place, record, column) in &program.first_values {
-        let first = records
-            .get(record)
-            .and_then(|table| table.column(column))
-            .and_then(|c| c.values().first());
-        if let Some(&first) = first {
-            values.push((*place, first));
+    for known in &program.record_values {
+        let column = records
+            .get(&known.record)
+            .and_then(|table| table.column(&known.column));
+        if let Some(column) = column {
+            values.push((known.place, known.kind.of(column.values())));
         }
     }
     for (name, value) in set {
@@ -230,8 +231,15 @@ fn rows(
     every_s: f64,
 ) -> Vec<f64> {
     let mut rows = Setup::rows_every(0.0, stop_s, every_s);
-    for measured in &program.experiment.measured {
-        if let Some(table) = records.get(&measured.source.0) {
+    let experiment = &program.experiment;
+    let compared = experiment.measured.iter().map(|m| &m.source.0);
+    let responses = experiment.measured_responses.iter();
+    let periodic = responses.filter_map(|m| match &m.source {
+        RecordedResponse::Periodic(input, ..) => Some(&input.record),
+        RecordedResponse::Complex(..) | RecordedResponse::Polar(..) => None,
+    });
+    for record in compared.chain(periodic) {
+        if let Some(table) = records.get(record) {
             rows.extend(
                 table
                     .time()

@@ -7,6 +7,7 @@ mod measured;
 mod observed;
 mod record;
 mod replay;
+mod response;
 mod stepped;
 mod stimulus;
 
@@ -53,9 +54,12 @@ impl<'a> Model<'a, '_> {
                 ExperimentItem::Stimulus(drives) => {
                     drives.iter().for_each(|drive| self.stimulus(drive, root))
                 }
-                ExperimentItem::Measured(channels) => channels
-                    .iter()
-                    .for_each(|channel| self.measured(channel, root)),
+                ExperimentItem::Measured(channels) => {
+                    let over_time = |channel: &&ast::Channel| !response::is_response(channel);
+                    for channel in channels.iter().filter(over_time) {
+                        self.measured(channel, root);
+                    }
+                }
                 // Found before: effects that wrap the variable act on the column.
                 ExperimentItem::Replay(_) => {}
                 ExperimentItem::Expect(condition, text) => {
@@ -96,6 +100,7 @@ impl<'a> Model<'a, '_> {
                 ExperimentItem::Budget(_) => {} // Each of them is a run of its own, of a changed model.
             }
         }
+        self.measured_responses(&experiment.items, root);
     }
 
     /// Every imperfection of a budget has a name of its own.

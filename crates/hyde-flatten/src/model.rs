@@ -53,8 +53,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) delayed: BTreeMap<(ExprId, u64), VarId>,
     /// Column variables: linear and held.
     pub(crate) column_variables: BTreeMap<ColumnId, (VarId, VarId)>,
-    /// Parameters that stand for the first value of a column.
-    pub(crate) column_firsts: BTreeMap<(String, String), ParamId>,
+    /// Parameters that stand for the first value of a column or its mean.
+    pub(crate) column_values: BTreeMap<String, ParamId>,
     /// Names whose declaration has an unknown type: their uses are no mistake of their own.
     pub(crate) undeclared: BTreeSet<&'a str>,
     /// Classes that contain themselves, once reported.
@@ -91,7 +91,7 @@ impl<'a, 'd> Model<'a, 'd> {
             held: BTreeMap::new(),
             delayed: BTreeMap::new(),
             column_variables: BTreeMap::new(),
-            column_firsts: BTreeMap::new(),
+            column_values: BTreeMap::new(),
             undeclared: BTreeSet::new(),
             endless: Vec::new(),
             calls: 0,

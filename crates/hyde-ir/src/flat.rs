@@ -312,8 +312,8 @@ pub struct Bode {
     pub input: VarId,
     /// The outputs, with their printed names.
     pub outputs: Vec<(String, ExprId, Quantity)>,
-    /// From and to in Hz, of parameters alone.
-    pub band: (ExprId, ExprId),
+    /// From and to in Hz, of parameters alone; without them it is that of what was measured.
+    pub band: Option<(ExprId, ExprId)>,
     /// Measured by stepped sines as well.
     pub stepped: Option<Stepped>,
     /// Modes of the linearised system: automaton and mode.
@@ -390,6 +390,41 @@ pub struct Stepped {
     pub keep: Option<(usize, ExprId)>,
 }
 
+/// A column times a factor, SI.
+#[derive(Clone, Copy, Debug)]
+pub struct ScaledColumn {
+    /// The column.
+    pub column: ColumnId,
+    /// The factor.
+    pub scale: f64,
+}
+
+/// Where a measured frequency response is.
+#[derive(Clone, Copy, Debug)]
+pub enum RecordedResponse {
+    /// Real and imaginary part, over frequency.
+    Complex(ScaledColumn, ScaledColumn),
+    /// Magnitude and phase, over frequency.
+    Polar(ScaledColumn, ScaledColumn),
+    /// Input and output over time, periodic; and the period in s, to be found in the record without it.
+    Periodic(ScaledColumn, ScaledColumn, Option<f64>),
+}
+
+/// `measured complex(frf.re, frf.im) = response(u, y) ~ frf.std`.
+#[derive(Clone, Debug)]
+pub struct MeasuredResponse {
+    /// What reports call it.
+    pub name: String,
+    /// Where it is.
+    pub source: RecordedResponse,
+    /// Column of its standard deviation.
+    pub deviation: Option<ScaledColumn>,
+    /// What it is compared with: the number of a `bode`, and of its output.
+    pub place: (usize, usize),
+    /// Where it is written.
+    pub origin: Origin,
+}
+
 /// What an experiment adds to its model beside equations.
 #[derive(Clone, Debug, Default)]
 pub struct Experiment {
@@ -409,6 +444,8 @@ pub struct Experiment {
     pub bodes: Vec<Bode>,
     /// Figures asked for.
     pub figures: Vec<Figure>,
+    /// Measured frequency responses.
+    pub measured_responses: Vec<MeasuredResponse>,
     /// The energy ledger.
     pub ledger: Ledger,
     /// The flows of the connections.

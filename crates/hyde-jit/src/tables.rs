@@ -7,8 +7,9 @@ use hyde_ir::flat;
 use hyde_ir::{Id as _, Interpolation, VariableKind};
 use hyde_program::{
     Assignment, Automaton, Bode, Clock, Column, Delay, Derivatives, Experiment, Flow, Hold,
-    InitialCondition, Measure, Measured, Method, Output, Parameter, Pin, Preparation, Prior,
-    Program, Reaction, ReactionKind, Reduction, ReductionKind, Relation, RelationUse, Selection,
+    InitialCondition, Measure, Measured, MeasuredResponse, Method, Output, Parameter, Pin,
+    Preparation, Prior, Program, Reaction, ReactionKind, RecordValue, RecordValueKind,
+    RecordedResponse, Reduction, ReductionKind, Relation, RelationUse, ScaledColumn, Selection,
     Stepped, Stop, Target, UnknownBlock,
 };
 use std::collections::BTreeMap;
@@ -25,7 +26,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
         n_work: dae.n_work,
         n_parameters: dae.n_parameters.1,
         parameters: parameters(dae),
-        first_values: first_values(dae),
+        record_values: record_values(dae),
         columns: columns(dae),
         outputs: outputs(dae),
         relations: dae.relations.iter().map(relation).collect(),
@@ -144,22 +145,30 @@ fn parameters(dae: &Dae) -> Vec<Parameter> {
         .collect()
 }
 
-/// `file.x.first` parameters, whose numbers the record has.
-fn first_values(dae: &Dae) -> Vec<(usize, String, String)> {
+/// `file.x.first` and `file.x.mean`: parameters whose numbers the record has.
+fn record_values(dae: &Dae) -> Vec<RecordValue> {
     let mut found = Vec::new();
     for (id, parameter) in dae.parameters.enumerate() {
-        let Some(path) = parameter.name.strip_suffix(".first") else {
+        let kinds = [
+            (".first", RecordValueKind::First),
+            (".mean", RecordValueKind::Mean),
+        ];
+        let known = kinds
+            .iter()
+            .find_map(|(suffix, kind)| Some((parameter.name.strip_suffix(suffix)?, *kind)));
+        let Some((path, kind)) = known else {
             continue;
         };
         let Some((record, column)) = path.split_once('.') else {
             continue;
         };
         if dae.experiment.records.iter().any(|known| known == record) {
-            found.push((
-                dae.parameter_places[id],
-                record.to_owned(),
-                column.to_owned(),
-            ));
+            found.push(RecordValue {
+                place: dae.parameter_places[id],
+                record: record.to_owned(),
+                column: column.to_owned(),
+                kind,
+            });
         }
     }
     found
@@ -319,6 +328,32 @@ fn initial(dae: &Dae, condition: &dae::InitialCondition) -> InitialCondition {
     }
 }
 
+fn measured_response(dae: &Dae, measured: &flat::MeasuredResponse) -> MeasuredResponse {
+    let of = |scaled: &flat::ScaledColumn| {
+        let column = &dae.columns[scaled.column];
+        ScaledColumn {
+            record: column.record.clone(),
+            column: column.column.clone(),
+            scale: scaled.scale,
+        }
+    };
+    MeasuredResponse {
+        name: measured.name.clone(),
+        source: match &measured.source {
+            flat::RecordedResponse::Complex(re, im) => RecordedResponse::Complex(of(re), of(im)),
+            flat::RecordedResponse::Polar(gain, phase) => {
+                RecordedResponse::Polar(of(gain), of(phase))
+            }
+            flat::RecordedResponse::Periodic(input, output, period) => {
+                RecordedResponse::Periodic(of(input), of(output), *period)
+            }
+        },
+        deviation: measured.deviation.as_ref().map(of),
+        place: measured.place,
+        origin: measured.origin.clone(),
+    }
+}
+
 fn experiment(dae: &Dae) -> Experiment {
     let known = &dae.experiment;
     let columns: usize = dae.outputs.iter().map(|output| output.names.len()).sum();
@@ -422,6 +457,11 @@ fn experiment(dae: &Dae) -> Experiment {
             .collect(),
         figures: figures::figures(&known.figures, first_curve),
         flows: flows(dae),
+        measured_responses: known
+            .measured_responses
+            .iter()
+            .map(|measured| measured_response(dae, measured))
+            .collect(),
         ledger: ledger::ledger(&known.ledger, first_account),
         stop: known.stop.as_ref().map(|stop| match stop {
             flat::Stop::At(_) => Stop::At,

@@ -73,7 +73,44 @@ pub struct Measure {
     pub origin: Origin,
 }
 
-/// A frequency response; its band is a [`crate::Constant`].
+/// A column of a record times a factor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScaledColumn {
+    /// The record.
+    pub record: String,
+    /// The column.
+    pub column: String,
+    /// The factor, SI.
+    pub scale: f64,
+}
+
+/// Where a measured frequency response is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RecordedResponse {
+    /// Real and imaginary part, over frequency.
+    Complex(ScaledColumn, ScaledColumn),
+    /// Magnitude and phase in rad, over frequency.
+    Polar(ScaledColumn, ScaledColumn),
+    /// Input and output over time, periodic; and the period in s, to be found in the record without it.
+    Periodic(ScaledColumn, ScaledColumn, Option<f64>),
+}
+
+/// A measured frequency response.
+#[derive(Clone, Debug)]
+pub struct MeasuredResponse {
+    /// Its name.
+    pub name: String,
+    /// Where it is.
+    pub source: RecordedResponse,
+    /// Its standard deviation.
+    pub deviation: Option<ScaledColumn>,
+    /// The number in [`Experiment::bodes`] of what it is compared with, and of the output there.
+    pub place: (usize, usize),
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// A frequency response. Its band is a [`crate::Constant`]; without one it is that of what was measured.
 #[derive(Clone, Debug)]
 pub struct Bode {
     /// Name of the driven input.
@@ -177,6 +214,8 @@ pub struct Experiment {
     pub bodes: Vec<Bode>,
     /// Figures asked for.
     pub figures: Vec<Figure>,
+    /// Measured frequency responses.
+    pub measured_responses: Vec<MeasuredResponse>,
     /// The energy ledger; empty unless it was asked for.
     pub ledger: Ledger,
     /// The flows of the connections.

@@ -28,12 +28,13 @@ pub use event::{
     Relation, RelationUse, Selection, Target,
 };
 pub use experiment::{
-    Bode, Curve, Experiment, Figure, FigureKind, Flow, Measure, Measured, Method, Preparation,
-    Reduction, ReductionKind, Stepped, Stop,
+    Bode, Curve, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse, Method,
+    Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped, Stop,
 };
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Constant, Function, Kernels, Point, TickWrt, Workspace};
 pub use ledger::{Account, AccountKind, Ledger, Port, PortKind};
 pub use program::{
-    Column, Derivatives, Output, Parameter, PartialEntry, Prior, Program, UnknownBlock, Wrt,
+    Column, Derivatives, Output, Parameter, PartialEntry, Prior, Program, RecordValue,
+    RecordValueKind, UnknownBlock, Wrt,
 };

@@ -95,6 +95,39 @@ pub struct Column {
     pub stepped: bool,
 }
 
+/// Which number of a column.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum RecordValueKind {
+    /// That of its first row.
+    First,
+    /// The mean of all rows.
+    Mean,
+}
+
+impl RecordValueKind {
+    /// The number of these rows, of which there is one at least.
+    #[must_use]
+    pub fn of(self, rows: &[f64]) -> f64 {
+        match self {
+            Self::First => rows.first().copied().unwrap_or(f64::NAN),
+            Self::Mean => rows.iter().sum::<f64>() / rows.len() as f64,
+        }
+    }
+}
+
+/// A parameter that the run fills from a record.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct RecordValue {
+    /// Position in the parameter vector.
+    pub place: usize,
+    /// The record as the experiment calls it.
+    pub record: String,
+    /// The column.
+    pub column: String,
+    /// Which number of it.
+    pub kind: RecordValueKind,
+}
+
 /// With respect to what a function is differentiated.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Wrt {
@@ -146,8 +179,8 @@ pub struct Program {
     pub n_parameters: usize,
     /// The parameters, derived ones apart.
     pub parameters: Vec<Parameter>,
-    /// Parameters that the run fills from the first row of a record: position, record, column.
-    pub first_values: Vec<(usize, String, String)>,
+    /// Parameters that the run fills from a record.
+    pub record_values: Vec<RecordValue>,
     /// The record columns.
     pub columns: Vec<Column>,
     /// The reported columns.

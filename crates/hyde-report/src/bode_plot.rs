@@ -18,6 +18,8 @@ pub struct BodeCurve {
     pub coherence: Option<Vec<f64>>,
     /// Index into the palette; `None`: the curve's place in the plot.
     pub colour: Option<usize>,
+    /// Standard deviation of the response at each frequency: a dashed line below the magnitude.
+    pub deviation: Option<Vec<f64>>,
 }
 
 /// Magnitude above phase, over a logarithmic frequency axis in Hz; below them the coherence, if a curve has one.
@@ -50,11 +52,21 @@ pub fn bode_plot(
         colour: Some(colour(index)),
         weight: curve.coherence.clone(),
     };
-    let gains = curves
-        .iter()
-        .enumerate()
-        .map(|(index, curve)| line(index, curve, decibels(&curve.response)))
-        .collect();
+    let noise = |index: usize, curve: &BodeCurve| {
+        let deviation = curve.deviation.as_ref()?;
+        let response: Vec<_> = deviation.iter().map(|size| (*size, 0.0)).collect();
+        Some(Line {
+            label: format!("noise of {}", curve.label),
+            style: LineStyle::Dashed,
+            weight: None,
+            ..line(index, curve, decibels(&response))
+        })
+    };
+    let gains = curves.iter().enumerate().flat_map(|(index, curve)| {
+        let own = line(index, curve, decibels(&curve.response));
+        [Some(own), noise(index, curve)].into_iter().flatten()
+    });
+    let gains = gains.collect();
     let phases = curves.iter().enumerate().map(|(index, curve)| {
         let mut guides = guides.iter();
         let own = guides.find(|(of, _)| *of == colour(index));
@@ -252,6 +264,7 @@ mod tests {
             style,
             coherence: None,
             colour: None,
+            deviation: None,
         }
     }
 

@@ -4,22 +4,26 @@
 //!
 //! * [`welch_response`]: broadband noise, or any long stationary record. Many averaged segments; the resolution is
 //!   the rate over the segment length, and a resonance narrower than a few of those is flattened.
-//! * [`response_at`]: steps of single sines, or a periodic multisine over whole periods without its first ones. Exact
-//!   for a steady sine; it knows nothing of transients, so cut them off. The instants need not be equally spaced.
+//! * [`periodic_response`]: a multisine over several whole periods without its first ones; [`period`] finds how long they
+//!   are. Exact at the excited lines, and the periods tell how much of it is noise.
+//! * [`response_at`]: steps of single sines. Exact for a steady sine; it knows nothing of transients, so cut them off.
+//!   The instants need not be equally spaced.
 //! * [`swept_response`]: one sweep from rest to rest. The whole record is one segment, so that what the resonance
 //!   rings after the sweep has passed it counts; neighbouring lines are averaged instead.
 //!
 //! What is not linear in a steady sine is told by [`harmonic_distortion`].
 //!
-//! All three are the estimate H1, which is unbiased if the noise is on the output alone. In a closed loop the noise is
-//! on the input too: take the responses of both to the injected signal, and divide them with
-//! [`FrequencyResponse::over`] (the joint input-output estimate; Pintelon and Schoukens, System
-//! Identification, 2nd ed. 2012, chapter 2).
+//! All but that of a multisine are the estimate H1, which is unbiased if the noise is on the output alone. In a closed
+//! loop the noise is on the input too: take the responses of both to the injected signal, and divide them with
+//! [`FrequencyResponse::over`] (the joint input-output estimate; Pintelon and Schoukens, System Identification, 2nd ed.
+//! 2012, chapter 2).
 
+mod periodic;
 mod sine_fit;
 mod sweep;
 mod welch;
 
+pub use periodic::{PeriodicResponse, period, periodic_response};
 pub use realfft::num_complex::Complex;
 pub use sine_fit::{harmonic_distortion, response_at};
 pub use sweep::swept_response;

@@ -1,10 +1,13 @@
 //! Equally long columns over one time.
 
 use crate::{Column, Signal};
+use hyde_units::{Agreement, Dimension};
 use std::collections::BTreeMap;
 use std::fmt;
 
 /// A record: columns of equal length, and the instants of their rows.
+///
+/// A measured frequency response is a table too: what is said of time is frequency then.
 ///
 /// The instants are the first column, or `k * period` if a period was declared; then all columns are ordinary ones.
 /// Time never runs back; an instant may have several rows, as results have two at an event.
@@ -144,6 +147,12 @@ impl Table {
     pub fn signal(&self, name: &str) -> Option<Signal<'_>> {
         Signal::new(self.time(), self.column(name)?.values())
     }
+}
+
+/// Whether a first column of that dimension can be what rows are over: time, or the frequency of a measured response.
+pub(crate) fn may_be_first(dimension: Dimension) -> bool {
+    let same = |other: Dimension| dimension.agreement(other) == Agreement::Same;
+    same(Dimension::TIME) || same(Dimension::FREQUENCY)
 }
 
 impl fmt::Display for TableError {

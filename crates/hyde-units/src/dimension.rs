@@ -42,6 +42,8 @@ impl Dimension {
     pub const ANGLE: Self = Self::si([0, 0, 0, 0, 0, 0, 0], 1);
     /// A time, in s.
     pub const TIME: Self = Self::si([0, 0, 0, 1, 0, 0, 0], 0);
+    /// Turns per second, s-1.
+    pub const FREQUENCY: Self = Self::si([0, 0, 0, -1, 0, 0, 0], 0);
     /// A length, in m.
     pub const LENGTH: Self = Self::si([0, 1, 0, 0, 0, 0, 0], 0);
     /// An energy, in J. Its angle is open: torque times angle is one, and so is force times length.

@@ -108,6 +108,7 @@ pub struct Session {
     pub data: PathBuf,
     pub(crate) emps: OnceCell<Result<Vec<Measured>, String>>,
     pub(crate) bench: OnceCell<Result<Vec<Measured>, String>>,
+    pub(crate) two_mass: OnceCell<Result<Vec<Measured>, String>>,
     pub(crate) ivp: OnceCell<Result<Option<Vec<f64>>, String>>,
 }
 
@@ -119,6 +120,7 @@ impl Session {
             data,
             emps: OnceCell::new(),
             bench: OnceCell::new(),
+            two_mass: OnceCell::new(),
             ivp: OnceCell::new(),
         }
     }

@@ -13,7 +13,7 @@ use hyde_sim::EventKind;
 use hyde_tests::Example;
 use std::fmt::Write as _;
 
-/// Runs end here at the latest, in s.
+/// Runs end here at the latest, in s, or soon behind the first rows where those are not compared.
 const LONGEST_S: f64 = 0.4;
 
 /// More events than this are counted and not listed.
@@ -46,7 +46,8 @@ fn stop_s(example: &Example) -> f64 {
     let program = example.compile(Backend::Native).unwrap().program;
     let p = parameters(&program, &[]);
     let own = program.kernels.constant(Constant::Stop, &p);
-    own.map_or(LONGEST_S, |own| LONGEST_S.min(0.9 * own))
+    let skip = program.kernels.constant(Constant::Skip, &p).unwrap_or(0.0);
+    own.map_or(LONGEST_S.max(skip + 0.1), |own| LONGEST_S.min(0.9 * own))
 }
 
 fn digest(compiled: &Compiled, run: &Run) -> String {

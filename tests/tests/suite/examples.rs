@@ -37,7 +37,8 @@ pub(crate) fn all() -> Vec<Case> {
                 let beside = record.default.as_ref();
                 let beside = beside.map(|default| file.with_file_name(&default.text));
                 if !beside.is_some_and(|path| path.exists()) {
-                    example = example.record(&record.name.text, stand_in(&folder));
+                    example =
+                        example.record(&record.name.text, stand_in(&folder, &record.name.text));
                 }
             }
             cases.push(Case {
@@ -52,8 +53,9 @@ pub(crate) fn all() -> Vec<Case> {
 }
 
 /// A made-up record of the same columns, for an example whose data are not ours to ship.
-fn stand_in(folder: &str) -> PathBuf {
-    let path = root().join("tests/records").join(format!("{folder}.csv"));
+fn stand_in(folder: &str, record: &str) -> PathBuf {
+    let records = root().join("tests/records");
+    let path = records.join(format!("{folder}.{record}.csv"));
     assert!(path.exists(), "{} takes the record's place", path.display());
     path
 }

@@ -25,6 +25,8 @@ mod gradients;
 mod ledger;
 mod limit_cycle;
 mod loops;
+mod measured_responses;
+mod mode_fit;
 mod models;
 mod multirate;
 mod observer;

@@ -1,11 +1,14 @@
 //! `hyde bode`: the frequency responses an experiment asks for, of the linearised model and as measured on the full hybrid
-//! one by the sweep of its stimulus or by stepped sines; beside them those of other experiments.
+//! one by the sweep of its stimulus or by stepped sines; beside them what was measured on the machine, and those of other
+//! experiments.
 
 mod draw;
+mod measured;
 mod response;
 mod seen;
 mod stepped;
 
+use self::measured::Compared;
 use self::response::{Response, band, frequencies, linearised};
 use crate::args::{BodeArgs, ModelArgs, RunArgs};
 use crate::commands::run;
@@ -125,6 +128,10 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     let tables = records::tables(&project.records);
     let p = parameters(program, &tables, &project.set())
         .map_err(|_| wrong("a parameter cannot be set".to_owned()))?;
+    let recorded = measured::curves(program, &tables, &p).map_err(|diagnostic| {
+        project.diagnostics.push(*diagnostic);
+        project.finish_with_errors(model)
+    })?;
     let by_stimulus = program
         .experiment
         .bodes
@@ -150,16 +157,28 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     }
     for (number, bode) in program.experiment.bodes.iter().enumerate() {
         let band = band(program, number, &p)
+            .or_else(|| measured::band(program, number, &recorded))
             .ok_or_else(|| wrong("the band of frequencies is empty".to_owned()))?;
         let frequency = frequencies(band, args.points);
         let found = linearised(&name, program, bode, &tables, &p, &frequency);
-        let mut responses = found.map_err(|reason| {
+        let (mut responses, system) = found.map_err(|reason| {
             let diagnostic = Diagnostic::error(Code::NoResponse, reason);
             let diagnostic = diagnostic.label(bode.origin.span, "there is no response from here");
             project.diagnostics.push(diagnostic);
             project.finish_with_errors(model)
         })?;
-        if let (None, Some((_, compiled, run, _))) = (&bode.stepped, &run) {
+        let of_run = run.as_ref().map(|(_, own, run, _)| (&own.program, run));
+        let compared = measured::compared(program, number, &recorded, &system, &tables, of_run);
+        let errors = measured::table(&compared);
+        // A run that follows what was measured sweeps nothing.
+        let sweeps = !compared.iter().any(Compared::has_run);
+        for one in compared {
+            let output = one.place.1;
+            responses[output].measured.push(one);
+        }
+        if let (None, Some((_, compiled, run, _))) = (&bode.stepped, &run)
+            && sweeps
+        {
             let own = &compiled.program.experiment.bodes[number];
             for swept in swept_response(own, &run.results, band) {
                 let mut of = responses.iter_mut();
@@ -208,6 +227,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
             asked.text.push_str(&text);
             asked.holds &= holds;
         }
+        asked.text.push_str(&errors);
         asked.bodes.push(responses);
     }
     Ok(asked)
@@ -235,7 +255,8 @@ fn json(bode: &[Response]) -> Value {
                     })
                 })
                 .collect();
-            json!({ "name": response.output, "re_im": response.linear, "stepped": stepped })
+            let measured: Vec<Value> = response.measured.iter().map(Compared::json).collect();
+            json!({ "name": response.output, "re_im": response.linear, "stepped": stepped, "measured": measured })
         })
         .collect();
     let first = bode.first();

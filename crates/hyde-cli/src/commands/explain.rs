@@ -124,6 +124,7 @@ pages! {
     BadSolve "E0808";
     BadSet "E0809";
     CannotReplay "E0810";
+    BadResponse "E0811";
     NoResponse "E0812";
     BadSweep "E0813";
     BadStudy "E0901";

@@ -1,19 +1,23 @@
 //! `hyde modes`: natural frequencies and dampings of the linearised model; of several experiments side by side, and over a
-//! parameter.
+//! parameter; and parameters from measured ones.
 
+mod inverse;
 mod over;
 
 use crate::args::{ModelArgs, ModesArgs};
 use crate::exit::Exit;
-use crate::project::{self, Aim, Records, complain, print_output};
+use crate::project::{self, Aim, Project, Records, complain, print_output};
 use crate::records;
 use crate::settings::Setting;
+use hyde_compiler::Compiled;
 use hyde_experiment::{
     Linear, ModeShape, NaturalMode, linearize, mode_shape, modes as natural_modes, parameters,
 };
 use hyde_program::Program;
+use hyde_signal::Table;
 use hyde_units::significant;
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// Shares of the energy are printed down to this, as long as there is room for them in a line.
@@ -43,6 +47,9 @@ pub(crate) struct Found {
 }
 
 fn table(args: &ModesArgs) -> Result<String, Exit> {
+    if !args.measured.is_empty() {
+        return inverse::fitted(args);
+    }
     let experiments =
         std::iter::once(args.model.clone()).chain(args.with.iter().map(|name| ModelArgs {
             experiment: Some(name.clone()),
@@ -72,12 +79,17 @@ fn table(args: &ModesArgs) -> Result<String, Exit> {
     })
 }
 
-/// The modes of an experiment, with one more parameter set if so.
-pub(crate) fn found(
-    args: &ModesArgs,
-    model: &ModelArgs,
-    set: Option<&Setting>,
-) -> Result<Found, Exit> {
+/// An experiment ready to be linearised.
+struct Prepared {
+    project: Project,
+    compiled: Compiled,
+    tables: BTreeMap<String, Table>,
+    parameters: Vec<f64>,
+    /// Modes of automata.
+    chosen: Vec<(usize, usize)>,
+}
+
+fn prepared(args: &ModesArgs, model: &ModelArgs, set: Option<&Setting>) -> Result<Prepared, Exit> {
     let mut project = project::load(model, Records::Needed)?;
     project.settings.extend(set.cloned());
     let compiled = project.compile(model, Aim::Linearize)?;
@@ -85,7 +97,7 @@ pub(crate) fn found(
     let program = &compiled.program;
     let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
     let tables = records::tables(&project.records);
-    let p = parameters(program, &tables, &project.set())
+    let parameters = parameters(program, &tables, &project.set())
         .map_err(|_| wrong("a parameter cannot be set".to_owned()))?;
     let mut chosen = program
         .experiment
@@ -96,6 +108,30 @@ pub(crate) fn found(
     for text in &args.in_modes {
         chosen.insert(0, in_mode(program, text).map_err(wrong)?);
     }
+    Ok(Prepared {
+        project,
+        compiled,
+        tables,
+        parameters,
+        chosen,
+    })
+}
+
+/// The modes of an experiment, with one more parameter set if so.
+pub(crate) fn found(
+    args: &ModesArgs,
+    model: &ModelArgs,
+    set: Option<&Setting>,
+) -> Result<Found, Exit> {
+    let Prepared {
+        project,
+        compiled,
+        tables,
+        parameters: p,
+        chosen,
+    } = prepared(args, model, set)?;
+    let program = &compiled.program;
+    let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
     let linear = linearize(program, &tables, &p, &[], &chosen)
         .map_err(|error| wrong(format!("the model could not be linearised: {error:?}")))?;
     let modes: Vec<_> = natural_modes(&linear)

@@ -46,7 +46,7 @@ fn missing_data_are_told_in_plain_words() {
 #[test]
 fn records_are_found_by_data_and_by_name() {
     let folder = Folder::new();
-    let log = folder.file("logs/emps_est.csv", &read("tests/records/emps.csv"));
+    let log = folder.file("logs/emps_est.csv", &read("tests/records/emps.file.csv"));
     let model = "examples/emps/emps.hyde";
     let by_data = hyde(&[
         "run",

@@ -61,7 +61,7 @@ impl<'a> Model<'a, '_> {
             .filter_map(|(name, mode)| self.mode_of(name, mode))
             .collect();
         let origin = self.origin(root, input.span).made_by(MadeBy::Experiment);
-        let band = (from.id, to.id);
+        let band = Some((from.id, to.id));
         let names: Vec<&str> = list.iter().map(|(name, ..)| name.as_str()).collect();
         let stepped = bode
             .steps

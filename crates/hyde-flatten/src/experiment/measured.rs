@@ -71,7 +71,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The recorded signal of a measured channel: a column, low-passed, differentiated or scaled.
-    fn recorded(
+    pub(super) fn recorded(
         &mut self,
         expr: &'a Expr,
         root: InstanceId,
@@ -131,6 +131,11 @@ impl<'a> Model<'a, '_> {
                         None
                     }
                 }
+            }
+            ExprKind::Unary(ast::Unary::Negative, inner) => {
+                let found = self.recorded(inner, root, steps)?;
+                steps.push(Preparation::Scale(-1.0));
+                Some(found)
             }
             ExprKind::Binary(ast::Binary::Mul, factor, inner) => {
                 let parameter = scope.with(Setting::Parameter);

@@ -1,4 +1,4 @@
-//! Columns of records: read between rows, held, one row ahead, and their first value.
+//! Columns of records: read between rows, held, one row ahead, and their first value and mean.
 
 use crate::dimension::Dim;
 use crate::instance::{Lowering, ParameterNotes, Scope, Setting};
@@ -11,7 +11,7 @@ use hyde_syntax::ast::Reference;
 use hyde_units::NamedUnit;
 
 impl<'a> Model<'a, '_> {
-    /// `record.column`, `.next`, `.first`.
+    /// `record.column`, `.next`, `.first`, `.mean`.
     pub(crate) fn record_column(
         &mut self,
         reference: &'a Reference,
@@ -78,15 +78,15 @@ impl<'a> Model<'a, '_> {
                     self.column(&record, column, unit, suffix.is_some(), reference.span);
                 Some(Resolved::Variable(linear, None))
             }
-            Some("first") => Some(Resolved::Parameter(
-                self.first_value(&record, column, unit, reference.span),
+            Some(value @ ("first" | "mean")) => Some(Resolved::Parameter(
+                self.column_value(&record, column, value, unit, reference.span),
                 None,
             )),
             Some(other) => {
                 self.report(
                     Diagnostic::error(Code::NoColumn, format!("a column has no `{other}`"))
                         .label(reference.span, "unknown")
-                        .help("write `.next` for the value one row ahead, `.first` for the first"),
+                        .help("write `.next` for the value one row ahead, `.first` for the first, `.mean` for the mean"),
                 );
                 None
             }
@@ -150,16 +150,17 @@ impl<'a> Model<'a, '_> {
         (id, linear, held)
     }
 
-    /// The first value of a column: a parameter that the run fills in.
-    fn first_value(
+    /// The first value of a column or its mean: a parameter that the run fills in.
+    fn column_value(
         &mut self,
         record: &str,
         column: &str,
+        value: &str,
         unit: Option<NamedUnit>,
         span: Span,
     ) -> hyde_ir::ParamId {
-        let key = (record.to_owned(), column.to_owned());
-        if let Some(&param) = self.column_firsts.get(&key) {
+        let name = format!("{record}.{column}.{value}");
+        if let Some(&param) = self.column_values.get(&name) {
             return param;
         }
         let (_, linear, _) = self.column(record, column, unit.clone(), false, span);
@@ -175,7 +176,7 @@ impl<'a> Model<'a, '_> {
         let quantity = self.flat.variables[linear].quantity.clone();
         let origin = self.origin(0, span).made_by(MadeBy::Experiment);
         let param = self.flat.parameters.push(Parameter {
-            name: format!("{record}.{column}.first"),
+            name: name.clone(),
             len: None,
             value: vec![zero],
             quantity,
@@ -188,7 +189,7 @@ impl<'a> Model<'a, '_> {
             source: Some(format!("record {record}")),
             origin,
         });
-        self.column_firsts.insert(key, param);
+        self.column_values.insert(name, param);
         param
     }
 }

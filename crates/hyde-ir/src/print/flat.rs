@@ -1,7 +1,10 @@
 //! Prints a [`FlatModel`].
 
 use super::{Names, comment, counted};
-use crate::flat::{Action, Equation, FlatModel, Method, Preparation, ReductionKind, Stop};
+use crate::flat::{
+    Action, Equation, FlatModel, Method, Preparation, RecordedResponse, ReductionKind,
+    ScaledColumn, Stop,
+};
 
 use crate::{Interpolation, VariableKind};
 use hyde_diag::Sources;
@@ -263,6 +266,31 @@ impl Printer<'_> {
         }
     }
 
+    fn recorded(&self, source: &RecordedResponse) -> String {
+        match source {
+            RecordedResponse::Complex(re, im) => {
+                format!("complex({}, {})", self.scaled(re), self.scaled(im))
+            }
+            RecordedResponse::Polar(gain, phase) => {
+                format!("polar({}, {})", self.scaled(gain), self.scaled(phase))
+            }
+            RecordedResponse::Periodic(input, output, period) => {
+                let period = period.map_or_else(String::new, |period| format!(", {period} s"));
+                let (input, output) = (self.scaled(input), self.scaled(output));
+                format!("response({input}, {output}{period})")
+            }
+        }
+    }
+
+    fn scaled(&self, scaled: &ScaledColumn) -> String {
+        let column = &self.flat.columns[scaled.column];
+        let factor = match scaled.scale {
+            1.0 => String::new(),
+            factor => format!("{factor}*"),
+        };
+        format!("{factor}{}.{}", column.record, column.column)
+    }
+
     fn experiment(&self, out: &mut String) {
         let experiment = &self.flat.experiment;
         if experiment.name.is_empty() {
@@ -336,11 +364,23 @@ impl Printer<'_> {
                 .map(|(name, ..)| name.as_str())
                 .collect();
             let input = &self.flat.variables[bode.input].name;
-            let (from, to) = (self.names.expr(bode.band.0), self.names.expr(bode.band.1));
+            let band = bode.band.map_or_else(String::new, |(from, to)| {
+                let (from, to) = (self.names.expr(from), self.names.expr(to));
+                format!(" over {from} .. {to} Hz")
+            });
+            let _ = writeln!(out, "  bode from {input} to {}{band}", outputs.join(", "));
+        }
+        for measured in &experiment.measured_responses {
+            let bode = &experiment.bodes[measured.place.0];
+            let input = &self.flat.variables[bode.input].name;
+            let output = &bode.outputs[measured.place.1].0;
+            let deviation = measured.deviation.as_ref();
+            let noise = deviation.map_or_else(String::new, |d| format!(" ~ {}", self.scaled(d)));
             let _ = writeln!(
                 out,
-                "  bode from {input} to {} over {from} .. {to} Hz",
-                outputs.join(", ")
+                "  measured {} = response({input}, {output}){noise}{}",
+                self.recorded(&measured.source),
+                comment(&measured.origin, self.sources)
             );
             if let Some(stepped) = &bode.stepped {
                 let _ = writeln!(

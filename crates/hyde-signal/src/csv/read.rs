@@ -3,12 +3,13 @@
 use super::ReadError;
 use super::header::{name_and_unit, separator};
 use super::rows::Rows;
+use crate::table::may_be_first;
 use crate::{Column, Table};
-use hyde_units::{Agreement, Dimension, NamedUnit};
+use hyde_units::NamedUnit;
 
 /// Reads a record. Columns with a unit become SI; those without keep their values, see [`Column::with_unit`].
 ///
-/// The first column is the time; without a unit it is in s. With `every`, a period in s, row k is at `k * every`
+/// The first column is the time; without a unit it is in s. In a measured response it is the frequency. With `every`, a period in s, row k is at `k * every`
 /// instead and all columns are ordinary ones. Several rows may have the same time.
 ///
 /// # Errors
@@ -57,7 +58,7 @@ pub(super) fn read_header(rows: &Rows<'_>) -> Result<Header, ReadError> {
 
 fn check_time_unit((name, unit): &(String, Option<NamedUnit>)) -> Result<(), ReadError> {
     match unit {
-        Some(unit) if unit.unit().dimension.agreement(Dimension::TIME) != Agreement::Same => {
+        Some(unit) if !may_be_first(unit.unit().dimension) => {
             let (name, unit) = (name.clone(), unit.text().to_owned());
             Err(ReadError::NoTime { name, unit })
         }

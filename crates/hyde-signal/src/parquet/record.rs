@@ -4,8 +4,8 @@ use super::error::ReadError;
 use super::read::read_frame;
 use super::write::Writer;
 use crate::frame::{Field, Values};
+use crate::table::may_be_first;
 use crate::{Column, Table};
-use hyde_units::{Agreement, Dimension};
 use std::io;
 
 /// Whether a file is of this format, by its first bytes.
@@ -42,7 +42,7 @@ pub fn read(bytes: &[u8], every: Option<f64>) -> Result<Table, ReadError> {
     }
     if let Some(time) = columns.first()
         && let Some(dimension) = time.dimension()
-        && dimension.agreement(Dimension::TIME) != Agreement::Same
+        && !may_be_first(dimension)
     {
         return Err(ReadError::NoTime(time.name().to_owned(), dimension));
     }

@@ -92,7 +92,7 @@ pub(crate) fn program(
         n_work: 0,
         n_parameters: declared.len() + equations.derived(&declared).len(),
         parameters: Vec::new(),
-        first_values: Vec::new(),
+        record_values: Vec::new(),
         columns: Vec::new(),
         outputs: outputs.iter().map(|name| output(name)).collect(),
         relations: Vec::new(),

@@ -53,6 +53,10 @@ fn drawn(title: &str, responses: &[&Response]) -> Figure {
         // One colour an experiment if there are several, else one a kind.
         let place = experiments.iter().position(|known| *known == name);
         let colour = place.filter(|_| several);
+        // What was measured lies below the model.
+        for one in &response.measured {
+            curves.extend(one.curves(&label, colour));
+        }
         // Several amplitudes, or swept and stepped, have one linearised model.
         if !linear.iter().any(|other| same_linear(other, response)) {
             linear.push(response);
@@ -62,6 +66,7 @@ fn drawn(title: &str, responses: &[&Response]) -> Figure {
                 response: response.linear.clone(),
                 style: LineStyle::Solid,
                 coherence: None,
+                deviation: None,
                 colour,
             });
         }
@@ -73,6 +78,7 @@ fn drawn(title: &str, responses: &[&Response]) -> Figure {
                 response: seen(values, &swept.coherence),
                 style: LineStyle::Points,
                 coherence: Some(swept.coherence.clone()),
+                deviation: None,
                 colour,
             });
         }
@@ -86,6 +92,7 @@ fn drawn(title: &str, responses: &[&Response]) -> Figure {
                 response: seen(values, &coherence),
                 style: LineStyle::Rings,
                 coherence: Some(coherence),
+                deviation: None,
                 colour,
             });
         }
@@ -140,6 +147,9 @@ fn csv(responses: &[&Response]) -> String {
                     value.re, value.im
                 );
             }
+        }
+        for one in &response.measured {
+            csv.push_str(&one.csv(experiment));
         }
         for (f, amplitude, found) in &response.stepped {
             let (re, im) = (found.response.re, found.response.im);

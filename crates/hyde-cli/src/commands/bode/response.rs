@@ -1,5 +1,6 @@
 //! One response of an experiment: of the linearised model, and as measured on the hybrid one.
 
+use super::measured::Compared;
 use hyde_experiment::{
     BodeError, Linear, LinearizeError, NaturalMode, SteppedOutput, frequency_response, linearize,
     modes,
@@ -28,6 +29,8 @@ pub(crate) struct Response {
     pub(crate) resonances: Vec<(f64, f64)>,
     /// By the sweep of the stimulus.
     pub(crate) swept: Option<FrequencyResponse>,
+    /// Measured on the machine.
+    pub(crate) measured: Vec<Compared>,
     /// By stepped sines: frequency, amplitude of the input, what came out.
     pub(crate) stepped: Vec<(f64, f64, SteppedOutput)>,
 }
@@ -46,7 +49,8 @@ pub(crate) fn frequencies(band: (f64, f64), count: usize) -> Vec<f64> {
     (0..count).map(at).collect()
 }
 
-/// The linearised responses of an experiment's request, one an output; why there are none, where there are not.
+/// The linearised responses of an experiment's request, one an output, and the system; why there are none, where there are
+/// not.
 pub(crate) fn linearised(
     experiment: &str,
     program: &Program,
@@ -54,7 +58,7 @@ pub(crate) fn linearised(
     tables: &BTreeMap<String, Table>,
     p: &[f64],
     frequency: &[f64],
-) -> Result<Vec<Response>, String> {
+) -> Result<(Vec<Response>, Linear), String> {
     let input = std::slice::from_ref(&bode.input);
     let system =
         linearize(program, tables, p, input, &bode.modes).map_err(|error| why_not(&error))?;
@@ -84,9 +88,10 @@ pub(crate) fn linearised(
                 .collect(),
             resonances: resonances.clone(),
             swept: None,
+            measured: Vec::new(),
             stepped: Vec::new(),
         });
-    Ok(responses.collect())
+    Ok((responses.collect(), system))
 }
 
 fn why_not(error: &LinearizeError) -> String {

@@ -33,6 +33,7 @@ pub(super) fn of(source: &Source) -> Option<Responses> {
                 response: Vec::new(),
                 style: LineStyle::Solid,
                 coherence: measured.map(|_| Vec::new()),
+                deviation: None,
                 colour: None,
             });
             curves.len() - 1
