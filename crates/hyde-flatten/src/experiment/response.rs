@@ -98,7 +98,16 @@ impl<'a> Model<'a, '_> {
                 Some(Resolved::Variable(var, None)) if self.flat.variables[var].input => Some(var),
                 _ => None,
             },
-            _ => None,
+            ExprKind::Number(..)
+            | ExprKind::String(_)
+            | ExprKind::Boolean(_)
+            | ExprKind::Call(..)
+            | ExprKind::Unary(..)
+            | ExprKind::Binary(..)
+            | ExprKind::If(..)
+            | ExprKind::Array(..)
+            | ExprKind::Comprehension(_)
+            | ExprKind::Slice(..) => None,
         };
         let Some(driven) = driven else {
             let name = hyde_syntax::format_expression(input);
