@@ -116,7 +116,8 @@ pub(super) fn table(all: &[Compared]) -> String {
         let run = one.run.as_ref()?;
         Some(one.measured.error_percent(&run.response))
     };
-    let columns: [(&str, &dyn Fn(&Compared) -> Option<f64>); 4] = [
+    type Value<'a> = &'a dyn Fn(&Compared) -> Option<f64>;
+    let columns: [(&str, Value<'_>); 4] = [
         ("linearised", &|one| Some(one.error_percent())),
         ("in time", &|one| {
             one.measured.time_error_percent(&one.linear)
