@@ -1,0 +1,69 @@
+//! Arguments of studies on records: calibrations and diagnoses.
+
+use super::ModelArgs;
+use clap::Args;
+use std::path::PathBuf;
+
+/// A study in a file, with what is set from outside.
+#[derive(Clone, Debug, Args)]
+pub(crate) struct StudyArgs {
+    /// The model's file
+    pub(crate) file: PathBuf,
+    /// The study; the file's only one of its kind if left out
+    pub(crate) study: Option<String>,
+    /// Set a parameter: `--set saddle.M='320 [kg]'` (repeatable)
+    #[arg(long = "set", value_name = "PATH=VALUE [UNIT]")]
+    pub(crate) settings: Vec<String>,
+    /// Look for the study's records below this folder instead of beside the model
+    #[arg(long, value_name = "DIR")]
+    pub(crate) data: Option<PathBuf>,
+    /// Number of threads; all there are if left out. The result does not depend on it
+    #[arg(long, value_name = "N")]
+    pub(crate) jobs: Option<usize>,
+    /// Print one JSON object on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+impl StudyArgs {
+    /// The model's file with what is set.
+    pub(crate) fn model_args(&self) -> ModelArgs {
+        ModelArgs {
+            settings: self.settings.clone(),
+            data: self.data.clone(),
+            json: self.json,
+            quiet: self.quiet,
+            ..ModelArgs::of_file(&self.file)
+        }
+    }
+
+    /// Takes the number of threads asked for.
+    pub(crate) fn use_jobs(&self) -> Result<(), String> {
+        match self.jobs {
+            None => Ok(()),
+            Some(0) => Err("`--jobs` must be positive".to_owned()),
+            Some(jobs) => rayon::ThreadPoolBuilder::new()
+                .num_threads(jobs)
+                .build_global()
+                .map_err(|error| format!("`--jobs {jobs}`: {error}")),
+        }
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FitArgs {
+    #[command(flatten)]
+    pub(crate) study: StudyArgs,
+    /// Leave fit.json and the calibrated model in this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct DiagnoseArgs {
+    #[command(flatten)]
+    pub(crate) study: StudyArgs,
+}
