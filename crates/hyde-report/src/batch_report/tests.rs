@@ -139,5 +139,5 @@ fn an_envelope_is_drawn_between_its_quantiles() {
     // Two areas: closed paths, filled.
     let areas = svg.lines().filter(|line| line.contains("z\" fill="));
     assert_eq!(areas.count(), 2, "{svg}");
-    assert!(svg.contains("x [m]") && svg.contains("time [s]"));
+    assert!(svg.contains("x [mm]") && svg.contains("time [s]"), "{svg}");
 }
