@@ -12,9 +12,11 @@ use crate::segments::{self, Segment};
 use crate::system::{Equation, Slot, System};
 use crate::{pins, unroll};
 use hyde_diag::{Diagnostics, Origin};
-use hyde_ir::{ExprId, Range};
+use hyde_ir::{BinaryOp, Expr, ExprId, Range, UnaryOp};
 pub(crate) use mismatch::{missing_boundary, name, plural, short, unbound_input};
 use mismatch::{report, undetermined};
+use std::cmp::Ordering;
+use std::collections::HashMap;
 
 /// An equation node: a number of the list of equations, or of the slots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -111,11 +113,16 @@ pub(crate) fn sides(system: &System, node: Node) -> Vec<(Range, ExprId, ExprId)>
     }
 }
 
-/// The unknowns an equation can determine, best first: what it is written for, derivatives, the rest.
+/// The unknowns an equation can determine, best first: what it is written for, derivatives, the rest. Of several derivatives
+/// those with the larger constant factor come first: in the row of a mass matrix the cell's own, so that each row is that
+/// of its cell, where a mode may hold it.
 pub(crate) fn edges(system: &System, node: Node, unknowns: &[Segment]) -> Vec<usize> {
     let constraint = matches!(node, Node::Equation(number) if system.equations[number].constraint);
-    let mut found: Vec<(u8, usize)> = Vec::new();
+    let mut found: Vec<(u8, usize, f64)> = Vec::new();
     for (range, lhs, rhs) in sides(system, node) {
+        let mut factors = HashMap::new();
+        constant_factors(system, lhs, 1.0, &mut factors);
+        constant_factors(system, rhs, 1.0, &mut factors);
         for id in system.flat.exprs.below(&[lhs, rhs]) {
             let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
                 continue;
@@ -138,14 +145,52 @@ pub(crate) fn edges(system: &System, node: Node, unknowns: &[Segment]) -> Vec<us
                 (false, false) if id == rhs => 2,
                 (false, false) => 3,
             };
-            match found.iter_mut().find(|(_, known)| *known == number) {
+            let factor = factors.get(&id).filter(|_| derivative).map_or(1.0, |f| *f);
+            match found.iter_mut().find(|(_, known, _)| *known == number) {
                 Some(known) => known.0 = known.0.min(cost),
-                None => found.push((cost, number)),
+                None => found.push((cost, number, factor)),
             }
         }
     }
-    found.sort_unstable();
-    found.into_iter().map(|(_, number)| number).collect()
+    found.sort_by(|a, b| {
+        (a.0, -a.2, a.1)
+            .partial_cmp(&(b.0, -b.2, b.1))
+            .unwrap_or(Ordering::Equal)
+    });
+    found.into_iter().map(|(_, number, _)| number).collect()
+}
+
+/// The magnitudes of the numbers that parts of a sum are multiplied by.
+fn constant_factors(system: &System, id: ExprId, factor: f64, found: &mut HashMap<ExprId, f64>) {
+    let exprs = &system.flat.exprs;
+    match exprs[id] {
+        Expr::Binary(BinaryOp::Add | BinaryOp::Sub, a, b) => {
+            constant_factors(system, a, factor, found);
+            constant_factors(system, b, factor, found);
+        }
+        Expr::Unary(UnaryOp::Neg, a) => constant_factors(system, a, factor, found),
+        Expr::Binary(BinaryOp::Mul, a, b) => {
+            let (of_a, of_b) = (exprs.as_constant(a), exprs.as_constant(b));
+            constant_factors(system, a, factor * of_b.map_or(1.0, f64::abs), found);
+            constant_factors(system, b, factor * of_a.map_or(1.0, f64::abs), found);
+        }
+        Expr::Der(..) => {
+            let own = found.entry(id).or_insert(0.0);
+            *own = own.max(factor);
+        }
+        Expr::Const(_)
+        | Expr::Time
+        | Expr::Counter
+        | Expr::Param(..)
+        | Expr::Var(..)
+        | Expr::Pre(..)
+        | Expr::Relation(_)
+        | Expr::InMode(..)
+        | Expr::Unary(..)
+        | Expr::Binary(..)
+        | Expr::If(..)
+        | Expr::NoEvent(_) => {}
+    }
 }
 
 /// The origin of a node.

@@ -96,13 +96,21 @@ impl Problem<'_> {
     /// # Errors
     /// The program has no fixed-step form.
     pub fn solve(&self, start: &[f64]) -> Result<Solution, Unsupported> {
+        self.solve_in(start, MAX_STEPS)
+    }
+
+    /// The same in a few steps.
+    ///
+    /// # Errors
+    /// The program has no fixed-step form.
+    pub(crate) fn solve_in(&self, start: &[f64], most: usize) -> Result<Solution, Unsupported> {
         let mut values = self.inside(start);
         let mut lambda = 1e-3;
         let (mut steps, mut converged) = (0, false);
         let mut here = self.linearise(&values)?;
         let mut cost = self.cost(&values, &here.innovations);
         let mut curvature = self.normal(&values, &here).0;
-        while steps < MAX_STEPS && !converged {
+        while steps < most && !converged {
             let (matrix, gradient) = self.normal(&values, &here);
             curvature = matrix;
             let mut taken = false;

@@ -175,7 +175,7 @@ impl Plant<'_> {
                 *rest = new - old;
             }
             set_product(&step.second, &room.rest, &mut room.correction);
-            let small = |(value, tolerance): (&f64, &f64)| value.abs() <= 1e-3 * tolerance;
+            let small = |(value, tolerance): (&f64, &f64)| value.abs() <= 0.1 * tolerance;
             if !room.correction.iter().zip(tolerances.iter()).all(small) {
                 for (x, change) in room.new_x.iter_mut().zip(&room.correction) {
                     *x += change;

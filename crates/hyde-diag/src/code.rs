@@ -52,6 +52,7 @@ codes! {
     PackagePath "E0214" "a package is not called as its file";
     BadManifest "E0215" "a manifest cannot be used";
     NotDeclared "E0216" "a file is not declared, or lies outside its folder";
+    WaveSpeed "E0217" "it is not known how many cells a field needs";
     UnitMismatch "E0301" "two sides have different dimensions";
     BadUnit "E0302" "a unit cannot be read";
     AngleMismatch "E0303" "two sides differ in the angle only";

@@ -21,5 +21,6 @@ mod integral;
 mod kernel;
 mod mesh;
 mod point;
+mod resolution;
 mod trace;
 mod value;

@@ -183,6 +183,7 @@ impl<'a> Model<'a, '_> {
                 self.declare_parameters(id, item, declaration);
             }
         }
+        let elements: Vec<&'a Element> = collected.iter().map(|item| item.element).collect();
         for item in collected {
             if let Element::Domain(domain) = item.element {
                 let method = collected.iter().find_map(|other| {
@@ -194,7 +195,7 @@ impl<'a> Model<'a, '_> {
                         None
                     }
                 });
-                self.declare_domain(id, domain, method);
+                self.declare_domain(id, domain, method, &elements);
             }
         }
         for item in collected.iter().filter(|item| !is_parameter(item.element)) {

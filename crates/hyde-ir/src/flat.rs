@@ -1,8 +1,13 @@
 //! [`FlatModel`]: what flatten leaves. Every variable and equation of every instance; nothing solved yet.
 
+mod figure;
+mod response;
+
 use crate::id::{AutomatonId, ClockId, ColumnId, DelayId, ExprId, IdVec, ParamId, VarId};
 use crate::{Column, ExprArena, Index, Parameter, Quantity, Range, Variable};
+pub use figure::{Curve, Figure, FigureKind};
 use hyde_diag::{InstancePath, Origin, Span};
+pub use response::{Bode, MeasuredResponse, RecordedResponse, ScaledColumn, Stepped};
 use std::collections::BTreeMap;
 
 /// `lhs = rhs`, for every value of the counter in the range.
@@ -303,126 +308,6 @@ pub enum Stop {
     At(ExprId),
     /// At the last row of a record.
     EndOf(String),
-}
-
-/// `bode from input to outputs over f1 .. f2`.
-#[derive(Clone, Debug)]
-pub struct Bode {
-    /// The driven input.
-    pub input: VarId,
-    /// The outputs, with their printed names.
-    pub outputs: Vec<(String, ExprId, Quantity)>,
-    /// From and to in Hz, of parameters alone; without them it is that of what was measured.
-    pub band: Option<(ExprId, ExprId)>,
-    /// Measured by stepped sines as well.
-    pub stepped: Option<Stepped>,
-    /// Modes of the linearised system: automaton and mode.
-    pub modes: Vec<(AutomatonId, usize)>,
-    /// Where it is written.
-    pub origin: Origin,
-}
-
-/// Something that a figure shows over time.
-#[derive(Clone, Debug)]
-pub struct Curve {
-    /// As it is written.
-    pub name: String,
-    /// What is shown.
-    pub value: ExprId,
-    /// In what it is shown.
-    pub quantity: Quantity,
-}
-
-/// What kind of figure.
-#[derive(Clone, Debug)]
-pub enum FigureKind {
-    /// Panels one above the other, over time or over a curve.
-    Panels(Vec<Vec<Curve>>, Option<Curve>),
-    /// A contour about the origin, its deviation from a circle magnified: x and y, and the radius in m, of parameters alone.
-    Circle([Curve; 2], ExprId),
-}
-
-/// `figure name = a, {b, c} over x in t1 .. t2 "title"`.
-#[derive(Clone, Debug)]
-pub struct Figure {
-    /// Its name.
-    pub name: String,
-    /// Its title.
-    pub title: String,
-    /// What it shows.
-    pub kind: FigureKind,
-    /// The times shown in s, of parameters alone.
-    pub within: Option<(ExprId, ExprId)>,
-}
-
-impl Figure {
-    /// Its curves in the order in which they are outputs.
-    pub fn curves(&self) -> impl Iterator<Item = &Curve> {
-        let (panels, over, circle) = match &self.kind {
-            FigureKind::Panels(panels, over) => (&panels[..], over.as_ref(), &[][..]),
-            FigureKind::Circle(curves, _) => (&[][..], None, &curves[..]),
-        };
-        panels.iter().flatten().chain(over).chain(circle)
-    }
-
-    /// The same to be changed.
-    pub fn curves_mut(&mut self) -> impl Iterator<Item = &mut Curve> {
-        let (panels, over, circle) = match &mut self.kind {
-            FigureKind::Panels(panels, over) => (&mut panels[..], over.as_mut(), &mut [][..]),
-            FigureKind::Circle(curves, _) => (&mut [][..], None, &mut curves[..]),
-        };
-        panels.iter_mut().flatten().chain(over).chain(circle)
-    }
-}
-
-/// `by stepped(…)`: one run a frequency, driven by a sine. All of parameters alone.
-#[derive(Clone, Debug)]
-pub struct Stepped {
-    /// Amplitude of the input, at most.
-    pub amplitude: ExprId,
-    /// Number of frequencies.
-    pub points: ExprId,
-    /// Time in s before anything counts.
-    pub settle: ExprId,
-    /// Whole periods that count.
-    pub periods: ExprId,
-    /// The output, by its number in the response, whose amplitude is not to be above a level.
-    pub keep: Option<(usize, ExprId)>,
-}
-
-/// A column times a factor, SI.
-#[derive(Clone, Copy, Debug)]
-pub struct ScaledColumn {
-    /// The column.
-    pub column: ColumnId,
-    /// The factor.
-    pub scale: f64,
-}
-
-/// Where a measured frequency response is.
-#[derive(Clone, Copy, Debug)]
-pub enum RecordedResponse {
-    /// Real and imaginary part, over frequency.
-    Complex(ScaledColumn, ScaledColumn),
-    /// Magnitude and phase, over frequency.
-    Polar(ScaledColumn, ScaledColumn),
-    /// Input and output over time, periodic; and the period in s, to be found in the record without it.
-    Periodic(ScaledColumn, ScaledColumn, Option<f64>),
-}
-
-/// `measured complex(frf.re, frf.im) = response(u, y) ~ frf.std`.
-#[derive(Clone, Debug)]
-pub struct MeasuredResponse {
-    /// What reports call it.
-    pub name: String,
-    /// Where it is.
-    pub source: RecordedResponse,
-    /// Column of its standard deviation.
-    pub deviation: Option<ScaledColumn>,
-    /// What it is compared with: the number of a `bode`, and of its output.
-    pub place: (usize, usize),
-    /// Where it is written.
-    pub origin: Origin,
 }
 
 /// What an experiment adds to its model beside equations.

@@ -41,6 +41,26 @@ fn a_free_bar_has_the_frequencies_k_c_over_2_len() {
 }
 
 #[test]
+fn cells_are_chosen_by_the_highest_frequency() {
+    let chosen = model("bar", None).model("Resolved");
+    let program = chosen.compile(Backend::Native).unwrap().program;
+    // 10 kHz on a bar with c = 3192 m/s: k*h = (480*1e-3)^(1/4) asks for 23.6 cells, 24 is the next even number.
+    let angle = program.unknowns.iter().find(|block| block.name == "th").unwrap();
+    assert_eq!(angle.len, 25);
+    let p = parameters(&program, &[]);
+    let linear = linearize(&program, &BTreeMap::new(), &p, &[], &[]).unwrap();
+    let c = (G / RHO).sqrt();
+    let found = modes(&linear).into_iter().map(|mode| mode.frequency_hz);
+    let mut found: Vec<f64> = found.filter(|frequency| *frequency > 1.0).collect();
+    found.truncate(6);
+    for (number, frequency) in (1_u8..).zip(found) {
+        let exact = f64::from(number) * c / (2.0 * LEN);
+        // 0.1 % at 10 kHz is what `f_max` promises; the sixth mode is at 9577 Hz.
+        assert!((frequency / exact - 1.0).abs() < 1e-3, "{number}: {frequency} Hz");
+    }
+}
+
+#[test]
 fn a_loaded_bar_has_the_roots_of_its_frequency_equation() {
     // Equal inertias J at both ends: (J^2*b^2 - Jb^2)*tan(b) = 2*J*Jb*b with b = 2*pi*f*len/c and Jb the bar's inertia.
     let c = (G / RHO).sqrt();

@@ -25,6 +25,16 @@ pub(crate) struct Answer {
     pub(crate) sizes: Vec<f64>,
     /// What they gain.
     pub(crate) gain: f64,
+    m: DMatrix<f64>,
+    b: DVector<f64>,
+}
+
+impl Answer {
+    /// What other sizes gain.
+    pub(crate) fn gain_of(&self, sizes: &[f64]) -> f64 {
+        let sizes = DVector::from_column_slice(sizes);
+        2.0 * self.b.dot(&sizes) - sizes.dot(&(&self.m * &sizes))
+    }
 }
 
 impl Projection {
@@ -92,10 +102,13 @@ impl Projection {
         for i in 0..n {
             m[(i, i)] += 1e-9 * dot(&columns[i], &columns[i]) + 1e-300;
         }
-        let sizes = Cholesky::new(m).map_or_else(|| DVector::zeros(n), |factor| factor.solve(&b));
+        let factor = Cholesky::new(m.clone());
+        let sizes = factor.map_or_else(|| DVector::zeros(n), |factor| factor.solve(&b));
         Answer {
             gain: sizes.dot(&b),
             sizes: sizes.iter().copied().collect(),
+            m,
+            b,
         }
     }
 

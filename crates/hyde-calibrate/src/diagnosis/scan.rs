@@ -104,15 +104,16 @@ pub(crate) fn scan(
                 detectable = Some(detectable.map_or(seen, |least: f64| least.min(seen)));
             }
             let pairs = || hypothesis.sizes.iter().enumerate();
+            let sizes: Vec<f64> = pairs()
+                .map(|(i, size)| inside(answer.sizes[i], size))
+                .collect();
             nodes.push(Node {
                 shapes: shape.clone(),
-                sizes: pairs()
-                    .map(|(i, size)| inside(answer.sizes[i], size))
-                    .collect(),
                 visible: pairs()
                     .map(|(i, size)| visible(&columns[i], size))
                     .collect(),
-                gain: answer.gain,
+                gain: answer.gain_of(&sizes),
+                sizes,
             });
         }
     }

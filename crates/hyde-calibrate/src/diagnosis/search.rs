@@ -24,8 +24,8 @@ const MARGIN: f64 = 2.0;
 /// The part of the number of innovations that a gain on what was not fitted is to reach.
 const MATERIAL: f64 = 0.002;
 /// Hypotheses fitted in a round at most, and the part of the best score that they must have.
-const SURVIVORS: usize = 8;
-const SURVIVING: f64 = 0.02;
+const SURVIVORS: usize = 6;
+const SURVIVING: f64 = 0.05;
 /// Innovations that are explained: their mean square, and their correlation.
 const EXPLAINED: (f64, f64) = (1.05, 0.1);
 
@@ -258,15 +258,20 @@ pub fn diagnose(
     })
 }
 
-/// Puts the gates to the trials; halves are fitted only of those that pass the others.
+/// Puts the gates to the trials, the best first; halves are fitted only of those that pass the others and come near the
+/// best that passes.
 fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates) {
+    trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     let mut plain: Option<[f64; 2]> = None;
+    let mut passed: Option<f64> = None;
     for trial in trials {
         let gate = gates.gain(trial.freedoms) * trial.inflation;
+        let behind = passed.is_some_and(|best| trial.gain < best - gate);
         trial.rejected = trial
             .rejected
             .or((trial.score < gate).then_some(Rejection::Score))
-            .or((trial.gain < gate).then_some(Rejection::Gain));
+            .or((trial.gain < gate).then_some(Rejection::Gain))
+            .or(behind.then_some(Rejection::Behind));
         if trial.rejected.is_some() {
             continue;
         }
@@ -279,6 +284,8 @@ fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates)
         trial.fold_gain = Some(gained);
         if gained < gate.max(gates.material()) {
             trial.rejected = Some(Rejection::Folds);
+        } else {
+            passed = Some(passed.unwrap_or(trial.gain));
         }
     }
 }

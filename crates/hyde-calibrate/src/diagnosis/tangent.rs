@@ -65,6 +65,7 @@ pub(crate) fn tangents(
     let mut error = vec![0.0; channels];
     let mut increment = vec![0.0; states];
     let mut room = vec![0.0; states];
+    let mut answer = vec![0.0; channels];
     for row in 0..recording.rows() {
         own.outputs(&mut plant);
         for (channel, measured) in program.experiment.measured.iter().enumerate() {
@@ -78,7 +79,6 @@ pub(crate) fn tangents(
         let at = modes(&mut plant, &mut known);
         for (direction, course) in directions.iter().zip(&mut courses) {
             own.outputs_at(&mut plant, &direction.p);
-            let mut answer = vec![0.0; channels];
             crate::dense::set_product(&known_at(&known, at)?.outputs, &course.error, &mut answer);
             for (channel, measured) in program.experiment.measured.iter().enumerate() {
                 let by_output =
@@ -96,6 +96,7 @@ pub(crate) fn tangents(
             break;
         }
         let at = modes(&mut plant, &mut known);
+        own.plain(&mut plant);
         for (direction, course) in directions.iter().zip(&mut courses) {
             own.force_at(&mut plant, direction);
             course.force.copy_from_slice(&own.force);
@@ -113,6 +114,7 @@ pub(crate) fn tangents(
                     .position(|state| state == position)
             })
             .collect();
+        own.plain(&mut plant);
         for (direction, course) in directions.iter().zip(&mut courses) {
             own.force_at(&mut plant, direction);
             crate::dense::set_product(&modes.exp, &course.error, &mut room);
@@ -201,13 +203,19 @@ impl Own {
         );
     }
 
-    /// What a unit of the size adds to the residual.
-    fn force_at(&mut self, plant: &mut Plant<'_>, direction: &Direction) {
+    /// The residual without the effect: rounding.
+    fn plain(&mut self, plant: &mut Plant<'_>) {
         let program = plant.program;
         let (at, _) = plant.point();
         program
             .kernels
             .evaluate(Function::Residual, at, &mut self.workspace, &mut self.plain);
+    }
+
+    /// What a unit of the size adds to the residual, after [`Own::plain`] there.
+    fn force_at(&mut self, plant: &mut Plant<'_>, direction: &Direction) {
+        let program = plant.program;
+        let (at, _) = plant.point();
         let with = Point {
             p: &direction.p,
             ..at

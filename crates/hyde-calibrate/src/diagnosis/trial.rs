@@ -12,6 +12,10 @@ use hyde_program::Program;
 
 /// A shape is visibly another by this part of its value or its range.
 const VISIBLE_SHAPE: f64 = 0.03;
+/// Steps from a node before nodes are compared.
+const FIRST_STEPS: usize = 3;
+/// Steps from the whole fit to that of a half.
+const FOLD_STEPS: usize = 4;
 /// A fit that gains this much more than the scan promised did not find the effect but a better fit of all else.
 const TOO_GOOD: f64 = 3.0;
 
@@ -29,6 +33,8 @@ pub enum Rejection {
     Folds,
     /// A size or a shape is on its bound.
     Bound,
+    /// Another one gains more.
+    Behind,
     /// The fit gains far more than the scan, which a linear effect cannot.
     TooGood,
 }
@@ -67,15 +73,17 @@ pub(crate) fn trial(
     list.push(score.hypothesis);
     let Built { program, paths } = build(&list)?;
     let own_path = paths.last()?.clone();
+    // A few steps from every node, the rest from the best of them.
     let mut best: Option<Refit> = None;
-    for node in &score.nodes {
-        // From where less than half is gained nothing better is reached.
-        if node.gain < 0.5 * score.gain() {
-            continue;
-        }
+    let nodes = score
+        .nodes
+        .iter()
+        .filter(|node| node.gain >= 0.5 * score.gain());
+    for node in nodes {
         let (varied, start, kept) = unknowns(stage, &program, hypothesis, &own_path, node);
         let set = ground.set_in(&program, &kept);
-        let Ok(solution) = ground.problem(&program, &varied, &set, None).solve(&start) else {
+        let problem = ground.problem(&program, &varied, &set, None);
+        let Ok(solution) = problem.solve_in(&start, FIRST_STEPS) else {
             continue;
         };
         if best
@@ -85,7 +93,12 @@ pub(crate) fn trial(
             best = Some((solution, varied, kept));
         }
     }
-    let (solution, varied, kept) = best?;
+    let (mut solution, varied, kept) = best?;
+    if !solution.converged {
+        let set = ground.set_in(&program, &kept);
+        let problem = ground.problem(&program, &varied, &set, None);
+        solution = problem.solve(&solution.values).ok()?;
+    }
     let own: Vec<usize> = (stage.varied.len()..varied.len()).collect();
     let at_bound = own.iter().any(|&number| {
         let (value, (low, high)) = (solution.values[number], varied[number].bounds);
@@ -140,7 +153,7 @@ pub(crate) fn unseen(ground: &Ground<'_>, stage: &Stage) -> Option<[f64; 2]> {
     let set = ground.set_in(&stage.program, &stage.kept);
     let half = |odd: bool| {
         let seen = ground.problem(&stage.program, &stage.varied, &set, Some(Fold { odd }));
-        let solution = seen.solve(&stage.solution.values).ok()?;
+        let solution = seen.solve_in(&stage.solution.values, FOLD_STEPS).ok()?;
         let other = ground.problem(
             &stage.program,
             &stage.varied,

@@ -237,6 +237,7 @@ fn remark(rejection: Rejection) -> &'static str {
         Rejection::Gain => "gain too small",
         Rejection::Folds => "not on unseen rows",
         Rejection::Bound => "on a bound",
+        Rejection::Behind => "behind the best",
         Rejection::TooGood => "more than it can",
     }
 }

@@ -83,6 +83,7 @@ pages! {
     PackagePath "E0214";
     BadManifest "E0215";
     NotDeclared "E0216";
+    WaveSpeed "E0217";
     UnitMismatch "E0301";
     BadUnit "E0302";
     AngleMismatch "E0303";

@@ -1,9 +1,11 @@
 //! Domains with their meshes, and the domain of a field.
 
-use crate::instance::{Domain, DomainId, Field, InstanceId, Member};
+use crate::dimension::Dim;
+use crate::instance::{Domain, DomainId, Field, InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::{Code, Diagnostic, Span};
 use hyde_syntax::ast::{self, Declarator};
+use hyde_units::Dimension;
 
 impl<'a> Model<'a, '_> {
     pub(super) fn declare_domain(
@@ -11,6 +13,7 @@ impl<'a> Model<'a, '_> {
         id: InstanceId,
         domain: &'a ast::Domain,
         method: Option<&'a ast::Discretize>,
+        elements: &[&'a ast::Element],
     ) {
         let name = domain.name.text.as_str();
         let span = domain.name.span;
@@ -36,26 +39,14 @@ impl<'a> Model<'a, '_> {
                         format!("no discretisation is called `{other}` in this version"),
                     )
                     .label(method.method.span, "not known")
-                    .help("write `fem(n = …)` or `fv(n = …)`"),
+                    .help("write `fem(n = …)` or `fv(n = …)`, or `f_max = …` for `n = …`"),
                 );
                 self.undeclared.insert(name);
                 return;
             }
         };
-        let cells = method
-            .arguments
-            .iter()
-            .find(|a| a.name.as_ref().is_some_and(|name| name.text == "n"));
-        let Some(cells) = cells else {
-            self.report(
-                Diagnostic::error(Code::BadArguments, format!("how many cells has `{name}`?"))
-                    .label(method.method.span, "no `n` given")
-                    .help(format!("write `{}(n = 24)`", method.method.text)),
-            );
-            self.undeclared.insert(name);
-            return;
-        };
-        let Some(count) = self.structural_integer(id, &cells.value) else {
+        let Some((count, span_of_count)) = self.number_of_cells(id, domain, method, averaged, elements)
+        else {
             self.undeclared.insert(name);
             return;
         };
@@ -68,7 +59,7 @@ impl<'a> Model<'a, '_> {
                     Code::BadArguments,
                     format!("`{name}` cannot have {count} cells"),
                 )
-                .label(cells.value.span, "at least 2"),
+                .label(span_of_count, "at least 2"),
             );
             self.undeclared.insert(name);
             return;
@@ -88,6 +79,66 @@ impl<'a> Model<'a, '_> {
         self.instances[id]
             .members
             .insert(name, Member::Domain(self.domains.len() - 1));
+    }
+
+    /// The number of cells that a discretisation has, with what says so: `n`, or what waves up to `f_max` need, whichever is
+    /// more; without both what those need that the experiment asks for.
+    fn number_of_cells(
+        &mut self,
+        id: InstanceId,
+        domain: &'a ast::Domain,
+        method: &'a ast::Discretize,
+        averaged: bool,
+        elements: &[&'a ast::Element],
+    ) -> Option<(i64, Span)> {
+        let (mut n, mut f_max) = (None, None);
+        for argument in &method.arguments {
+            let name = argument.name.as_ref();
+            match name.map(|name| name.text.as_str()) {
+                Some("n") => n = Some(&argument.value),
+                Some("f_max") => f_max = Some(&argument.value),
+                Some(_) | None => {
+                    let span = name.map_or(argument.value.span, |name| name.span);
+                    self.report(
+                        Diagnostic::error(Code::BadArguments, "a mesh has no such option")
+                            .label(span, "not known")
+                            .help("options are `n`, the number of cells, and `f_max`, the highest frequency of waves"),
+                    );
+                    return None;
+                }
+            }
+        }
+        let given = match n {
+            Some(n) => Some((self.structural_integer(id, n)?, n.span)),
+            None => None,
+        };
+        let (f_max, span) = match (f_max, n) {
+            (Some(expr), _) => {
+                let scope = Scope::new(id, Setting::Parameter);
+                let frequency = self.value(expr, &scope);
+                let hertz = Typed {
+                    dim: Dim::known(Dimension::FREQUENCY),
+                    ..frequency.clone()
+                };
+                self.agree(
+                    &frequency,
+                    &hertz,
+                    "waves have a frequency, this relates",
+                    id,
+                );
+                (self.structural_number(&scope, expr)?, expr.span)
+            }
+            (None, Some(_)) => return given,
+            (None, None) => (self.highest_frequency(), method.method.span),
+        };
+        if let (true, Some(given)) = (f_max <= 0.0, given) {
+            return Some(given);
+        }
+        let wanted = self.cells_for(id, domain, elements, averaged, (f_max, span))?;
+        Some(match given {
+            Some(given) if given.0 >= wanted => given,
+            Some(_) | None => (wanted, span),
+        })
     }
 
     /// The domain of that name in an instance; reported once if there is none.
