@@ -152,16 +152,18 @@ impl Case {
     }
 }
 
-/// The same of the bench axis in its closed loop, without the quantiser of its encoder: position, angle, speed and current
+/// The same of the bench axis in its closed loop, without the quantisers of its encoder and its scale: position, angle, speed and current
 /// by parameters of the axis, over the beginning of the first stroke.
 ///
 /// # Errors
 /// As [`Case::compare`].
 pub fn compare_bench(parameters: &[&str]) -> Result<Vec<Compared>, String> {
-    let example = Example::load("examples/bench_axis/axis.hyde", Some("bench"))?.rewritten(
-        "floor_to(sample(encoder.phi), 1e-4 [rev])",
-        "sample(encoder.phi)",
-    );
+    let example = Example::load("examples/bench_axis/axis.hyde", Some("bench"))?
+        .rewritten(
+            "floor_to(sample(encoder.phi), 1e-4 [rev])",
+            "sample(encoder.phi)",
+        )
+        .rewritten("floor_to(scale.s, 1 [um])", "scale.s");
     let loaded = example.parse()?;
     let compiled = loaded.compile(&example, Backend::Native)?;
     let options = Options {

@@ -11,11 +11,13 @@
 //! Fifty rounds, or modes that were met before at this instant without a state having jumped, end the run: the conditions
 //! would fire for ever.
 
+mod located;
+
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
 use crate::guards::{current_mode, is_active};
 use crate::results::{Event, EventKind};
-use crate::root_rates::{moment, root_rates, rounding};
+use crate::root_rates::{root_rates, rounding};
 use crate::sensitivity::Sensitivities;
 use crate::state::State;
 use hyde_program::{Function, ReactionKind, RelationUse, Target};
@@ -74,7 +76,6 @@ impl Instant<'_, '_> {
                     located.extend(short);
                     (truths, roots) = self.truths(scheduled, &located)?;
                 }
-
                 let now = self.guards_that_became_true(&truths, &roots);
                 self.remember_located(&now);
                 located.extend(now);
@@ -207,19 +208,6 @@ impl Instant<'_, '_> {
         Ok((truths, roots))
     }
 
-    /// Takes down where guards of states became true, if that is their zero as far as the instant can be known.
-    fn remember_located(&mut self, guards: &[(usize, f64)]) {
-        for &(guard, root) in guards {
-            self.state.located.retain(|(other, _)| *other != guard);
-            if self.state.is_of_states(guard) {
-                let rate = self.state.height_rate(guard, self.t, self.y, self.yp);
-                if root.abs() <= rate.abs() * 1e-12 * (1.0 + self.t.abs()) {
-                    self.state.located.push((guard, root));
-                }
-            }
-        }
-    }
-
     /// Takes down the relations whose truth was decided by the direction of the flow against their sign.
     fn remember_doubtful(&mut self, truths: &[bool], roots: &[f64]) {
         let pairs = truths.iter().zip(roots).enumerate();
@@ -227,35 +215,6 @@ impl Instant<'_, '_> {
             .filter(|(_, (truth, root))| **root != 0.0 && (**root > 0.0) != **truth)
             .map(|(number, (_, root))| (number, 2.0 * root.abs()))
             .collect();
-    }
-
-    /// The crossed relations whose truth is as before: consistent values may fall short of a zero by rounding that the step
-    /// to it did not show. As far as the instant can be known they are at it.
-    fn short_of_zero(&mut self, truths: &[bool]) -> Vec<(usize, f64)> {
-        let state = &self.state;
-        let stays = |relation: &usize| {
-            let truth = truths.get(*relation);
-            truth.is_some_and(|truth| *truth == (state.z[*relation] != 0.0))
-        };
-        let stay: Vec<usize> = self.crossed.iter().copied().filter(stays).collect();
-        if stay.is_empty() {
-            return Vec::new();
-        }
-        let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
-        let known = 0.5e-12 * (1.0 + self.t.abs());
-        let within = |relation: usize| (relation, known * rates[relation].abs());
-        stay.into_iter().map(within).collect()
-    }
-
-    /// Guards that lead in a circle may do so by rounding alone: a diode's current is zero where its voltage is. Those that
-    /// cross zero within a moment of now count by the direction in which they do.
-    fn all_but_zero(&mut self, guards: &[usize]) -> Vec<(usize, f64)> {
-        let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
-        let moment = moment(self.t);
-        guards
-            .iter()
-            .map(|&guard| (guard, 0.5 * moment * rates[guard].abs()))
-            .collect()
     }
 
     /// The guards of current modes that are true.

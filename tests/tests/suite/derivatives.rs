@@ -84,9 +84,10 @@ fn derivatives_by_parameters_are_those_of_the_functions() {
 
 /// The derivatives by a chosen set of parameters, by their positions.
 fn by_parameters(case: &Case, program: &Program, function: Function, chosen: &[usize]) {
-    // A thousandth away from what is declared: round numbers may lie where a `min` changes its branch.
+    // Away from what is declared, each by its own part: round numbers may lie where a `min` changes its branch.
     let declared = parameters(program, &[]);
-    let moved: Vec<(usize, f64)> = chosen.iter().map(|&k| (k, 1.001 * declared[k])).collect();
+    let part = |k: usize| 1.0 + 0.1 * (0.618 * (k * k) as f64).fract();
+    let moved: Vec<(usize, f64)> = chosen.iter().map(|&k| (k, part(k) * declared[k])).collect();
     let p = parameters(program, &moved);
     let values = Values::of(program, &mut Random(4));
     let at = values.point(&p);

@@ -39,7 +39,7 @@ struct Waves<'a> {
 
 /// `factor` times so many derivatives in time and in space of a field.
 #[derive(Clone, Copy)]
-struct Term<'a> {
+struct Share<'a> {
     field: &'a str,
     time: u32,
     space: u32,
@@ -180,7 +180,7 @@ impl<'a> Model<'a, '_> {
         waves: &Waves<'a>,
         expr: &'a Expr,
         depth: usize,
-    ) -> Result<Vec<Term<'a>>, Obstacle<'a>> {
+    ) -> Result<Vec<Share<'a>>, Obstacle<'a>> {
         let not_linear = Some((expr, "is not linear in the fields"));
         if !waves.has_field(expr) {
             return Ok(Vec::new());
@@ -193,7 +193,7 @@ impl<'a> Model<'a, '_> {
                 let field = waves.field(name);
                 match field.ok_or(not_linear)? {
                     (_, Some(binding)) => self.terms(waves, binding, depth + 1),
-                    (field, None) => Ok(vec![Term {
+                    (field, None) => Ok(vec![Share {
                         field,
                         time: 0,
                         space: 0,
@@ -293,8 +293,8 @@ impl<'a> Waves<'a> {
     }
 }
 
-fn scaled(term: Term<'_>, factor: f64) -> Term<'_> {
-    Term {
+fn scaled(term: Share<'_>, factor: f64) -> Share<'_> {
+    Share {
         factor: factor * term.factor,
         ..term
     }

@@ -45,7 +45,8 @@ impl<'a> Model<'a, '_> {
                 return;
             }
         };
-        let Some((count, span_of_count)) = self.number_of_cells(id, domain, method, averaged, elements)
+        let Some((count, span_of_count)) =
+            self.number_of_cells(id, domain, method, averaged, elements)
         else {
             self.undeclared.insert(name);
             return;

@@ -1,0 +1,51 @@
+//! Instants that were located: how near to zero root functions count as at it.
+
+use super::Instant;
+use crate::root_rates::{moment, root_rates};
+use hyde_program::RelationUse;
+
+impl Instant<'_, '_> {
+    /// Takes down where guards of states became true, if that is their zero as far as the instant can be known.
+    pub(super) fn remember_located(&mut self, guards: &[(usize, f64)]) {
+        for &(guard, root) in guards {
+            self.state.located.retain(|(other, _)| *other != guard);
+            if self.state.is_of_states(guard) {
+                let rate = self.state.height_rate(guard, self.t, self.y, self.yp);
+                if root.abs() <= rate.abs() * 1e-12 * (1.0 + self.t.abs()) {
+                    self.state.located.push((guard, root));
+                }
+            }
+        }
+    }
+
+    /// The crossed relations of reactions whose truth is as before: consistent values may fall short of a zero by rounding that the step
+    /// to it did not show. As far as the instant can be known they are at it.
+    pub(super) fn short_of_zero(&mut self, truths: &[bool]) -> Vec<(usize, f64)> {
+        let state = &self.state;
+        // Those of equations wait for the values of the branch they lead to: one of a loop may lead them all back.
+        let stays = |relation: &usize| {
+            let known = state.program.relations.get(*relation);
+            let of_reaction = known.is_some_and(|r| r.used != RelationUse::Equation);
+            of_reaction && truths[*relation] == (state.z[*relation] != 0.0)
+        };
+        let stay: Vec<usize> = self.crossed.iter().copied().filter(stays).collect();
+        if stay.is_empty() {
+            return Vec::new();
+        }
+        let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
+        let known = 0.5e-12 * (1.0 + self.t.abs());
+        let within = |relation: usize| (relation, known * rates[relation].abs());
+        stay.into_iter().map(within).collect()
+    }
+
+    /// Guards that lead in a circle may do so by rounding alone: a diode's current is zero where its voltage is. Those that
+    /// cross zero within a moment of now count by the direction in which they do.
+    pub(super) fn all_but_zero(&mut self, guards: &[usize]) -> Vec<(usize, f64)> {
+        let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
+        let moment = moment(self.t);
+        guards
+            .iter()
+            .map(|&guard| (guard, 0.5 * moment * rates[guard].abs()))
+            .collect()
+    }
+}
