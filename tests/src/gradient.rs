@@ -267,8 +267,8 @@ impl Compare<'_> {
             largest = largest.max(quotient.abs());
             count += 1;
         }
-        // Not a number is no agreement.
-        let finite = column.iter().all(|slope| slope.is_finite());
+        // Not a number is no agreement, and nothing compared neither.
+        let finite = column.iter().all(|slope| slope.is_finite()) && largest > 0.0;
         Ok(Compared {
             name,
             error: if finite {
