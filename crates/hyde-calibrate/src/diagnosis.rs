@@ -7,6 +7,7 @@
 //! scan           scores of an effect over its shapes and sizes                            diagnosis/scan.rs
 //! trial          a survivor fitted together with all parameters, and judged on folds      diagnosis/trial.rs
 //! search         forward, until nothing passes the gates                                  diagnosis/search.rs
+//! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
 mod hypothesis;
@@ -16,8 +17,13 @@ mod search;
 mod stage;
 mod tangent;
 mod trial;
+mod unknown;
 
 pub use hypothesis::{Build, Built, Hypothesis, Knob};
 pub use scan::Score;
 pub use search::{Diagnosis, Finding, Gates, Quantity, Round, Verdict, diagnose};
 pub use trial::{Rejection, Trial};
+pub use unknown::{
+    Author, Factor, FoundLaw, Inquiry, Kind, LatentForce, Law, Map, Panel, Scales, Seen, Site,
+    Term, Unknown, Variable, Written, propose,
+};

@@ -26,8 +26,9 @@ mod stepping;
 mod varied;
 
 pub use diagnosis::{
-    Build, Built, Diagnosis, Finding, Gates, Hypothesis, Knob, Quantity, Rejection, Round, Score,
-    Trial, Verdict, diagnose,
+    Author, Build, Built, Diagnosis, Factor, Finding, FoundLaw, Gates, Hypothesis, Inquiry, Kind,
+    Knob, LatentForce, Law, Map, Panel, Quantity, Rejection, Round, Scales, Score, Seen, Site,
+    Term, Trial, Unknown, Variable, Verdict, Written, diagnose, propose,
 };
 pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit};
 pub use gain::Observer;

@@ -112,6 +112,20 @@ impl Projection {
         }
     }
 
+    /// What columns gain of innovations that have nothing to do with them.
+    pub(crate) fn by_chance(&self, columns: &[Vec<f64>], innovations: &[f64]) -> f64 {
+        let n = columns.len();
+        let h = self.factor.solve(&self.onto(innovations));
+        let onto: Vec<DVector<f64>> = columns.iter().map(|column| self.onto(column)).collect();
+        let solved: Vec<DVector<f64>> = onto.iter().map(|v| self.factor.solve(v)).collect();
+        let m = DMatrix::from_fn(n, n, |i, j| {
+            let own = dot(&columns[i], &columns[j]);
+            own - onto[i].dot(&solved[j]) + if i == j { 1e-9 * own + 1e-300 } else { 0.0 }
+        });
+        let b = DVector::from_fn(n, |i, _| -(dot(&columns[i], innovations) - onto[i].dot(&h)));
+        Cholesky::new(m).map_or(0.0, |factor| b.dot(&factor.solve(&b)))
+    }
+
     fn onto(&self, change: &[f64]) -> DVector<f64> {
         DVector::from_iterator(
             self.derivatives.len(),

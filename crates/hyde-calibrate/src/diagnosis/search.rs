@@ -123,6 +123,8 @@ pub struct Diagnosis {
     pub kept: Vec<(String, f64)>,
     /// Something is left that no effect known explains.
     pub unexplained: bool,
+    /// What that is, where it was asked for ([`super::propose`]).
+    pub unknown: Option<super::Unknown>,
 }
 
 /// Finds what a model lacks.
@@ -255,6 +257,7 @@ pub fn diagnose(
         varied: stage.varied,
         kept: stage.kept,
         unexplained,
+        unknown: None,
     })
 }
 
@@ -314,7 +317,7 @@ fn choice(trials: &[Trial], gates: Gates) -> Option<(usize, Vec<usize>)> {
 }
 
 /// Whether innovations are what the noise makes of them.
-fn explained(solution: &Solution) -> bool {
+pub(super) fn explained(solution: &Solution) -> bool {
     let channels = solution.innovations.iter().flat_map(|i| &i.channels);
     let mut fine = true;
     for list in channels {
@@ -325,7 +328,11 @@ fn explained(solution: &Solution) -> bool {
 }
 
 /// The effects with their quantities and intervals.
-fn findings(stage: &Stage, hypotheses: &[Hypothesis], alternatives: &[Vec<usize>]) -> Vec<Finding> {
+pub(super) fn findings(
+    stage: &Stage,
+    hypotheses: &[Hypothesis],
+    alternatives: &[Vec<usize>],
+) -> Vec<Finding> {
     let covariance = covariance(&stage.solution, inflation(&stage.solution.innovations));
     let values = stage.values();
     let number_of = |name: &str| stage.varied.iter().position(|varied| varied.name == name);

@@ -23,11 +23,11 @@ pub(crate) struct Direction {
 }
 
 /// What a combination of modes makes of errors and forces in a row.
-struct Modes {
-    exp: DMatrix<f64>,
-    first: DMatrix<f64>,
-    second: DMatrix<f64>,
-    outputs: DMatrix<f64>,
+pub(crate) struct Modes {
+    pub(crate) exp: DMatrix<f64>,
+    pub(crate) first: DMatrix<f64>,
+    pub(crate) second: DMatrix<f64>,
+    pub(crate) outputs: DMatrix<f64>,
 }
 
 /// One direction on its way.
@@ -146,7 +146,7 @@ fn known_at(known: &[Option<Modes>], at: usize) -> Option<&Modes> {
 }
 
 /// The number of the combination of modes the plant is in, its matrices made.
-fn modes(plant: &mut Plant<'_>, known: &mut Vec<Option<Modes>>) -> usize {
+pub(crate) fn modes(plant: &mut Plant<'_>, known: &mut Vec<Option<Modes>>) -> usize {
     let at = plant.current;
     known.resize_with(known.len().max(at + 1), || None);
     if known[at].is_none() {
@@ -165,16 +165,16 @@ fn modes(plant: &mut Plant<'_>, known: &mut Vec<Option<Modes>>) -> usize {
 }
 
 /// Evaluations of the model with other parameters where the plant is.
-struct Own {
+pub(crate) struct Own {
     workspace: Workspace,
-    values: Vec<f64>,
+    pub(crate) values: Vec<f64>,
     others: Vec<f64>,
-    force: Vec<f64>,
+    pub(crate) force: Vec<f64>,
     plain: Vec<f64>,
 }
 
 impl Own {
-    fn new(program: &Program) -> Self {
+    pub(crate) fn new(program: &Program) -> Self {
         Self {
             workspace: Workspace::new(program.n_work),
             values: vec![0.0; program.outputs.len()],
@@ -184,7 +184,7 @@ impl Own {
         }
     }
 
-    fn outputs(&mut self, plant: &mut Plant<'_>) {
+    pub(crate) fn outputs(&mut self, plant: &mut Plant<'_>) {
         let program = plant.program;
         let (at, _) = plant.point();
         program
@@ -204,7 +204,7 @@ impl Own {
     }
 
     /// The residual without the effect: rounding.
-    fn plain(&mut self, plant: &mut Plant<'_>) {
+    pub(crate) fn plain(&mut self, plant: &mut Plant<'_>) {
         let program = plant.program;
         let (at, _) = plant.point();
         program
@@ -213,7 +213,7 @@ impl Own {
     }
 
     /// What a unit of the size adds to the residual, after [`Own::plain`] there.
-    fn force_at(&mut self, plant: &mut Plant<'_>, direction: &Direction) {
+    pub(crate) fn force_at(&mut self, plant: &mut Plant<'_>, direction: &Direction) {
         let program = plant.program;
         let (at, _) = plant.point();
         let with = Point {

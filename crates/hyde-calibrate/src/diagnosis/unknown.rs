@@ -1,0 +1,366 @@
+//! [`propose`]: where no effect known explains what is left, a law is made of the model's own variables, written as an
+//! effect of the language, and fitted and judged like any other.
+//!
+//! ```text
+//! site           places where a law may act, and the language's words there    unknown/site.rs
+//! latent         a force at a site, whatever its course, in the innovations    unknown/latent.rs
+//! felt           a site with a probe run along every record                    unknown/felt.rs
+//! map            of which variable the force is a function                     unknown/map.rs
+//! factor         the shapes a law is a product of                              unknown/factor.rs
+//! law            a sum of products; its text                                   unknown/law.rs
+//! regression     which products, with which constants                          unknown/regression.rs
+//! ```
+//! The method is that of de Silva, Higdon, Brunton and Kutz (Front. Artif. Intell. 3, 2020, 25) in that the discrepancy of a
+//! model is regressed and not the model itself; here in the space of innovations, parameters projected out. A law that
+//! explains little of what its map says a force there could explain is refused: the map is the answer then.
+
+mod factor;
+mod felt;
+mod latent;
+mod law;
+mod map;
+mod regression;
+mod site;
+
+pub use factor::{Factor, Scales, Seen};
+pub use latent::LatentForce;
+pub use law::{Law, Term};
+pub use map::{Map, Panel, Variable};
+pub use site::{Kind, Site, Written};
+
+use super::hypothesis::{Built, Hypothesis};
+use super::projection::{Projection, dot};
+use super::scan::{Node, Score};
+use super::search::{Diagnosis, Gates, Verdict, explained, findings};
+use super::stage::{Ground, Stage};
+use super::trial::{Trial, trial, unseen};
+use crate::fit::inflation;
+use crate::gain::Observer;
+use crate::plant::Unsupported;
+use crate::recording::Recording;
+use felt::Felt;
+use rayon::prelude::*;
+use regression::{Selected, select};
+
+/// Puts known hypotheses, by number, and written effects on the model; `None` where they cannot be.
+pub type Author<'a> = dyn Fn(&[usize], &[Written]) -> Option<Built> + Sync + 'a;
+
+/// What the written effect is called.
+const NAME: &str = "Found";
+/// Sites whose map gains this part of the best one's are searched for a law, so many at most.
+const NEAR: f64 = 0.8;
+const SITES: usize = 3;
+/// A law is refused that gains less than this part of what the best panel of its map does.
+const LEAST_SHARE: f64 = 0.6;
+/// Gains that fall slowly: the last of the most terms a law may have still gains this part of the first.
+const SLOW: f64 = 0.1;
+/// A change of innovations that can be seen: the sum of its squares.
+const VISIBLE: f64 = 100.0;
+
+/// What a proposal is made from.
+#[derive(Clone, Copy)]
+pub struct Inquiry<'a> {
+    /// The records fitted.
+    pub recordings: &'a [Recording],
+    /// The observer of the study.
+    pub observer: &'a Observer,
+    /// Values set from outside, by name, SI.
+    pub set: &'a [(String, f64)],
+    /// The hypotheses of the diagnosis.
+    pub hypotheses: &'a [Hypothesis],
+    /// Where a law may act.
+    pub sites: &'a [Site],
+    /// Compiles.
+    pub author: &'a Author<'a>,
+}
+
+/// What is missing where no effect known is it.
+pub struct Unknown {
+    /// The map of the site that explains most, with bands: the signature.
+    pub map: Map,
+    /// Maps of the other sites, without bands, the best first.
+    pub others: Vec<Map>,
+    /// The force that the balance at the site would need, record by record.
+    pub latent: Vec<LatentForce>,
+    /// The law that was found; `None` where no formula is worth its constants.
+    pub found: Option<FoundLaw>,
+}
+
+/// A law that was found.
+pub struct FoundLaw {
+    /// The law as it was selected, with what the records show of its site.
+    pub law: Law,
+    /// The effect written: its text has the values found.
+    pub written: Written,
+    /// What a report needs of it: it is the hypothesis behind the last one of the diagnosis.
+    pub hypothesis: Hypothesis,
+    /// What it gained after each term, before it was fitted.
+    pub gains: Vec<f64>,
+    /// What it gained fitted, and on halves of the records that fits had not seen.
+    pub gain: f64,
+    /// See [`FoundLaw::gain`].
+    pub fold_gain: f64,
+    /// What it gains of what the best panel of the map does.
+    pub share: f64,
+    /// Other forms of the first term with the part of its gain that they have.
+    pub equivalents: Vec<(Term, f64)>,
+}
+
+/// Asks what is missing where innovations are not explained, and puts the answer into the diagnosis.
+///
+/// # Errors
+/// The model has no fixed-step form.
+pub fn propose(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis) -> Result<(), Unsupported> {
+    if !diagnosis.unexplained || inquiry.sites.is_empty() {
+        return Ok(());
+    }
+    let ground = Ground {
+        recordings: inquiry.recordings,
+        observer: inquiry.observer,
+        set: inquiry.set,
+    };
+    let (base, last) = stages(inquiry, diagnosis)?;
+    let tried = diagnosis.rounds.last().map_or(1, |round| round.gates.tried);
+    let innovations = inquiry
+        .recordings
+        .iter()
+        .map(|r| r.channels.len() * (r.rows() - r.first_row))
+        .sum();
+    let gates = Gates { tried, innovations };
+    let mut answer = law(inquiry, &ground, &last, gates)?;
+    // What was taken in before may have stood for the unknown effect.
+    if !last.effects.is_empty() {
+        let alone = law(inquiry, &ground, &base, gates)?;
+        let cost = |answer: &Option<Answer>| {
+            let found = answer.as_ref().and_then(|answer| answer.found.as_ref());
+            found.map(|(trial, _)| trial.stage.solution.cost)
+        };
+        let known = last.solution.cost;
+        let better = match (cost(&alone), cost(&answer)) {
+            (Some(alone), Some(both)) => alone <= both + gates.gain(1),
+            (Some(alone), None) => alone <= known + gates.gain(1),
+            (None, _) => false,
+        };
+        if better {
+            answer = alone;
+        }
+    }
+    let Some(answer) = answer else {
+        return Ok(());
+    };
+    take_in(inquiry, diagnosis, answer);
+    Ok(())
+}
+
+/// A map with the law that was found.
+struct Answer {
+    unknown: Unknown,
+    found: Option<(Trial, Vec<Vec<usize>>)>,
+}
+
+/// The model without any effect, and with those of the diagnosis.
+fn stages(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> Result<(Stage, Stage), Unsupported> {
+    let singular = || Unsupported::Start("the equations are singular".to_owned());
+    let list: Vec<usize> = diagnosis.findings.iter().map(|f| f.hypothesis).collect();
+    let paths = (inquiry.author)(&list, &[]).ok_or_else(singular)?.paths;
+    let last = Stage {
+        program: diagnosis.program.clone(),
+        effects: list.into_iter().zip(paths).collect(),
+        varied: diagnosis.varied.clone(),
+        kept: diagnosis.kept.clone(),
+        solution: diagnosis.after.clone(),
+    };
+    let program = (inquiry.author)(&[], &[]).ok_or_else(singular)?.program;
+    let mut varied = last.varied_in(&program);
+    varied.truncate(diagnosis.before.values.len());
+    let base = Stage {
+        program,
+        effects: Vec::new(),
+        varied,
+        kept: Vec::new(),
+        solution: diagnosis.before.clone(),
+    };
+    Ok((base, last))
+}
+
+/// The law that explains most of what a stage leaves.
+fn law(
+    inquiry: &Inquiry<'_>,
+    ground: &Ground<'_>,
+    stage: &Stage,
+    gates: Gates,
+) -> Result<Option<Answer>, Unsupported> {
+    let at = stage.linearise(ground)?;
+    let Some(projection) = Projection::new(stage, &at) else {
+        return Ok(None);
+    };
+    let felt = |site: &Site| {
+        let felt = Felt::new(ground, stage, site, inquiry.author)?;
+        let map = map::map(&felt, &projection);
+        Some((felt, map))
+    };
+    let mut places: Vec<(Felt, Map)> = inquiry.sites.par_iter().filter_map(felt).collect();
+    places.sort_by(|a, b| b.1.gain().total_cmp(&a.1.gain()));
+    let Some(most) = places.first().map(|(_, map)| map.gain()) else {
+        return Ok(None);
+    };
+    let inflation = inflation(&stage.solution.innovations);
+    let gate = gates.gain(1) * inflation;
+    let mut selected: Vec<(usize, Selected)> = Vec::new();
+    for (number, (felt, map)) in places.iter().enumerate().take(SITES) {
+        if map.gain() >= NEAR * most
+            && let Some(own) = select(felt, &projection, gate)
+        {
+            selected.push((number, own));
+        }
+    }
+    let gain = |own: &Selected| own.gains.last().copied().unwrap_or(0.0);
+    selected.sort_by(|a, b| gain(&b.1).total_cmp(&gain(&a.1)));
+    let mut best: Option<(usize, FoundLaw, Trial)> = None;
+    for (number, own) in selected {
+        let share = gain(&own) / places[number].1.gain();
+        let slow = own.gains.len() == 3 && own.gains[2] - own.gains[1] > SLOW * own.gains[0];
+        if share < LEAST_SHARE || slow {
+            continue;
+        }
+        let Some((trial, found)) =
+            fitted(inquiry, ground, stage, &places[number].0, own, share, gates)
+        else {
+            continue;
+        };
+        if best
+            .as_ref()
+            .is_none_or(|(_, known, _)| found.fold_gain > known.fold_gain)
+        {
+            best = Some((number, found, trial));
+        }
+    }
+    let at = best.as_ref().map_or(0, |(number, ..)| *number);
+    let (place, mut map) = places.swap_remove(at);
+    map::add_bands(&mut map, &place, &projection);
+    let mut start = 0;
+    let latent = place.carriers.iter().filter_map(|carrier| {
+        let end = start + carrier.lengths().iter().sum::<usize>();
+        let own = &projection.innovations[start..end];
+        start = end;
+        latent::smoothed(carrier, own)
+    });
+    let latent = latent.collect();
+    let mut others: Vec<Map> = places.into_iter().map(|(_, map)| map).collect();
+    others.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
+    let (found, trial) = best.map_or((None, None), |(_, found, trial)| (Some(found), Some(trial)));
+    Ok(Some(Answer {
+        unknown: Unknown {
+            map,
+            others,
+            latent,
+            found,
+        },
+        found: trial.map(|trial| {
+            let alternatives = vec![Vec::new(); trial.stage.effects.len()];
+            (trial, alternatives)
+        }),
+    }))
+}
+
+/// Fits a law together with all parameters and judges it; `None` where it does not pass the gates.
+fn fitted(
+    inquiry: &Inquiry<'_>,
+    ground: &Ground<'_>,
+    stage: &Stage,
+    felt: &Felt,
+    own: Selected,
+    share: f64,
+    gates: Gates,
+) -> Option<(Trial, FoundLaw)> {
+    let (written, hypothesis) = own.law.written(NAME);
+    let number = inquiry.hypotheses.len();
+    let mut hypotheses = inquiry.hypotheses.to_vec();
+    hypotheses.push(hypothesis.clone());
+    let build = |list: &[usize]| {
+        let known: Vec<usize> = list.iter().copied().filter(|&one| one != number).collect();
+        let written = (known.len() < list.len()).then_some(&written);
+        (inquiry.author)(&known, written.map_or(&[], std::slice::from_ref))
+    };
+    let terms = || own.law.terms.iter();
+    let columns = terms().flat_map(|term| felt.columns(term));
+    let score = Score {
+        hypothesis: number,
+        nodes: vec![Node {
+            shapes: terms().flat_map(Term::constants).collect(),
+            sizes: terms().flat_map(|term| term.sizes.clone()).collect(),
+            visible: columns
+                .map(|column| (VISIBLE / dot(&column, &column).max(1e-300)).sqrt())
+                .collect(),
+            gain: *own.gains.last()?,
+        }],
+        tried: own.tried,
+        linear: false,
+        detectable: None,
+    };
+    let mut trial = trial(ground, stage, &hypotheses, &score, &build)?;
+    let gates = Gates {
+        tried: gates.tried + own.tried,
+        ..gates
+    };
+    let gate = gates.gain(own.law.freedoms()) * trial.inflation;
+    if trial.rejected.is_some() || trial.gain < gate {
+        return None;
+    }
+    let (before, after) = (unseen(ground, stage)?, unseen(ground, &trial.stage)?);
+    let fold_gain = before[0] + before[1] - after[0] - after[1];
+    if fold_gain < gate.max(gates.material()) {
+        return None;
+    }
+    trial.fold_gain = Some(fold_gain);
+    let first = own.gains.first().copied().unwrap_or(f64::NAN);
+    let found = FoundLaw {
+        gain: trial.gain,
+        fold_gain,
+        share,
+        equivalents: own
+            .others
+            .iter()
+            .take(3)
+            .map(|(term, gain)| (term.clone(), gain / first))
+            .collect(),
+        gains: own.gains,
+        law: own.law,
+        written,
+        hypothesis,
+    };
+    Some((trial, found))
+}
+
+/// Makes the answer that of the diagnosis.
+fn take_in(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis, answer: Answer) {
+    let Answer { unknown, found } = answer;
+    if let (Some((trial, alternatives)), Some(own)) = (found, &unknown.found) {
+        let stage = trial.stage;
+        let mut hypotheses = inquiry.hypotheses.to_vec();
+        hypotheses.push(own.hypothesis.clone());
+        let known = std::mem::take(&mut diagnosis.findings);
+        let alternatives: Vec<Vec<usize>> = stage
+            .effects
+            .iter()
+            .zip(alternatives)
+            .map(|((number, _), none)| {
+                let same = known.iter().find(|finding| finding.hypothesis == *number);
+                same.map_or(none, |finding| finding.alternatives.clone())
+            })
+            .collect();
+        diagnosis.findings = findings(&stage, &hypotheses, &alternatives);
+        diagnosis.unexplained = !explained(&stage.solution);
+        diagnosis.after = stage.solution;
+        diagnosis.program = stage.program;
+        diagnosis.varied = stage.varied;
+        diagnosis.kept = stage.kept;
+        diagnosis.verdict = Verdict::Unknown;
+    }
+    diagnosis.unknown = Some(unknown);
+}
+
+/// The hypotheses that a stage has taken in.
+fn numbers(stage: &Stage) -> Vec<usize> {
+    stage.effects.iter().map(|(number, _)| *number).collect()
+}

@@ -1,0 +1,346 @@
+//! [`Factor`]: the shapes that a law is a product of: of speed, of place, of time. Each can be evaluated along a record, and
+//! be written down.
+
+use super::latent::Course;
+use super::site::Kind;
+
+/// Round numbers by which speed, place and time are measured in a law: sizes are forces then.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scales {
+    /// A speed of the record, SI.
+    pub speed: f64,
+    /// A way of the record, SI.
+    pub place: f64,
+    /// A time of the record, s.
+    pub time: f64,
+}
+
+/// A shape, with its constants, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Factor {
+    /// In proportion to speed.
+    Speed,
+    /// In proportion to its magnitude.
+    Magnitude,
+    /// Its square, with the sign of the motion.
+    SignedSquare,
+    /// Its square.
+    Square,
+    /// Its third power.
+    Cube,
+    /// Towards a constant from a speed on: `v/(|v| + vs)`.
+    Switching(f64),
+    /// Falls from a speed on, exponentially.
+    Falling(f64),
+    /// Falls from a speed on, as a bell.
+    Bell(f64),
+    /// More about a speed, either way: centre and width.
+    SpeedBump(f64, f64),
+    /// Speed, late by a filter of the first order: its time constant.
+    Lagged(f64),
+    /// In proportion to place.
+    Place,
+    /// The square of place.
+    PlaceSquare,
+    /// A sine and a cosine over place: period. Of an angle the number of times a turn.
+    Wave(f64),
+    /// More about a place: centre and width.
+    Bump(f64, f64),
+    /// From one place on: middle and width of the step.
+    Step(f64, f64),
+    /// In proportion to time.
+    Time,
+    /// Fades with time: time constant.
+    Fading(f64),
+}
+
+/// A constant of a shape as it is written.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Constant {
+    pub(crate) stem: &'static str,
+    pub(crate) value: f64,
+    pub(crate) range: (f64, f64),
+    pub(crate) unit: &'static str,
+    /// How many of that unit an SI unit is.
+    pub(crate) per_si: f64,
+}
+
+impl Factor {
+    /// Its constants.
+    pub(crate) fn constants(self) -> Vec<f64> {
+        match self {
+            Self::Speed
+            | Self::Magnitude
+            | Self::SignedSquare
+            | Self::Square
+            | Self::Cube
+            | Self::Place
+            | Self::PlaceSquare
+            | Self::Time => Vec::new(),
+            Self::Switching(a)
+            | Self::Falling(a)
+            | Self::Bell(a)
+            | Self::Lagged(a)
+            | Self::Wave(a)
+            | Self::Fading(a) => vec![a],
+            Self::SpeedBump(a, b) | Self::Bump(a, b) | Self::Step(a, b) => vec![a, b],
+        }
+    }
+
+    /// The same shape with other constants.
+    pub(crate) fn with(self, c: &[f64]) -> Self {
+        let at = |index: usize| c.get(index).copied().unwrap_or(f64::NAN);
+        match self {
+            Self::Speed
+            | Self::Magnitude
+            | Self::SignedSquare
+            | Self::Square
+            | Self::Cube
+            | Self::Place
+            | Self::PlaceSquare
+            | Self::Time => self,
+            Self::Switching(_) => Self::Switching(at(0)),
+            Self::Falling(_) => Self::Falling(at(0)),
+            Self::Bell(_) => Self::Bell(at(0)),
+            Self::Lagged(_) => Self::Lagged(at(0)),
+            Self::Wave(_) => Self::Wave(at(0)),
+            Self::Fading(_) => Self::Fading(at(0)),
+            Self::SpeedBump(..) => Self::SpeedBump(at(0), at(1)),
+            Self::Bump(..) => Self::Bump(at(0), at(1)),
+            Self::Step(..) => Self::Step(at(0), at(1)),
+        }
+    }
+
+    /// Whether it has a sine and a cosine.
+    pub(crate) fn is_pair(self) -> bool {
+        matches!(self, Self::Wave(_))
+    }
+
+    /// Its values along a record: one list, of a wave two.
+    pub(crate) fn along(self, course: &Course, turns: bool, scales: &Scales) -> Vec<Vec<f64>> {
+        let of = |list: &[f64], f: &dyn Fn(f64) -> f64| list.iter().map(|&x| f(x)).collect();
+        let speed = |f: &dyn Fn(f64) -> f64| vec![of(&course.speed, f)];
+        let place = |f: &dyn Fn(f64) -> f64| vec![of(&course.place, f)];
+        let time = |f: &dyn Fn(f64) -> f64| vec![of(&course.time, f)];
+        let (v1, x1, t1) = (scales.speed, scales.place, scales.time);
+        match self {
+            Self::Speed => speed(&|v| v / v1),
+            Self::Magnitude => speed(&|v| v.abs() / v1),
+            Self::SignedSquare => speed(&|v| v * v.abs() / (v1 * v1)),
+            Self::Square => speed(&|v| v * v / (v1 * v1)),
+            Self::Cube => speed(&|v| (v / v1).powi(3)),
+            Self::Switching(vs) => speed(&|v| v / (v.abs() + vs)),
+            Self::Falling(vs) => speed(&|v| (-v.abs() / vs).exp()),
+            Self::Bell(vs) => speed(&|v| (-(v / vs) * (v / vs)).exp()),
+            Self::SpeedBump(v0, width) => speed(&|v| (-((v.abs() - v0) / width).powi(2)).exp()),
+            Self::Lagged(tau) => {
+                let mut state = 0.0;
+                let mut last = course.time.first().copied().unwrap_or(0.0);
+                let rows = course.speed.iter().zip(&course.time);
+                let list = rows.map(|(&v, &t)| {
+                    state += (1.0 - (-(t - last) / tau).exp()) * (v - state);
+                    last = t;
+                    state / v1
+                });
+                vec![list.collect()]
+            }
+            Self::Place => place(&|x| x / x1),
+            Self::PlaceSquare => place(&|x| (x / x1) * (x / x1)),
+            Self::Wave(p) => {
+                let k = wave_number(p, turns);
+                vec![
+                    of(&course.place, &|x| (k * x).sin()),
+                    of(&course.place, &|x| (k * x).cos()),
+                ]
+            }
+            Self::Bump(x0, width) => place(&|x| (-((x - x0) / width).powi(2)).exp()),
+            Self::Step(x0, width) => place(&|x| 0.5 + 0.5 * ((x - x0) / width).tanh()),
+            Self::Time => time(&|t| t / t1),
+            Self::Fading(tau) => time(&|t| (-t / tau).exp()),
+        }
+    }
+
+    /// How it is written, the names of its constants given: one expression, of a wave two.
+    pub(crate) fn expressions(self, kind: Kind, names: &[String]) -> Vec<String> {
+        let (x, v) = (kind.place(), kind.speed());
+        let name = |index: usize| names.get(index).map_or("", String::as_str);
+        let (a, b) = (name(0), name(1));
+        let abs = format!("noEvent(abs({v}))");
+        let one = match self {
+            Self::Speed => format!("{v}/{v}1"),
+            Self::Magnitude => format!("{abs}/{v}1"),
+            Self::SignedSquare => format!("{v}*{abs}/{v}1^2"),
+            Self::Square => format!("({v}/{v}1)^2"),
+            Self::Cube => format!("({v}/{v}1)^3"),
+            Self::Switching(_) => format!("{v}/({abs} + {a})"),
+            Self::Falling(_) => format!("exp(-{abs}/{a})"),
+            Self::Bell(_) => format!("exp(-({v}/{a})^2)"),
+            Self::SpeedBump(..) => format!("exp(-(({abs} - {a})/{b})^2)"),
+            Self::Lagged(_) => format!("late_{a}/{v}1"),
+            Self::Place => format!("{x}/x1"),
+            Self::PlaceSquare => format!("({x}/x1)^2"),
+            Self::Wave(_) if kind.turns() => {
+                return vec![format!("sin({a}*{x})"), format!("cos({a}*{x})")];
+            }
+            Self::Wave(_) => {
+                return vec![format!("sin(2*pi*{x}/{a})"), format!("cos(2*pi*{x}/{a})")];
+            }
+            Self::Bump(..) => format!("exp(-(({x} - {a})/{b})^2)"),
+            Self::Step(..) => format!("(1 + tanh(({x} - {a})/{b}))/2"),
+            Self::Time => "time/t1".to_owned(),
+            Self::Fading(_) => format!("exp(-time/{a})"),
+        };
+        vec![one]
+    }
+
+    /// What else has to be written for it: a filter.
+    pub(crate) fn equations(self, kind: Kind, names: &[String]) -> (String, String) {
+        let v = kind.speed();
+        match (self, names.first()) {
+            (Self::Lagged(_), Some(tau)) => (
+                format!(
+                    "  Real late_{tau}(start = 0 [{}], fixed = true) \"the speed, late\";\n",
+                    if kind.turns() { "rad/s" } else { "m/s" }
+                ),
+                format!("  {tau}*der(late_{tau}) = {v} - late_{tau};\n"),
+            ),
+            (_, _) => (String::new(), String::new()),
+        }
+    }
+
+    /// Its constants as they are written, with the ranges that a fit may search.
+    pub(crate) fn written(self, kind: Kind, seen: &Seen) -> Vec<Constant> {
+        let (place, per_place) = kind.place_unit();
+        let (speed, per_speed) = kind.speed_unit();
+        let positive = |stem, value: f64, unit, per_si| Constant {
+            stem,
+            value,
+            range: (0.2 * value, 5.0 * value),
+            unit,
+            per_si,
+        };
+        match self {
+            Self::Speed
+            | Self::Magnitude
+            | Self::SignedSquare
+            | Self::Square
+            | Self::Cube
+            | Self::Place
+            | Self::PlaceSquare
+            | Self::Time => Vec::new(),
+            Self::Switching(a) | Self::Falling(a) | Self::Bell(a) => {
+                vec![positive("vs", a, speed, per_speed)]
+            }
+            Self::SpeedBump(centre, width) => vec![
+                Constant {
+                    range: (0.0, seen.speed),
+                    ..positive("v0", centre, speed, per_speed)
+                },
+                positive("dv", width, speed, per_speed),
+            ],
+            Self::Lagged(tau) | Self::Fading(tau) => vec![positive("tau", tau, "s", 1.0)],
+            Self::Wave(p) => {
+                let (stem, unit) = if kind.turns() {
+                    ("N", "1")
+                } else {
+                    ("period", place)
+                };
+                vec![Constant {
+                    range: (0.7 * p, 1.4 * p),
+                    ..positive(stem, p, unit, per_place)
+                }]
+            }
+            Self::Bump(centre, width) | Self::Step(centre, width) => vec![
+                Constant {
+                    range: (seen.place.0, seen.place.1),
+                    ..positive("x0", centre, place, per_place)
+                },
+                positive("width", width, place, per_place),
+            ],
+        }
+    }
+
+    /// Which of the round numbers it is written with: speed, place, time.
+    pub(crate) fn scales(self) -> [bool; 3] {
+        match self {
+            Self::Speed
+            | Self::Magnitude
+            | Self::SignedSquare
+            | Self::Square
+            | Self::Cube
+            | Self::Lagged(_) => [true, false, false],
+            Self::Place | Self::PlaceSquare => [false, true, false],
+            Self::Time => [false, false, true],
+            Self::Switching(_)
+            | Self::Falling(_)
+            | Self::Bell(_)
+            | Self::SpeedBump(..)
+            | Self::Wave(_)
+            | Self::Bump(..)
+            | Self::Step(..)
+            | Self::Fading(_) => [false; 3],
+        }
+    }
+}
+
+/// What the records show of a site, SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Seen {
+    /// The highest speed, either way.
+    pub speed: f64,
+    /// From where to where it was.
+    pub place: (f64, f64),
+    /// From when to when.
+    pub time: (f64, f64),
+}
+
+impl Seen {
+    /// What some courses show.
+    pub(crate) fn of<'a>(courses: impl Iterator<Item = &'a Course> + Clone) -> Self {
+        let range = |of: &dyn Fn(&'a Course) -> &'a [f64]| {
+            let values = courses.clone().flat_map(of);
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
+                (low.min(x), high.max(x))
+            })
+        };
+        let speed = range(&|course| &course.speed);
+        Self {
+            speed: speed.0.abs().max(speed.1.abs()),
+            place: range(&|course| &course.place),
+            time: range(&|course| &course.time),
+        }
+    }
+
+    /// The length of the way.
+    pub(crate) fn travel(&self) -> f64 {
+        self.place.1 - self.place.0
+    }
+
+    /// Round numbers of what was seen.
+    pub(crate) fn scales(&self) -> Scales {
+        let most = self.place.0.abs().max(self.place.1.abs());
+        Scales {
+            speed: round(self.speed),
+            place: round(most),
+            time: round(self.time.1.max(1e-3)),
+        }
+    }
+}
+
+fn wave_number(p: f64, turns: bool) -> f64 {
+    if turns { p } else { std::f64::consts::TAU / p }
+}
+
+/// The nearest of 1, 2, 5 times a power of ten, below.
+fn round(value: f64) -> f64 {
+    let power = 10.0_f64.powf(value.max(1e-12).log10().floor());
+    let leading = value / power;
+    power
+        * if leading >= 5.0 {
+            5.0
+        } else if leading >= 2.0 {
+            2.0
+        } else {
+            1.0
+        }
+}

@@ -1,0 +1,74 @@
+//! [`Felt`]: a site with a probe run along every record.
+
+use super::factor::{Scales, Seen};
+use super::latent::Carrier;
+use super::law::Term;
+use super::site::{Site, probe};
+use super::{Author, numbers};
+use crate::diagnosis::stage::{Ground, Stage};
+use rayon::prelude::*;
+
+/// A site as the records show it.
+pub(crate) struct Felt {
+    pub(crate) site: Site,
+    pub(crate) carriers: Vec<Carrier>,
+    pub(crate) seen: Seen,
+    pub(crate) scales: Scales,
+}
+
+/// What the probe is called: no effect of a user is likely to be.
+const PROBE: &str = "ProbeOfUnknown";
+
+impl Felt {
+    /// Runs the probe; `None` where it cannot be put on, or the site never moves.
+    pub(crate) fn new(
+        ground: &Ground<'_>,
+        stage: &Stage,
+        site: &Site,
+        author: &Author<'_>,
+    ) -> Option<Self> {
+        let built = author(&numbers(stage), &[probe(site, PROBE)])?;
+        let path = built.paths.last()?;
+        let set = ground.set_in(&built.program, &stage.values());
+        let carriers: Option<Vec<Carrier>> = ground
+            .recordings
+            .iter()
+            .map(|recording| Carrier::new(&built.program, recording, ground.observer, &set, path))
+            .collect();
+        let carriers = carriers?;
+        let seen = Seen::of(carriers.iter().map(|carrier| &carrier.course));
+        let fine = seen.speed > 0.0 && seen.travel() > 0.0 && seen.speed.is_finite();
+        fine.then(|| Self {
+            site: site.clone(),
+            scales: seen.scales(),
+            seen,
+            carriers,
+        })
+    }
+
+    /// The changes of innovations a unit of each size of a term.
+    pub(crate) fn columns(&self, term: &Term) -> Vec<Vec<f64>> {
+        let turns = self.site.kind.turns();
+        let mut lists: Vec<Vec<f64>> = vec![Vec::new(); term.sizes.len()];
+        for carrier in &self.carriers {
+            let courses = term.along(carrier, turns, &self.scales);
+            for (list, course) in lists.iter_mut().zip(&courses) {
+                list.extend(carrier.change(course));
+            }
+        }
+        lists
+    }
+
+    /// The changes of innovations by forces given along every record: a function of the record's number.
+    pub(crate) fn changes(&self, forces: &[Vec<Vec<f64>>]) -> Vec<Vec<f64>> {
+        let count = forces.first().map_or(0, Vec::len);
+        (0..count)
+            .into_par_iter()
+            .map(|which| {
+                let each = self.carriers.iter().zip(forces);
+                each.flat_map(|(carrier, own)| carrier.change(&own[which]))
+                    .collect()
+            })
+            .collect()
+    }
+}

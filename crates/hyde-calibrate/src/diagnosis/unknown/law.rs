@@ -1,0 +1,279 @@
+//! [`Law`]: a sum of products of shapes at a site, and its text as an effect of the language.
+
+use super::factor::{Constant, Factor, Scales, Seen};
+use super::latent::Carrier;
+use super::site::{Kind, Site, Written};
+use crate::diagnosis::{Hypothesis, Knob};
+use hyde_units::significant;
+use std::fmt::Write as _;
+
+/// A product of shapes with one size, or of a wave two.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Term {
+    /// Its shapes; none is a constant.
+    pub factors: Vec<Factor>,
+    /// Its sizes, SI.
+    pub sizes: Vec<f64>,
+}
+
+/// A law at a site.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Law {
+    /// Where it acts.
+    pub site: Site,
+    /// Its terms.
+    pub terms: Vec<Term>,
+    /// What the records show of the site.
+    pub seen: Seen,
+}
+
+impl Term {
+    pub(crate) fn new(factors: &[Factor]) -> Self {
+        let pair = factors.iter().any(|factor| factor.is_pair());
+        Self {
+            factors: factors.to_vec(),
+            sizes: vec![0.0; if pair { 2 } else { 1 }],
+        }
+    }
+
+    /// Constants of all its shapes.
+    pub(crate) fn constants(&self) -> Vec<f64> {
+        self.factors.iter().flat_map(|f| f.constants()).collect()
+    }
+
+    pub(crate) fn with(&self, constants: &[f64]) -> Self {
+        let mut rest = constants;
+        let factors = self.factors.iter().map(|factor| {
+            let (own, others) = rest.split_at(factor.constants().len());
+            rest = others;
+            factor.with(own)
+        });
+        Self {
+            factors: factors.collect(),
+            sizes: self.sizes.clone(),
+        }
+    }
+
+    /// Its course along a record a unit of each size.
+    pub(crate) fn along(&self, carrier: &Carrier, turns: bool, scales: &Scales) -> Vec<Vec<f64>> {
+        let mut lists = vec![vec![1.0; carrier.course.time.len()]];
+        for factor in &self.factors {
+            let own = factor.along(&carrier.course, turns, scales);
+            lists = own
+                .iter()
+                .flat_map(|one| {
+                    lists.iter().map(move |list| {
+                        let pairs = list.iter().zip(one);
+                        pairs.map(|(a, b)| a * b).collect::<Vec<f64>>()
+                    })
+                })
+                .collect();
+        }
+        lists
+    }
+}
+
+impl Law {
+    /// Number of sizes and constants.
+    #[must_use]
+    pub fn freedoms(&self) -> usize {
+        let terms = self.terms.iter();
+        terms
+            .map(|term| term.sizes.len() + term.constants().len())
+            .sum()
+    }
+
+    /// The law as an effect of that name, and what a search may vary of it.
+    pub(crate) fn written(&self, name: &str) -> (Written, Hypothesis) {
+        let kind = self.site.kind;
+        let scales = self.seen.scales();
+        let mut text = String::new();
+        let (mut sizes, mut shapes) = (Vec::new(), Vec::new());
+        let (mut declared, mut equations) = (String::new(), String::new());
+        let mut sum: Vec<String> = Vec::new();
+        let mut used = [false; 3];
+        let mut signature: Vec<String> = Vec::new();
+        let mut stems: Vec<&'static str> = Vec::new();
+        let single = self.terms.len() == 1;
+        let size_stem = if kind.turns() { "T" } else { "F" };
+        for (number, term) in self.terms.iter().enumerate() {
+            let mut products = vec![String::new()];
+            for factor in &term.factors {
+                let mut names = Vec::new();
+                for constant in factor.written(kind, &self.seen) {
+                    let again = stems.iter().filter(|stem| **stem == constant.stem).count();
+                    stems.push(constant.stem);
+                    let own = match again {
+                        0 => constant.stem.to_owned(),
+                        more => format!("{}{}", constant.stem, more + 1),
+                    };
+                    let _ = writeln!(
+                        text,
+                        "  shape Real {own} = {} in {};",
+                        quantity(constant.value, &constant),
+                        range(&constant)
+                    );
+                    shapes.push(knob(&own, &constant));
+                    names.push(own);
+                }
+                let (variable, equation) = factor.equations(kind, &names);
+                declared.push_str(&variable);
+                equations.push_str(&equation);
+                for (used, own) in used.iter_mut().zip(factor.scales()) {
+                    *used |= own;
+                }
+                let mark = mark(*factor, kind, &names);
+                if !signature.contains(&mark) {
+                    signature.push(mark);
+                }
+                let own = factor.expressions(kind, &names);
+                products = own
+                    .iter()
+                    .flat_map(|one| {
+                        products
+                            .iter()
+                            .map(move |product| format!("{product}*{one}"))
+                    })
+                    .collect();
+            }
+            for (which, product) in products.iter().enumerate() {
+                let mut own = size_stem.to_owned();
+                if !single {
+                    let _ = write!(own, "{}", number + 1);
+                }
+                if products.len() == 2 {
+                    own.push(['s', 'c'][which]);
+                }
+                let value = term.sizes.get(which).copied().unwrap_or(0.0);
+                let most = up(20.0
+                    * value
+                        .abs()
+                        .max(term.sizes.iter().fold(0.0, |m, s| f64::max(m, s.abs()))));
+                let unit = kind.unit();
+                let _ = writeln!(
+                    text,
+                    "  size Real {own} = 0 [{unit}] in {} .. {} [{unit}];",
+                    significant(-most, 3),
+                    significant(most, 3)
+                );
+                sizes.push(Knob {
+                    name: own.clone(),
+                    value: 0.0,
+                    range: (-most, most),
+                    integer: false,
+                    unit: unit.to_owned(),
+                });
+                sum.push(format!("{own}{product}"));
+            }
+        }
+        let (speed, per_speed) = kind.speed_unit();
+        let (place, per_place) = kind.place_unit();
+        let units = [
+            (
+                format!("{}1", kind.speed()),
+                scales.speed * per_speed,
+                speed,
+            ),
+            ("x1".to_owned(), scales.place * per_place, place),
+            ("t1".to_owned(), scales.time, "s"),
+        ];
+        for ((own, value, unit), _) in units.iter().zip(used).filter(|(_, used)| *used) {
+            let _ = writeln!(
+                text,
+                "  parameter Real {own} = {} [{unit}] \"only a unit for the sizes\";",
+                significant(*value, 3)
+            );
+        }
+        text.push_str(&declared);
+        let mut law = sum.join(" + ");
+        if kind.is_grip() && sum.len() > 1 {
+            law = format!("({law})");
+        }
+        text.push_str(&kind.clauses(&law));
+        if signature.is_empty() {
+            signature.push("offset".to_owned());
+        }
+        let _ = writeln!(text, "  signature {};", signature.join(", "));
+        if !equations.is_empty() {
+            let _ = write!(text, "equation\n{equations}");
+        }
+        let text = format!(
+            "effect {name} on {} \"found in records, in no library\"\n{text}end {name};\n",
+            kind.host()
+        );
+        let written = Written {
+            name: name.to_owned(),
+            text,
+            site: self.site.path.clone(),
+        };
+        let hypothesis = Hypothesis {
+            effect: name.to_owned(),
+            site: self.site.path.clone(),
+            aliases: self.site.aliases.clone(),
+            sizes,
+            shapes,
+            periodic: None,
+        };
+        (written, hypothesis)
+    }
+}
+
+/// The mark that a shape leaves.
+fn mark(factor: Factor, kind: Kind, names: &[String]) -> String {
+    let first = names.first().map_or("", String::as_str);
+    match factor {
+        Factor::Speed
+        | Factor::Magnitude
+        | Factor::SignedSquare
+        | Factor::Square
+        | Factor::Cube
+        | Factor::Switching(_)
+        | Factor::Falling(_)
+        | Factor::Bell(_)
+        | Factor::SpeedBump(..)
+        | Factor::Lagged(_) => "velocity".to_owned(),
+        Factor::Wave(_) if kind.turns() => format!("angle({first})"),
+        Factor::Wave(_) | Factor::Bump(..) | Factor::Step(..) => format!("position({first})"),
+        Factor::Place | Factor::PlaceSquare => "position".to_owned(),
+        Factor::Time => "offset".to_owned(),
+        Factor::Fading(_) => format!("time({first})"),
+    }
+}
+
+fn knob(name: &str, constant: &Constant) -> Knob {
+    Knob {
+        name: name.to_owned(),
+        value: constant.value,
+        range: constant.range,
+        integer: false,
+        unit: match constant.unit {
+            "mm" => "m",
+            "mm/s" => "m/s",
+            other => other,
+        }
+        .to_owned(),
+    }
+}
+
+fn quantity(value: f64, constant: &Constant) -> String {
+    let number = significant(value * constant.per_si, 6);
+    match constant.unit {
+        "1" => number,
+        unit => format!("{number} [{unit}]"),
+    }
+}
+
+fn range(constant: &Constant) -> String {
+    let number = |value: f64| significant(value * constant.per_si, 6);
+    let (low, high) = (number(constant.range.0), number(constant.range.1));
+    match constant.unit {
+        "1" => format!("{low} .. {high}"),
+        unit => format!("{low} .. {high} [{unit}]"),
+    }
+}
+
+/// A round number above.
+fn up(value: f64) -> f64 {
+    let power = 10.0_f64.powf(value.max(1e-9).log10().floor());
+    power * (value / power).ceil()
+}

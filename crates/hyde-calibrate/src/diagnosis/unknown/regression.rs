@@ -1,0 +1,294 @@
+//! Forward selection of a law's terms in the space of innovations, all parameters answering (orthogonal matching pursuit:
+//! Pati, Rezaiifar and Krishnaprasad, Asilomar 1993), the constants of each term refined before the next.
+
+use super::factor::{Factor, Seen};
+use super::felt::Felt;
+use super::law::{Law, Term};
+use crate::diagnosis::projection::Projection;
+use rayon::prelude::*;
+
+/// Terms of a law at most.
+const MOST_TERMS: usize = 3;
+/// A further term is to gain this part of the first.
+const LEAST_PART: f64 = 0.01;
+/// Terms whose constants are refined in a round.
+const REFINED: usize = 8;
+/// Wave numbers tried of a wave alone, and of one times another shape.
+const WAVES: usize = 240;
+const MIXED_WAVES: usize = 120;
+
+/// A law with what it gains in the linear answer.
+#[derive(Clone, Debug)]
+pub(crate) struct Selected {
+    pub(crate) law: Law,
+    /// What it gains after each term.
+    pub(crate) gains: Vec<f64>,
+    /// Other first terms, with what they gain alone, the best first.
+    pub(crate) others: Vec<(Term, f64)>,
+    /// Number of terms tried.
+    pub(crate) tried: usize,
+}
+
+/// Selects terms until the next one gains too little.
+pub(crate) fn select(felt: &Felt, projection: &Projection, gate: f64) -> Option<Selected> {
+    let dictionary = dictionary(felt);
+    let mut terms: Vec<Term> = Vec::new();
+    let mut gains: Vec<f64> = Vec::new();
+    let mut others = Vec::new();
+    let mut tried = 0;
+    while terms.len() < MOST_TERMS {
+        let known: Vec<Vec<f64>> = terms.iter().flat_map(|term| felt.columns(term)).collect();
+        let gain_of = |term: &Term| {
+            let mut columns = known.clone();
+            columns.extend(felt.columns(term));
+            projection.answer(&columns).gain
+        };
+        let mut scored: Vec<(Term, f64)> = dictionary
+            .par_iter()
+            .map(|term| (term.clone(), gain_of(term)))
+            .filter(|(_, gain)| gain.is_finite())
+            .collect();
+        tried += scored.len();
+        scored.sort_by(|a, b| b.1.total_cmp(&a.1));
+        // The best of each form.
+        let mut forms: Vec<(Term, f64)> = Vec::new();
+        for (term, gain) in scored {
+            if forms.len() < REFINED && !forms.iter().any(|(known, _)| same_form(known, &term)) {
+                forms.push((term, gain));
+            }
+        }
+        let refined = forms
+            .into_par_iter()
+            .map(|(term, gain)| refine(felt, &term, gain, &gain_of));
+        let mut refined: Vec<(Term, f64)> = refined.collect();
+        refined.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let best = refined.first()?.1;
+        let before = gains.last().copied().unwrap_or(0.0);
+        let least = gains
+            .first()
+            .map_or(gate, |first: &f64| gate.max(LEAST_PART * first));
+        if best - before < least {
+            break;
+        }
+        // Of those that are as good, the one with the fewest constants.
+        let freedoms = |term: &Term| term.sizes.len() + term.constants().len();
+        let alike = refined.iter().enumerate();
+        let (chosen, _) = alike
+            .filter(|(_, (_, gain))| *gain >= best - gate)
+            .min_by_key(|(number, (term, _))| (freedoms(term), *number))?;
+        let (term, gain) = refined.remove(chosen);
+        if terms.is_empty() {
+            others = refined;
+        }
+        terms.push(term);
+        gains.push(gain);
+    }
+    if terms.is_empty() {
+        return None;
+    }
+    let columns: Vec<Vec<f64>> = terms.iter().flat_map(|term| felt.columns(term)).collect();
+    let mut sizes = projection.answer(&columns).sizes.into_iter();
+    for term in &mut terms {
+        let own: Vec<f64> = sizes.by_ref().take(term.sizes.len()).collect();
+        term.sizes = own;
+    }
+    Some(Selected {
+        law: Law {
+            site: felt.site.clone(),
+            terms,
+            seen: felt.seen,
+        },
+        gains,
+        others,
+        tried,
+    })
+}
+
+fn same_form(a: &Term, b: &Term) -> bool {
+    a.factors.len() == b.factors.len()
+        && a.factors
+            .iter()
+            .zip(&b.factors)
+            .all(|(a, b)| std::mem::discriminant(a) == std::mem::discriminant(b))
+}
+
+/// Constants by which a term gains most: a pattern search (Hooke and Jeeves, J. ACM 8, 1961, 212).
+fn refine(
+    felt: &Felt,
+    term: &Term,
+    gain: f64,
+    gain_of: &(dyn Fn(&Term) -> f64 + Sync),
+) -> (Term, f64) {
+    let (mut best, mut most) = (term.clone(), gain);
+    let mut steps = first_steps(term, &felt.seen, felt.site.kind.turns());
+    let first = steps.clone();
+    for _ in 0..40 {
+        if steps
+            .iter()
+            .zip(&first)
+            .all(|(step, first)| *step < 0.02 * first)
+        {
+            break;
+        }
+        for which in 0..steps.len() {
+            let mut moved = false;
+            for sign in [1.0, -1.0] {
+                let mut constants = best.constants();
+                let shift = sign * steps[which];
+                if is_centre(&best, which) {
+                    constants[which] += shift;
+                } else {
+                    constants[which] *= shift.exp();
+                }
+                let new = best.with(&constants);
+                let gain = gain_of(&new);
+                if gain > most {
+                    (best, most, moved) = (new, gain, true);
+                    break;
+                }
+            }
+            if !moved {
+                steps[which] *= 0.5;
+            }
+        }
+    }
+    (best, most)
+}
+
+/// Whether a constant is a place or a speed about which something is, which may be 0.
+fn is_centre(term: &Term, which: usize) -> bool {
+    let mut number = 0;
+    for factor in &term.factors {
+        let own = factor.constants().len();
+        if which < number + own {
+            return own == 2 && which == number;
+        }
+        number += own;
+    }
+    false
+}
+
+/// The steps that a search for constants begins with: half of a grid's.
+fn first_steps(term: &Term, seen: &Seen, turns: bool) -> Vec<f64> {
+    let mut steps = Vec::new();
+    for factor in &term.factors {
+        let constants = factor.constants();
+        match factor {
+            Factor::Wave(p) if turns => {
+                steps.push(std::f64::consts::PI / (2.0 * seen.travel() * p));
+            }
+            Factor::Wave(p) => steps.push(p / (4.0 * seen.travel())),
+            Factor::SpeedBump(_, width) | Factor::Bump(_, width) | Factor::Step(_, width) => {
+                steps.extend([0.5 * width, 0.3]);
+            }
+            Factor::Speed
+            | Factor::Magnitude
+            | Factor::SignedSquare
+            | Factor::Square
+            | Factor::Cube
+            | Factor::Place
+            | Factor::PlaceSquare
+            | Factor::Time
+            | Factor::Switching(_)
+            | Factor::Falling(_)
+            | Factor::Bell(_)
+            | Factor::Lagged(_)
+            | Factor::Fading(_) => steps.extend(constants.iter().map(|_| 0.3)),
+        }
+    }
+    steps
+}
+
+/// The terms that are tried at a site: shapes of speed times shapes of place or time.
+fn dictionary(felt: &Felt) -> Vec<Term> {
+    let kind = felt.site.kind;
+    let seen = &felt.seen;
+    let parts = |count: i32, least: f64| -> Vec<f64> {
+        // From a part of the speed up to it, in equal ratios.
+        (0..count)
+            .map(|k| seen.speed * least.powf(1.0 - f64::from(k) / f64::from(count - 1)))
+            .collect()
+    };
+    let mut speeds: Vec<Vec<Factor>> = vec![Vec::new()];
+    if kind.is_grip() {
+        speeds.extend([vec![Factor::Magnitude], vec![Factor::Square]]);
+    } else {
+        speeds.extend([vec![Factor::Speed], vec![Factor::Magnitude]]);
+    }
+    let simple = speeds.clone();
+    if kind.is_grip() {
+        for vs in parts(8, 0.005) {
+            speeds.extend([vec![Factor::Falling(vs)], vec![Factor::Bell(vs)]]);
+        }
+        for v0 in parts(8, 0.05) {
+            speeds.push(vec![Factor::SpeedBump(v0, 0.3 * v0)]);
+        }
+    } else {
+        speeds.extend([
+            vec![Factor::SignedSquare],
+            vec![Factor::Square],
+            vec![Factor::Cube],
+        ]);
+        speeds.extend(
+            parts(5, 0.005)
+                .into_iter()
+                .map(|vs| vec![Factor::Switching(vs)]),
+        );
+        let duration = seen.time.1 - seen.time.0;
+        let taus = [0.003, 0.01, 0.03, 0.1].map(|part| part * duration.min(3.0));
+        speeds.extend(taus.map(|tau| vec![Factor::Lagged(tau)]));
+    }
+    let travel = seen.travel();
+    let duration = seen.time.1 - seen.time.0;
+    let mut others: Vec<Vec<Factor>> = vec![
+        Vec::new(),
+        vec![Factor::Place],
+        vec![Factor::PlaceSquare],
+        vec![Factor::Time],
+    ];
+    for tau in [0.1, 0.3, 1.0] {
+        others.push(vec![Factor::Fading(tau * duration)]);
+    }
+    let mut places: Vec<Vec<Factor>> = Vec::new();
+    for count in [10, 24] {
+        let width = 1.2 * travel / f64::from(count);
+        for k in 0..=count {
+            let centre = seen.place.0 + travel * f64::from(k) / f64::from(count);
+            places.push(vec![Factor::Bump(centre, 0.6 * width)]);
+        }
+    }
+    for k in 1..8 {
+        let centre = seen.place.0 + travel * f64::from(k) / 8.0;
+        places.push(vec![Factor::Step(centre, 0.05 * travel)]);
+    }
+    let waves = |count: usize| {
+        (1..=count).map(move |k| {
+            let half_turns = k as f64;
+            vec![Factor::Wave(if kind.turns() {
+                half_turns * std::f64::consts::PI / travel
+            } else {
+                2.0 * travel / half_turns
+            })]
+        })
+    };
+    let mut found = Vec::new();
+    let mut add = |speed: &[Factor], other: &[Factor]| {
+        let factors = [speed, other].concat();
+        found.push(Term::new(&factors));
+    };
+    for speed in &speeds {
+        for other in &others {
+            add(speed, other);
+        }
+    }
+    for speed in &simple {
+        for place in &places {
+            add(speed, place);
+        }
+        let count = if speed.is_empty() { WAVES } else { MIXED_WAVES };
+        for wave in waves(count) {
+            add(speed, &wave);
+        }
+    }
+    found
+}
