@@ -24,6 +24,7 @@ mod settings;
 mod study;
 mod summary;
 mod tables;
+mod unknown;
 
 use args::{Arguments, Command};
 use clap::Parser as _;

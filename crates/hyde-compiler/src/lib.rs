@@ -11,6 +11,7 @@ mod named;
 mod pipeline;
 mod states;
 mod write_back;
+mod written;
 
 pub use candidates::{Additions, Candidate, Knob, candidates};
 pub use diagnosis::DiagnosisPlan;
@@ -22,3 +23,4 @@ pub use load::{File, Find, Packages, Place, check_name, load};
 pub use pipeline::{Compiled, Request, analyze, compile, compile_with};
 pub use states::States;
 pub use write_back::{Calibrated, Found, Written, write_back};
+pub use written::with_written;

@@ -40,5 +40,6 @@ mod starts;
 mod stepped;
 mod stick_slip;
 mod travelling_nut;
+mod unknown_effects;
 mod whole_arrays;
 mod without_states;

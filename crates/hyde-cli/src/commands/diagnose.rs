@@ -6,7 +6,8 @@ use crate::files;
 use crate::project::{self, complain, print_output};
 use crate::records;
 use crate::study::{self, Calibration};
-use hyde_calibrate::{Built, Diagnosis, Hypothesis, Knob, Rejection, Verdict};
+use crate::unknown;
+use hyde_calibrate::{Built, Diagnosis, Hypothesis, Inquiry, Knob, Rejection, Verdict};
 use hyde_compiler::{Additions, Backend, Candidate, DiagnosisPlan, Request};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::{Study, StudyKind};
@@ -37,11 +38,12 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
         Ok(candidates) => candidates,
         Err(exit) => return exit,
     };
+    let sites = unknown::sites(&candidates);
     let candidates: Vec<Candidate> = candidates
         .into_iter()
         .filter(|candidate| plan.selects(candidate))
         .collect();
-    let hypotheses: Vec<Hypothesis> = candidates.iter().map(hypothesis).collect();
+    let mut hypotheses: Vec<Hypothesis> = candidates.iter().map(hypothesis).collect();
     let found = {
         let project = &calibration.project;
         let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
@@ -72,7 +74,7 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
                 paths,
             })
         };
-        hyde_calibrate::diagnose(
+        let found = hyde_calibrate::diagnose(
             &calibration.fitted,
             &calibration.observer,
             &calibration.varied,
@@ -80,10 +82,30 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
             &hypotheses,
             &build,
             plan.max_effects,
-        )
+        );
+        let author = |known: &[usize], written: &[hyde_calibrate::Written]| {
+            unknown::built(&request, &candidates, known, written)
+        };
+        found.and_then(|mut found| {
+            let inquiry = Inquiry {
+                recordings: &calibration.fitted,
+                observer: &calibration.observer,
+                set: &project.set(),
+                hypotheses: &hypotheses,
+                sites: &sites,
+                author: &author,
+            };
+            hyde_calibrate::propose(&inquiry, &mut found).map(|()| found)
+        })
     };
     match found {
         Ok(found) => {
+            // A finding may be of the effect that was written.
+            let own = found
+                .unknown
+                .as_ref()
+                .and_then(|unknown| unknown.found.as_ref());
+            hypotheses.extend(own.map(|own| own.hypothesis.clone()));
             if args.study.json {
                 print_output(&format!(
                     "{:#}",
@@ -191,6 +213,9 @@ fn text(plan: &DiagnosisPlan, hypotheses: &[Hypothesis], found: &Diagnosis) -> S
             let _ = writeln!(out, "    or {}", named(&hypotheses[other]));
         }
     }
+    if let Some(own) = &found.unknown {
+        out.push_str(&unknown::text(own, found));
+    }
     for (number, round) in found.rounds.iter().enumerate() {
         let _ = writeln!(
             out,
@@ -250,7 +275,13 @@ fn sentence(hypotheses: &[Hypothesis], found: &Diagnosis) -> String {
         .collect();
     match found.verdict {
         Verdict::None => "no effect is missing that these records would show".to_owned(),
-        Verdict::Unknown => "something is missing, and no effect known is it".to_owned(),
+        Verdict::Unknown if names.is_empty() => {
+            "something is missing, and no effect known is it".to_owned()
+        }
+        Verdict::Unknown => format!(
+            "something is missing that is in no library; it was written as {}",
+            names.join(", then ")
+        ),
         Verdict::Effect => format!("missing is {}", names.join(", then ")),
         Verdict::OneOf => format!(
             "missing is {}, or what cannot be told from it",
@@ -311,5 +342,6 @@ fn report(
         "sentence": sentence(hypotheses, found),
         "effects": effects,
         "unexplained": found.unexplained,
+        "unknown": found.unknown.as_ref().map(|own| unknown::report(own, found)),
     })
 }

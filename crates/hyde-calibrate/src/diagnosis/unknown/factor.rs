@@ -66,6 +66,31 @@ pub(crate) struct Constant {
 }
 
 impl Factor {
+    /// What it is, in words; numbers are SI.
+    #[must_use]
+    pub fn words(self) -> String {
+        let n = |value: f64| hyde_units::significant(value, 3);
+        match self {
+            Self::Speed => "the speed".to_owned(),
+            Self::Magnitude => "the speed's magnitude".to_owned(),
+            Self::SignedSquare => "the speed's square with its sign".to_owned(),
+            Self::Square => "the speed's square".to_owned(),
+            Self::Cube => "the speed's third power".to_owned(),
+            Self::Switching(a) => format!("the direction, above {}", n(a)),
+            Self::Falling(a) => format!("a fall with speed over {}", n(a)),
+            Self::Bell(a) => format!("a bell of speed of {}", n(a)),
+            Self::SpeedBump(a, b) => format!("a bump at the speed {} ± {}", n(a), n(b)),
+            Self::Lagged(a) => format!("the speed, {} s late", n(a)),
+            Self::Place => "the place".to_owned(),
+            Self::PlaceSquare => "the place's square".to_owned(),
+            Self::Wave(a) => format!("a wave over place of {}", n(a)),
+            Self::Bump(a, b) => format!("a bump at {} ± {}", n(a), n(b)),
+            Self::Step(a, b) => format!("a step at {} ± {}", n(a), n(b)),
+            Self::Time => "time".to_owned(),
+            Self::Fading(a) => format!("fading over {} s", n(a)),
+        }
+    }
+
     /// Its constants.
     pub(crate) fn constants(self) -> Vec<f64> {
         match self {

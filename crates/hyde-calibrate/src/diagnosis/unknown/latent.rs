@@ -28,7 +28,6 @@ pub(crate) struct Course {
 /// A record with the probe run along it.
 pub(crate) struct Carrier {
     pub(crate) course: Course,
-    pub(crate) step_s: f64,
     rows: Vec<Row>,
     /// Two vectors a row: what the force at its start, and its growth over the row, do to the states.
     entries: Vec<f64>,
@@ -76,7 +75,6 @@ impl Carrier {
         let states = plant.places.states.len();
         let mut found = Self {
             course: Course::default(),
-            step_s: recording.step_s,
             rows: Vec::new(),
             entries: Vec::new(),
             known: Vec::new(),

@@ -135,7 +135,10 @@ fn variables(felt: &Felt) -> Vec<Variable> {
     if felt.site.kind.turns() && felt.seen.travel() > std::f64::consts::TAU {
         all.push(Variable::Turn);
     }
-    all.extend([Variable::SpeedByPlace, Variable::SpeedByTime]);
+    // In proportion to speed a friction is a force, and that has a site of its own.
+    if !felt.site.kind.is_grip() {
+        all.extend([Variable::SpeedByPlace, Variable::SpeedByTime]);
+    }
     all
 }
 
@@ -176,10 +179,9 @@ fn columns(felt: &Felt, variable: Variable) -> (Vec<f64>, Vec<Vec<f64>>) {
             let course = &carrier.course;
             let mut lists = vec![vec![0.0; course.time.len()]; knots.len()];
             for row in 0..course.time.len() {
-                let factor = match (times_speed, grip) {
-                    (false, _) => 1.0,
-                    (true, true) => course.speed[row].abs() / felt.scales.speed,
-                    (true, false) => course.speed[row] / felt.scales.speed,
+                let factor = match times_speed {
+                    false => 1.0,
+                    true => course.speed[row] / felt.scales.speed,
                 };
                 let (left, part) = between(&knots, of(course, row));
                 lists[left][row] += (1.0 - part) * factor;

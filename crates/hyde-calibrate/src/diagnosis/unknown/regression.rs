@@ -210,9 +210,8 @@ fn dictionary(felt: &Felt) -> Vec<Term> {
             .collect()
     };
     let mut speeds: Vec<Vec<Factor>> = vec![Vec::new()];
-    if kind.is_grip() {
-        speeds.extend([vec![Factor::Magnitude], vec![Factor::Square]]);
-    } else {
+    // A friction in proportion to speed is a force, and tried as such.
+    if !kind.is_grip() {
         speeds.extend([vec![Factor::Speed], vec![Factor::Magnitude]]);
     }
     let simple = speeds.clone();

@@ -1,0 +1,210 @@
+//! What is missing and in no library: the sites where a law may act, written effects compiled, and what is told of them.
+
+use hyde_calibrate::{Built, Diagnosis, FoundLaw, Kind, Panel, Site, Term, Unknown, Written};
+use hyde_compiler::{Additions, Candidate, Request};
+use hyde_diag::Diagnostics;
+use hyde_units::significant;
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// The places of a model where a law may act: where an effect of a kind of them fits.
+pub(crate) fn sites(candidates: &[Candidate]) -> Vec<Site> {
+    let mut found: Vec<Site> = Vec::new();
+    for candidate in candidates {
+        let Some(kind) = Kind::of(&candidate.host_package, &candidate.host) else {
+            continue;
+        };
+        if !found.iter().any(|site| site.path == candidate.site) {
+            found.push(Site {
+                kind,
+                path: candidate.site.clone(),
+                aliases: candidate.aliases.clone(),
+            });
+        }
+    }
+    found
+}
+
+/// Puts candidates, by number, and written effects on the model.
+pub(crate) fn built(
+    request: &Request<'_>,
+    candidates: &[Candidate],
+    known: &[usize],
+    written: &[Written],
+) -> Option<Built> {
+    let texts = written.iter().map(|one| one.text.as_str());
+    let (sources, file) = hyde_compiler::with_written(request.sources, request.file, texts)?;
+    let own = file.files.first()?.0;
+    let mut additions = Additions::kept();
+    let mut paths: Vec<String> = known
+        .iter()
+        .map(|&number| additions.put(own, &candidates[number]))
+        .collect();
+    paths.extend(
+        written
+            .iter()
+            .map(|one| additions.put(own, &candidate(one))),
+    );
+    let request = Request {
+        sources: &sources,
+        file: &file,
+        ..*request
+    };
+    let compiled = hyde_compiler::compile_with(&request, &additions, &mut Diagnostics::new())?;
+    Some(Built {
+        program: compiled.program,
+        paths,
+    })
+}
+
+/// A written effect as what a search puts on a model.
+pub(crate) fn candidate(written: &Written) -> Candidate {
+    Candidate {
+        effect: written.name.clone(),
+        package: String::new(),
+        host: String::new(),
+        host_package: String::new(),
+        doc: String::new(),
+        site: written.site.clone(),
+        aliases: Vec::new(),
+        instance: written.name.clone(),
+        sizes: Vec::new(),
+        shapes: Vec::new(),
+        signature: Vec::new(),
+        confounds: Vec::new(),
+        replaces: Vec::new(),
+    }
+}
+
+/// The effect written, where it was seen, and the map, in lines.
+pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
+    let mut out = String::new();
+    match &unknown.found {
+        Some(own) => {
+            let _ = writeln!(out, "\n{}", own.written.text.trim_end());
+            let seen = &own.law.seen;
+            let _ = writeln!(
+                out,
+                "\n  seen at {}: speeds to {}, places {} to {}, times {} to {} (SI)",
+                own.law.site.path,
+                significant(seen.speed, 3),
+                significant(seen.place.0, 3),
+                significant(seen.place.1, 3),
+                significant(seen.time.0, 3),
+                significant(seen.time.1, 3)
+            );
+            let _ = writeln!(
+                out,
+                "  gain {}, {} on unseen rows; {} of what the best panel of the map gains",
+                significant(own.gain, 3),
+                significant(own.fold_gain, 3),
+                significant(own.share, 3)
+            );
+            for (term, share) in &own.equivalents {
+                let _ = writeln!(
+                    out,
+                    "  nearly as good: {} ({} of the first term's gain)",
+                    named(term),
+                    significant(*share, 3)
+                );
+            }
+        }
+        None => out.push_str("\n  no formula is worth its constants; the map is the answer\n"),
+    }
+    let _ = writeln!(
+        out,
+        "\n  map of a force at {}: what any function of it gains, and by chance",
+        unknown.map.site.path
+    );
+    for panel in &unknown.map.panels {
+        let _ = writeln!(
+            out,
+            "    {:<20} {:>9} {:>9}",
+            panel.variable.name(),
+            significant(panel.gain, 3),
+            significant(panel.band, 3)
+        );
+    }
+    out
+}
+
+/// The same as JSON; numbers are SI.
+pub(crate) fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
+    let panel = |panel: &Panel| {
+        json!({
+            "variable": panel.variable.name(),
+            "gain": panel.gain,
+            "band": panel.band.is_finite().then_some(panel.band),
+            "at": panel.knots,
+            "force": panel.force,
+        })
+    };
+    let panels = |list: &[Panel]| -> Vec<Value> { list.iter().map(panel).collect() };
+    let latent: Vec<Value> = unknown
+        .latent
+        .iter()
+        .map(|force| {
+            json!({
+                "time": force.time,
+                "place": force.place,
+                "speed": force.speed,
+                "force": force.force,
+                "deviation": force.deviation,
+            })
+        })
+        .collect();
+    let others: Vec<Value> = unknown
+        .others
+        .iter()
+        .map(|map| json!({ "site": map.site.path, "panels": panels(&map.panels) }))
+        .collect();
+    json!({
+        "law": unknown.found.as_ref().map(|own| law(own, found)),
+        "map": { "site": unknown.map.site.path, "panels": panels(&unknown.map.panels) },
+        "latent": latent,
+        "other_sites": others,
+    })
+}
+
+fn law(own: &FoundLaw, found: &Diagnosis) -> Value {
+    let seen = &own.law.seen;
+    let values: BTreeMap<&str, f64> = found
+        .findings
+        .last()
+        .into_iter()
+        .flat_map(|finding| finding.sizes.iter().chain(&finding.shapes))
+        .map(|quantity| (quantity.name.as_str(), quantity.value))
+        .collect();
+    let equivalents: Vec<Value> = own
+        .equivalents
+        .iter()
+        .map(|(term, share)| json!({ "form": named(term), "share": share }))
+        .collect();
+    json!({
+        "name": own.written.name,
+        "site": own.law.site.path,
+        "aliases": own.law.site.aliases,
+        "text": own.written.text,
+        "values": values,
+        "seen": {
+            "speed": seen.speed,
+            "place": [seen.place.0, seen.place.1],
+            "time": [seen.time.0, seen.time.1],
+        },
+        "gains": own.gains,
+        "gain": own.gain,
+        "fold_gain": own.fold_gain,
+        "share_of_map": own.share,
+        "equivalents": equivalents,
+    })
+}
+
+/// A term in words.
+fn named(term: &Term) -> String {
+    let names: Vec<String> = term.factors.iter().map(|factor| factor.words()).collect();
+    match names.as_slice() {
+        [] => "a constant".to_owned(),
+        list => list.join(" times "),
+    }
+}

@@ -1,0 +1,152 @@
+//! Effects that no library has: planted on a small axis, found as laws of the model's own variables.
+
+use hyde_tests::root;
+use serde_json::Value;
+use std::fmt::Write as _;
+use std::path::Path;
+use std::process::Command;
+
+/// What is tried before: nothing that was planted.
+const DIAGNOSIS: &str = "
+diagnose few of calibrate small
+  candidates Effects.Pull, Effects.Viscous, Effects.Stribeck, Effects.Cogging;
+  max_effects 2;
+end few;
+";
+
+/// A record of 3 s with the effect on a site, diagnosed.
+fn diagnosed(effect: &str, with: &str) -> Value {
+    let folder = tempfile::tempdir().unwrap();
+    let model = root().join("tests/models/small_axis.hyde");
+    let plain = read(&model);
+    let made = format!(
+        "{plain}
+{effect}
+model Made = Loop(saddle.M = 262 [kg], guide.F = 145 [N], rotor.J = 3.9e-3 [kg.m2]){with};
+experiment made of Made
+  solve ida(rtol = 1e-8, atol = 1e-11) stop 3 [s] every 1 [ms];
+end made;
+"
+    );
+    write(&folder.path().join("made.hyde"), &made);
+    write(
+        &folder.path().join("axis.hyde"),
+        &format!("{plain}{DIAGNOSIS}"),
+    );
+    hyde(folder.path(), &["run", "made.hyde", "made", "--out", "out"]);
+    record(folder.path());
+    let output = hyde(folder.path(), &["diagnose", "axis.hyde", "few", "--json"]);
+    serde_json::from_str(&output).unwrap()
+}
+
+/// The results as a record with the noise that the experiment declares.
+fn record(folder: &Path) {
+    let results = read(&folder.join("out/results.csv"));
+    let mut lines = results.lines().filter(|line| !line.starts_with('#'));
+    let head: Vec<&str> = lines.next().unwrap().split(',').collect();
+    let noise = [
+        ("t", 0.0),
+        ("T", 0.0),
+        ("rotor.phi", 1e-4),
+        ("rotor.w", 0.08),
+        ("saddle.s", 3e-7),
+    ];
+    let places = noise.map(|(name, sd)| {
+        let named = |text: &&str| text.split(' ').next() == Some(name);
+        (head.iter().position(named).unwrap(), sd)
+    });
+    let mut random = Random(7);
+    let mut text = "t [s],T [N.m],phi [rad],w [rad/s],s [m]\n".to_owned();
+    let mut rows = 0;
+    for line in lines {
+        let values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap_or(0.0)).collect();
+        // Events have rows of their own.
+        if (values[places[0].0] - f64::from(rows) * 1e-3).abs() > 1e-9 {
+            continue;
+        }
+        rows += 1;
+        let noisy = places.map(|(at, sd)| (values[at] + sd * random.normal()).to_string());
+        let _ = writeln!(text, "{}", noisy.join(","));
+    }
+    assert_eq!(rows, 3001);
+    write(&folder.join("fit-1.csv"), &text);
+}
+
+/// Normal numbers: sums of twelve uniform ones of a linear congruential generator (Knuth, MMIX).
+struct Random(u64);
+
+impl Random {
+    fn normal(&mut self) -> f64 {
+        let mut uniform = || {
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
+            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    }
+}
+
+fn hyde(folder: &Path, arguments: &[&str]) -> String {
+    let output = Command::new(env!("CARGO_BIN_EXE_hyde-tested"))
+        .current_dir(folder)
+        .args(arguments)
+        .output()
+        .unwrap();
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(output.status.success(), "{errors}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+#[allow(clippy::disallowed_methods, reason = "a record is made in a folder")]
+fn read(path: &Path) -> String {
+    std::fs::read_to_string(path).unwrap()
+}
+
+#[allow(clippy::disallowed_methods, reason = "a record is made in a folder")]
+fn write(path: &Path, text: &str) {
+    std::fs::write(path, text).unwrap();
+}
+
+#[test]
+fn a_drag_that_waves_along_the_way_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Translational.Rail
+           add a.f = 30 [N]*sin(2*pi*a.s/(23 [mm]))*v/(100 [mm/s]);
+           Velocity v = der(a.s);
+         end Odd;",
+        " with Odd on saddle.a",
+    );
+    assert_eq!(found["verdict"], "unknown");
+    let [effect] = found["effects"].as_array().unwrap().as_slice() else {
+        panic!("{}", found["sentence"]);
+    };
+    assert_eq!(effect["effect"], "Found");
+    assert_eq!(effect["site"], "saddle.a");
+    let law = &found["unknown"]["law"];
+    let text = law["text"].as_str().unwrap();
+    assert!(
+        text.contains("add a.f = -(Fs*v/v1*sin(2*pi*a.s/period) + Fc*v/v1*cos(2*pi*a.s/period));"),
+        "{text}"
+    );
+    // 30 N at 100 mm/s are 60 N at the 200 mm/s that sizes are given at; its interval is 1 % of it.
+    let size = effect["size"].as_f64().unwrap();
+    assert!((size / 60.0 - 1.0).abs() < 0.03, "{size}");
+    // A thirtieth of a wave over the way.
+    let period = effect["shape"]["period"]["value"].as_f64().unwrap();
+    assert!((period / 0.023 - 1.0).abs() < 0.01, "{period}");
+    assert!(law["share_of_map"].as_f64().unwrap() > 0.8);
+    assert_eq!(found["unexplained"], false);
+    // The map says of which variable it is a function, well above what chance makes of it.
+    let panel = &found["unknown"]["map"]["panels"][0];
+    assert_eq!(panel["variable"], "speed times place");
+    assert!(panel["gain"].as_f64().unwrap() > 2.0 * panel["band"].as_f64().unwrap());
+}
+
+#[test]
+fn a_record_without_an_effect_has_no_unknown_one() {
+    let found = diagnosed("", "");
+    assert_eq!(found["verdict"], "none");
+    assert!(found["unknown"].is_null());
+}
