@@ -111,7 +111,7 @@ pub struct FoundLaw {
 /// # Errors
 /// The model has no fixed-step form.
 pub fn propose(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis) -> Result<(), Unsupported> {
-    if !diagnosis.unexplained || inquiry.sites.is_empty() {
+    if !(diagnosis.unexplained || is_chain(inquiry, diagnosis)) || inquiry.sites.is_empty() {
         return Ok(());
     }
     let ground = Ground {
@@ -127,18 +127,28 @@ pub fn propose(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis) -> Result<(), U
         .map(|r| r.channels.len() * (r.rows() - r.first_row))
         .sum();
     let gates = Gates { tried, innovations };
-    let mut answer = law(inquiry, &ground, &last, gates)?;
-    // What was taken in before may have stood for the unknown effect.
+    let mut answer = match diagnosis.unexplained {
+        true => law(inquiry, &ground, &last, gates)?,
+        false => None,
+    };
+    // What was taken in before may have stood for the unknown effect: the law alone is the answer where it does as well
+    // as both, and where it does significantly better than what was taken in, or as well with fewer constants.
     if !last.effects.is_empty() {
         let alone = law(inquiry, &ground, &base, gates)?;
-        let cost = |answer: &Option<Answer>| {
-            let found = answer.as_ref().and_then(|answer| answer.found.as_ref());
-            found.map(|(trial, _)| trial.stage.solution.cost)
+        let trial = |answer: &Option<Answer>| {
+            let (trial, _) = answer.as_ref()?.found.as_ref()?;
+            Some((trial.stage.solution.cost, trial.freedoms))
         };
-        let known = last.solution.cost;
-        let better = match (cost(&alone), cost(&answer)) {
-            (Some(alone), Some(both)) => alone <= both + gates.gain(1),
-            (Some(alone), None) => alone <= known + gates.gain(1),
+        let gate = gates.gain(1) * inflation(&last.solution.innovations);
+        let known = (
+            last.solution.cost,
+            last.varied.len() + last.kept.len() - base.varied.len(),
+        );
+        let better = match (trial(&alone), trial(&answer)) {
+            (Some(alone), Some(both)) => alone.0 <= both.0 + gate,
+            (Some(alone), None) => {
+                alone.0 <= known.0 - gate || (alone.1 < known.1 && alone.0 <= known.0)
+            }
             (None, _) => false,
         };
         if better {
@@ -150,6 +160,16 @@ pub fn propose(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis) -> Result<(), U
     };
     take_in(inquiry, diagnosis, answer);
     Ok(())
+}
+
+/// Whether several effects were taken in at one site: they may be the parts of one that is not known.
+fn is_chain(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> bool {
+    let site = |finding: &super::Finding| {
+        let hypothesis = inquiry.hypotheses.get(finding.hypothesis);
+        hypothesis.map(|hypothesis| hypothesis.site.as_str())
+    };
+    let sites: Vec<_> = diagnosis.findings.iter().map(site).collect();
+    sites.len() > 1 && sites.iter().all(|other| *other == sites[0])
 }
 
 /// A map with the law that was found.

@@ -136,6 +136,33 @@ impl Factor {
         }
     }
 
+    /// Whether what the records show is enough of the shape to tell its constants.
+    pub(crate) fn is_told(self, seen: &Seen, turns: bool) -> bool {
+        let travel = seen.travel();
+        let duration = seen.time.1 - seen.time.0;
+        let inside = |x: f64, (low, high): (f64, f64)| (low..=high).contains(&x);
+        match self {
+            Self::Speed
+            | Self::Magnitude
+            | Self::SignedSquare
+            | Self::Square
+            | Self::Cube
+            | Self::Place
+            | Self::PlaceSquare
+            | Self::Time => true,
+            Self::Switching(vs) | Self::Falling(vs) | Self::Bell(vs) => vs <= 2.0 * seen.speed,
+            Self::SpeedBump(centre, width) => {
+                inside(centre, (0.0, seen.speed)) && width <= seen.speed
+            }
+            Self::Lagged(tau) => tau <= 0.3 * duration,
+            Self::Fading(tau) => tau <= 3.0 * duration,
+            Self::Wave(p) => wave_number(p, turns) * travel >= std::f64::consts::PI,
+            Self::Bump(centre, width) | Self::Step(centre, width) => {
+                inside(centre, seen.place) && width <= 0.5 * travel
+            }
+        }
+    }
+
     /// Whether it has a sine and a cosine.
     pub(crate) fn is_pair(self) -> bool {
         matches!(self, Self::Wave(_))

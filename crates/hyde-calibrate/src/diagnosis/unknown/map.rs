@@ -178,12 +178,14 @@ fn columns(felt: &Felt, variable: Variable) -> (Vec<f64>, Vec<Vec<f64>>) {
         .map(|carrier| {
             let course = &carrier.course;
             let mut lists = vec![vec![0.0; course.time.len()]; knots.len()];
-            for row in 0..course.time.len() {
+            let parts = (0..course.time.len()).map(|row| {
                 let factor = match times_speed {
                     false => 1.0,
                     true => course.speed[row] / felt.scales.speed,
                 };
-                let (left, part) = between(&knots, of(course, row));
+                (between(&knots, of(course, row)), factor)
+            });
+            for (row, ((left, part), factor)) in parts.enumerate() {
                 lists[left][row] += (1.0 - part) * factor;
                 lists[left + 1][row] += part * factor;
             }

@@ -141,6 +141,13 @@ fn refine(
                     constants[which] *= shift.exp();
                 }
                 let new = best.with(&constants);
+                if !new
+                    .factors
+                    .iter()
+                    .all(|f| f.is_told(&felt.seen, felt.site.kind.turns()))
+                {
+                    continue;
+                }
                 let gain = gain_of(&new);
                 if gain > most {
                     (best, most, moved) = (new, gain, true);
