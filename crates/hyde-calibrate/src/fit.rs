@@ -168,6 +168,13 @@ pub fn fit(
     })
 }
 
+/// What a solution says of the parameters that were varied, each with its interval.
+#[must_use]
+pub fn fitted_parameters(varied: &[Varied], solution: &Solution) -> Vec<FittedParameter> {
+    let inflation = inflation(&solution.innovations);
+    parameters(varied, solution, &covariance(solution, inflation))
+}
+
 /// The declared values, then points spread evenly over what is known beforehand (additive recurrence of the roots of
 /// x^(d+1) = x + 1; Roberts 2018, The unreasonable effectiveness of quasirandom sequences).
 fn start_values(varied: &[Varied], number: usize) -> Vec<f64> {
@@ -187,7 +194,7 @@ fn start_values(varied: &[Varied], number: usize) -> Vec<f64> {
     varied.iter().enumerate().map(spread).collect()
 }
 
-fn channel_errors(innovations: &Innovations, observer: &Observer) -> Vec<ChannelError> {
+pub(crate) fn channel_errors(innovations: &Innovations, observer: &Observer) -> Vec<ChannelError> {
     let each = innovations.channels.iter().zip(&observer.deviations);
     each.map(|(list, deviation)| {
         let chi = list.iter().map(|r| r * r).sum::<f64>() / (list.len() as f64).max(1.0);

@@ -7,6 +7,7 @@
 //! plan           what a `calibrate` block asks for                                 plan.rs
 //! calibration    bounded least squares on innovations and priors                  least_squares.rs, varied.rs
 //! its worth      errors before and after, intervals, groups                       fit.rs
+//! measures       the error in three measures, before and after, over its floor                  measures.rs, windows.rs, free_run.rs
 //! diagnosis      which effect is missing                                          diagnosis.rs
 //! ```
 
@@ -16,25 +17,31 @@ mod diagnosis;
 mod events;
 mod exponential;
 mod fit;
+mod free_run;
 mod gain;
 mod least_squares;
+mod measures;
 mod observer;
 mod plan;
 mod plant;
 mod recording;
 mod stepping;
 mod varied;
+mod windows;
 
 pub use diagnosis::{
     Author, Build, Built, Diagnosis, Factor, Finding, FoundLaw, Gates, Hypothesis, Inquiry, Kind,
     Knob, LatentForce, Law, Map, Panel, Quantity, Rejection, Round, Scales, Score, Seen, Site,
     Term, Trial, Unknown, Variable, Verdict, Written, diagnose, propose,
 };
-pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit};
+pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};
+pub use free_run::{FreeChannel, free_run};
 pub use gain::Observer;
 pub use least_squares::{Fold, Problem, Solution};
+pub use measures::{FreeMeasure, Measures, Model};
 pub use observer::Innovations;
 pub use plan::{CalibrationPlan, Source, Vary};
 pub use plant::Unsupported;
 pub use recording::{RecordError, Recording};
 pub use varied::Varied;
+pub use windows::{WINDOW_S, Windows};

@@ -6,7 +6,9 @@
 mod args;
 mod asked_figures;
 mod batch;
+mod before_after;
 mod commands;
+mod diagnosis;
 mod exit;
 mod figures;
 mod files;

@@ -78,7 +78,8 @@ pub fn write_back(
             false => one.candidate.effect.clone(),
             true => {
                 let declared = |name: &str| {
-                    taken(name) || effects.iter().any(|e| e.starts_with(&format!("{name}(")))
+                    let own = |e: &String| e.split(['(', ' ']).next() == Some(name);
+                    taken(name) || effects.iter().any(own)
                 };
                 let name = fresh(class, &declared);
                 let last = one.candidate.host.rsplit('.').next().unwrap_or_default();
@@ -99,11 +100,11 @@ pub fn write_back(
             .iter()
             .map(|(knob, value)| setting(one.candidate, knob, *value))
             .collect();
-        effects.push(format!(
-            "{name}({}) on {}",
-            values.join(", "),
-            one.candidate.site
-        ));
+        let values = match values.as_slice() {
+            [] => String::new(),
+            list => format!("({})", list.join(", ")),
+        };
+        effects.push(format!("{name}{values} on {}", one.candidate.site));
     }
     let (scalars, elements): (Vec<_>, Vec<_>) =
         calibrated.iter().partition(|one| !one.path.contains('['));

@@ -10,6 +10,7 @@ use hyde_syntax::ast::{Name, Part, Reference};
 pub struct Additions {
     list: Vec<Addition>,
     keep_neutral: bool,
+    shift_quantisers: bool,
 }
 
 /// One of them.
@@ -32,8 +33,18 @@ impl Additions {
     #[must_use]
     pub fn kept() -> Self {
         Self {
-            list: Vec::new(),
             keep_neutral: true,
+            ..Self::default()
+        }
+    }
+
+    /// The same with the steps of every `floor_to` and `round_to` half a step from where they are: an encoder whose
+    /// origin lies half a count elsewhere. Two such runs differ by what nobody can know of a quantised axis.
+    #[must_use]
+    pub fn with_shifted_quantisers(self) -> Self {
+        Self {
+            shift_quantisers: true,
+            ..self
         }
     }
 
@@ -65,6 +76,10 @@ impl Additions {
 
     pub(crate) fn list(&self) -> &[Addition] {
         &self.list
+    }
+
+    pub(crate) fn shifts_quantisers(&self) -> bool {
+        self.shift_quantisers
     }
 
     pub(crate) fn keeps_neutral(&self) -> bool {

@@ -25,6 +25,7 @@ mod axis;
 mod batch_report;
 mod bode_plot;
 mod circle_plot;
+mod diagnosis_report;
 mod draw;
 mod escape;
 mod event_strip;
@@ -45,6 +46,10 @@ pub use batch_report::{
 };
 pub use bode_plot::{BodeCurve, bode_plot};
 pub use circle_plot::circle_plot;
+pub use diagnosis_report::{
+    ChannelChange, DiagnosisReport, ErrorChange, MovedParameter, RecordChange, ResidualMap,
+    TriedEffect,
+};
 pub use escape::escape;
 pub use event_strip::{EventRow, EventStrip, Span};
 pub use figure::{Band, Between, Direction, Figure, Line, LineStyle, Marker, Panel, Reference};

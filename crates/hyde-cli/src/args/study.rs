@@ -66,4 +66,7 @@ pub(crate) struct FitArgs {
 pub(crate) struct DiagnoseArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
+    /// Leave the new model, report.json and report.html in this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 }

@@ -1,20 +1,20 @@
 //! `hyde diagnose`: finds the effect that a model lacks.
 
 use crate::args::{DiagnoseArgs, ModelArgs, StudyArgs};
+use crate::diagnosis::{self, Told};
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, complain, print_output};
 use crate::records;
-use crate::study::{self, Calibration};
+use crate::study;
 use crate::unknown;
-use hyde_calibrate::{Built, Diagnosis, Hypothesis, Inquiry, Knob, Rejection, Verdict};
+use hyde_calibrate::{Built, Hypothesis, Inquiry, Knob};
 use hyde_compiler::{Additions, Backend, Candidate, DiagnosisPlan, Request};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::{Study, StudyKind};
-use hyde_units::significant;
-use serde_json::{Value, json};
+use serde_json::Value;
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
+use std::path::Path;
 
 /// Finds and tells.
 pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
@@ -98,30 +98,62 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
             hyde_calibrate::propose(&inquiry, &mut found).map(|()| found)
         })
     };
-    match found {
-        Ok(found) => {
-            // A finding may be of the effect that was written.
-            let own = found
-                .unknown
-                .as_ref()
-                .and_then(|unknown| unknown.found.as_ref());
-            hypotheses.extend(own.map(|own| own.hypothesis.clone()));
-            if args.study.json {
-                print_output(&format!(
-                    "{:#}",
-                    report(&plan, &calibration, &hypotheses, &found)
-                ));
-            } else if !args.study.quiet {
-                print_output(&text(&plan, &hypotheses, &found));
-            }
-            Exit::Done
-        }
+    let told = found.and_then(|found| {
+        // A finding may be of the effect that was written.
+        let own = found
+            .unknown
+            .as_ref()
+            .and_then(|unknown| unknown.found.as_ref());
+        hypotheses.extend(own.map(|own| own.hypothesis.clone()));
+        // What it says borrows what was found; so it is said here.
+        let told = Told::new(&plan, &calibration, &candidates, &hypotheses, &found)?;
+        Ok(tell(args, &told))
+    });
+    match told {
+        Ok(exit) => exit,
         Err(error) => {
             let diagnostic = study::unsupported(&error, plan.span);
             calibration.project.diagnostics.push(diagnostic);
             calibration.project.finish_with_errors(&model_args)
         }
     }
+}
+
+/// Prints, and leaves the files where a folder is asked for.
+fn tell(args: &DiagnoseArgs, told: &Told<'_>) -> Exit {
+    let report = diagnosis::json(told);
+    if let Some(folder) = &args.out
+        && let Err(reason) = leave(folder, told, &report)
+    {
+        return complain(&args.study.model_args(), Exit::CommandLine, &reason);
+    }
+    if args.study.json {
+        print_output(&format!("{report:#}"));
+    } else if !args.study.quiet {
+        print_output(&diagnosis::text(told));
+        if let Some(folder) = &args.out {
+            print_output(&format!(
+                "\n  {}, report.json and report.html are in {}",
+                model_file(told),
+                folder.display()
+            ));
+        }
+    }
+    Exit::Done
+}
+
+/// Writes the files, each whole or not at all; the page last.
+fn leave(folder: &Path, told: &Told<'_>, report: &Value) -> Result<(), String> {
+    files::make_folder(folder)?;
+    let report = format!("{report:#}\n");
+    let leave = |name: &str, content: &str| files::write(&folder.join(name), content.as_bytes());
+    leave(&model_file(told), &told.written.text)?;
+    leave("report.json", &report)?;
+    leave("report.html", &diagnosis::html(told))
+}
+
+fn model_file(told: &Told<'_>) -> String {
+    format!("{}.hyde", told.written.model)
 }
 
 /// The block that the arguments name.
@@ -185,163 +217,4 @@ fn around(value: f64) -> (f64, f64) {
     } else {
         (0.1 * value.abs(), 10.0 * value.abs())
     }
-}
-
-fn named(hypothesis: &Hypothesis) -> String {
-    format!("{} at {}", hypothesis.effect, hypothesis.site)
-}
-
-/// The diagnosis in lines of at most 80 columns.
-fn text(plan: &DiagnosisPlan, hypotheses: &[Hypothesis], found: &Diagnosis) -> String {
-    let mut out = String::new();
-    let _ = writeln!(out, "{}: {}", plan.name, sentence(hypotheses, found));
-    for finding in &found.findings {
-        let hypothesis = &hypotheses[finding.hypothesis];
-        let _ = writeln!(out, "\n  {}", named(hypothesis));
-        for quantity in std::iter::once(&finding.size).chain(&finding.shapes) {
-            let half = (quantity.interval.1 - quantity.interval.0) / 2.0;
-            let _ = writeln!(
-                out,
-                "    {:<12} {} ± {} {}",
-                quantity.name,
-                significant(quantity.value, 4),
-                significant(half, 2),
-                quantity.unit
-            );
-        }
-        for &other in &finding.alternatives {
-            let _ = writeln!(out, "    or {}", named(&hypotheses[other]));
-        }
-    }
-    if let Some(own) = &found.unknown {
-        out.push_str(&unknown::text(own, found));
-    }
-    for (number, round) in found.rounds.iter().enumerate() {
-        let _ = writeln!(
-            out,
-            "\n  round {}: {} nodes tried, gates {} and {}",
-            number + 1,
-            round.gates.tried,
-            significant(round.gates.gain(1), 3),
-            significant(round.gates.material(), 3)
-        );
-        let _ = writeln!(
-            out,
-            "    {:<34} {:>9} {:>9} {:>9}  ",
-            "fitted", "score", "gain", "unseen"
-        );
-        for trial in &round.trials {
-            let _ = writeln!(
-                out,
-                "    {:<34} {:>9} {:>9} {:>9}  {}",
-                named(&hypotheses[trial.hypothesis]),
-                significant(trial.score, 3),
-                significant(trial.gain, 3),
-                trial
-                    .fold_gain
-                    .map_or_else(String::new, |gain| significant(gain, 3)),
-                trial.rejected.map_or("", remark)
-            );
-        }
-        for score in round.scores.iter().take(5) {
-            let _ = writeln!(
-                out,
-                "    {:<34} {:>9}  {}",
-                named(&hypotheses[score.hypothesis]),
-                significant(score.gain(), 3),
-                score.tried
-            );
-        }
-    }
-    out
-}
-
-fn remark(rejection: Rejection) -> &'static str {
-    match rejection {
-        Rejection::Score => "score too small",
-        Rejection::Gain => "gain too small",
-        Rejection::Folds => "not on unseen rows",
-        Rejection::Bound => "on a bound",
-        Rejection::Behind => "behind the best",
-        Rejection::TooGood => "more than it can",
-    }
-}
-
-fn sentence(hypotheses: &[Hypothesis], found: &Diagnosis) -> String {
-    let names: Vec<String> = found
-        .findings
-        .iter()
-        .map(|finding| named(&hypotheses[finding.hypothesis]))
-        .collect();
-    match found.verdict {
-        Verdict::None => "no effect is missing that these records would show".to_owned(),
-        Verdict::Unknown if names.is_empty() => {
-            "something is missing, and no effect known is it".to_owned()
-        }
-        Verdict::Unknown => format!(
-            "something is missing that is in no library; it was written as {}",
-            names.join(", then ")
-        ),
-        Verdict::Effect => format!("missing is {}", names.join(", then ")),
-        Verdict::OneOf => format!(
-            "missing is {}, or what cannot be told from it",
-            names.join(", then ")
-        ),
-    }
-}
-
-/// The diagnosis as JSON; numbers are SI.
-fn report(
-    plan: &DiagnosisPlan,
-    calibration: &Calibration,
-    hypotheses: &[Hypothesis],
-    found: &Diagnosis,
-) -> Value {
-    let verdict = match found.verdict {
-        Verdict::None => "none",
-        Verdict::Effect => "effect",
-        Verdict::OneOf => "one_of",
-        Verdict::Unknown => "unknown",
-    };
-    let effects: Vec<Value> = found
-        .findings
-        .iter()
-        .map(|finding| {
-            let hypothesis = &hypotheses[finding.hypothesis];
-            let quantity = |q: &hyde_calibrate::Quantity| {
-                json!({ "value": q.value, "unit": q.unit, "interval": [q.interval.0, q.interval.1] })
-            };
-            let shape: serde_json::Map<String, Value> =
-                finding.shapes.iter().map(|q| (q.name.clone(), quantity(q))).collect();
-            let sizes: serde_json::Map<String, Value> =
-                finding.sizes.iter().map(|q| (q.name.clone(), quantity(q))).collect();
-            let one_of: Vec<Value> = finding
-                .alternatives
-                .iter()
-                .map(|&other| json!({ "effect": hypotheses[other].effect, "site": hypotheses[other].site }))
-                .collect();
-            json!({
-                "effect": hypothesis.effect,
-                "site": hypothesis.site,
-                "aliases": hypothesis.aliases,
-                "size": finding.size.value,
-                "unit": finding.size.unit,
-                "interval": [finding.size.interval.0, finding.size.interval.1],
-                "sizes": sizes,
-                "shape": shape,
-                "one_of": one_of,
-            })
-        })
-        .collect();
-    json!({
-        "ok": true,
-        "diagnosis": plan.name,
-        "model": calibration.plan.model,
-        "model_hash": calibration.project.hash,
-        "verdict": verdict,
-        "sentence": sentence(hypotheses, found),
-        "effects": effects,
-        "unexplained": found.unexplained,
-        "unknown": found.unknown.as_ref().map(|own| unknown::report(own, found)),
-    })
 }

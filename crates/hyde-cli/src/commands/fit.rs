@@ -1,11 +1,12 @@
 //! `hyde fit`: calibrates a model on records, and says what that is worth.
 
 use crate::args::FitArgs;
+use crate::before_after::{self, RecordErrors};
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{complain, print_output};
 use crate::study::{self, Calibration};
-use hyde_calibrate::{Fit, FittedParameter};
+use hyde_calibrate::{Fit, FittedParameter, Model, Unsupported};
 use hyde_units::{engineering, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -31,15 +32,13 @@ pub(crate) fn fit(args: &FitArgs) -> Exit {
     );
     let found = match found {
         Ok(found) => found,
-        Err(error) => {
-            let diagnostic = study::unsupported(&error, calibration.plan.span);
-            calibration.project.diagnostics.push(diagnostic);
-            return calibration
-                .project
-                .finish_with_errors(&args.study.model_args());
-        }
+        Err(error) => return cannot(&mut calibration, args, &error),
     };
-    let report = report(&calibration, &found);
+    let errors = match errors(&calibration, &found) {
+        Ok(errors) => errors,
+        Err(error) => return cannot(&mut calibration, args, &error),
+    };
+    let report = report(&calibration, &found, &errors);
     if let Some(folder) = &args.out
         && let Err(reason) = leave(folder, &calibration, &found, &report)
     {
@@ -48,7 +47,7 @@ pub(crate) fn fit(args: &FitArgs) -> Exit {
     if args.study.json {
         print_output(&format!("{report:#}"));
     } else if !args.study.quiet {
-        print_output(&text(&calibration, &found));
+        print_output(&text(&calibration, &found, &errors));
         if let Some(folder) = &args.out {
             print_output(&format!(
                 "\n  fit.json and {} are in {}",
@@ -60,8 +59,36 @@ pub(crate) fn fit(args: &FitArgs) -> Exit {
     Exit::Done
 }
 
+/// The errors with the declared values and with the calibrated ones.
+fn errors(calibration: &Calibration, found: &Fit) -> Result<Vec<RecordErrors>, Unsupported> {
+    let closed = before_after::closed(&calibration.project, &[], &[], &[]);
+    let declared = calibration.project.set();
+    let mut calibrated = declared.clone();
+    calibrated.extend(found.parameters.iter().map(|p| (p.name.clone(), p.value)));
+    let model = |set| Model {
+        observed: &calibration.compiled.program,
+        closed: closed.as_ref().map(|(own, _)| own),
+        shifted: None,
+        set,
+    };
+    let after = Model {
+        shifted: closed.as_ref().map(|(_, shifted)| shifted),
+        ..model(&calibrated)
+    };
+    before_after::errors(calibration, Some(model(&declared)), after)
+}
+
+/// Tells why there is no calibration.
+fn cannot(calibration: &mut Calibration, args: &FitArgs, error: &Unsupported) -> Exit {
+    let diagnostic = study::unsupported(error, calibration.plan.span);
+    calibration.project.diagnostics.push(diagnostic);
+    calibration
+        .project
+        .finish_with_errors(&args.study.model_args())
+}
+
 /// The calibration in lines of at most 80 columns.
-fn text(calibration: &Calibration, fit: &Fit) -> String {
+fn text(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> String {
     let program = &calibration.compiled.program;
     let mut out = String::new();
     let end = match fit.converged {
@@ -111,48 +138,8 @@ fn text(calibration: &Calibration, fit: &Fit) -> String {
             .collect();
         let _ = writeln!(out, "  the data hardly tell apart: {}", names.join(", "));
     }
-    let _ = writeln!(
-        out,
-        "\n  {:<32} {:>10} {:>10}   about 1 where all is known",
-        "mean square of innovations", "before", "after"
-    );
-    for record in &fit.records {
-        let name = match record.holdout {
-            true => format!("{} (held out)", record.record),
-            false => record.record.clone(),
-        };
-        let _ = writeln!(
-            out,
-            "  {name:<32} {:>10} {:>10}",
-            significant(record.before.0, 4),
-            significant(record.after.0, 4)
-        );
-    }
-    let _ = writeln!(
-        out,
-        "\n  {:<32} {:>10} {:>10} {:>12}",
-        "rms of innovations", "before", "after", "noise"
-    );
-    for (number, name) in fit.channels.iter().enumerate() {
-        let dimension = program.experiment.measured[number].unit.unit().dimension;
-        let rms = |after: bool| {
-            let errors = fit
-                .records
-                .iter()
-                .map(|record| if after { &record.after } else { &record.before });
-            let squares: Vec<f64> = errors
-                .map(|(_, channels)| channels[number].rms.powi(2))
-                .collect();
-            (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
-        };
-        let _ = writeln!(
-            out,
-            "  {name:<32} {:>10} {:>10} {:>12}",
-            engineering(rms(false), dimension),
-            engineering(rms(true), dimension),
-            engineering(calibration.observer.noise[number], dimension)
-        );
-    }
+    out.push('\n');
+    out.push_str(&before_after::text(errors, calibration));
     out
 }
 
@@ -169,7 +156,7 @@ fn remark(parameter: &FittedParameter) -> &'static str {
 }
 
 /// The calibration as JSON; numbers are SI.
-fn report(calibration: &Calibration, fit: &Fit) -> Value {
+fn report(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> Value {
     let program = &calibration.compiled.program;
     let parameters: Vec<Value> = fit
         .parameters
@@ -189,39 +176,6 @@ fn report(calibration: &Calibration, fit: &Fit) -> Value {
                 "left_range": parameter.left_range,
                 "at_bound": parameter.at_bound,
                 "not_told": parameter.untold,
-            })
-        })
-        .collect();
-    let records: Vec<Value> = fit
-        .records
-        .iter()
-        .map(|record| {
-            let channels: Vec<Value> = record
-                .before
-                .1
-                .iter()
-                .zip(&record.after.1)
-                .enumerate()
-                .map(|(number, (before, after))| {
-                    let measured = &program.experiment.measured[number];
-                    json!({
-                        "channel": measured.name,
-                        "unit": measured.unit.unit().dimension.usual_unit(),
-                        "noise": calibration.observer.noise[number],
-                        "rms_before": before.rms,
-                        "rms_after": after.rms,
-                        "chi_before": before.chi,
-                        "chi_after": after.chi,
-                        "correlation_after": after.correlation,
-                    })
-                })
-                .collect();
-            json!({
-                "record": record.record,
-                "holdout": record.holdout,
-                "chi_before": record.before.0,
-                "chi_after": record.after.0,
-                "channels": channels,
             })
         })
         .collect();
@@ -246,7 +200,7 @@ fn report(calibration: &Calibration, fit: &Fit) -> Value {
         "agreeing_starts": fit.agreeing_starts.0,
         "parameters": parameters,
         "groups": groups,
-        "records": records,
+        "records": before_after::json(errors, calibration),
         "inflation": fit.inflation,
     })
 }

@@ -36,6 +36,18 @@ impl<'a> Model<'a, '_> {
         self.agree(&a, &b, "the step and the value are", scope.instance);
         let arena = &mut self.flat.exprs;
         let id = match name {
+            "floor_to" | "round_to" if self.input.additions.shifts_quantisers() => {
+                let op = if name == "floor_to" {
+                    BinaryOp::FloorTo
+                } else {
+                    BinaryOp::RoundTo
+                };
+                let half = arena.constant(0.5);
+                let shift = arena.times(half, b.id);
+                let shifted = arena.plus(a.id, shift);
+                let rounded = arena.binary(op, shifted, b.id);
+                arena.minus(rounded, shift)
+            }
             "floor" | "integer" => arena.unary(UnaryOp::Floor, a.id),
             "ceil" => arena.unary(UnaryOp::Ceil, a.id),
             "floor_to" => arena.binary(BinaryOp::FloorTo, a.id, b.id),

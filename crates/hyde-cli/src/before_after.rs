@@ -1,0 +1,307 @@
+//! Errors before and after a calibration or a diagnosis, record by record and channel by channel, over the noise floor (L1).
+
+use crate::project::Project;
+use crate::records;
+use crate::study::Calibration;
+use crate::unknown;
+use hyde_calibrate::{FreeMeasure, Measures, Model, Unsupported, Written};
+use hyde_compiler::{Additions, Backend, Candidate, Request};
+use hyde_diag::Diagnostics;
+use hyde_program::{Method, Program};
+use hyde_units::{Dimension, engineering, significant};
+use serde_json::{Value, json};
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// A record with its errors.
+pub(crate) struct RecordErrors {
+    /// Nothing was fitted to it.
+    pub(crate) holdout: bool,
+    pub(crate) before: Measures,
+    pub(crate) after: Measures,
+}
+
+/// One measure of one channel: before and after, SI, and what would be left if the model were the axis.
+#[derive(Clone, Copy)]
+pub(crate) struct Change {
+    pub(crate) before: f64,
+    pub(crate) after: f64,
+    pub(crate) floor: f64,
+}
+
+impl RecordErrors {
+    /// Innovations of a channel.
+    pub(crate) fn innovations(&self, channel: usize, deviations: &[f64]) -> Change {
+        Change {
+            before: self.before.innovations[channel].rms,
+            after: self.after.innovations[channel].rms,
+            floor: deviations[channel],
+        }
+    }
+
+    /// Open-loop windows of a channel.
+    pub(crate) fn windows(&self, channel: usize) -> Change {
+        Change {
+            before: self.before.windows.total(channel),
+            after: self.after.windows.total(channel),
+            floor: self.after.noise[channel],
+        }
+    }
+
+    /// The free run of a channel; `None` where either has none.
+    pub(crate) fn free(&self, channel: usize) -> Option<Change> {
+        let of = |measures: &Measures| -> Option<FreeMeasure> {
+            measures.free.as_ref().ok()?.get(channel).cloned()
+        };
+        let (before, after) = (of(&self.before)?, of(&self.after)?);
+        Some(Change {
+            before: before.channel.rms(),
+            after: after.channel.rms(),
+            floor: after.floor?,
+        })
+    }
+
+    /// Why there is no free run, if there is none.
+    pub(crate) fn no_free_run(&self) -> Option<&str> {
+        let each = [&self.before, &self.after];
+        each.into_iter()
+            .find_map(|measures| measures.free.as_ref().err())
+            .map(String::as_str)
+    }
+}
+
+/// The program of a project with its loop closed, candidates, by number, and written effects put on, and the same with
+/// quantisers shifted; `None` where that has errors.
+pub(crate) fn closed(
+    project: &Project,
+    candidates: &[Candidate],
+    known: &[usize],
+    written: &[&Written],
+) -> Option<(Program, Program)> {
+    let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
+    let headers = records::headers(&project.records);
+    let texts = written.iter().map(|one| one.text.as_str());
+    let (sources, file) = hyde_compiler::with_written(&project.sources, &project.file, texts)?;
+    let own = file.files.first()?.0;
+    let mut additions = Additions::kept();
+    for &number in known {
+        additions.put(own, &candidates[number]);
+    }
+    for &one in written {
+        additions.put(own, &unknown::candidate(one));
+    }
+    let request = Request {
+        sources: &sources,
+        file: &file,
+        model: &project.model,
+        experiment: project.experiment.as_deref(),
+        settings: &settings,
+        records: &headers,
+        free_inputs: false,
+        ledger: false,
+        observed: false,
+        backend: Backend::Native,
+    };
+    let program = |additions: &Additions| {
+        let compiled = hyde_compiler::compile_with(&request, additions, &mut Diagnostics::new())?;
+        let mut program = compiled.program;
+        // What restarts at every tick suits a loop that is sampled; the tolerance stays that of the experiment.
+        if !program.clocks.is_empty() {
+            program.experiment.method = Method::Auto;
+        }
+        Some(program)
+    };
+    let shifted = additions.clone().with_shifted_quantisers();
+    Some((program(&additions)?, program(&shifted)?))
+}
+
+/// The errors of two models on all records of a calibration, of one model where nothing changed; those held out are read
+/// here and nowhere before.
+pub(crate) fn errors(
+    calibration: &Calibration,
+    before: Option<Model<'_>>,
+    after: Model<'_>,
+) -> Result<Vec<RecordErrors>, Unsupported> {
+    let mut found = Vec::new();
+    for (holdout, recordings) in [(false, &calibration.fitted), (true, &calibration.holdout)] {
+        let new = after.measures(recordings, &calibration.observer)?;
+        let old = match before {
+            Some(before) => before.measures(recordings, &calibration.observer)?,
+            None => new.clone(),
+        };
+        let pairs = old.into_iter().zip(new);
+        found.extend(pairs.map(|(before, after)| RecordErrors {
+            holdout,
+            before,
+            after,
+        }));
+    }
+    Ok(found)
+}
+
+/// The mean square of innovations over all channels of several records: before and after.
+pub(crate) fn chi(records: &[RecordErrors], holdout: bool) -> Option<(f64, f64)> {
+    let (mut sums, mut count) = ((0.0, 0.0), 0.0);
+    for record in records.iter().filter(|record| record.holdout == holdout) {
+        let rows: usize = record.before.whitened.channels.iter().map(Vec::len).sum();
+        sums.0 += record.before.chi * rows as f64;
+        sums.1 += record.after.chi * rows as f64;
+        count += rows as f64;
+    }
+    (count > 0.0).then(|| (sums.0 / count, sums.1 / count))
+}
+
+/// One measure of a channel over several records, by the mean of squares.
+pub(crate) fn over<'r>(
+    records: impl Iterator<Item = &'r RecordErrors>,
+    of: impl Fn(&RecordErrors) -> Option<Change>,
+) -> Option<Change> {
+    let (mut sums, mut count) = ([0.0; 3], 0.0);
+    for record in records {
+        let change = of(record)?;
+        for (sum, value) in sums
+            .iter_mut()
+            .zip([change.before, change.after, change.floor])
+        {
+            *sum += value * value;
+        }
+        count += 1.0;
+    }
+    let root = |sum: f64| (sum / count).sqrt();
+    (count > 0.0).then(|| Change {
+        before: root(sums[0]),
+        after: root(sums[1]),
+        floor: root(sums[2]),
+    })
+}
+
+/// The errors as JSON; numbers are SI.
+pub(crate) fn json(records: &[RecordErrors], calibration: &Calibration) -> Value {
+    let measured = &calibration.compiled.program.experiment.measured;
+    let deviations = &calibration.observer.deviations;
+    let change = |change: Change| {
+        json!({
+            "before": change.before,
+            "after": change.after,
+            "floor": change.floor,
+            "before_over_floor": change.before / change.floor,
+            "after_over_floor": change.after / change.floor,
+        })
+    };
+    let of_record = |record: &RecordErrors| {
+        let channels: Vec<Value> = measured
+            .iter()
+            .enumerate()
+            .map(|(number, measured)| {
+                let (before, after) = (
+                    &record.before.innovations[number],
+                    &record.after.innovations[number],
+                );
+                json!({
+                    "channel": measured.name,
+                    "unit": measured.unit.unit().dimension.usual_unit(),
+                    "noise": record.after.noise[number],
+                    "chi": { "before": before.chi, "after": after.chi },
+                    "correlation": { "before": before.correlation, "after": after.correlation },
+                    "innovations": change(record.innovations(number, deviations)),
+                    "windows": change(record.windows(number)),
+                    "free_run": record.free(number).map(change),
+                })
+            })
+            .collect();
+        json!({
+            "record": record.after.record,
+            "holdout": record.holdout,
+            "chi": { "before": record.before.chi, "after": record.after.chi },
+            "no_free_run": record.no_free_run(),
+            "channels": channels,
+        })
+    };
+    Value::Array(records.iter().map(of_record).collect())
+}
+
+/// The errors in lines of at most 80 columns.
+pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> String {
+    let measured = &calibration.compiled.program.experiment.measured;
+    let deviations = &calibration.observer.deviations;
+    let mut out = String::new();
+    let _ = writeln!(
+        out,
+        "  {:<34} {:>9} {:>9}   about 1 where all is known",
+        "mean square of innovations", "before", "after"
+    );
+    for record in records {
+        let name = match record.holdout {
+            true => format!("{} (held out)", record.after.record),
+            false => record.after.record.clone(),
+        };
+        let _ = writeln!(
+            out,
+            "  {:<34} {:>9} {:>9}",
+            shortened(&name, 34),
+            significant(record.before.chi, 4),
+            significant(record.after.chi, 4)
+        );
+    }
+    let held_out = records.iter().any(|record| record.holdout);
+    let shown = || {
+        records
+            .iter()
+            .filter(move |record| record.holdout == held_out)
+    };
+    let where_ = if held_out { ", held out" } else { "" };
+    let table =
+        |out: &mut String, title: &str, of: &dyn Fn(&RecordErrors, usize) -> Option<Change>| {
+            let _ = writeln!(
+                out,
+                "\n  {:<34} {:>11} {:>11}   times the floor",
+                format!("{title}{where_}"),
+                "before",
+                "after"
+            );
+            for (number, channel) in measured.iter().enumerate() {
+                let Some(change) = over(shown(), |record| of(record, number)) else {
+                    continue;
+                };
+                let dimension = channel.unit.unit().dimension;
+                let _ = writeln!(out, "{}", line(&channel.name, change, dimension));
+            }
+        };
+    table(&mut out, "rms of innovations", &|record, number| {
+        Some(record.innovations(number, deviations))
+    });
+    table(&mut out, "rms over 100 ms, open loop", &|record, number| {
+        Some(record.windows(number))
+    });
+    match shown().find_map(RecordErrors::no_free_run) {
+        None => table(&mut out, "rms of the free run", &RecordErrors::free),
+        Some(reason) => {
+            let _ = writeln!(out, "\n  there is no free run: {reason}");
+        }
+    }
+    out
+}
+
+fn line(name: &str, change: Change, dimension: Dimension) -> String {
+    let times = |value: f64| significant(value / change.floor, 3);
+    format!(
+        "  {:<34} {:>11} {:>11}   {} -> {}",
+        shortened(name, 34),
+        engineering(change.before, dimension),
+        engineering(change.after, dimension),
+        times(change.before),
+        times(change.after)
+    )
+}
+
+/// A name with its middle left out where it is too long.
+pub(crate) fn shortened(name: &str, width: usize) -> String {
+    let letters: Vec<char> = name.chars().collect();
+    if letters.len() <= width {
+        return name.to_owned();
+    }
+    let head = (width - 1) / 2;
+    let tail = letters.len() - (width - 1 - head);
+    let part = |list: &[char]| list.iter().collect::<String>();
+    format!("{}…{}", part(&letters[..head]), part(&letters[tail..]))
+}

@@ -1,0 +1,188 @@
+//! What a diagnosis tells, in one order: on the terminal, as JSON, as a page; and the model that has what was missing.
+//!
+//! ```text
+//! verdict      one sentence, and what is doubtful about it        diagnosis/verdict.rs
+//! terminal     80 columns                                         diagnosis/text.rs
+//! JSON         `report.json`: book/src/report.schema.json         diagnosis/json.rs
+//! page         `report.html`                                      diagnosis/page.rs
+//! model        the old text with a new model behind               diagnosis/model.rs
+//! ```
+
+mod json;
+mod model;
+mod page;
+mod text;
+mod verdict;
+
+pub(crate) use json::json;
+pub(crate) use page::html;
+pub(crate) use text::text;
+
+use crate::before_after::{self, RecordErrors};
+use crate::study::Calibration;
+use hyde_calibrate::{
+    Diagnosis, FittedParameter, Hypothesis, Model, Rejection, Score, Trial, Unsupported,
+    fitted_parameters,
+};
+use hyde_compiler::{Candidate, DiagnosisPlan, Written};
+
+/// A diagnosis with all that is told of it.
+pub(crate) struct Told<'a> {
+    pub(crate) plan: &'a DiagnosisPlan,
+    pub(crate) calibration: &'a Calibration,
+    pub(crate) hypotheses: &'a [Hypothesis],
+    pub(crate) found: &'a Diagnosis,
+    /// Errors of the calibrated model without effects and with them.
+    pub(crate) errors: Vec<RecordErrors>,
+    /// Each parameter of the model: calibrated without effects, and with them.
+    pub(crate) parameters: Vec<(FittedParameter, FittedParameter)>,
+    /// The model that has what was missing.
+    pub(crate) written: Written,
+}
+
+/// A hypothesis that was tried and not taken in.
+pub(crate) struct Tried<'a> {
+    pub(crate) hypothesis: &'a Hypothesis,
+    /// In the last round: what the scan promised.
+    pub(crate) score: &'a Score,
+    /// Its fit, if it was worth one: that of the last round that had one.
+    pub(crate) trial: Option<&'a Trial>,
+}
+
+impl<'a> Told<'a> {
+    /// Measures the errors and writes the model.
+    pub(crate) fn new(
+        plan: &'a DiagnosisPlan,
+        calibration: &'a Calibration,
+        candidates: &[Candidate],
+        hypotheses: &'a [Hypothesis],
+        found: &'a Diagnosis,
+    ) -> Result<Self, Unsupported> {
+        let project = &calibration.project;
+        let known: Vec<usize> = found
+            .findings
+            .iter()
+            .map(|finding| finding.hypothesis)
+            .filter(|&number| number < candidates.len())
+            .collect();
+        let law = found.unknown.as_ref().and_then(|own| own.found.as_ref());
+        let written: Vec<&hyde_calibrate::Written> = law
+            .filter(|_| known.len() < found.findings.len())
+            .map(|law| &law.written)
+            .into_iter()
+            .collect();
+        let plain = before_after::closed(project, candidates, &[], &[]);
+        let with_effects = before_after::closed(project, candidates, &known, &written);
+        let values = |names: &[hyde_calibrate::Varied], values: &[f64]| {
+            let each = names.iter().zip(values);
+            let each = each.map(|(varied, &value)| (varied.name.clone(), value));
+            let mut all = project.set();
+            all.extend(each);
+            all
+        };
+        let before = values(&calibration.varied, &found.before.values);
+        let mut after = values(&found.varied, &found.after.values);
+        after.extend(found.kept.iter().cloned());
+        let errors = before_after::errors(
+            calibration,
+            (!found.findings.is_empty()).then_some(Model {
+                observed: &calibration.compiled.program,
+                closed: plain.as_ref().map(|(own, _)| own),
+                shifted: None,
+                set: &before,
+            }),
+            Model {
+                observed: &found.program,
+                closed: with_effects.as_ref().map(|(own, _)| own),
+                shifted: with_effects.as_ref().map(|(_, shifted)| shifted),
+                set: &after,
+            },
+        )?;
+        let old = fitted_parameters(&calibration.varied, &found.before);
+        let new = fitted_parameters(&found.varied, &found.after);
+        let parameters = old
+            .into_iter()
+            .filter_map(|old| {
+                let new = new.iter().find(|new| new.name == old.name)?.clone();
+                Some((old, new))
+            })
+            .collect();
+        let mut told = Self {
+            plan,
+            calibration,
+            hypotheses,
+            found,
+            errors,
+            parameters,
+            written: Written {
+                text: String::new(),
+                model: String::new(),
+                experiment: None,
+            },
+        };
+        told.written = model::written(&told, candidates, &written);
+        Ok(told)
+    }
+
+    /// What was tried and not taken in, the best first.
+    pub(crate) fn tried(&self) -> Vec<Tried<'a>> {
+        let taken = |number: usize| {
+            let mut findings = self.found.findings.iter();
+            findings.any(|finding| finding.hypothesis == number)
+        };
+        let Some(last) = self.found.rounds.last() else {
+            return Vec::new();
+        };
+        let scores = last.scores.iter().filter(|score| !taken(score.hypothesis));
+        scores
+            .map(|score| {
+                let rounds = self.found.rounds.iter().rev();
+                let mut trials = rounds.flat_map(|round| &round.trials);
+                Tried {
+                    hypothesis: &self.hypotheses[score.hypothesis],
+                    score,
+                    trial: trials.find(|trial| trial.hypothesis == score.hypothesis),
+                }
+            })
+            .collect()
+    }
+}
+
+impl Tried<'_> {
+    /// Why it was not taken in.
+    pub(crate) fn reason(&self) -> &'static str {
+        match self.trial {
+            None => "score too small",
+            Some(trial) => trial.rejected.map_or("as good as the one taken", reason),
+        }
+    }
+}
+
+/// `Stribeck at guide`
+pub(crate) fn named(hypothesis: &Hypothesis) -> String {
+    format!("{} at {}", hypothesis.effect, hypothesis.site)
+}
+
+fn reason(rejection: Rejection) -> &'static str {
+    match rejection {
+        Rejection::Score => "score too small",
+        Rejection::Gain => "gain too small",
+        Rejection::Folds => "not on unseen rows",
+        Rejection::Bound => "on a bound",
+        Rejection::Behind => "behind the best",
+        Rejection::TooGood => "more than it can",
+    }
+}
+
+/// What a parameter is suspected of.
+fn suspicion(parameter: &FittedParameter) -> &'static str {
+    if parameter.at_bound {
+        "AT ITS BOUND"
+    } else if parameter.left_range {
+        "LEFT ITS RANGE"
+    } else if parameter.untold {
+        "not told"
+    } else {
+        ""
+    }
+}

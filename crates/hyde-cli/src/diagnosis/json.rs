@@ -1,0 +1,127 @@
+//! `report.json`, as book/src/report.schema.json says. Numbers are SI.
+
+use super::{Told, suspicion, verdict};
+use crate::before_after;
+use crate::unknown;
+use hyde_calibrate::{FittedParameter, Quantity, Verdict};
+use serde_json::{Map, Value, json};
+
+/// The whole report.
+pub(crate) fn json(told: &Told<'_>) -> Value {
+    let verdict = match told.found.verdict {
+        Verdict::None => "none",
+        Verdict::Effect => "effect",
+        Verdict::OneOf => "one_of",
+        Verdict::Unknown => "unknown",
+    };
+    json!({
+        "ok": true,
+        "report": 1,
+        "diagnosis": told.plan.name,
+        "calibration": told.calibration.plan.name,
+        "model": told.calibration.plan.model,
+        "model_hash": told.calibration.project.hash,
+        "verdict": verdict,
+        "sentence": verdict::sentence(told),
+        "doubts": verdict::doubts(told),
+        "effects": effects(told),
+        "unexplained": told.found.unexplained,
+        "unknown": told
+            .found
+            .unknown
+            .as_ref()
+            .map(|own| unknown::report(own, told.found)),
+        "records": before_after::json(&told.errors, told.calibration),
+        "parameters": parameters(told),
+        "rejected": rejected(told),
+        "new_model": told.written.model,
+        "new_experiment": told.written.experiment,
+    })
+}
+
+fn effects(told: &Told<'_>) -> Value {
+    let findings = told.found.findings.iter().map(|finding| {
+        let hypothesis = &told.hypotheses[finding.hypothesis];
+        let all = |list: &[Quantity]| -> Map<String, Value> {
+            list.iter()
+                .map(|own| (own.name.clone(), quantity(own)))
+                .collect()
+        };
+        let one_of: Vec<Value> = finding
+            .alternatives
+            .iter()
+            .map(|&other| {
+                let other = &told.hypotheses[other];
+                json!({ "effect": other.effect, "site": other.site })
+            })
+            .collect();
+        json!({
+            "effect": hypothesis.effect,
+            "site": hypothesis.site,
+            "aliases": hypothesis.aliases,
+            "size": finding.size.value,
+            "unit": finding.size.unit,
+            "interval": [finding.size.interval.0, finding.size.interval.1],
+            "sizes": all(&finding.sizes),
+            "shape": all(&finding.shapes),
+            "one_of": one_of,
+        })
+    });
+    Value::Array(findings.collect())
+}
+
+fn quantity(own: &Quantity) -> Value {
+    json!({ "value": own.value, "unit": own.unit, "interval": [own.interval.0, own.interval.1] })
+}
+
+fn parameters(told: &Told<'_>) -> Value {
+    let program = &told.calibration.compiled.program;
+    let each = told.parameters.iter().map(|(old, new)| {
+        let of = |own: &FittedParameter| {
+            json!({
+                "value": own.value,
+                "interval": [own.interval.0, own.interval.1],
+                "left_range": own.left_range,
+                "at_bound": own.at_bound,
+                "not_told": own.untold,
+            })
+        };
+        let unit = program
+            .parameter(&new.name)
+            .map(|(parameter, _)| parameter.dimension.usual_unit());
+        json!({
+            "name": new.name,
+            "unit": unit,
+            "declared": new.nominal,
+            "prior_deviation": new.prior,
+            "before": of(old),
+            "after": of(new),
+            "suspicion": suspicion(new).to_lowercase(),
+        })
+    });
+    Value::Array(each.collect())
+}
+
+fn rejected(told: &Told<'_>) -> Value {
+    let each = told.tried().into_iter().map(|tried| {
+        let size = tried.hypothesis.sizes.first();
+        let seen =
+            tried.score.detectable.zip(size).map(
+                |(value, size)| json!({ "name": size.name, "value": value, "unit": size.unit }),
+            );
+        json!({
+            "effect": tried.hypothesis.effect,
+            "site": tried.hypothesis.site,
+            "score": finite(tried.score.gain()),
+            "gain": tried.trial.and_then(|trial| finite(trial.gain)),
+            "unseen_gain": tried.trial.and_then(|trial| trial.fold_gain).and_then(finite),
+            "reason": tried.reason(),
+            "smallest_seen": seen,
+        })
+    });
+    Value::Array(each.collect())
+}
+
+fn finite(value: f64) -> Option<f64> {
+    value.is_finite().then_some(value)
+}

@@ -1,0 +1,138 @@
+//! The verdict in one sentence, and its doubt.
+
+use super::{Told, named};
+use crate::before_after;
+use hyde_calibrate::{Finding, Quantity, Verdict};
+use hyde_units::significant;
+
+/// One sentence, without the stop at its end.
+pub(super) fn sentence(told: &Told<'_>) -> String {
+    let names: Vec<String> = told
+        .found
+        .findings
+        .iter()
+        .map(|finding| sized(told, finding))
+        .collect();
+    match told.found.verdict {
+        Verdict::None => "no effect is missing that these records would show".to_owned(),
+        Verdict::Unknown if names.is_empty() => {
+            return "something is missing, and no effect known is it".to_owned();
+        }
+        Verdict::Unknown => format!("missing is {}, and something more", names.join(", then ")),
+        Verdict::Effect => format!("missing is {}", names.join(", then ")),
+        Verdict::OneOf => format!(
+            "missing is {}, or what cannot be told from it",
+            names.join(", then ")
+        ),
+    }
+}
+
+/// `Stribeck at guide (dF = 12.1 ± 0.3 N)`
+fn sized(told: &Told<'_>, finding: &Finding) -> String {
+    let hypothesis = &told.hypotheses[finding.hypothesis];
+    format!("{} ({})", named(hypothesis), quantity(&finding.size))
+}
+
+/// `dF = 12.1 ± 0.3 N`
+pub(super) fn quantity(quantity: &Quantity) -> String {
+    let half = (quantity.interval.1 - quantity.interval.0) / 2.0;
+    let unit = match quantity.unit.as_str() {
+        "" | "1" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    format!(
+        "{} = {} ± {}{unit}",
+        quantity.name,
+        significant(quantity.value, 4),
+        significant(half, 2)
+    )
+}
+
+/// What speaks for the verdict, and what against it.
+pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
+    let mut doubts = Vec::new();
+    let held_out = before_after::chi(&told.errors, true);
+    let seen = before_after::chi(&told.errors, false);
+    if let Some((before, after)) = held_out.or(seen) {
+        let which = if held_out.is_some() {
+            "on the records held out"
+        } else {
+            "on the records fitted; none were held out"
+        };
+        let change = match told.found.findings.is_empty() {
+            true => format!("is {}", significant(before, 4)),
+            false => format!(
+                "goes from {} to {}",
+                significant(before, 4),
+                significant(after, 4)
+            ),
+        };
+        doubts.push(format!(
+            "the mean square of innovations {change}, {which}; about 1 where all is known"
+        ));
+        if after > before {
+            doubts.push("held-out records do not bear it out".to_owned());
+        }
+    }
+    for finding in &told.found.findings {
+        let others: Vec<String> = finding
+            .alternatives
+            .iter()
+            .map(|&other| named(&told.hypotheses[other]))
+            .collect();
+        if !others.is_empty() {
+            doubts.push(format!(
+                "these records do not tell {} from {}",
+                named(&told.hypotheses[finding.hypothesis]),
+                others.join(", ")
+            ));
+        }
+    }
+    if let Some(next) = next_best(told) {
+        doubts.push(next);
+    }
+    if told.found.unexplained {
+        doubts.push(
+            "what is left is larger, or more like itself from row to row, than noise".to_owned(),
+        );
+    }
+    for (_, new) in &told.parameters {
+        if new.left_range || new.at_bound {
+            doubts.push(format!(
+                "{} is outside of what was declared: it may stand in for something else",
+                new.name
+            ));
+        }
+    }
+    if !told.found.after.converged {
+        doubts.push("the last fit has not converged".to_owned());
+    }
+    doubts
+}
+
+/// Of the round that took in the last effect, the hypothesis that came nearest to it.
+fn next_best(told: &Told<'_>) -> Option<String> {
+    let finding = told.found.findings.last()?;
+    let round = told
+        .found
+        .rounds
+        .get(told.found.findings.len() - 1)
+        .filter(|round| !round.trials.is_empty())?;
+    let own = round
+        .trials
+        .iter()
+        .find(|trial| trial.hypothesis == finding.hypothesis)?;
+    let next = round
+        .trials
+        .iter()
+        .filter(|trial| {
+            trial.hypothesis != finding.hypothesis
+                && !finding.alternatives.contains(&trial.hypothesis)
+        })
+        .max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+    Some(format!(
+        "the next best, {}, gains {} % of what it gains",
+        named(&told.hypotheses[next.hypothesis]),
+        significant(100.0 * next.gain / own.gain, 3)
+    ))
+}
