@@ -153,7 +153,7 @@ impl Tried<'_> {
     pub(crate) fn reason(&self) -> &'static str {
         match self.trial {
             None => "score too small",
-            Some(trial) => trial.rejected.map_or("as good as the one taken", reason),
+            Some(trial) => trial.rejected.map_or("gains less", reason),
         }
     }
 }
