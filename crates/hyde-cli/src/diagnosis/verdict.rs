@@ -16,7 +16,7 @@ pub(super) fn sentence(told: &Told<'_>) -> String {
     match told.found.verdict {
         Verdict::None => "no effect is missing that these records would show".to_owned(),
         Verdict::Unknown if names.is_empty() => {
-            return "something is missing, and no effect known is it".to_owned();
+            "something is missing, and no effect known is it".to_owned()
         }
         Verdict::Unknown => format!("missing is {}, and something more", names.join(", then ")),
         Verdict::Effect => format!("missing is {}", names.join(", then ")),
