@@ -26,7 +26,7 @@ const TOO_SLOW: f64 = 0.9;
 
 /// Inside a step what is stiff or algebraic may be wrong by this part of the largest value it had: guards are found, and
 /// located where a step ends.
-const SEEN: f64 = 1e-3;
+const SEEN: f64 = 1e-2;
 
 /// Why a step cannot be as long as tried.
 pub(super) enum Obstacle {
