@@ -79,6 +79,18 @@ impl Batch {
         std::fs::read(self.path(out).join("cases.parquet")).map_err(|error| error.to_string())
     }
 
+    /// How many bytes its journals have.
+    #[must_use]
+    #[allow(clippy::disallowed_methods, reason = "a folder is looked at")]
+    pub fn journal_bytes(&self, out: &str) -> u64 {
+        let entries = std::fs::read_dir(self.path(out).join("journal"));
+        let files = entries.into_iter().flatten().flatten();
+        files
+            .filter_map(|entry| entry.metadata().ok())
+            .map(|file| file.len())
+            .sum()
+    }
+
     /// Runs it on a private Slurm in four shards, kills the process of one task, and compares: `None` where Slurm is not
     /// installed, else whether all was submitted again that was needed and the data set has the bytes of `expected`.
     ///

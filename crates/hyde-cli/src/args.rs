@@ -201,6 +201,18 @@ pub(crate) struct SweepArgs {
     pub(crate) file: PathBuf,
     /// The sweep; the file's only one if left out
     pub(crate) sweep: Option<String>,
+    /// A sweep of this experiment instead of one that the file has: what varies is said by `--vary` and `--cases`
+    #[arg(long, value_name = "EXPERIMENT", conflicts_with = "sweep")]
+    pub(crate) of: Option<String>,
+    /// With `--of`: what varies, as behind the word in a sweep: `--vary 'gap in 5 .. 50 [um]'` (repeatable)
+    #[arg(long, value_name = "WHAT", requires = "of")]
+    pub(crate) vary: Vec<String>,
+    /// With `--of`: how ranges are filled: `--points 'grid 10'`, `'random 500'`, `'latin 500'`, `'sobol 512'`
+    #[arg(long, value_name = "HOW", requires = "of")]
+    pub(crate) points: Option<String>,
+    /// With `--of`: a table with a column for each parameter and a row for each case
+    #[arg(long, value_name = "FILE", requires = "of")]
+    pub(crate) cases: Option<String>,
     /// Set a parameter of all cases: `--set saddle.M='320 [kg]'` (repeatable)
     #[arg(long = "set", value_name = "PATH=VALUE [UNIT]")]
     pub(crate) settings: Vec<String>,
@@ -309,7 +321,8 @@ pub(crate) struct ReportArgs {
 
 #[derive(Debug, Args)]
 pub(crate) struct PlotArgs {
-    /// A CSV, Parquet or JSON file of results, a record, a response that `bode --out` left, or a folder of `run --out`
+    /// A CSV, Parquet or JSON file of results, a record, a response that `bode --out` left, or a folder of `run
+    /// --out` or `sweep --out`
     pub(crate) results: PathBuf,
     /// The columns of each panel, separated by commas: `motor.w,screw.w[0]`; a choice if left out
     pub(crate) panels: Vec<String>,
@@ -322,6 +335,9 @@ pub(crate) struct PlotArgs {
     /// Other results in the same panels, dashed (repeatable)
     #[arg(long, value_name = "RESULTS")]
     pub(crate) with: Vec<PathBuf>,
+    /// Of a batch these cases, each a line; if left out all as quantiles over time, up to 8 as lines
+    #[arg(long, value_name = "N,…", value_delimiter = ',')]
+    pub(crate) cases: Vec<usize>,
     /// Whose modes stand below, separated by commas: `guide,nut.contact`; those that change most if left out
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) modes: Vec<String>,

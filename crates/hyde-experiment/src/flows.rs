@@ -1,6 +1,6 @@
 //! The forces, torques and currents between the components of a run, one line a connection.
 
-use crate::run::mean;
+use crate::reduce::mean;
 use hyde_program::Program;
 use hyde_sim::Results;
 

@@ -21,6 +21,7 @@ mod mode_shape;
 mod modes;
 mod pencil;
 mod record;
+mod reduce;
 mod rows;
 mod run;
 mod sampled;

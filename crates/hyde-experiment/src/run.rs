@@ -2,9 +2,8 @@
 //! what it is compared with.
 
 use crate::compare::{self, Channel, CompareError};
-use hyde_program::{
-    Constant, Parameter, Program, RecordedResponse, Reduction, ReductionKind, Stop,
-};
+use crate::reduce::reduce;
+use hyde_program::{Constant, Parameter, Program, RecordedResponse, Stop};
 use hyde_signal::Table;
 use hyde_sim::{Failure, Results, Setup};
 use std::collections::BTreeMap;
@@ -264,7 +263,12 @@ pub(crate) fn measures(
     let reductions: Vec<f64> = experiment
         .reductions
         .iter()
-        .map(|reduction| reduce(reduction, results))
+        .map(|reduction| {
+            let values = results.column(reduction.output);
+            values.map_or(f64::NAN, |values| {
+                reduce(reduction.kind, &results.time, values)
+            })
+        })
         .collect();
     let mut values = vec![0.0; experiment.measures.len()];
     program
@@ -282,30 +286,4 @@ pub(crate) fn measures(
             holds: !measure.expectation || value > 0.5,
         })
         .collect()
-}
-
-/// One number of a signal over time; means by the trapezoidal rule.
-fn reduce(reduction: &Reduction, results: &Results) -> f64 {
-    let Some(values) = results.column(reduction.output) else {
-        return f64::NAN;
-    };
-    let time = &results.time;
-    match reduction.kind {
-        ReductionKind::Max => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-        ReductionKind::Min => values.iter().copied().fold(f64::INFINITY, f64::min),
-        ReductionKind::Mean => mean(time, values, |v| v),
-        ReductionKind::Rms => mean(time, values, |v| v * v).sqrt(),
-        ReductionKind::First => values.first().copied().unwrap_or(f64::NAN),
-        ReductionKind::Last => values.last().copied().unwrap_or(f64::NAN),
-    }
-}
-
-/// The mean over time of a function of a signal, by the trapezoidal rule.
-pub(crate) fn mean(time: &[f64], values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
-    let pairs = time.windows(2).zip(values.windows(2));
-    let integral: f64 = pairs
-        .map(|(t, v)| 0.5 * (t[1] - t[0]) * (of(v[0]) + of(v[1])))
-        .sum();
-    let ends = time.last().zip(time.first());
-    integral / ends.map_or(0.0, |(last, first)| last - first)
 }

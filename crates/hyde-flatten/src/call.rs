@@ -42,7 +42,7 @@ const OF_ANGLE: [(&str, UnaryOp); 3] = [
 ];
 
 /// Every function name, for near misses.
-const ALL: [&str; 48] = [
+const ALL: [&str; 50] = [
     "der",
     "pre",
     "sample",
@@ -85,6 +85,8 @@ const ALL: [&str; 48] = [
     "mean",
     "first",
     "last",
+    "settling",
+    "resonance",
     "lowpass",
     "slope",
     "held",
@@ -117,6 +119,7 @@ fn usage(name: &str) -> Option<&'static str> {
         "chirp" => "chirp(time, from, to, duration)",
         "pder" => "pder(field, x)",
         "integral" => "integral(expression, domain)",
+        "settling" => "settling(error, band)",
         "partial" => "partial(expression, variable)",
         "table" => "table(x, {0, 1, 2}, {0, 1, 4})",
         "smooth_table" => "smooth_table(x, {0, 1, 2}, {0, 1, 4})",
@@ -219,7 +222,11 @@ impl<'a> Model<'a, '_> {
                 self.quantiser(name, &args, scope, span)
             }
             "min" | "max" if args.len() == 2 => self.extremum(name == "min", &args, scope, span),
-            "max" | "min" | "rms" | "mean" | "first" | "last" => {
+            "max" | "min" | "rms" | "mean" | "first" | "last" | "settling" | "resonance" => {
+                self.reduction(name, &args, scope, span)
+            }
+            // Of two arguments it is over a domain.
+            "integral" if args.len() == 1 && scope.setting == Setting::Measure => {
                 self.reduction(name, &args, scope, span)
             }
             "clamp" => self.clamp(&args, scope, span),
@@ -244,7 +251,7 @@ impl<'a> Model<'a, '_> {
                         "an integral stands in an account of the energy ledger, as a term of its own",
                     )
                     .label(span, "no term of an account")
-                    .help("write `stored Energy kinetic = integral(rho*A*v^2/2, bar);`"),
+                    .help("write `stored Energy kinetic = integral(rho*A*v^2/2, bar);`; over time: `measure Energy loss = integral(P);`"),
                 );
                 self.poison(span)
             }

@@ -191,10 +191,16 @@ pub enum ReductionKind {
     Rms,
     /// Mean over time.
     Mean,
-    /// Value at the start.
+    /// Integral over time.
+    Integral,
+    /// The first value there is: NaN is none.
     First,
-    /// Value at the stop.
+    /// The last value there is.
     Last,
+    /// The instant from which the signal stays at zero or below, in s; infinite if it never does.
+    Settling,
+    /// The frequency at which the spectrum is highest, in Hz.
+    Resonance,
 }
 
 /// A reduction of a signal over the run.

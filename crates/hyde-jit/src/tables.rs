@@ -403,6 +403,9 @@ fn experiment(dae: &Dae) -> Experiment {
                     flat::ReductionKind::Mean => ReductionKind::Mean,
                     flat::ReductionKind::First => ReductionKind::First,
                     flat::ReductionKind::Last => ReductionKind::Last,
+                    flat::ReductionKind::Integral => ReductionKind::Integral,
+                    flat::ReductionKind::Settling => ReductionKind::Settling,
+                    flat::ReductionKind::Resonance => ReductionKind::Resonance,
                 },
                 output,
             })

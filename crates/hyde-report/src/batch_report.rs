@@ -2,6 +2,8 @@
 
 mod figures;
 
+pub use self::figures::envelope_panel;
+
 use self::figures::{distribution, envelope, scatter};
 use crate::number::significant;
 use crate::page::{Block, Page, Section, Table, Verdict};

@@ -43,6 +43,7 @@ mod xy_plot;
 pub use axis::{Axis, Scale};
 pub use batch_report::{
     BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, Envelope, FailedCase, WorstCase,
+    envelope_panel,
 };
 pub use bode_plot::{BodeCurve, bode_plot};
 pub use circle_plot::circle_plot;

@@ -20,12 +20,14 @@
 
 mod periodic;
 mod sine_fit;
+mod strongest;
 mod sweep;
 mod welch;
 
 pub use periodic::{PeriodicResponse, period, periodic_response};
 pub use realfft::num_complex::Complex;
 pub use sine_fit::{harmonic_distortion, response_at};
+pub use strongest::strongest_frequency;
 pub use sweep::swept_response;
 pub use welch::{power_spectral_density, welch_response};
 

@@ -34,6 +34,7 @@ mod paper;
 mod points;
 mod reactions;
 mod rectifier;
+mod reductions;
 mod sampled;
 mod stages;
 mod starts;

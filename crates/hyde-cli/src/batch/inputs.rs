@@ -32,6 +32,8 @@ pub(crate) type Content = (String, Vec<u8>);
 #[derive(Debug, Default)]
 pub(crate) struct Inputs {
     replayed: bool,
+    /// Stands below the model's own file, as if it were written there.
+    below: String,
     files: Mutex<BTreeMap<Key, Content>>,
 }
 
@@ -41,11 +43,20 @@ impl Inputs {
         Self::default()
     }
 
+    /// The same with a text below the model's file.
+    pub(crate) fn recording_with(below: String) -> Self {
+        Self {
+            below,
+            ..Self::default()
+        }
+    }
+
     /// Gives these files and no others.
     pub(crate) fn replaying(files: BTreeMap<Key, Content>) -> Self {
         Self {
             replayed: true,
             files: Mutex::new(files),
+            ..Self::default()
         }
     }
 
@@ -68,7 +79,10 @@ impl Inputs {
                 format!("`{}` is not among the files of the batch", path.display())
             });
         }
-        let content = files::read(path)?;
+        let mut content = files::read(path)?;
+        if kind == Kind::Model {
+            content.extend_from_slice(self.below.as_bytes());
+        }
         self.note(
             kind,
             asker,

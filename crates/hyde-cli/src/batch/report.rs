@@ -1,13 +1,11 @@
 //! What the page of a batch shows, from its data set, its trajectories and its summary: no model is needed.
 
 use super::order::Order;
+use super::over_time::{OverTime, in_si, si_unit, whole_numbers};
 use crate::commands::sweep::word;
-use crate::figures::shown;
 use crate::files;
-use hyde_experiment::batch::envelope;
 use hyde_report::{
-    BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, Envelope, FailedCase, Outcome, Verdict,
-    WorstCase,
+    BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, FailedCase, Outcome, Verdict, WorstCase,
 };
 use hyde_signal::{Field, Frame, Values};
 use hyde_units::{NamedUnit, engineering_as, significant};
@@ -16,8 +14,6 @@ use std::path::Path;
 
 /// The columns of a case behind its inputs and measures: status, code, reason, equation, source, failed_at, steps, events.
 const BEHIND: usize = 8;
-/// Instants of an envelope: one for about three pixels.
-const INSTANTS: usize = 200;
 /// Inputs told of a case in words.
 const TOLD: usize = 6;
 
@@ -72,7 +68,7 @@ pub(crate) fn of_folder(folder: &Path) -> Result<BatchReport, String> {
         measures: cases.measures(&summary),
         failed: cases.failed.clone(),
         envelopes: match table(folder, "trajectories")? {
-            Some(over_time) => envelopes(&over_time, &cases),
+            Some(frame) => OverTime::of(frame).map_or(Vec::new(), |over| over.envelopes(None)),
             None => Vec::new(),
         },
         worst: cases.worst(&summary, &again),
@@ -186,7 +182,10 @@ impl Cases {
                     .as_ref()
                     .map_or(value, |unit| unit.unit().to_si(value))
             };
-            let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
+            // JSON has no word for infinite.
+            let some = known["count"].as_u64().unwrap_or_default() > 0;
+            let absent = if some { f64::INFINITY } else { f64::NAN };
+            let number = |value: &Value| value.as_f64().unwrap_or(absent);
             let quantiles = known["quantiles"].as_array().into_iter().flatten();
             let correlations = known["rank_correlations"].as_array().into_iter().flatten();
             CaseMeasure {
@@ -210,7 +209,8 @@ impl Cases {
         let case = |worst: &Value| {
             let case = usize::try_from(worst["case"].as_u64()?).ok()?;
             let unit = NamedUnit::parse(worst["unit"].as_str()?).ok()?;
-            let value = unit.unit().to_si(worst["value"].as_f64()?);
+            let value = worst["value"].as_f64().unwrap_or(f64::INFINITY);
+            let value = unit.unit().to_si(value);
             let value = engineering_as(value, &unit);
             Some(WorstCase {
                 what: format!("{} = {value}", worst["measure"].as_str()?),
@@ -272,59 +272,11 @@ impl Cases {
 
 /// A column as SI values; without numbers, as of a batch of which all cases failed, there are none.
 fn column(field: &Field, values: &Values, rows: usize) -> CaseColumn {
-    let unit = field.unit.as_ref().map(NamedUnit::unit);
-    let raw: Vec<f64> = match values {
-        Values::Numbers(values) => values.clone(),
-        Values::Integers(values) => values.iter().map(|value| *value as f64).collect(),
-        Values::Texts(_) => vec![f64::NAN; rows],
-    };
-    let to_si = |value: f64| unit.map_or(value, |unit| unit.to_si(value));
-    let name = unit.map_or(String::new(), |unit| unit.dimension.usual_unit());
     CaseColumn {
         name: field.name.clone(),
-        unit: shown(&name).to_owned(),
-        values: raw.into_iter().map(to_si).collect(),
+        unit: si_unit(field),
+        values: in_si(field, values).unwrap_or_else(|| vec![f64::NAN; rows]),
     }
-}
-
-/// Each variable that was kept, over all cases that were solved.
-fn envelopes(over_time: &Frame, cases: &Cases) -> Vec<Envelope> {
-    let [of, time, kept @ ..] = over_time.values.as_slice() else {
-        return Vec::new();
-    };
-    let (of, Some(time)) = (whole_numbers(of), numbers(time)) else {
-        return Vec::new();
-    };
-    let solved = |case: usize| {
-        let row = cases.numbers.binary_search(&case);
-        row.is_ok_and(|row| !cases.failed[row])
-    };
-    let mut ranges = Vec::new();
-    let mut at = 0;
-    for run in of.chunk_by(|a, b| a == b) {
-        if solved(run[0]) {
-            ranges.push(at..at + run.len());
-        }
-        at += run.len();
-    }
-    let mut found = Vec::new();
-    for (field, values) in over_time.fields[2..].iter().zip(kept) {
-        let column = column(field, values, of.len());
-        let rows = ranges
-            .iter()
-            .map(|rows| (&time[rows.clone()], &column.values[rows.clone()]));
-        let rows: Vec<(&[f64], &[f64])> = rows.collect();
-        let enveloped = envelope(&rows, INSTANTS);
-        if !enveloped.time.is_empty() {
-            found.push(Envelope {
-                name: column.name,
-                unit: column.unit,
-                time: enveloped.time,
-                quantiles: enveloped.quantiles,
-            });
-        }
-    }
-    found
 }
 
 fn numbers(values: &Values) -> Option<&[f64]> {
@@ -338,17 +290,5 @@ fn texts(values: &Values) -> Option<&[String]> {
     match values {
         Values::Texts(values) => Some(values),
         Values::Numbers(_) | Values::Integers(_) => None,
-    }
-}
-
-/// Numbers of cases, which CSV has as doubles.
-fn whole_numbers(values: &Values) -> Vec<usize> {
-    match values {
-        Values::Integers(values) => values
-            .iter()
-            .map(|value| usize::try_from(*value).unwrap_or(0))
-            .collect(),
-        Values::Numbers(values) => values.iter().map(|value| *value as usize).collect(),
-        Values::Texts(_) => Vec::new(),
     }
 }

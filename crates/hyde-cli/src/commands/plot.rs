@@ -1,5 +1,6 @@
-//! `hyde plot`: columns of results or of a record, or a frequency response, as a figure.
+//! `hyde plot`: columns of results or of a record, a frequency response, or a batch, as a figure.
 
+mod cases;
 mod curves;
 mod response;
 mod source;
@@ -64,6 +65,10 @@ fn figure(args: &PlotArgs) -> Result<Figure, String> {
             return Err("a frequency response is drawn whole: name no columns".to_owned());
         }
         response::figure(title, &responses)
+    } else if let [batch] = sources.as_slice()
+        && let Some(figure) = cases::envelopes(args, batch)
+    {
+        figure?
     } else if args.xy {
         curves::over_each_other(args, &source::over_time(args, &sources)?)?
     } else {

@@ -1,6 +1,7 @@
 //! `hyde sweep`: the cases of a sweep, solved here or elsewhere, kept as they finish, and made into one data set.
 
 use crate::args::{Engine, RunArgs, SweepArgs};
+use crate::batch::asked::{asked_for_nothing, from_source, ordered, written};
 use crate::batch::inputs::Inputs;
 use crate::batch::merge::merge;
 use crate::batch::order::Order;
@@ -36,14 +37,14 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
     let (order, inputs) = if kept {
         if args.sweep.is_some() || !asked_for_nothing(args) {
             let reason = format!(
-                "`{}` holds its order already: leave out the sweep, `--set`, `--record`, `--data`, `--seed` and `--keep`",
+                "`{}` holds its order already: leave out the sweep, `--of`, `--set`, `--record`, `--data`, `--seed` and `--keep`",
                 args.file.display()
             );
             return Err(complain(args, Exit::CommandLine, &reason));
         }
         Order::read(&args.file).map_err(|reason| complain(args, Exit::CommandLine, &reason))?
     } else {
-        (ordered(args), Inputs::recording())
+        (ordered(args), Inputs::recording_with(written(args)))
     };
     let batch = Prepared::new(
         &order,
@@ -85,8 +86,15 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
     )
     .map_err(failed)?;
     let ended = |ended: Ended| match ended {
-        Ended::Store(reason) => complain(args, Exit::CommandLine, &reason),
-        Ended::Interrupted => stopped(args, &batch, open(), &folder),
+        Ended::Store(reason) => stopped(args, &batch, open(), &folder, &reason, Exit::CommandLine),
+        Ended::Interrupted => stopped(
+            args,
+            &batch,
+            open(),
+            &folder,
+            "interrupted",
+            Exit::Interrupted,
+        ),
     };
     if let Some(shard) = &args.shard {
         let range = shard_range(shard, batch.plan.count()).map_err(failed)?;
@@ -118,7 +126,7 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
     };
     let summary = merge(&batch, &store, &folder, args.format).map_err(failed)?;
     let rerun = match (&args.out, kept) {
-        (None, false) => from_source(&order),
+        (None, false) => from_source(args, &order),
         _ => format!("hyde sweep {}", word(&folder.to_string_lossy())),
     };
     let json = tell::json(&batch, &summary, &rerun);
@@ -137,45 +145,6 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
         print_output(&tell::text(&batch, &summary, took, &rerun));
     }
     Ok(Exit::Done)
-}
-
-fn asked_for_nothing(args: &SweepArgs) -> bool {
-    let none = args.settings.is_empty() && args.records.is_empty() && args.keep.is_empty();
-    none && args.data.is_none() && args.seed.is_none()
-}
-
-fn ordered(args: &SweepArgs) -> Order {
-    Order {
-        file: args.file.clone(),
-        sweep: args.sweep.clone().unwrap_or_default(),
-        settings: args.settings.clone(),
-        records: args.records.clone(),
-        data: args.data.clone(),
-        seed: args.seed,
-        keep: args.keep.clone(),
-    }
-}
-
-/// The command that makes the same plan from the model's file.
-fn from_source(order: &Order) -> String {
-    let mut line = format!(
-        "hyde sweep {} {}",
-        word(&order.file.to_string_lossy()),
-        order.sweep
-    );
-    let lists = [("--set", &order.settings), ("--record", &order.records)];
-    for (option, values) in lists {
-        for value in values {
-            line.push_str(&format!(" {option} {}", word(value)));
-        }
-    }
-    if let Some(data) = &order.data {
-        line.push_str(&format!(" --data {}", word(&data.to_string_lossy())));
-    }
-    if let Some(seed) = order.seed {
-        line.push_str(&format!(" --seed {seed}"));
-    }
-    line.trim_end().to_owned()
 }
 
 /// A word as a shell reads it, quoted if it has to be.
@@ -284,12 +253,14 @@ fn by_slurm(args: &SweepArgs, batch: &Prepared, folder: &Path, how: &How) -> Res
     }
 }
 
-/// Tells what is there of a batch that was interrupted.
+/// Tells why a batch ended before its end, and what is there of it.
 fn stopped(
     args: &SweepArgs,
     batch: &Prepared,
     store: Result<Store, String>,
     folder: &Path,
+    why: &str,
+    exit: Exit,
 ) -> Exit {
     let done = store.map_or(0, |store| store.len());
     let kept = if args.out.is_some() || Order::is_in(&args.file) {
@@ -301,10 +272,10 @@ fn stopped(
         String::new()
     };
     let reason = format!(
-        "interrupted with {done} of {} cases done{kept}",
+        "{why}, with {done} of {} cases done{kept}",
         batch.plan.count()
     );
-    complain(args, Exit::Interrupted, &reason)
+    complain(args, exit, &reason)
 }
 
 /// Runs one case as `hyde run` runs an experiment.

@@ -183,3 +183,79 @@ fn a_figure_has_the_size_asked_for() {
         errors(&output)
     );
 }
+
+/// A lag of three gains, or of twelve.
+const GAINS: &str = r#"package gains;
+import SI.*;
+
+model Lag
+  parameter Length k = 1 [mm];
+  Length x(start = 0, fixed = true);
+equation
+  20 [ms]*der(x) = k - x;
+end Lag;
+
+experiment step of Lag
+  measure Length peak = max(x);
+  stop 0.2 [s] every 1 [ms];
+end step;
+
+sweep few of step
+  vary k = {1, 2, 4} [mm];
+  keep x;
+end few;
+
+sweep many of step
+  vary k in 1 .. 4 [mm];
+  grid 12;
+  keep x;
+end many;
+"#;
+
+#[test]
+fn a_batch_is_drawn_by_case_as_envelope_and_as_points() {
+    for form in ["parquet", "csv"] {
+        let folder = Folder::new();
+        let model = folder.file("gains.hyde", GAINS);
+        let swept = |sweep: &str| {
+            let out = folder.path(sweep);
+            let line = [
+                "sweep", &model, sweep, "--out", &out, "--quiet", "--format", form,
+            ];
+            assert_eq!(status(&hyde(&line)), 0);
+            out
+        };
+        let (few, many) = (swept("few"), swept("many"));
+        // A few are lines, on the time of a case and not of the table.
+        let lines = plotted(&folder, &[&few, "x"]);
+        for word in ["case 1", "case 3", "time [ms]", "x [mm]", "200"] {
+            assert!(has(&lines, word), "{word}: {lines:?}");
+        }
+        let lines = plotted(&folder, &[&many, "x", "--cases", "12,5"]);
+        assert!(has(&lines, "case 12") && has(&lines, "case 5") && !has(&lines, "case 1"));
+        let all = plotted(&folder, &[&many]);
+        assert!(has(&all, "x [mm]") && !has(&all, "case 1"), "{all:?}");
+        // The measure over its input: each case a point of its own, no lines between.
+        let points = plotted(&folder, &[&many, "--xy", "peak,k"]);
+        assert!(
+            has(&points, "peak [mm]") && has(&points, "k [mm]"),
+            "{points:?}"
+        );
+        for (line, word) in [
+            (vec!["plot", &many, "x,x"], "`--cases 3,7` draws lines"),
+            (
+                vec!["plot", &many, "x", "--cases", "13"],
+                "no rows of case 13",
+            ),
+            (
+                vec!["plot", &many, "--xy", "peak,q"],
+                "no column is called `q`",
+            ),
+        ] {
+            let out = folder.path("x.svg");
+            let output = hyde(&[&line[..], &["--out", &out]].concat());
+            assert_eq!(status(&output), 2);
+            assert!(errors(&output).contains(word), "{}", errors(&output));
+        }
+    }
+}

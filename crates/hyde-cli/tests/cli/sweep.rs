@@ -157,6 +157,55 @@ fn models_components_stimuli_and_structural_parameters_compile_once_each() {
 }
 
 #[test]
+fn a_sweep_is_given_in_arguments_as_it_would_be_written() {
+    let folder = Folder::new();
+    folder.file("cases.csv", "m [kg]\n1\n2\n");
+    let written = with("vary d in 1 .. 3 [N.s/m]; cases \"cases.csv\"; grid 4;");
+    let model = folder.file("swing.hyde", &written);
+    let bare = folder.file("bare.hyde", &written[..written.find("sweep s").unwrap()]);
+    let (one, other) = (folder.path("one"), folder.path("other"));
+    let made = |line: &[&str], out: &str| {
+        let output = hyde(&[line, &["--out", out, "--quiet", "--format", "csv"]].concat());
+        assert_eq!(status(&output), 0, "{}", errors(&output));
+        read(&format!("{out}/cases.csv"))
+    };
+    let line = [
+        &["sweep", &bare, "--of", "step", "--vary"][..],
+        &["d in 1 .. 3 [N.s/m]", "--cases", "cases.csv"][..],
+        &["--points", "grid 4"][..],
+    ]
+    .concat();
+    assert_eq!(made(&["sweep", &model], &one), made(&line, &other));
+    // The folder knows it: it needs neither the arguments nor the file.
+    std::fs::remove_file(&bare).unwrap();
+    assert_eq!(status(&hyde(&["sweep", &other, "--quiet"])), 0);
+    // Without a folder the command that reruns a case has the arguments.
+    folder.file("bare.hyde", &written[..written.find("sweep s").unwrap()]);
+    let told = text(&hyde(&line));
+    let rerun = told.lines().find_map(|line| line.split_once(": hyde "));
+    let rerun = format!("{} {}", env!("CARGO_BIN_EXE_hyde"), rerun.unwrap().1);
+    let output = Command::new("sh").args(["-c", &rerun]).output().unwrap();
+    assert_eq!(status(&output), 0, "{rerun}: {}", errors(&output));
+    // What is wrong is told as of a file.
+    let wrong = hyde(&[
+        "sweep",
+        &bare,
+        "--of",
+        "step",
+        "--vary",
+        "q in 1 .. 2",
+        "--points",
+        "grid 3",
+    ]);
+    assert_eq!(status(&wrong), 1);
+    assert!(
+        errors(&wrong).contains("no parameter `q`"),
+        "{}",
+        errors(&wrong)
+    );
+}
+
+#[test]
 fn effects_are_put_on_and_left_off() {
     let folder = Folder::new();
     let effect =
@@ -437,6 +486,53 @@ fn a_disk_that_takes_no_more_is_told_and_what_is_there_stays() {
         errors(&output).contains("cannot make the folder"),
         "{}",
         errors(&output)
+    );
+}
+
+#[test]
+fn a_full_disk_and_a_read_only_one_are_told_and_leave_what_is_there() {
+    let folder = Folder::new();
+    let (model, whole) = many(&folder, 300);
+    let hyde_there = env!("CARGO_BIN_EXE_hyde");
+    let disk = folder.path("disk");
+    std::fs::create_dir(&disk).unwrap();
+    let saved = folder.path("saved");
+    // A disk of 32 kB in a name space of its own: the batch fills it, is copied off, and meets it read-only.
+    let script = format!(
+        "mount -t tmpfs -o size=32k hyde {disk} || exit 77
+         {hyde_there} sweep {model} s --out {disk}/out --quiet; echo full $? >&2
+         cp -r {disk}/out {saved}
+         mount -o remount,ro {disk} || exit 77
+         {hyde_there} sweep {disk}/out --quiet; echo read-only $? >&2
+         {hyde_there} sweep {model} s --out {disk}/other --quiet; echo new $? >&2"
+    );
+    let output = Command::new("unshare")
+        .args(["-rm", "sh", "-c", &script])
+        .output();
+    let told = match &output {
+        Ok(output) if status(output) == 0 => errors(output),
+        Ok(_) | Err(_) => {
+            println!("not tested: here nobody may mount a disk of his own");
+            return;
+        }
+    };
+    for word in [
+        "the disk is full",
+        "full 2",
+        "the disk is read-only",
+        "read-only 2",
+        "new 2",
+    ] {
+        assert!(told.contains(word), "{word}: {told}");
+    }
+    // What was kept before the disk was full is whole.
+    let output = hyde(&["sweep", &saved, "--json"]);
+    let summary: Value = serde_json::from_str(text(&output).lines().last().unwrap()).unwrap();
+    let solved = summary["solved"].as_u64().unwrap();
+    assert!((1..300).contains(&solved), "{solved}");
+    assert_eq!(
+        std::fs::read(format!("{saved}/cases.parquet")).unwrap(),
+        whole
     );
 }
 

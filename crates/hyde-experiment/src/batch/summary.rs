@@ -162,7 +162,8 @@ pub(super) fn quantile(sorted: &[f64], p: f64) -> f64 {
     let below = at.floor() as usize;
     let part = at - below as f64;
     let (low, high) = (sorted[below], sorted[(below + 1).min(last)]);
-    if part > 0.0 {
+    // Equal values may be infinite.
+    if part > 0.0 && low < high {
         low + part * (high - low)
     } else {
         low
@@ -214,6 +215,9 @@ mod tests {
             [1.0, 1.75, 3.0, 8.0]
         );
         assert!(quantile(&[], 0.5).is_nan());
+        let some_never = [1.0, f64::INFINITY, f64::INFINITY];
+        assert_eq!(quantile(&some_never, 0.9), f64::INFINITY);
+        assert_eq!(quantile(&some_never, 0.25), f64::INFINITY);
     }
 
     #[test]

@@ -1,11 +1,13 @@
-//! `max`, `min`, `rms`, `mean`, `first`, `last` of a signal over a run.
+//! A signal over a run as one number: `max`, `min`, `rms`, `mean`, `integral`, `first`, `last`, `settling`, `resonance`.
 
+use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
-use hyde_ir::VariableKind;
 use hyde_ir::flat::{Reduction, ReductionKind};
+use hyde_ir::{BinaryOp, UnaryOp, VariableKind};
 use hyde_syntax::ast::Expr;
+use hyde_units::Dimension;
 
 impl<'a> Model<'a, '_> {
     /// A reduction of a signal over the run, in a measure or expectation.
@@ -16,45 +18,84 @@ impl<'a> Model<'a, '_> {
         scope: &Scope<'a>,
         span: Span,
     ) -> Typed {
-        let Some([a]) = self.exactly(name, args, span) else {
+        // The second argument of `first` and `last` is a condition, that of `settling` a band.
+        let second = match (name, args) {
+            ("settling", _) => self.exactly(name, args, span).map(|[a, b]| (a, Some(b))),
+            ("first" | "last", [a, b]) => Some((*a, Some(*b))),
+            _ => self.exactly(name, args, span).map(|[a]| (a, None)),
+        };
+        let Some((a, second)) = second else {
             return self.poison(span);
         };
         if scope.setting != Setting::Measure {
             self.report(
                 Diagnostic::error(
                     Code::BadArguments,
-                    format!("`{name}` of one value has a meaning over a whole run only"),
+                    format!("`{name}` of a signal has a meaning over a whole run only"),
                 )
                 .label(span, "not in a measure or expectation")
                 .help("write it in `measure` or `expect`"),
             );
             return self.poison(span);
         }
-        let kind = match name {
-            "max" => ReductionKind::Max,
-            "min" => ReductionKind::Min,
-            "rms" => ReductionKind::Rms,
-            "mean" => ReductionKind::Mean,
-            "first" => ReductionKind::First,
-            _ => ReductionKind::Last,
+        let over_run = scope.with(Setting::Report);
+        let inner = self.value(a, &over_run);
+        let time = Dim::known(Dimension::TIME);
+        let same = inner.dim.clone();
+        let (kind, value, dim) = match (name, second) {
+            ("max", _) => (ReductionKind::Max, inner.id, same),
+            ("min", _) => (ReductionKind::Min, inner.id, same),
+            ("rms", _) => (ReductionKind::Rms, inner.id, same),
+            ("mean", _) => (ReductionKind::Mean, inner.id, same),
+            ("integral", _) => (ReductionKind::Integral, inner.id, same.multiply(&time)),
+            ("resonance", _) => (
+                ReductionKind::Resonance,
+                inner.id,
+                Dim::NUMBER.divide(&time),
+            ),
+            ("settling", Some(band)) => {
+                let band = self.value(band, &over_run);
+                self.agree(&inner, &band, "`settling` compares", scope.instance);
+                // How far it is outside the band.
+                let arena = &mut self.flat.exprs;
+                let size = arena.unary(UnaryOp::Abs, inner.id);
+                let outside = arena.binary(BinaryOp::Sub, size, band.id);
+                (ReductionKind::Settling, outside, time)
+            }
+            (_, condition) => {
+                let kind = if name == "first" {
+                    ReductionKind::First
+                } else {
+                    ReductionKind::Last
+                };
+                let value = match condition {
+                    None => inner.id,
+                    Some(condition) => {
+                        let holds = self.truth(condition, &over_run);
+                        // Where the condition does not hold there is no value.
+                        let nothing = self.flat.exprs.constant(f64::NAN);
+                        self.flat.exprs.if_else(holds, inner.id, nothing)
+                    }
+                };
+                (kind, value, same)
+            }
         };
-        let inner = self.value(a, &scope.with(Setting::Report));
         let number = self.flat.experiment.reductions.len();
-        let text = format!("{name}({})", hyde_syntax::format_expression(a));
+        let written: Vec<String> = std::iter::once(a)
+            .chain(second)
+            .map(hyde_syntax::format_expression)
+            .collect();
         let var = self.add_variable(
             scope.instance,
-            text,
+            format!("{name}({})", written.join(", ")),
             VariableKind::Reduction(number),
-            inner.dim.clone(),
+            dim.clone(),
             span,
             MadeBy::Experiment,
         );
-        self.flat.experiment.reductions.push(Reduction {
-            kind,
-            value: inner.id,
-            var,
-        });
+        let reduction = Reduction { kind, value, var };
+        self.flat.experiment.reductions.push(reduction);
         let id = self.flat.exprs.var(var);
-        self.typed(id, inner.dim, span)
+        self.typed(id, dim, span)
     }
 }

@@ -335,8 +335,11 @@ impl Printer<'_> {
                 ReductionKind::Min => "min",
                 ReductionKind::Rms => "rms",
                 ReductionKind::Mean => "mean",
+                ReductionKind::Integral => "integral",
                 ReductionKind::First => "first",
                 ReductionKind::Last => "last",
+                ReductionKind::Settling => "settling",
+                ReductionKind::Resonance => "resonance",
             };
             let _ = writeln!(
                 out,

@@ -123,6 +123,21 @@ fn steps(label: &str, values: impl Iterator<Item = f64>) -> Line {
 
 /// A variable over time in all cases.
 pub(super) fn envelope(over: &Envelope) -> Figure {
+    let caption = format!(
+        "{}: median, half of the cases (dark), nine in ten (light), least and largest (dashed)",
+        over.name
+    );
+    Figure {
+        title: None,
+        ..time_plot("", vec![envelope_panel(over)], None)
+    }
+    .with_caption(caption)
+}
+
+/// A variable over time in all cases: the median, half of the cases in a dark band, nine in ten in a light one, the least
+/// and the largest dashed.
+#[must_use]
+pub fn envelope_panel(over: &Envelope) -> Panel {
     let [least, q05, q25, median, q75, q95, largest] = &over.quantiles;
     let line = |values: &Vec<f64>| Line::new("", over.time.clone(), values.clone()).with_colour(0);
     let lines = vec![
@@ -130,7 +145,6 @@ pub(super) fn envelope(over: &Envelope) -> Figure {
         line(largest).with_style(LineStyle::Dashed),
         line(median),
     ];
-    let mut panel = time_panel(over.name.as_str(), &over.unit, lines);
     let between = |low: &Vec<f64>, high: &Vec<f64>, opacity| Between {
         x: over.time.clone(),
         low: low.clone(),
@@ -138,14 +152,7 @@ pub(super) fn envelope(over: &Envelope) -> Figure {
         colour: 0,
         opacity,
     };
+    let mut panel = time_panel(over.name.as_str(), &over.unit, lines);
     panel.between = vec![between(q05, q95, 0.15), between(q25, q75, 0.25)];
-    let caption = format!(
-        "{}: median, half of the cases (dark), nine in ten (light), least and largest (dashed)",
-        over.name
-    );
-    Figure {
-        title: None,
-        ..time_plot("", vec![panel], None)
-    }
-    .with_caption(caption)
+    panel
 }

@@ -4,7 +4,7 @@ use super::source::Recorded;
 use super::strip;
 use crate::args::PlotArgs;
 use crate::figures::shown;
-use hyde_report::{Figure, Line, LineStyle, time_panel, time_plot, xy_plot};
+use hyde_report::{Figure, Line, time_panel, time_plot, xy_plot};
 use hyde_signal::{Column, Table};
 use std::ops::Range;
 
@@ -24,14 +24,14 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Recorded]) -> Result<Figure,
         let mut unit = OneUnit::default();
         let mut lines = Vec::new();
         for name in &names {
-            for (place, source) in having(sources, name)? {
+            for source in having(sources, name)? {
                 let column = column(source, name)?;
                 unit.take(name, column)?;
                 let rows = window(args, source.table.time());
                 let x = source.table.time()[rows.clone()].to_vec();
                 let label = label(name, names.len(), &source.name, sources.len());
                 let line = Line::new(label, x, column.values()[rows].to_vec());
-                lines.push(line.with_style(style(place)));
+                lines.push(line.with_style(source.style));
             }
         }
         drawn.push(time_panel(axis_label(&names), &unit.shown(), lines));
@@ -60,14 +60,14 @@ pub(super) fn over_each_other(args: &PlotArgs, sources: &[Recorded]) -> Result<F
         let (mut x_unit, mut y_unit) = (OneUnit::default(), OneUnit::default());
         let mut lines = Vec::new();
         for (y, x) in &pairs {
-            for (place, source) in having(sources, y)? {
+            for source in having(sources, y)? {
                 let (of_x, of_y) = (column(source, x)?, column(source, y)?);
                 x_unit.take(x, of_x)?;
                 y_unit.take(y, of_y)?;
                 let rows = window(args, source.table.time());
                 let label = label(y, pairs.len(), &source.name, sources.len());
                 let values = |column: &Column| column.values()[rows.clone()].to_vec();
-                lines.push(Line::new(label, values(of_x), values(of_y)).with_style(style(place)));
+                lines.push(Line::new(label, values(of_x), values(of_y)).with_style(source.style));
             }
         }
         let (ys, xs): (Vec<&str>, Vec<&str>) = pairs.iter().copied().unzip();
@@ -137,15 +137,6 @@ fn label(name: &str, names: usize, source: &str, sources: usize) -> String {
     }
 }
 
-/// What was put beside the first source is dashed.
-fn style(place: usize) -> LineStyle {
-    if place == 0 {
-        LineStyle::Solid
-    } else {
-        LineStyle::Dashed
-    }
-}
-
 /// The rows within `--from` and `--to`.
 fn window(args: &PlotArgs, time: &[f64]) -> Range<usize> {
     let from = args
@@ -157,14 +148,10 @@ fn window(args: &PlotArgs, time: &[f64]) -> Range<usize> {
     from..to.max(from)
 }
 
-/// The sources that have a column, with their places; the first one's complaint if none has.
-fn having<'s>(sources: &'s [Recorded], name: &str) -> Result<Vec<(usize, &'s Recorded)>, String> {
-    let has = |source: &Recorded| source.table.column(name).is_some();
-    let found: Vec<_> = sources
-        .iter()
-        .enumerate()
-        .filter(|(_, source)| has(source))
-        .collect();
+/// The sources that have a column; the first one's complaint if none has.
+fn having<'s>(sources: &'s [Recorded], name: &str) -> Result<Vec<&'s Recorded>, String> {
+    let has = |source: &&Recorded| source.table.column(name).is_some();
+    let found: Vec<&Recorded> = sources.iter().filter(has).collect();
     match sources.first() {
         Some(first) if found.is_empty() => Err(unknown(&first.table, name)),
         _ => Ok(found),

@@ -1,7 +1,9 @@
 //! What is plotted: the files, whatever form they have.
 
+use super::cases;
 use crate::args::PlotArgs;
 use crate::files;
+use hyde_report::LineStyle;
 use hyde_signal::{Column, Frame, Table};
 use hyde_units::NamedUnit;
 use serde_json::Value;
@@ -23,13 +25,15 @@ pub(super) struct Recorded {
     pub(super) name: String,
     pub(super) path: PathBuf,
     pub(super) table: Table,
+    /// How its lines are drawn.
+    pub(super) style: LineStyle,
 }
 
 /// Reads the results, and those to be put beside them.
 pub(super) fn read(args: &PlotArgs) -> Result<Vec<Source>, String> {
     let mut sources = Vec::new();
     for asked in std::iter::once(&args.results).chain(&args.with) {
-        let path = file_of(asked)?;
+        let path = file_of(asked, args)?;
         let named = if files::is_folder(asked) {
             asked.file_name()
         } else {
@@ -54,7 +58,10 @@ impl Source {
 
 /// The sources as columns over time.
 pub(super) fn over_time(args: &PlotArgs, sources: &[Source]) -> Result<Vec<Recorded>, String> {
-    let recorded = |source: &Source| {
+    let recorded = |(place, source): (usize, &Source)| {
+        if let Some(cases) = cases::of(source, args) {
+            return cases;
+        }
         let table = match source.path.extension().and_then(|ending| ending.to_str()) {
             Some("json") => from_json(&source.bytes, args.every),
             Some(_) | None => {
@@ -64,15 +71,31 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Source]) -> Result<Vec<Recor
         };
         let table = table.map_err(|reason| format!("`{}`: {reason}", source.path.display()))?;
         let (name, path) = (source.name.clone(), source.path.clone());
-        Ok(Recorded { name, path, table })
+        // What was put beside the first source is dashed.
+        let style = if place == 0 {
+            LineStyle::Solid
+        } else {
+            LineStyle::Dashed
+        };
+        Ok(vec![Recorded {
+            name,
+            path,
+            table,
+            style,
+        }])
     };
-    sources.iter().map(recorded).collect()
+    let all: Result<Vec<Vec<Recorded>>, String> =
+        sources.iter().enumerate().map(recorded).collect();
+    Ok(all?.into_iter().flatten().collect())
 }
 
 /// The file itself, or that of the results in a folder.
-fn file_of(asked: &Path) -> Result<PathBuf, String> {
+fn file_of(asked: &Path, args: &PlotArgs) -> Result<PathBuf, String> {
     if !files::is_folder(asked) {
         return Ok(asked.to_path_buf());
+    }
+    if let Some(table) = cases::table_of(asked, args) {
+        return table;
     }
     let mut there = RESULTS.iter().map(|name| asked.join(name));
     if let Some(found) = there.find(|path| files::is_file(path)) {
