@@ -68,6 +68,7 @@ const READERS: [(&str, &str); 3] = [
 ];
 
 /// Has every reader read a column: its rows, the sum of it, its unit, and how many have no value.
+#[allow(clippy::print_stdout, reason = "a test tells what it leaves out")]
 fn read_by_others(path: &str, column: &str, expected: (usize, f64, &str, usize)) {
     // A set-up without them says so below; the readers of this project are tested all the same.
     let python = option_env!("HYDE_TEST_PYTHON").unwrap_or("python3");
