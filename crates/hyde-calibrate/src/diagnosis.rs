@@ -3,7 +3,6 @@
 //! ```text
 //! hypothesis     an effect at a site, with sizes and shapes; a model with some put on     diagnosis/hypothesis.rs
 //! projection     what a change of innovations gains once parameters have answered it      diagnosis/projection.rs
-//! tangent        how innovations change with a small size, for many shapes at once    diagnosis/tangent.rs
 //! scan           scores of an effect over its shapes and sizes                            diagnosis/scan.rs
 //! trial          a survivor fitted together with all parameters, and judged on folds      diagnosis/trial.rs
 //! search         forward, until nothing passes the gates                                  diagnosis/search.rs
@@ -15,7 +14,6 @@ mod projection;
 mod scan;
 mod search;
 mod stage;
-mod tangent;
 mod trial;
 mod unknown;
 

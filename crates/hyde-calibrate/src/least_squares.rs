@@ -10,17 +10,23 @@ use crate::gain::Observer;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
+use crate::tangent::{Direction, Tangents, tangents};
 use crate::varied::Varied;
 use hyde_program::Program;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
-/// Differences are taken over this part of a parameter's scale.
+/// Differences of runs are taken over this part of a parameter's scale, those of kernels over this one.
 const DIFFERENCE: f64 = 0.1;
+const SMALL: f64 = 1e-4;
+/// Parameters that one run is differentiated by.
+const AT_ONCE: usize = 8;
 /// Steps at most.
-const MAX_STEPS: usize = 15;
-/// A step that gains less than this part of a unit of the sum of squares is the last.
-const LEAST_GAIN: f64 = 0.05;
+pub(crate) const MAX_STEPS: usize = 15;
+/// A step that gains less than this of the sum of squares is the last: a standard deviation of one parameter gains 1.
+const LEAST_GAIN: f64 = 0.5;
+/// Steps by differences of runs at most, behind those by tangents.
+const LAST_STEPS: usize = 4;
 
 /// A program, records, and what may be varied.
 #[derive(Clone, Copy)]
@@ -64,6 +70,26 @@ impl Fold {
             }
         }
     }
+
+    /// The same of derivatives.
+    fn keep_rows(self, derivatives: &mut DMatrix<f64>, recording: &Recording) {
+        let block = ((1.0 / recording.step_s).round() as usize).max(1);
+        let rows = recording.rows() - recording.first_row;
+        for (number, mut row) in derivatives.row_iter_mut().enumerate() {
+            if ((number % rows / block) % 2 == 1) != self.odd {
+                row.fill(0.0);
+            }
+        }
+    }
+}
+
+/// How innovations are differentiated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Slopes {
+    /// Along one run, guards taken to act when they do.
+    Tangents,
+    /// By differences of runs.
+    Differences,
 }
 
 /// Where least squares have arrived.
@@ -86,33 +112,41 @@ pub struct Solution {
 /// Innovations and their derivatives, record by record.
 pub(crate) struct Linearised {
     pub(crate) innovations: Vec<Innovations>,
-    /// By varied parameter, in units of its scale, then by record; channels one behind the other.
-    pub(crate) derivatives: Vec<Vec<Vec<f64>>>,
+    /// Of each record: a column a parameter, in units of its scale, channels below each other.
+    pub(crate) derivatives: Vec<DMatrix<f64>>,
 }
 
 impl Problem<'_> {
-    /// Minimises from given values.
+    /// Minimises from given values: by tangents until they gain nothing more, then by differences of runs.
     ///
     /// # Errors
     /// The program has no fixed-step form.
     pub fn solve(&self, start: &[f64]) -> Result<Solution, Unsupported> {
-        self.solve_in(start, MAX_STEPS)
+        let near = self.solve_in(start, MAX_STEPS, Slopes::Tangents)?;
+        let end = self.solve_in(&near.values, LAST_STEPS, Slopes::Differences)?;
+        Ok(Solution {
+            steps: near.steps + end.steps,
+            ..end
+        })
     }
 
-    /// The same in a few steps.
+    /// Minimises in a few steps.
     ///
     /// # Errors
     /// The program has no fixed-step form.
-    pub(crate) fn solve_in(&self, start: &[f64], most: usize) -> Result<Solution, Unsupported> {
+    pub(crate) fn solve_in(
+        &self,
+        start: &[f64],
+        most: usize,
+        slopes: Slopes,
+    ) -> Result<Solution, Unsupported> {
         let mut values = self.inside(start);
         let mut lambda = 1e-3;
         let (mut steps, mut converged) = (0, false);
-        let mut here = self.linearise(&values)?;
+        let mut here = self.linearise(&values, slopes)?;
         let mut cost = self.cost(&values, &here.innovations);
-        let mut curvature = self.normal(&values, &here).0;
+        let (mut curvature, mut gradient) = self.normal(&values, &here);
         while steps < most && !converged {
-            let (matrix, gradient) = self.normal(&values, &here);
-            curvature = matrix;
             let mut taken = false;
             for _ in 0..8 {
                 let step = self.step(&values, &curvature, &gradient, lambda);
@@ -134,7 +168,8 @@ impl Problem<'_> {
                 converged = true;
             }
             if !converged {
-                here = self.linearise(&values)?;
+                here = self.linearise(&values, slopes)?;
+                (curvature, gradient) = self.normal(&values, &here);
             }
         }
         Ok(Solution {
@@ -191,7 +226,68 @@ impl Problem<'_> {
         set
     }
 
-    pub(crate) fn linearise(&self, values: &[f64]) -> Result<Linearised, Unsupported> {
+    /// Innovations and their derivatives: by tangents along one run, or by differences of runs.
+    pub(crate) fn linearise(
+        &self,
+        values: &[f64],
+        slopes: Slopes,
+    ) -> Result<Linearised, Unsupported> {
+        match slopes {
+            Slopes::Tangents if !self.varied.is_empty() => self.by_tangents(values),
+            Slopes::Tangents | Slopes::Differences => self.by_differences(values),
+        }
+    }
+
+    fn by_tangents(&self, values: &[f64]) -> Result<Linearised, Unsupported> {
+        let all: Vec<usize> = (0..self.varied.len()).collect();
+        let set = self.settings(values);
+        let runs: Vec<(&Recording, &[usize])> = self
+            .recordings
+            .iter()
+            .flat_map(|recording| all.chunks(AT_ONCE).map(move |part| (recording, part)))
+            .collect();
+        let found: Result<Vec<Tangents>, Unsupported> = runs
+            .into_par_iter()
+            .map(|(recording, part)| {
+                let direction = |&number: &usize| {
+                    let varied = &self.varied[number];
+                    let step = difference(varied, values[number], SMALL);
+                    let mut set = set.clone();
+                    set.push((varied.place, values[number] + step));
+                    Direction {
+                        p: recording.parameters(self.program, &set),
+                        step: step / varied.scale(),
+                    }
+                };
+                let directions: Vec<Direction> = part.iter().map(direction).collect();
+                tangents(self.program, recording, self.observer, &set, &directions)
+            })
+            .collect();
+        let (mut innovations, mut derivatives) = (Vec::new(), Vec::new());
+        let mut found = found?.into_iter();
+        for recording in self.recordings {
+            let mut columns: Vec<DVector<f64>> = Vec::new();
+            let mut own = None;
+            for part in found.by_ref().take(all.chunks(AT_ONCE).len()) {
+                columns.extend(part.change.column_iter().map(|column| column.into_owned()));
+                own = own.or(Some(part.innovations));
+            }
+            let Some(mut own) = own else { continue };
+            let mut matrix = DMatrix::from_columns(&columns);
+            if let Some(fold) = self.fold {
+                fold.keep(&mut own, recording);
+                fold.keep_rows(&mut matrix, recording);
+            }
+            innovations.push(own);
+            derivatives.push(matrix);
+        }
+        Ok(Linearised {
+            innovations,
+            derivatives,
+        })
+    }
+
+    fn by_differences(&self, values: &[f64]) -> Result<Linearised, Unsupported> {
         let count = self.recordings.len();
         // Run 0 of a record is where the parameters are, run j + 1 with parameter j moved.
         let runs: Vec<(usize, usize)> = (0..=self.varied.len())
@@ -201,7 +297,7 @@ impl Problem<'_> {
             .varied
             .iter()
             .zip(values)
-            .map(|(varied, &value)| difference(varied, value))
+            .map(|(varied, &value)| difference(varied, value, DIFFERENCE))
             .collect();
         let results: Result<Vec<Innovations>, Unsupported> = runs
             .par_iter()
@@ -215,63 +311,44 @@ impl Problem<'_> {
             .collect();
         let mut results = results?;
         let moved = results.split_off(count);
-        let derivatives = self
-            .varied
-            .iter()
-            .enumerate()
-            .map(|(number, varied)| {
-                let factor = varied.scale() / moves[number];
-                let of_record = |record: usize| {
-                    let (new, old) = (&moved[number * count + record], &results[record]);
+        let of_record = |record: usize| {
+            let old = &results[record];
+            let columns: Vec<DVector<f64>> = (0..self.varied.len())
+                .map(|number| {
+                    let factor = self.varied[number].scale() / moves[number];
+                    let new = &moved[number * count + record];
                     let pairs = new
                         .channels
                         .iter()
                         .flatten()
                         .zip(old.channels.iter().flatten());
-                    pairs.map(|(new, old)| (new - old) * factor).collect()
-                };
-                (0..count).map(of_record).collect()
-            })
-            .collect();
+                    let change: Vec<f64> = pairs.map(|(new, old)| (new - old) * factor).collect();
+                    DVector::from_vec(change)
+                })
+                .collect();
+            DMatrix::from_columns(&columns)
+        };
         Ok(Linearised {
+            derivatives: (0..count).map(of_record).collect(),
             innovations: results,
-            derivatives,
         })
     }
 
     /// Half the second derivatives, of data and of priors, and half the gradient of the cost, in units of the scales.
-    fn normal(
+    pub(crate) fn normal(
         &self,
         values: &[f64],
         at: &Linearised,
     ) -> ((DMatrix<f64>, DMatrix<f64>), DVector<f64>) {
         let n = self.varied.len();
-        let rows: Vec<(Vec<f64>, f64)> = (0..n)
-            .into_par_iter()
-            .map(|i| {
-                let products = (0..=i)
-                    .map(|j| dot(&at.derivatives[i], &at.derivatives[j]))
-                    .collect();
-                let own = at.derivatives[i].iter().zip(&at.innovations);
-                let slope = own
-                    .map(|(derivative, innovations)| {
-                        let pairs = derivative.iter().zip(innovations.channels.iter().flatten());
-                        pairs.map(|(d, r)| d * r).sum::<f64>()
-                    })
-                    .sum();
-                (products, slope)
-            })
-            .collect();
         let mut data = DMatrix::zeros(n, n);
         let mut priors = DMatrix::zeros(n, n);
         let mut gradient = DVector::zeros(n);
-        for (i, (products, slope)) in rows.into_iter().enumerate() {
-            for (j, product) in products.into_iter().enumerate() {
-                data[(i, j)] = product;
-                data[(j, i)] = product;
-            }
-            gradient[i] = slope;
-            let varied = &self.varied[i];
+        for (own, innovations) in at.derivatives.iter().zip(&at.innovations) {
+            data += own.tr_mul(own);
+            gradient += own.tr_mul(&DVector::from_vec(innovations.channels.concat()));
+        }
+        for (i, varied) in self.varied.iter().enumerate() {
             if let Some(sd) = varied.prior {
                 let scale = varied.scale() / sd;
                 priors[(i, i)] = scale * scale;
@@ -341,17 +418,11 @@ impl Problem<'_> {
 }
 
 /// How far a parameter is moved for a difference: inwards where it is at its upper bound.
-fn difference(varied: &Varied, value: f64) -> f64 {
-    let size = DIFFERENCE * varied.scale();
+fn difference(varied: &Varied, value: f64, part: f64) -> f64 {
+    let size = part * varied.scale();
     if value + size > varied.bounds.1 {
         -size
     } else {
         size
     }
-}
-
-fn dot(a: &[Vec<f64>], b: &[Vec<f64>]) -> f64 {
-    let of_record =
-        |(a, b): (&Vec<f64>, &Vec<f64>)| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-    a.iter().zip(b).map(of_record).sum()
 }

@@ -4,6 +4,7 @@
 //! recording      a record, evenly sampled                                         recording.rs
 //! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, stepping.rs, configuration.rs, events.rs
 //! observer       a fixed Kalman gain; whitened innovations                        gain.rs, observer.rs
+//! tangent        how innovations change with parameters, along one run                tangent.rs
 //! plan           what a `calibrate` block asks for                                 plan.rs
 //! calibration    bounded least squares on innovations and priors                  least_squares.rs, varied.rs
 //! its worth      errors before and after, intervals, groups                       fit.rs
@@ -26,6 +27,7 @@ mod plan;
 mod plant;
 mod recording;
 mod stepping;
+mod tangent;
 mod varied;
 mod windows;
 

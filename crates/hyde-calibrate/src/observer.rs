@@ -35,13 +35,7 @@ impl Innovations {
                 for ((list, error), deviation) in
                     channels.iter_mut().zip(error).zip(&observer.deviations)
                 {
-                    let whitened = error / deviation;
-                    // What diverged is far off, and no more than that.
-                    list.push(if whitened.is_finite() {
-                        whitened.clamp(-1e6, 1e6)
-                    } else {
-                        1e6
-                    });
+                    list.push(whitened(*error, *deviation));
                 }
             }
         });
@@ -59,6 +53,16 @@ impl Innovations {
     #[must_use]
     pub fn sum_of_squares(&self) -> f64 {
         self.channels.iter().flatten().map(|r| r * r).sum()
+    }
+}
+
+/// An innovation in standard deviations; what diverged is far off, and no more than that.
+pub(crate) fn whitened(error: f64, deviation: f64) -> f64 {
+    let value = error / deviation;
+    if value.is_finite() {
+        value.clamp(-1e6, 1e6)
+    } else {
+        1e6
     }
 }
 

@@ -1,9 +1,18 @@
 //! A step of the fixed-step form: where the model is affine one product, else two stages.
+//!
+//! The linear part of the flow is that of the point where a combination of modes was first met. Bristles of friction decay
+//! the faster the faster they slide, by more than any such number: states that an effect brings along get their own slope
+//! at every step, and are carried by it alone (Hochbruck and Ostermann 2010, section 2.4, with a diagonal for the Jacobian).
 
 use crate::configuration::{Configuration, Places};
 use crate::dense::{add_product, set_product};
 use crate::plant::{LEVELS, Plant, shortest_steps, size_of, truth};
 use hyde_program::{Function, Point, Program, Workspace};
+
+/// A change of a state by which its slope is found.
+const PROBE: f64 = 1e-5;
+/// A state decays fast in a step by this many time constants.
+const FAST: f64 = 0.05;
 
 /// Vectors that steps work in.
 pub(crate) struct Room {
@@ -18,6 +27,10 @@ pub(crate) struct Room {
     rest: Vec<f64>,
     correction: Vec<f64>,
     stacked: Vec<f64>,
+    probe_y: Vec<f64>,
+    probe_yp: Vec<f64>,
+    /// Numbers of states that decay fast where the plant is, and how fast.
+    decays: Vec<(usize, f64)>,
     pub(crate) roots: Vec<f64>,
 }
 
@@ -38,6 +51,9 @@ impl Room {
             rest: of_states(),
             correction: of_states(),
             stacked: vec![0.0; 2 * n_states + places.algebraics.len()],
+            probe_y: vector(),
+            probe_yp: vector(),
+            decays: Vec::new(),
             roots: vec![0.0; program.relations.len()],
         }
     }
@@ -98,9 +114,11 @@ impl Plant<'_> {
             + self.recording.step_s
                 * (self.row as f64
                     + (self.index + size_of(level)) as f64 / shortest_steps() as f64);
+        let t = self.time();
         self.interpolate_inputs(self.index + size_of(level));
         let Self {
             program,
+            recording,
             places,
             p,
             tolerances,
@@ -118,6 +136,7 @@ impl Plant<'_> {
         } = self;
         let configuration = &configurations[*current].1;
         let step = &configuration.steps[level];
+        let step_s = recording.step_s * size_of(level) as f64 / shortest_steps() as f64;
         gather(yp, &places.states, &mut room.rate);
         room.y.copy_from_slice(y);
         room.yp.copy_from_slice(yp);
@@ -149,6 +168,18 @@ impl Plant<'_> {
             gather(y, &places.states, &mut room.x);
             room.new_x.copy_from_slice(&room.x);
             add_product(&step.first, &room.rate, &mut room.new_x);
+            model.find_decays(
+                configuration,
+                (t, step_s),
+                (y, yp),
+                tolerances,
+                workspace,
+                room,
+            );
+            for &(state, slope) in &room.decays {
+                let (first, _) = integrals(slope * step_s);
+                room.new_x[state] = room.x[state] + step_s * first * room.rate[state];
+            }
             scatter(&room.new_x, &places.states, &mut room.y);
             model.apply_pins(&mut room.y, &mut room.yp);
             model.rates(
@@ -175,6 +206,13 @@ impl Plant<'_> {
                 *rest = new - old;
             }
             set_product(&step.second, &room.rest, &mut room.correction);
+            for &(state, slope) in &room.decays {
+                let (_, second) = integrals(slope * step_s);
+                let rest = room.new_rate[state]
+                    - room.rate[state]
+                    - slope * (room.new_x[state] - room.x[state]);
+                room.correction[state] = step_s * second * rest;
+            }
             let small = |(value, tolerance): (&f64, &f64)| value.abs() <= 0.1 * tolerance;
             if !room.correction.iter().zip(tolerances.iter()).all(small) {
                 for (x, change) in room.new_x.iter_mut().zip(&room.correction) {
@@ -292,12 +330,55 @@ impl Model<'_> {
         self.apply_pins(y, yp);
     }
 
+    /// States that the observer does not know, as bristles, may decay faster than a step: their own slopes where they do.
+    fn find_decays(
+        &self,
+        configuration: &Configuration,
+        (t, step_s): (f64, f64),
+        (y, yp): (&[f64], &[f64]),
+        tolerances: &[f64],
+        workspace: &mut Workspace,
+        room: &mut Room,
+    ) {
+        room.decays.clear();
+        for (state, _) in tolerances
+            .iter()
+            .enumerate()
+            .filter(|(_, t)| t.is_infinite())
+        {
+            let place = self.places.states[state];
+            room.probe_y.copy_from_slice(y);
+            room.probe_yp.copy_from_slice(yp);
+            let change = PROBE * (1.0 + y[place].abs());
+            room.probe_y[place] += change;
+            self.rates(
+                configuration,
+                t,
+                &mut room.probe_y,
+                &mut room.probe_yp,
+                workspace,
+                &mut room.residual,
+                &mut room.delta,
+            );
+            let slope = (room.probe_yp[place] - room.rate[state]) / change;
+            if slope * step_s < -FAST {
+                room.decays.push((state, slope));
+            }
+        }
+    }
+
     fn apply_pins(&self, y: &mut [f64], yp: &mut [f64]) {
         for &(position, value) in self.pinned {
             y[position] = value;
             yp[position] = 0.0;
         }
     }
+}
+
+/// (exp(z) - 1)/z and (exp(z) - 1 - z)/z^2, of a z well below 0.
+fn integrals(z: f64) -> (f64, f64) {
+    let first = z.exp_m1() / z;
+    (first, (first - 1.0) / z)
 }
 
 /// The values at places.

@@ -12,8 +12,8 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Innovations, with what parameters can do about them.
 pub(crate) struct Projection {
-    pub(crate) innovations: Vec<f64>,
-    derivatives: Vec<Vec<f64>>,
+    pub(crate) innovations: DVector<f64>,
+    derivatives: DMatrix<f64>,
     factor: Cholesky<f64, Dyn>,
     h: DVector<f64>,
     least: f64,
@@ -25,6 +25,8 @@ pub(crate) struct Answer {
     pub(crate) sizes: Vec<f64>,
     /// What they gain.
     pub(crate) gain: f64,
+    /// The squares of each column.
+    pub(crate) squares: Vec<f64>,
     m: DMatrix<f64>,
     b: DVector<f64>,
 }
@@ -35,27 +37,27 @@ impl Answer {
         let sizes = DVector::from_column_slice(sizes);
         2.0 * self.b.dot(&sizes) - sizes.dot(&(&self.m * &sizes))
     }
+
+    /// The size at which a gain is reached where the other sizes are 0.
+    pub(crate) fn reaches(&self, gain: f64, number: usize) -> f64 {
+        (gain / self.m[(number, number)]).sqrt()
+    }
 }
 
 impl Projection {
     /// `None` if the parameters have no curvature at all.
     pub(crate) fn new(stage: &Stage, at: &Linearised) -> Option<Self> {
-        let innovations = flat(&at.innovations);
-        let derivatives: Vec<Vec<f64>> = at
-            .derivatives
-            .iter()
-            .map(|records| records.concat())
-            .collect();
-        let n = derivatives.len();
-        let mut a = DMatrix::zeros(n, n);
-        let mut h = DVector::zeros(n);
-        for i in 0..n {
-            for j in 0..=i {
-                a[(i, j)] = dot(&derivatives[i], &derivatives[j]);
-                a[(j, i)] = a[(i, j)];
-            }
-            h[i] = dot(&derivatives[i], &innovations);
-            let varied = &stage.varied[i];
+        let innovations = DVector::from_vec(flat(&at.innovations));
+        let n = stage.varied.len();
+        let mut derivatives = DMatrix::zeros(innovations.len(), n);
+        let mut first = 0;
+        for own in &at.derivatives {
+            derivatives.rows_mut(first, own.nrows()).copy_from(own);
+            first += own.nrows();
+        }
+        let mut a = derivatives.tr_mul(&derivatives);
+        let mut h = derivatives.tr_mul(&innovations);
+        for (i, varied) in stage.varied.iter().enumerate() {
             if let Some(sd) = varied.prior {
                 let scale = varied.scale() / sd;
                 a[(i, i)] += scale * scale;
@@ -67,7 +69,7 @@ impl Projection {
             a[(i, i)] += floor;
         }
         let factor = Cholesky::new(a)?;
-        let least = dot(&innovations, &innovations) - h.dot(&factor.solve(&h));
+        let least = innovations.dot(&innovations) - h.dot(&factor.solve(&h));
         Some(Self {
             innovations,
             derivatives,
@@ -78,60 +80,66 @@ impl Projection {
     }
 
     /// What a change of innovations gains.
-    pub(crate) fn gain(&self, change: &[f64]) -> f64 {
-        let pairs = self.innovations.iter().zip(change);
-        let squares: f64 = pairs.map(|(r, d)| (r + d) * (r + d)).sum();
-        let h = &self.h + self.onto(change);
-        self.least - (squares - h.dot(&self.factor.solve(&h)))
+    pub(crate) fn gain(&self, change: &DVector<f64>) -> f64 {
+        let changed = &self.innovations + change;
+        let h = &self.h + self.derivatives.tr_mul(change);
+        self.least - (changed.norm_squared() - h.dot(&self.factor.solve(&h)))
     }
 
     /// The sizes that gain most if the answer is linear: columns are the changes of innovations a unit.
     pub(crate) fn answer(&self, columns: &[Vec<f64>]) -> Answer {
-        let n = columns.len();
-        let onto: Vec<DVector<f64>> = columns.iter().map(|column| self.onto(column)).collect();
-        let solved: Vec<DVector<f64>> = onto.iter().map(|v| self.factor.solve(v)).collect();
-        let mut m = DMatrix::zeros(n, n);
-        let mut b = DVector::zeros(n);
-        for i in 0..n {
-            for j in 0..n {
-                m[(i, j)] = dot(&columns[i], &columns[j]) - onto[i].dot(&solved[j]);
-            }
-            b[i] = -(dot(&columns[i], &self.innovations) - solved[i].dot(&self.h));
-        }
+        let columns = matrix(columns);
+        self.answer_of(&columns, &self.innovations, &self.h)
+    }
+
+    /// What columns gain of innovations that have nothing to do with them.
+    pub(crate) fn by_chance(&self, columns: &[Vec<f64>], innovations: &[f64]) -> f64 {
+        let innovations = DVector::from_column_slice(innovations);
+        let h = self.derivatives.tr_mul(&innovations);
+        self.answer_of(&matrix(columns), &innovations, &h).gain
+    }
+
+    fn answer_of(
+        &self,
+        columns: &DMatrix<f64>,
+        innovations: &DVector<f64>,
+        h: &DVector<f64>,
+    ) -> Answer {
+        let onto = self.derivatives.tr_mul(columns);
+        let solved = self.factor.solve(&onto);
+        let mut m = columns.tr_mul(columns);
+        let squares: Vec<f64> = m.diagonal().iter().copied().collect();
+        m -= onto.tr_mul(&solved);
         // What parameters answer to within rounding is no column of its own.
-        for i in 0..n {
-            m[(i, i)] += 1e-9 * dot(&columns[i], &columns[i]) + 1e-300;
+        for (i, own) in squares.iter().enumerate() {
+            m[(i, i)] += 1e-9 * own + 1e-300;
         }
+        let b = solved.tr_mul(h) - columns.tr_mul(innovations);
         let factor = Cholesky::new(m.clone());
-        let sizes = factor.map_or_else(|| DVector::zeros(n), |factor| factor.solve(&b));
+        let best = factor.map_or_else(|| DVector::zeros(b.len()), |factor| factor.solve(&b));
         Answer {
-            gain: sizes.dot(&b),
-            sizes: sizes.iter().copied().collect(),
+            gain: best.dot(&b),
+            sizes: best.iter().copied().collect(),
+            squares,
             m,
             b,
         }
     }
 
-    /// What columns gain of innovations that have nothing to do with them.
-    pub(crate) fn by_chance(&self, columns: &[Vec<f64>], innovations: &[f64]) -> f64 {
-        let n = columns.len();
-        let h = self.factor.solve(&self.onto(innovations));
-        let onto: Vec<DVector<f64>> = columns.iter().map(|column| self.onto(column)).collect();
-        let solved: Vec<DVector<f64>> = onto.iter().map(|v| self.factor.solve(v)).collect();
-        let m = DMatrix::from_fn(n, n, |i, j| {
-            let own = dot(&columns[i], &columns[j]);
-            own - onto[i].dot(&solved[j]) + if i == j { 1e-9 * own + 1e-300 } else { 0.0 }
-        });
-        let b = DVector::from_fn(n, |i, _| -(dot(&columns[i], innovations) - onto[i].dot(&h)));
-        Cholesky::new(m).map_or(0.0, |factor| b.dot(&factor.solve(&b)))
+    /// The sizes that gain most if answers are linear: so many columns, one behind the other, are the changes of innovations
+    /// a unit of the sizes of one shape.
+    pub(crate) fn answers(&self, columns: &DMatrix<f64>, sizes: usize) -> Vec<Answer> {
+        let answer = |shape: usize| {
+            let own = columns.columns(shape * sizes, sizes).into_owned();
+            self.answer_of(&own, &self.innovations, &self.h)
+        };
+        (0..columns.ncols() / sizes).map(answer).collect()
     }
+}
 
-    fn onto(&self, change: &[f64]) -> DVector<f64> {
-        DVector::from_iterator(
-            self.derivatives.len(),
-            self.derivatives.iter().map(|column| dot(column, change)),
-        )
-    }
+fn matrix(columns: &[Vec<f64>]) -> DMatrix<f64> {
+    let rows = columns.first().map_or(0, Vec::len);
+    DMatrix::from_iterator(rows, columns.len(), columns.iter().flatten().copied())
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -7,16 +7,17 @@
 use super::hypothesis::{Build, Built, Hypothesis, Knob};
 use super::projection::Projection;
 use super::stage::{Ground, Stage, flat};
-use super::tangent::{Direction, tangents};
 use crate::observer::Innovations;
+use crate::tangent::{Direction, tangents};
 use hyde_program::Program;
+use nalgebra::{DMatrix, DVector};
 
 /// A visible change of innovations: the sum of its squares.
 const VISIBLE: f64 = 100.0;
 /// The part of its range that a size is given to differentiate by it.
 const SMALL: f64 = 1e-4;
 /// Shapes scored at once.
-const CHUNK: usize = 8;
+const CHUNK: usize = 16;
 /// Nodes kept of each effect: where it is fitted from.
 const KEPT: usize = 3;
 /// Nodes of a shape at most, and of one that is a period or an order.
@@ -82,7 +83,7 @@ pub(crate) fn scan(
         values: stage.values(),
         sizes: Hypothesis::names(&hypothesis.sizes, path),
         shapes: Hypothesis::names(&hypothesis.shapes, path),
-        plain: Vec::new(),
+        plain: DVector::zeros(0),
     };
     let zeros = vec![0.0; hypothesis.sizes.len()];
     let declared: Vec<f64> = hypothesis.shapes.iter().map(|shape| shape.value).collect();
@@ -95,14 +96,12 @@ pub(crate) fn scan(
     let mut nodes: Vec<Node> = Vec::new();
     let mut detectable: Option<f64> = None;
     for chunk in shapes.chunks(CHUNK) {
-        for (shape, columns) in chunk.iter().zip(runs.columns(hypothesis, chunk)?) {
+        let columns = runs.columns(hypothesis, chunk)?;
+        let answers = projection.answers(&columns, hypothesis.sizes.len());
+        for (shape, answer) in chunk.iter().zip(answers) {
             tried += 1;
-            let answer = projection.answer(&columns);
-            let own = projection.answer(&columns[..1]);
-            if own.gain > 0.0 && own.sizes[0] != 0.0 {
-                let seen = gate.sqrt() * own.sizes[0].abs() / own.gain.sqrt();
-                detectable = Some(detectable.map_or(seen, |least: f64| least.min(seen)));
-            }
+            let seen = answer.reaches(gate, 0);
+            detectable = Some(detectable.map_or(seen, |least: f64| least.min(seen)));
             let pairs = || hypothesis.sizes.iter().enumerate();
             let sizes: Vec<f64> = pairs()
                 .map(|(i, size)| inside(answer.sizes[i], size))
@@ -110,7 +109,7 @@ pub(crate) fn scan(
             nodes.push(Node {
                 shapes: shape.clone(),
                 visible: pairs()
-                    .map(|(i, size)| visible(&columns[i], size))
+                    .map(|(i, size)| visible(answer.squares[i], size))
                     .collect(),
                 gain: answer.gain_of(&sizes),
                 sizes,
@@ -177,11 +176,11 @@ struct Runs<'s> {
     values: Vec<(String, f64)>,
     sizes: Vec<String>,
     shapes: Vec<String>,
-    plain: Vec<f64>,
+    plain: DVector<f64>,
 }
 
 impl Runs<'_> {
-    fn innovations(&self, sizes: &[f64], shapes: &[f64]) -> Option<Vec<f64>> {
+    fn innovations(&self, sizes: &[f64], shapes: &[f64]) -> Option<DVector<f64>> {
         let set = self.set(sizes, shapes);
         let each: Option<Vec<Innovations>> = self
             .ground
@@ -191,22 +190,19 @@ impl Runs<'_> {
                 Innovations::of(self.program, recording, self.ground.observer, &set).ok()
             })
             .collect();
-        Some(flat(&each?))
+        Some(DVector::from_vec(flat(&each?)))
     }
 
-    fn change(&self, sizes: &[f64], shapes: &[f64]) -> Option<Vec<f64>> {
-        let mut with = self.innovations(sizes, shapes)?;
-        for (new, old) in with.iter_mut().zip(&self.plain) {
-            *new -= old;
-        }
-        Some(with)
+    fn change(&self, sizes: &[f64], shapes: &[f64]) -> Option<DVector<f64>> {
+        Some(self.innovations(sizes, shapes)? - &self.plain)
     }
 
-    /// The changes of innovations a unit of each size, for some shapes.
-    fn columns(&self, hypothesis: &Hypothesis, shapes: &[Vec<f64>]) -> Option<Vec<Vec<Vec<f64>>>> {
+    /// The changes of innovations a unit of each size, for some shapes: a column each.
+    fn columns(&self, hypothesis: &Hypothesis, shapes: &[Vec<f64>]) -> Option<DMatrix<f64>> {
         let count = hypothesis.sizes.len();
         let zeros = vec![0.0; count];
-        let mut lists: Vec<Vec<f64>> = vec![Vec::new(); shapes.len() * count];
+        let mut columns = DMatrix::zeros(self.plain.len(), shapes.len() * count);
+        let mut first = 0;
         for recording in self.ground.recordings {
             let mut directions = Vec::new();
             for shape in shapes {
@@ -221,14 +217,13 @@ impl Runs<'_> {
             }
             let set = self.set(&zeros, shapes.first()?);
             let observer = self.ground.observer;
-            let found = tangents(self.program, recording, observer, &set, &directions)?;
-            for (list, own) in lists.iter_mut().zip(found) {
-                list.extend(own);
-            }
+            let own = tangents(self.program, recording, observer, &set, &directions).ok()?;
+            columns
+                .rows_mut(first, own.change.nrows())
+                .copy_from(&own.change);
+            first += own.change.nrows();
         }
-        let mut lists = lists.into_iter();
-        let of_shape = |_| lists.by_ref().take(count).collect();
-        Some(shapes.iter().map(of_shape).collect())
+        Some(columns)
     }
 
     fn set(&self, sizes: &[f64], shapes: &[f64]) -> Vec<(usize, f64)> {
@@ -245,8 +240,8 @@ fn inside(value: f64, size: &Knob) -> f64 {
 }
 
 /// The size at which a change of innovations can be seen.
-fn visible(column: &[f64], size: &Knob) -> f64 {
-    let seen = (VISIBLE / super::projection::dot(column, column).max(1e-300)).sqrt();
+fn visible(squares: f64, size: &Knob) -> f64 {
+    let seen = (VISIBLE / squares.max(1e-300)).sqrt();
     seen.min(0.5 * largest(size).abs())
 }
 

@@ -196,8 +196,9 @@ pub fn diagnose(
         let survivors = scores
             .iter()
             .take_while(|score| score.gain() >= (SURVIVING * best).max(gates.gain(1)));
+        let survivors: Vec<&Score> = survivors.take(SURVIVORS).collect();
         let mut trials: Vec<Trial> = survivors
-            .take(SURVIVORS)
+            .into_par_iter()
             .filter_map(|score| trial(&ground, &stage, hypotheses, score, build))
             .collect();
         judge(&ground, &stage, &mut trials, gates);

@@ -1,7 +1,7 @@
 //! [`Stage`]: the model as far as the search has come: effects taken in, parameters calibrated with them.
 
 use crate::gain::Observer;
-use crate::least_squares::{Fold, Linearised, Problem, Solution};
+use crate::least_squares::{Fold, Linearised, Problem, Slopes, Solution};
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
@@ -64,7 +64,7 @@ impl Stage {
         let set = ground.set_in(&self.program, &self.kept);
         ground
             .problem(&self.program, &self.varied, &set, None)
-            .linearise(&self.solution.values)
+            .linearise(&self.solution.values, Slopes::Tangents)
     }
 
     /// The parameters of the stage in another program.
@@ -91,7 +91,7 @@ impl Stage {
     }
 }
 
-/// Innovations of all records behind each other.
+/// Innovations of all records below each other.
 pub(crate) fn flat(innovations: &[Innovations]) -> Vec<f64> {
     innovations
         .iter()

@@ -5,7 +5,7 @@ use super::hypothesis::{Build, Built, Hypothesis, Knob};
 use super::scan::{Node, Score};
 use super::stage::{Ground, Stage};
 use crate::fit::inflation;
-use crate::least_squares::{Fold, Solution};
+use crate::least_squares::{Fold, MAX_STEPS, Slopes, Solution};
 use crate::observer::Innovations;
 use crate::varied::Varied;
 use hyde_program::Program;
@@ -15,7 +15,7 @@ const VISIBLE_SHAPE: f64 = 0.03;
 /// Steps from a node before nodes are compared.
 const FIRST_STEPS: usize = 3;
 /// Steps from the whole fit to that of a half.
-const FOLD_STEPS: usize = 4;
+const FOLD_STEPS: usize = 2;
 /// A fit that gains this much more than the scan promised did not find the effect but a better fit of all else.
 const TOO_GOOD: f64 = 3.0;
 
@@ -83,7 +83,7 @@ pub(crate) fn trial(
         let (varied, start, kept) = unknowns(stage, &program, hypothesis, &own_path, node);
         let set = ground.set_in(&program, &kept);
         let problem = ground.problem(&program, &varied, &set, None);
-        let Ok(solution) = problem.solve_in(&start, FIRST_STEPS) else {
+        let Ok(solution) = problem.solve_in(&start, FIRST_STEPS, Slopes::Tangents) else {
             continue;
         };
         if best
@@ -97,7 +97,9 @@ pub(crate) fn trial(
     if !solution.converged {
         let set = ground.set_in(&program, &kept);
         let problem = ground.problem(&program, &varied, &set, None);
-        solution = problem.solve(&solution.values).ok()?;
+        solution = problem
+            .solve_in(&solution.values, MAX_STEPS, Slopes::Tangents)
+            .ok()?;
     }
     let own: Vec<usize> = (stage.varied.len()..varied.len()).collect();
     let at_bound = own.iter().any(|&number| {
@@ -152,18 +154,17 @@ pub(crate) fn trial(
 pub(crate) fn unseen(ground: &Ground<'_>, stage: &Stage) -> Option<[f64; 2]> {
     let set = ground.set_in(&stage.program, &stage.kept);
     let half = |odd: bool| {
-        let seen = ground.problem(&stage.program, &stage.varied, &set, Some(Fold { odd }));
-        let solution = seen.solve_in(&stage.solution.values, FOLD_STEPS).ok()?;
-        let other = ground.problem(
-            &stage.program,
-            &stage.varied,
-            &set,
-            Some(Fold { odd }.other()),
-        );
+        let fold = Fold { odd };
+        let seen = ground.problem(&stage.program, &stage.varied, &set, Some(fold));
+        let solution = seen
+            .solve_in(&stage.solution.values, FOLD_STEPS, Slopes::Tangents)
+            .ok()?;
+        let other = ground.problem(&stage.program, &stage.varied, &set, Some(fold.other()));
         let innovations = other.innovations(&solution.values).ok()?;
         Some(innovations.iter().map(Innovations::sum_of_squares).sum())
     };
-    Some([half(false)?, half(true)?])
+    let (even, odd) = rayon::join(|| half(false), || half(true));
+    Some([even?, odd?])
 }
 
 /// What is varied in a fit: the parameters of the stage, the sizes, the shapes that are no whole numbers; with their start,

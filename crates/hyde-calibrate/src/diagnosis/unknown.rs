@@ -261,7 +261,7 @@ fn law(
     let mut start = 0;
     let latent = place.carriers.iter().filter_map(|carrier| {
         let end = start + carrier.lengths().iter().sum::<usize>();
-        let own = &projection.innovations[start..end];
+        let own = &projection.innovations.as_slice()[start..end];
         start = end;
         latent::smoothed(carrier, own)
     });

@@ -8,10 +8,10 @@
 //! are taken to act when they do without it.
 
 use crate::diagnosis::projection::dot;
-use crate::diagnosis::tangent::{Direction, Modes, Own, modes};
 use crate::gain::Observer;
 use crate::plant::Plant;
 use crate::recording::Recording;
+use crate::tangent::{Direction, Modes, Own, modes};
 use hyde_program::Program;
 use nalgebra::{Cholesky, DMatrix, DVector};
 
@@ -31,7 +31,7 @@ pub(crate) struct Carrier {
     rows: Vec<Row>,
     /// Two vectors a row: what the force at its start, and its growth over the row, do to the states.
     entries: Vec<f64>,
-    known: Vec<Option<Modes>>,
+    known: Vec<Modes>,
     gain: DMatrix<f64>,
     deviations: Vec<f64>,
     first_row: usize,
@@ -83,8 +83,9 @@ impl Carrier {
             first_row: recording.first_row,
             states,
         };
-        let mut own = Own::new(program);
-        let mut unit = vec![0.0; program.n_unknowns];
+        let mut own = Own::new(program, &plant.p, &directions);
+        let mut forces = DMatrix::zeros(own.touched.len(), directions.len());
+        let mut numbers = Vec::new();
         let mut error = vec![0.0; recording.channels.len()];
         let mut increment = vec![0.0; states];
         let (mut place, mut speed) = (0.0, 0.0);
@@ -98,30 +99,27 @@ impl Carrier {
                     0.0
                 };
             }
-            let corrected = modes(&mut plant, &mut found.known);
+            let corrected = modes(&mut plant, &mut found.known, &mut numbers, &own.touched);
             crate::dense::set_product(&observer.gain, &error, &mut increment);
             plant.begin_row(&increment);
-            let stepped = modes(&mut plant, &mut found.known);
-            own.plain(&mut plant);
-            own.force_at(&mut plant, &directions[0]);
-            unit.copy_from_slice(&own.force);
+            let stepped = modes(&mut plant, &mut found.known, &mut numbers, &own.touched);
+            own.forces(&mut plant, &directions, &mut forces);
+            let unit = forces.column(0);
             let largest = (0..unit.len()).max_by(|&a, &b| unit[a].abs().total_cmp(&unit[b].abs()));
             let largest = largest.filter(|&equation| unit[equation] != 0.0);
             if let Some(equation) = largest {
-                own.force_at(&mut plant, &directions[1]);
-                place = own.force[equation] / unit[equation];
-                own.force_at(&mut plant, &directions[2]);
-                speed = own.force[equation] / unit[equation];
+                place = forces[(equation, 1)] / unit[equation];
+                speed = forces[(equation, 2)] / unit[equation];
             }
             found.course.time.push(plant.time());
             found.course.place.push(place);
             found.course.speed.push(speed);
             found.course.acts.push(largest.is_some());
-            let of = found.known[stepped].as_ref()?;
+            let of = &found.known[stepped];
             for matrix in [&of.first, &of.second] {
                 let start = found.entries.len();
                 found.entries.resize(start + states, 0.0);
-                crate::dense::add_product(matrix, &unit, &mut found.entries[start..]);
+                crate::dense::add_product(matrix, unit.as_slice(), &mut found.entries[start..]);
             }
             let fixed = plant.pinned.iter().filter_map(|(position, _)| {
                 let states = plant.places.states.iter();
@@ -157,11 +155,7 @@ impl Carrier {
             let (Some(first), Some(second)) = (entries.next(), entries.next()) else {
                 break;
             };
-            let (Some(corrected), Some(stepped)) =
-                (&self.known[row.corrected], &self.known[row.stepped])
-            else {
-                continue;
-            };
+            let (corrected, stepped) = (&self.known[row.corrected], &self.known[row.stepped]);
             crate::dense::set_product(&corrected.outputs, &error, &mut answer);
             for (channel, value) in answer.iter_mut().enumerate() {
                 *value = -*value;

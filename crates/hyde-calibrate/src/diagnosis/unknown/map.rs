@@ -109,7 +109,7 @@ pub(crate) fn add_bands(map: &mut Map, felt: &Felt, projection: &Projection) {
     for panel in &mut map.panels {
         let (_, columns) = columns(felt, panel.variable);
         let gains = (1..=SHIFTS).map(|shift| {
-            let shifted = shifted(&projection.innovations, &lengths, shift);
+            let shifted = shifted(projection.innovations.as_slice(), &lengths, shift);
             projection.by_chance(&columns, &shifted)
         });
         panel.band = gains.fold(0.0, f64::max);
