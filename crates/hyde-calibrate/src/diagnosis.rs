@@ -6,11 +6,13 @@
 //! scan           scores of an effect over its shapes and sizes                            diagnosis/scan.rs
 //! trial          a survivor fitted together with all parameters, and judged on folds      diagnosis/trial.rs
 //! search         forward, until nothing passes the gates                                  diagnosis/search.rs
+//! prune          back: what is not missed any more                                        diagnosis/prune.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
 mod hypothesis;
 mod projection;
+mod prune;
 mod scan;
 mod search;
 mod stage;

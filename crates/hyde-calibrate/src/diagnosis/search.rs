@@ -1,4 +1,5 @@
-//! [`diagnose`]: takes in one effect after the other, as long as the best passes every gate.
+//! [`diagnose`]: takes in one effect after the other, as long as the best passes every gate, and drops what is not missed
+//! any more.
 //!
 //! The gate of a gain is twice what the best of all nodes tried would reach by chance in one of a hundred records without
 //! any effect: the quantile of chi squared for the effect's sizes and shapes, after Bonferroni. It grows with what
@@ -7,6 +8,7 @@
 
 use super::hypothesis::{Build, Built, Hypothesis};
 use super::projection::Projection;
+use super::prune::prune;
 use super::scan::{Score, scan};
 use super::stage::{Ground, Stage};
 use super::trial::{Rejection, Trial, trial, unseen};
@@ -26,6 +28,8 @@ const MATERIAL: f64 = 0.002;
 /// Hypotheses fitted in a round at most, and the part of the best score that they must have.
 const SURVIVORS: usize = 6;
 const SURVIVING: f64 = 0.05;
+/// Rounds beside one an effect.
+const MORE_ROUNDS: usize = 2;
 /// Innovations that are explained: their mean square, and their correlation.
 const EXPLAINED: (f64, f64) = (1.05, 0.1);
 
@@ -174,7 +178,8 @@ pub fn diagnose(
     };
     let mut rounds = Vec::new();
     let mut alternatives: Vec<Vec<usize>> = Vec::new();
-    while stage.effects.len() < max_effects {
+    // An effect that is dropped again makes room for another: so many rounds more at most.
+    while stage.effects.len() < max_effects && rounds.len() < max_effects + MORE_ROUNDS {
         let at = stage.linearise(&ground)?;
         let projection = Projection::new(&stage, &at).ok_or_else(singular)?;
         let gate = gates.gain(1);
@@ -230,8 +235,11 @@ pub fn diagnose(
                 break;
             }
             Some((best, others)) => {
-                stage = trials[best].stage.clone();
+                stage = trials[best].stage.polished(&ground)?;
                 alternatives.push(others);
+                for number in prune(&ground, &mut stage, build, gates) {
+                    alternatives.remove(number);
+                }
                 rounds.push(Round {
                     scores,
                     trials,

@@ -67,6 +67,18 @@ impl Stage {
             .linearise(&self.solution.values, Slopes::Tangents)
     }
 
+    /// The stage fitted to the end.
+    pub(crate) fn polished(&self, ground: &Ground<'_>) -> Result<Self, Unsupported> {
+        let set = ground.set_in(&self.program, &self.kept);
+        let solution = ground
+            .problem(&self.program, &self.varied, &set, None)
+            .solve(&self.solution.values)?;
+        Ok(Self {
+            solution,
+            ..self.clone()
+        })
+    }
+
     /// The parameters of the stage in another program.
     pub(crate) fn varied_in(&self, program: &Program) -> Vec<Varied> {
         let each = self.varied.iter().filter_map(|varied| {
