@@ -6,6 +6,7 @@ mod bench;
 mod clif_growth;
 mod compile;
 mod emps;
+mod emps_diagnosis;
 mod energy;
 mod event_suite;
 mod events;
@@ -36,6 +37,8 @@ pub const FIGURES: &[Figure] = &[
     emps::FORCE,
     emps::VELOCITY,
     emps::POSITION,
+    emps_diagnosis::BEFORE,
+    emps_diagnosis::AFTER,
     bench::TABLE,
     bench::TACHO,
     bench::ANGLE,
