@@ -13,7 +13,10 @@ fn main() -> ExitCode {
     let names: Vec<String> = std::env::args().skip(1).collect();
     // Figures of batches and diagnoses run this very program as the command.
     let commands = ["sweep", "diagnose", "fit"];
-    if names.first().is_some_and(|name| commands.contains(&name.as_str())) {
+    if names
+        .first()
+        .is_some_and(|name| commands.contains(&name.as_str()))
+    {
         return hyde_cli::main(std::env::args_os());
     }
     let mut chosen: Vec<&Figure> = Vec::new();

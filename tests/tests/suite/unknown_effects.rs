@@ -130,6 +130,8 @@ fn a_drag_that_waves_along_the_way_is_found_and_written() {
         text.contains("add a.f = -(Fs*v/v1*sin(2*pi*a.s/period) + Fc*v/v1*cos(2*pi*a.s/period));"),
         "{text}"
     );
+    // The text has the values found: put on a model without any more words it is the effect.
+    assert!(!text.contains("Fs = 0 [N]"), "{text}");
     // 30 N at 100 mm/s are 60 N at the 200 mm/s that sizes are given at; its interval is 1 % of it.
     let size = effect["size"].as_f64().unwrap();
     assert!((size / 60.0 - 1.0).abs() < 0.03, "{size}");

@@ -293,7 +293,7 @@ fn fitted(
     share: f64,
     gates: Gates,
 ) -> Option<(Trial, FoundLaw)> {
-    let (written, hypothesis) = own.law.written(NAME);
+    let (written, hypothesis) = own.law.written(NAME, false);
     let number = inquiry.hypotheses.len();
     let mut hypotheses = inquiry.hypotheses.to_vec();
     hypotheses.push(hypothesis.clone());
@@ -345,8 +345,8 @@ fn fitted(
             .map(|(term, gain)| (term.clone(), gain / first))
             .collect(),
         gains: own.gains,
+        written: own.law.with(&trial.values).written(NAME, true).0,
         law: own.law,
-        written,
         hypothesis,
     };
     Some((trial, found))

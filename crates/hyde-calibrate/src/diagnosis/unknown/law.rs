@@ -83,8 +83,29 @@ impl Law {
             .sum()
     }
 
-    /// The law as an effect of that name, and what a search may vary of it.
-    pub(crate) fn written(&self, name: &str) -> (Written, Hypothesis) {
+    /// The law with other values: sizes, then constants, in the order of its terms.
+    pub(crate) fn with(&self, values: &[f64]) -> Self {
+        let count: usize = self.terms.iter().map(|term| term.sizes.len()).sum();
+        let (mut sizes, mut constants) = values.split_at(count.min(values.len()));
+        let terms = self.terms.iter().map(|term| {
+            let own;
+            (own, sizes) = sizes.split_at(term.sizes.len().min(sizes.len()));
+            let shapes;
+            (shapes, constants) = constants.split_at(term.constants().len().min(constants.len()));
+            Term {
+                sizes: own.to_vec(),
+                ..term.with(shapes)
+            }
+        });
+        Self {
+            terms: terms.collect(),
+            ..self.clone()
+        }
+    }
+
+    /// The law as an effect of that name, and what a search may vary of it. Sizes are declared 0, where the effect is
+    /// nothing, or with their values.
+    pub(crate) fn written(&self, name: &str, with_sizes: bool) -> (Written, Hypothesis) {
         let kind = self.site.kind;
         let scales = self.seen.scales();
         let mut text = String::new();
@@ -152,7 +173,8 @@ impl Law {
                 let unit = kind.unit();
                 let _ = writeln!(
                     text,
-                    "  size Real {own} = 0 [{unit}] in {} .. {} [{unit}];",
+                    "  size Real {own} = {} [{unit}] in {} .. {} [{unit}];",
+                    significant(if with_sizes { value } else { 0.0 }, 6),
                     significant(-most, 3),
                     significant(most, 3)
                 );
