@@ -1,6 +1,6 @@
 //! [`Example`]: a `.hyde` file of this project with one of its experiments, its records, and what is set beside it.
 
-use hyde_compiler::{Additions, Backend, Candidate, Compiled, File, Header, Request, Stage};
+use hyde_compiler::{Additions, Backend, Candidate, Compiled, File, Form, Header, Request, Stage};
 use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources};
 use hyde_experiment::{Options, Run, RunError};
 use hyde_signal::Table;
@@ -25,7 +25,7 @@ pub struct Example {
     data: Option<PathBuf>,
     free_inputs: bool,
     ledger: bool,
-    observed: bool,
+    form: Form,
     set: BTreeMap<String, f64>,
     model: Option<String>,
     whole_library: bool,
@@ -61,7 +61,7 @@ impl Example {
             data: None,
             free_inputs: false,
             ledger: false,
-            observed: false,
+            form: Form::Run,
             set: BTreeMap::new(),
             model: None,
             whole_library: false,
@@ -121,7 +121,14 @@ impl Example {
     /// Takes the form that an observer runs: replays are made.
     #[must_use]
     pub fn observed(mut self) -> Self {
-        self.observed = true;
+        self.form = Form::Observed;
+        self
+    }
+
+    /// Takes the form that makes a record: what is measured and replayed, before any sensor.
+    #[must_use]
+    pub fn recorded(mut self) -> Self {
+        self.form = Form::Recorded;
         self
     }
 
@@ -329,7 +336,7 @@ impl Loaded {
             records: headers,
             free_inputs: example.free_inputs,
             ledger: example.ledger,
-            observed: example.observed,
+            form: example.form,
             backend,
         }
     }

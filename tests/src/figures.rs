@@ -20,6 +20,7 @@ mod paper_rows;
 mod promise;
 mod realtime;
 mod residual_cost;
+mod selftest;
 mod start;
 mod stick;
 mod travelling_nut;
@@ -69,4 +70,6 @@ pub const FIGURES: &[Figure] = &[
     batches::SLURM,
     batches::MEMORY,
     gradient::FIGURE,
+    selftest::FALSE_ALARMS,
+    selftest::TOP1,
 ];

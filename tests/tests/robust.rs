@@ -8,7 +8,7 @@
     reason = "tests open files, and unwrap what must be there"
 )]
 
-use hyde_compiler::{Backend, Packages, Request};
+use hyde_compiler::{Backend, Form, Packages, Request};
 use hyde_diag::{Diagnostics, Severity, Sources};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -118,7 +118,7 @@ fn compiled(text: &str) -> Option<String> {
             records: &records,
             free_inputs: true,
             ledger: true,
-            observed: false,
+            form: Form::Run,
             backend: Backend::Interpreter,
         };
         let mut own = diagnostics.clone();

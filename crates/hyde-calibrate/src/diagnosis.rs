@@ -19,6 +19,9 @@ mod stage;
 mod trial;
 mod unknown;
 
+pub(crate) use projection::Projection;
+pub(crate) use stage::{Ground, Stage, flat};
+
 pub use hypothesis::{Build, Built, Hypothesis, Knob};
 pub use scan::Score;
 pub use search::{Diagnosis, Finding, Gates, Quantity, Round, Verdict, diagnose};

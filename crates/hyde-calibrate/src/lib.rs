@@ -10,6 +10,7 @@
 //! its worth      errors before and after, intervals, groups                       fit.rs
 //! measures       the error in three measures, before and after, over its floor                  measures.rs, windows.rs, free_run.rs
 //! diagnosis      which effect is missing                                          diagnosis.rs
+//! self-test      what a diagnosis finds in records with a known effect              selftest.rs
 //! ```
 
 mod configuration;
@@ -26,6 +27,7 @@ mod observer;
 mod plan;
 mod plant;
 mod recording;
+mod selftest;
 mod stepping;
 mod tangent;
 mod varied;
@@ -45,5 +47,9 @@ pub use observer::Innovations;
 pub use plan::{CalibrationPlan, Source, Vary};
 pub use plant::Unsupported;
 pub use recording::{RecordError, Recording};
+pub use selftest::{
+    Asked, Axis, Case, Claim, Fault, Kind, Outcome, Row, SelftestError, Simulated, Size, Tally,
+    cases, simulated, tables_of, tally, try_case,
+};
 pub use varied::Varied;
 pub use windows::{WINDOW_S, Windows};

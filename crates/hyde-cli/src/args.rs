@@ -2,7 +2,7 @@
 
 mod study;
 
-pub(crate) use study::{DiagnoseArgs, FitArgs, StudyArgs};
+pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs};
 
 use crate::batch::inputs::{Inputs, Kind};
 use crate::files;
@@ -49,6 +49,8 @@ pub(crate) enum Command {
     Fit(FitArgs),
     /// Find the effect that a model lacks: which, where, how large, how sure
     Diagnose(DiagnoseArgs),
+    /// Plant every known effect in simulated records of this axis, and count what its diagnosis makes of them
+    Selftest(SelftestArgs),
     /// Run every experiment of a file or a package, and test what it expects and that its effects vanish
     Test(TestArgs),
     /// Write the pages of a package, of a file, or of the library

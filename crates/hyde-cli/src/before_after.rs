@@ -5,7 +5,7 @@ use crate::records;
 use crate::study::Calibration;
 use crate::unknown;
 use hyde_calibrate::{FreeMeasure, Measures, Model, Unsupported, Written};
-use hyde_compiler::{Additions, Backend, Candidate, Request};
+use hyde_compiler::{Additions, Backend, Candidate, Form, Request};
 use hyde_diag::Diagnostics;
 use hyde_program::{Method, Program};
 use hyde_units::{Dimension, engineering, significant};
@@ -99,7 +99,7 @@ pub(crate) fn closed(
         records: &headers,
         free_inputs: false,
         ledger: false,
-        observed: false,
+        form: Form::Run,
         backend: Backend::Native,
     };
     let program = |additions: &Additions| {

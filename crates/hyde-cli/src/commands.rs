@@ -15,5 +15,6 @@ pub(crate) mod params;
 pub(crate) mod plot;
 pub(crate) mod report;
 pub(crate) mod run;
+pub(crate) mod selftest;
 pub(crate) mod sweep;
 pub(crate) mod test;

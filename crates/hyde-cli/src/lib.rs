@@ -64,6 +64,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Test(args) => commands::test::test(args),
         Command::Fit(args) => commands::fit::fit(args),
         Command::Diagnose(args) => commands::diagnose::diagnose(args),
+        Command::Selftest(args) => commands::selftest::selftest(args),
         Command::Doc(args) => commands::doc::doc(args),
         Command::Explain(args) => commands::explain::explain(args),
     };

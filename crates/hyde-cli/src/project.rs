@@ -10,7 +10,7 @@ use crate::render;
 use crate::run_failure;
 use crate::settings::{self, Setting};
 use crate::tables::{self, Table};
-use hyde_compiler::{Backend, Compiled, File, Request};
+use hyde_compiler::{Backend, Compiled, File, Form, Request};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::Experiment;
 use serde_json::json;
@@ -222,7 +222,10 @@ impl Project {
             records: &headers,
             free_inputs: aim == Aim::Linearize,
             ledger: matches!(aim, Aim::Ledger | Aim::Linearize),
-            observed: aim == Aim::Observe,
+            form: match aim {
+                Aim::Observe => Form::Observed,
+                Aim::Run | Aim::Ledger | Aim::Linearize => Form::Run,
+            },
             backend: Backend::Native,
         };
         let compiled = hyde_compiler::compile(&request, &mut self.diagnostics);
@@ -259,7 +262,7 @@ impl Project {
             records: &BTreeMap::new(),
             free_inputs: true,
             ledger: false,
-            observed: false,
+            form: Form::Run,
             backend: Backend::Native,
         };
         let found = hyde_compiler::candidates(&request, &mut self.diagnostics);

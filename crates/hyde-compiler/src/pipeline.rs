@@ -3,7 +3,7 @@
 use crate::load::File;
 use crate::states::States;
 use hyde_diag::{Diagnostics, Sources};
-use hyde_flatten::{Additions, Header};
+use hyde_flatten::{Additions, Form, Header};
 use hyde_ir::{Dae, FlatModel};
 use hyde_jit::Backend;
 use hyde_program::Program;
@@ -28,8 +28,8 @@ pub struct Request<'a> {
     pub free_inputs: bool,
     /// Make the energy ledger.
     pub ledger: bool,
-    /// The form that an observer runs: replays are made, and measured channels alone are reported.
-    pub observed: bool,
+    /// What the experiment is made into.
+    pub form: Form,
     /// How numbers are made.
     pub backend: Backend,
 }
@@ -119,7 +119,7 @@ pub(crate) fn input<'a>(
         records: request.records,
         free_inputs: request.free_inputs,
         ledger: request.ledger,
-        observed: request.observed,
+        form: request.form,
     }
 }
 

@@ -13,6 +13,7 @@ mod stimulus;
 
 pub(crate) use replay::Replay;
 
+use crate::Form;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
@@ -42,7 +43,7 @@ impl<'a> Model<'a, '_> {
         };
         self.flat.experiment.name = experiment.name.text.clone();
         self.check_budget(&experiment.items);
-        self.flat.experiment.observed = self.input.observed;
+        self.flat.experiment.observed = self.input.form != Form::Run;
         let at = |setting| Scope {
             records: true,
             ..Scope::new(root, setting)
@@ -101,6 +102,9 @@ impl<'a> Model<'a, '_> {
             }
         }
         self.measured_responses(&experiment.items, root);
+        if self.input.form == Form::Recorded {
+            self.record_replays();
+        }
     }
 
     /// Every imperfection of a budget has a name of its own.

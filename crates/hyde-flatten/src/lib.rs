@@ -81,9 +81,22 @@ pub struct Input<'a> {
     pub free_inputs: bool,
     /// Make the energy ledger.
     pub ledger: bool,
-    /// The form that an observer runs: replayed columns take the place of what they replay, quantisers of measured
-    /// channels are errors of a known width, and measured channels alone are reported.
-    pub observed: bool,
+    /// What the experiment is made into.
+    pub form: Form,
+}
+
+/// What an experiment is made into.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Form {
+    /// A run: loops stay closed, everything is reported.
+    #[default]
+    Run,
+    /// What an observer runs: replayed columns take the place of what they replay, quantisers of measured channels are
+    /// errors of a known width, and measured channels alone are reported.
+    Observed,
+    /// What makes a record: loops stay closed; reported are the measured channels, those that are not clocked before their
+    /// quantisers with its width, and behind them what replayed columns are recorded of.
+    Recorded,
 }
 
 /// Flattens a model with its experiment.

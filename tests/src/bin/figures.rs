@@ -1,4 +1,4 @@
-//! `figures [NAME…]`: measures the promises of the project and prints a line each. Exit status 1 where one falls short, 2
+//! `figures [--seed S] [NAME…]`: measures the promises of the project and prints a line each. Exit status 1 where one falls short, 2
 //! where there is none of that name.
 
 use hyde_tests::figures::{FIGURES, Figure, Session};
@@ -10,14 +10,23 @@ use std::process::ExitCode;
     reason = "a command prints"
 )]
 fn main() -> ExitCode {
-    let names: Vec<String> = std::env::args().skip(1).collect();
-    // Figures of batches and diagnoses run this very program as the command.
-    let commands = ["sweep", "diagnose", "fit"];
+    let mut names: Vec<String> = std::env::args().skip(1).collect();
+    // Figures of batches, diagnoses and self-tests run this very program as the command.
+    let commands = ["sweep", "diagnose", "fit", "selftest"];
     if names
         .first()
         .is_some_and(|name| commands.contains(&name.as_str()))
     {
         return hyde_cli::main(std::env::args_os());
+    }
+    let mut session = Session::new(hyde_tests::data());
+    if let Some(at) = names.iter().position(|name| name == "--seed") {
+        let Some(seed) = names.get(at + 1).and_then(|seed| seed.parse().ok()) else {
+            eprintln!("`--seed` takes a whole number");
+            return ExitCode::from(2);
+        };
+        session.seed = seed;
+        names.drain(at..at + 2);
     }
     let mut chosen: Vec<&Figure> = Vec::new();
     for name in &names {
@@ -36,7 +45,6 @@ fn main() -> ExitCode {
     if names.is_empty() {
         chosen = FIGURES.iter().collect();
     }
-    let session = Session::new(hyde_tests::data());
     let mut any_short = false;
     for figure in chosen {
         let (line, short) = figure.line(&(figure.measure)(&session));

@@ -106,6 +106,8 @@ impl Figure {
 pub struct Session {
     /// The folder with the measured records that are not shipped.
     pub data: PathBuf,
+    /// What random numbers of long studies begin with.
+    pub seed: u64,
     pub(crate) emps: OnceCell<Result<Vec<Measured>, String>>,
     pub(crate) bench: OnceCell<Result<Vec<Measured>, String>>,
     pub(crate) two_mass: OnceCell<Result<Vec<Measured>, String>>,
@@ -118,6 +120,7 @@ impl Session {
     pub fn new(data: PathBuf) -> Self {
         Self {
             data,
+            seed: 1,
             emps: OnceCell::new(),
             bench: OnceCell::new(),
             two_mass: OnceCell::new(),

@@ -1,7 +1,7 @@
 //! Arguments of studies on records: calibrations and diagnoses.
 
 use super::ModelArgs;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
 /// A study in a file, with what is set from outside.
@@ -69,4 +69,57 @@ pub(crate) struct DiagnoseArgs {
     /// Leave the new model, report.json and report.html in this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SelftestArgs {
+    #[command(flatten)]
+    pub(crate) study: StudyArgs,
+    /// Seed of all random numbers; the diagnosis's if left out
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+    /// Sizes of planted effects: parts of their ranges, or multiples of what shows on this axis
+    #[arg(
+        long,
+        value_name = "SIZES",
+        value_delimiter = ',',
+        default_value = "0.5x,0.05,0.3"
+    )]
+    pub(crate) sizes: Vec<String>,
+    /// Sets of random numbers for each effect and size
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub(crate) seeds: usize,
+    /// Sets of records with nothing planted
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    pub(crate) empties: usize,
+    /// These kinds of cases alone
+    #[arg(long, value_enum, value_delimiter = ',', value_name = "KINDS")]
+    pub(crate) only: Vec<CaseKind>,
+    /// Plant these effects alone; all are still searched for
+    #[arg(long, value_delimiter = ',', value_name = "EFFECTS")]
+    pub(crate) effects: Vec<String>,
+    /// At most so many planted cases, spread evenly over all
+    #[arg(long, value_name = "N")]
+    pub(crate) sample: Option<usize>,
+    /// Keep finished cases in this folder: what is there is not done again
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Leave the simulated records of this case, as the report calls it, in the folder of `--out`, and do no more
+    #[arg(long, value_name = "NAME", requires = "out")]
+    pub(crate) case: Option<String>,
+}
+
+/// What is planted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum CaseKind {
+    /// Effects
+    Planted,
+    /// Nothing
+    Empty,
+    /// Parameters further off than declared
+    Parameters,
+    /// Effects that the search is not told of
+    Unknown,
+    /// Faulty sensors
+    Sensors,
 }

@@ -4,7 +4,7 @@ use crate::args::ModelArgs;
 use crate::project::{Project, Records};
 use crate::records;
 use crate::run_failure;
-use hyde_compiler::{Backend, Request};
+use hyde_compiler::{Backend, Form, Request};
 use hyde_diag::{Diagnostic, Diagnostics, Severity};
 use hyde_experiment::RunError;
 use hyde_experiment::batch::{
@@ -129,7 +129,7 @@ impl Source<'_> {
             records: &headers,
             free_inputs: false,
             ledger: false,
-            observed: false,
+            form: Form::Run,
             backend: Backend::Native,
         };
         match hyde_compiler::compile(&request, &mut diagnostics) {

@@ -9,7 +9,7 @@ use crate::records;
 use crate::study;
 use crate::unknown;
 use hyde_calibrate::{Built, Hypothesis, Inquiry, Knob};
-use hyde_compiler::{Additions, Backend, Candidate, DiagnosisPlan, Request};
+use hyde_compiler::{Additions, Backend, Candidate, DiagnosisPlan, Form, Request};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::{Study, StudyKind};
 use serde_json::Value;
@@ -57,7 +57,7 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
             records: &headers,
             free_inputs: false,
             ledger: false,
-            observed: true,
+            form: Form::Observed,
             backend: Backend::Native,
         };
         let build = |numbers: &[usize]| {
@@ -157,7 +157,7 @@ fn model_file(told: &Told<'_>) -> String {
 }
 
 /// The block that the arguments name.
-fn plan(args: &StudyArgs) -> Result<DiagnosisPlan, Exit> {
+pub(crate) fn plan(args: &StudyArgs) -> Result<DiagnosisPlan, Exit> {
     // Effects of packages that the model itself need not use may be named.
     let model_args = ModelArgs {
         whole_library: true,
@@ -181,7 +181,8 @@ fn plan(args: &StudyArgs) -> Result<DiagnosisPlan, Exit> {
         .ok_or_else(|| project::report_errors(&model_args, &sources, &diagnostics))
 }
 
-fn hypothesis(candidate: &Candidate) -> Hypothesis {
+/// A candidate as the search takes it.
+pub(crate) fn hypothesis(candidate: &Candidate) -> Hypothesis {
     let knob = |knob: &hyde_compiler::Knob| Knob {
         name: knob.name.clone(),
         value: knob.value,

@@ -4,7 +4,7 @@ use crate::args::{EmitArgs, StageName};
 use crate::exit::Exit;
 use crate::project::{self, Records, print_output};
 use crate::records;
-use hyde_compiler::{Backend, Request, Stage};
+use hyde_compiler::{Backend, Form, Request, Stage};
 
 /// Prints the result of a stage.
 pub(crate) fn emit(args: &EmitArgs) -> Exit {
@@ -23,7 +23,7 @@ pub(crate) fn emit(args: &EmitArgs) -> Exit {
         records: &headers,
         free_inputs: false,
         ledger: false,
-        observed: false,
+        form: Form::Run,
         backend: Backend::Native,
     };
     let stage = match args.stage {

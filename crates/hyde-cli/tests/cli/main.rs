@@ -14,6 +14,7 @@ mod parquet;
 mod plot;
 mod printed;
 mod report;
+mod selftest;
 mod settings;
 mod status;
 mod sweep;

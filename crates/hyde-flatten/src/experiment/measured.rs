@@ -1,5 +1,6 @@
 //! Measured channels: a prepared column beside what the model has for it.
 
+use crate::Form;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::lower::Resolved;
@@ -43,9 +44,12 @@ impl<'a> Model<'a, '_> {
         } else {
             Quantity::usual(dimension)
         };
-        let (id, rounding) = match self.input.observed {
-            true => self.observed(value.id),
-            false => (value.id, None),
+        let (id, rounding) = match self.input.form {
+            Form::Run => (value.id, None),
+            Form::Observed => self.observed(value.id),
+            // What a clock has counted is what the axis itself knows; a scale's noise comes before its rounding.
+            Form::Recorded if !self.clocks_of(value.id).is_empty() => (value.id, None),
+            Form::Recorded => self.observed(value.id),
         };
         let clocked = !self.clocks_of(id).is_empty();
         let signal = hyde_syntax::format_expression(&channel.signal);

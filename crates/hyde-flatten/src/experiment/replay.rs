@@ -8,10 +8,12 @@
 //! columns were measured with the true axis in the loop, so nothing that stands before a cut has to be known. Effects
 //! that wrap the variable stay: they act on the column.
 
+use crate::Form;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::lower::Resolved;
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::{Code, Diagnostic, MadeBy};
+use hyde_ir::flat::Measured;
 use hyde_ir::{Expr as Ir, ExprId, Interpolation, VarId, VariableKind};
 use hyde_syntax::ast::{Drive, ExperimentItem};
 use std::collections::HashMap;
@@ -23,6 +25,8 @@ pub(crate) struct Replay<'a> {
     var: VarId,
     root: InstanceId,
     used: bool,
+    /// What the variable is without its effects: what its column is recorded of.
+    value: Option<ExprId>,
 }
 
 impl<'a> Model<'a, '_> {
@@ -44,6 +48,7 @@ impl<'a> Model<'a, '_> {
                         var,
                         root,
                         used: false,
+                        value: None,
                     });
                 }
             }
@@ -56,8 +61,9 @@ impl<'a> Model<'a, '_> {
             return value;
         };
         self.replays[number].used = true;
+        self.replays[number].value = Some(value.id);
         let Replay { drive, root, .. } = self.replays[number];
-        if !self.input.observed {
+        if self.input.form != Form::Observed {
             return value;
         }
         let scope = Scope {
@@ -108,7 +114,7 @@ impl<'a> Model<'a, '_> {
                 );
                 let column = self.replayed(var, value).id;
                 let equation = &mut self.flat.equations[at];
-                if self.input.observed {
+                if self.input.form == Form::Observed {
                     (equation.lhs, equation.rhs) = (leaf, column);
                 }
                 continue;
@@ -116,6 +122,37 @@ impl<'a> Model<'a, '_> {
             if connections_made {
                 self.no_equation_to_replay(number);
             }
+        }
+    }
+
+    /// Makes a channel of each replayed column: what an axis would have recorded there.
+    pub(super) fn record_replays(&mut self) {
+        for number in 0..self.replays.len() {
+            let Replay {
+                drive,
+                var,
+                root,
+                value,
+                ..
+            } = self.replays[number];
+            let mut preparation = Vec::new();
+            let column = self.recorded(&drive.value, root, &mut preparation);
+            let (Some((column, _)), Some(value)) = (column, value) else {
+                continue;
+            };
+            let origin = self.origin(root, drive.target.span);
+            let clocked = self.is_held(var, value) || !self.clocks_of(value).is_empty();
+            self.flat.experiment.measured.push(Measured {
+                name: drive.target.dotted(),
+                column,
+                preparation,
+                value,
+                clocked,
+                noise: None,
+                rounding: None,
+                quantity: self.flat.variables[var].quantity.clone(),
+                origin: origin.made_by(MadeBy::Experiment),
+            });
         }
     }
 

@@ -1,0 +1,353 @@
+//! [`try_case`]: simulates a case, diagnoses it, and says what was found for what was planted.
+
+use super::case::{Case, Fault, Kind, Size};
+use super::expected::{Reference, shows, size_of};
+use super::simulated::{Simulated, simulated};
+use crate::diagnosis::{Build, Built, Hypothesis, Verdict, diagnose};
+use crate::gain::Observer;
+use crate::plant::Unsupported;
+use crate::recording::{RecordError, Recording};
+use crate::varied::Varied;
+use hyde_experiment::Options;
+use hyde_program::Program;
+use hyde_signal::Table;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// The records of one run, by the name that the experiment gives each.
+type Records = BTreeMap<String, Table>;
+/// A table for each of the records to fit, and which of them is to be replaced.
+type Simulate<'a> = dyn Fn(&[usize], &[f64], &[f64]) -> Option<Built> + Sync + 'a;
+
+/// An axis with its records, its diagnosis, and how programs of it are made.
+pub struct Axis<'a> {
+    /// The observed form of the model as declared.
+    pub program: &'a Program,
+    /// The records to fit: stimuli are taken from them.
+    pub records: &'a [Records],
+    /// What calibration varies.
+    pub varied: &'a [Varied],
+    /// Values set from outside, by name, SI.
+    pub set: &'a [(String, f64)],
+    /// Every effect at every site.
+    pub hypotheses: &'a [Hypothesis],
+    /// Puts hypotheses on the observed form.
+    pub build: &'a Build<'a>,
+    /// Puts hypotheses on the recorded form; sizes and shapes of the last of them may shape the equations.
+    pub simulate: &'a Simulate<'a>,
+    /// How many effects a diagnosis claims at most.
+    pub max_effects: usize,
+    /// What random numbers begin with.
+    pub seed: u64,
+    /// Set from outside to end the work.
+    pub interrupted: Arc<AtomicBool>,
+    reference: Reference,
+}
+
+/// Why a case has no outcome.
+#[derive(Clone, Debug)]
+pub enum SelftestError {
+    /// Somebody asked to stop.
+    Interrupted,
+    /// The axis cannot be simulated.
+    Simulation(Simulated),
+    /// The model with the effect cannot be made, or cannot be observed.
+    Model,
+    /// What was simulated cannot be observed.
+    Record(RecordError),
+    /// The model has no fixed-step form.
+    Unsupported(Unsupported),
+}
+
+/// An effect that a diagnosis claims, and those that it cannot tell from it; hypotheses by number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Claim {
+    /// The hypothesis.
+    pub hypothesis: usize,
+    /// Those that the records cannot tell from it.
+    pub alternatives: Vec<usize>,
+    /// Its size, SI, and the 95 % interval.
+    pub size: f64,
+    /// Its 95 % interval.
+    pub interval: (f64, f64),
+}
+
+/// What was planted, what it should gain, what was found.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outcome {
+    /// Sizes and shapes planted, SI.
+    pub planted: (Vec<f64>, Vec<f64>),
+    /// The planted size as reports tell it: of a sine and a cosine their amplitude.
+    pub size: f64,
+    /// The size at which the effect begins to show on this axis, where all of its range shows.
+    pub detectable: Option<f64>,
+    /// What the planted effect gains at best, on average, and the gate of a claim.
+    pub expected: Option<(f64, f64)>,
+    /// The verdict.
+    pub verdict: Verdict,
+    /// What is claimed, in the order found.
+    pub claims: Vec<Claim>,
+    /// Something is left that no effect explains.
+    pub unexplained: bool,
+}
+
+impl Outcome {
+    /// Whether the planted effect should be found: it shows.
+    #[must_use]
+    pub fn is_visible(&self) -> bool {
+        self.expected.is_some_and(|(gain, gate)| shows(gain, gate))
+    }
+
+    /// Whether the first claim is the hypothesis, or one of those it cannot be told from.
+    #[must_use]
+    pub fn names(&self, hypothesis: usize) -> bool {
+        let first = self.claims.first();
+        first.is_some_and(|claim| {
+            claim.hypothesis == hypothesis || claim.alternatives.contains(&hypothesis)
+        })
+    }
+}
+
+impl<'a> Axis<'a> {
+    /// An axis; records with nothing planted in them are simulated and linearised.
+    ///
+    /// # Errors
+    /// The axis cannot be simulated or observed.
+    #[allow(clippy::too_many_arguments, reason = "an axis is all of these")]
+    pub fn new(
+        program: &'a Program,
+        records: &'a [Records],
+        varied: &'a [Varied],
+        set: &'a [(String, f64)],
+        hypotheses: &'a [Hypothesis],
+        build: &'a Build<'a>,
+        simulate: &'a Simulate<'a>,
+        max_effects: usize,
+        seed: u64,
+        interrupted: Arc<AtomicBool>,
+    ) -> Result<Self, SelftestError> {
+        let built = simulate(&[], &[], &[]).ok_or(SelftestError::Model)?;
+        let options = Options {
+            set: set.to_vec(),
+            interrupted: Arc::clone(&interrupted),
+            ..Options::default()
+        };
+        let recordings = recordings(program, records, |tables, number| {
+            let purpose = format!("reference {number}");
+            simulated(&built.program, tables, &options, None, seed, &purpose)
+        });
+        let recordings = recordings.map_err(|error| stopped(error, &interrupted))?;
+        let reference =
+            Reference::new(program, recordings, varied, set).map_err(SelftestError::Unsupported)?;
+        Ok(Self {
+            program,
+            records,
+            varied,
+            set,
+            hypotheses,
+            build,
+            simulate,
+            max_effects,
+            seed,
+            interrupted,
+            reference,
+        })
+    }
+}
+
+/// Simulates and diagnoses a case.
+///
+/// # Errors
+/// See [`SelftestError`].
+pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> {
+    if axis.interrupted.load(Ordering::Relaxed) {
+        return Err(SelftestError::Interrupted);
+    }
+    let planted = planted(axis, case)?;
+    let recordings = records_of(axis, case, &planted)?;
+    let places = {
+        let program = axis.program;
+        let place = |(name, value): &(String, f64)| {
+            let (parameter, element) = program.parameter(name)?;
+            (!parameter.structural).then_some((parameter.place + element, *value))
+        };
+        axis.set.iter().filter_map(place).collect::<Vec<_>>()
+    };
+    let observer =
+        Observer::new(axis.program, &recordings, &places).map_err(SelftestError::Unsupported)?;
+    // An effect that the search does not know takes all its sites with it.
+    let withheld = match case.kind {
+        Kind::OpenSet(number, _) => Some(axis.hypotheses[number].effect.as_str()),
+        Kind::Planted(..) | Kind::Empty | Kind::Parameter(_) | Kind::Sensor(..) => None,
+    };
+    let known: Vec<usize> = (0..axis.hypotheses.len())
+        .filter(|&number| withheld != Some(axis.hypotheses[number].effect.as_str()))
+        .collect();
+    let hypotheses: Vec<Hypothesis> = known
+        .iter()
+        .map(|&number| axis.hypotheses[number].clone())
+        .collect();
+    let build = |numbers: &[usize]| {
+        let numbers: Vec<usize> = numbers.iter().map(|&number| known[number]).collect();
+        (axis.build)(&numbers)
+    };
+    let found = diagnose(
+        &recordings,
+        &observer,
+        axis.varied,
+        axis.set,
+        &hypotheses,
+        &build,
+        axis.max_effects,
+    )
+    .map_err(SelftestError::Unsupported)?;
+    if axis.interrupted.load(Ordering::Relaxed) {
+        return Err(SelftestError::Interrupted);
+    }
+    let claims = found.findings.iter().map(|finding| Claim {
+        hypothesis: known[finding.hypothesis],
+        alternatives: finding
+            .alternatives
+            .iter()
+            .map(|&other| known[other])
+            .collect(),
+        size: finding.size.value,
+        interval: finding.size.interval,
+    });
+    Ok(Outcome {
+        size: planted.size,
+        detectable: planted.detectable,
+        expected: planted.expected,
+        planted: (planted.sizes, planted.shapes),
+        verdict: found.verdict,
+        claims: claims.collect(),
+        unexplained: found.unexplained,
+    })
+}
+
+/// What records become where a case is planted: those to fit first, as its diagnosis reads them.
+///
+/// # Errors
+/// See [`SelftestError`].
+pub fn tables_of(
+    axis: &Axis<'_>,
+    case: &Case,
+    records: &[Records],
+) -> Result<Vec<Records>, SelftestError> {
+    let planted = planted(axis, case)?;
+    tables(axis, case, &planted, records)
+}
+
+/// An effect as a case plants it.
+#[derive(Default)]
+struct Planted {
+    number: Option<usize>,
+    sizes: Vec<f64>,
+    shapes: Vec<f64>,
+    size: f64,
+    detectable: Option<f64>,
+    expected: Option<(f64, f64)>,
+}
+
+fn planted(axis: &Axis<'_>, case: &Case) -> Result<Planted, SelftestError> {
+    let (number, size) = match case.kind {
+        Kind::Planted(number, size) | Kind::OpenSet(number, size) => (number, size),
+        Kind::Empty | Kind::Parameter(_) | Kind::Sensor(..) => return Ok(Planted::default()),
+    };
+    let hypothesis = &axis.hypotheses[number];
+    let (whole, shapes) = case.direction(axis.seed, hypothesis);
+    let reference = &axis.reference;
+    let effect = reference
+        .effect(hypothesis, number, &shapes, axis.build)
+        .ok_or(SelftestError::Model)?;
+    let detectable = effect.detectable(&whole);
+    let part = match size {
+        Size::Part(part) => part,
+        // What never shows is planted as large as it gets.
+        Size::Detectable(times) => (times * detectable.unwrap_or(1.0)).min(1.0),
+    };
+    let sizes: Vec<f64> = whole.iter().map(|size| part * size).collect();
+    let expected = effect
+        .gain(&sizes)
+        .map(|gain| (gain, reference.gate(hypothesis)));
+    Ok(Planted {
+        number: Some(number),
+        size: size_of(hypothesis, &sizes),
+        detectable: detectable.map(|part| part * size_of(hypothesis, &whole).abs()),
+        sizes,
+        shapes,
+        expected,
+    })
+}
+
+fn tables(
+    axis: &Axis<'_>,
+    case: &Case,
+    planted: &Planted,
+    records: &[Records],
+) -> Result<Vec<Records>, SelftestError> {
+    let list: Vec<usize> = planted.number.into_iter().collect();
+    let Built { program, paths } =
+        (axis.simulate)(&list, &planted.sizes, &planted.shapes).ok_or(SelftestError::Model)?;
+    let mut set = axis.set.to_vec();
+    set.extend(case.parameters(axis.seed, axis.varied));
+    if let (Some(number), Some(path)) = (planted.number, paths.last()) {
+        let hypothesis = &axis.hypotheses[number];
+        let sizes = Hypothesis::names(&hypothesis.sizes, path);
+        let shapes = Hypothesis::names(&hypothesis.shapes, path);
+        set.extend(sizes.into_iter().zip(planted.sizes.iter().copied()));
+        set.extend(shapes.into_iter().zip(planted.shapes.iter().copied()));
+    }
+    let options = Options {
+        set,
+        interrupted: Arc::clone(&axis.interrupted),
+        ..Options::default()
+    };
+    let faulty: Option<(usize, Fault)> = match case.kind {
+        Kind::Sensor(channel, fault) => Some((channel, fault)),
+        Kind::Planted(..) | Kind::Empty | Kind::Parameter(_) | Kind::OpenSet(..) => None,
+    };
+    let made = records.iter().enumerate().map(|(number, tables)| {
+        let purpose = format!("{} / record {number}", case.key);
+        simulated(&program, tables, &options, faulty, axis.seed, &purpose)
+            .map_err(|error| stopped(SelftestError::Simulation(error), &axis.interrupted))
+    });
+    made.collect()
+}
+
+fn records_of(
+    axis: &Axis<'_>,
+    case: &Case,
+    planted: &Planted,
+) -> Result<Vec<Recording>, SelftestError> {
+    let made = tables(axis, case, planted, axis.records)?;
+    recordings(axis.program, &made, |tables, _| Ok(tables.clone()))
+}
+
+fn recordings(
+    program: &Program,
+    records: &[Records],
+    mut make: impl FnMut(&Records, usize) -> Result<Records, Simulated>,
+) -> Result<Vec<Recording>, SelftestError> {
+    let each = records.iter().enumerate().map(|(number, tables)| {
+        let made = make(tables, number).map_err(SelftestError::Simulation)?;
+        Recording::new(&format!("record {}", number + 1), program, made)
+            .map_err(SelftestError::Record)
+    });
+    each.collect()
+}
+
+/// A run that was told to end is no failure of the axis.
+fn stopped(error: SelftestError, interrupted: &AtomicBool) -> SelftestError {
+    match error {
+        SelftestError::Simulation(_) if interrupted.load(Ordering::Relaxed) => {
+            SelftestError::Interrupted
+        }
+        SelftestError::Simulation(_)
+        | SelftestError::Interrupted
+        | SelftestError::Model
+        | SelftestError::Record(_)
+        | SelftestError::Unsupported(_) => error,
+    }
+}

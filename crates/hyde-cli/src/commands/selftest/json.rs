@@ -1,0 +1,124 @@
+//! A self-test as JSON; numbers are SI.
+
+use super::Told;
+use super::kept::{Kept, word};
+use hyde_calibrate::{Case, Kind, Size};
+use serde_json::{Value, json};
+
+/// The report.
+pub(super) fn report(told: &Told<'_>) -> Value {
+    let hypotheses: Vec<Value> = (0..told.hypotheses.len()).map(|n| named(told, n)).collect();
+    let table = told.table;
+    let rows: Vec<Value> = table
+        .rows
+        .iter()
+        .map(|row| {
+            let taken: Vec<Value> = row
+                .taken_for
+                .iter()
+                .map(|(other, count)| json!({ "found": other.map(|n| named(told, n)), "cases": count }))
+                .collect();
+            json!({
+                "planted": named(told, row.hypothesis),
+                "visible": row.visible,
+                "right": row.right,
+                "alone": row.alone,
+                "further_claims": row.extras,
+                "hidden": row.hidden,
+                "hidden_right": row.hidden_right,
+                "hidden_wrong": row.hidden_wrong,
+                "taken_for": taken,
+                "detectable": row.detectable,
+                "unit": told.hypotheses[row.hypothesis].sizes.first().map(|size| &size.unit),
+                "size_found_over_planted": row.ratios,
+            })
+        })
+        .collect();
+    let control = |(cases, right): (usize, usize)| json!({ "cases": cases, "right": right });
+    let (visible, right) = sums(told);
+    let cases: Vec<Value> = told
+        .outcomes
+        .iter()
+        .map(|(c, k)| case(told, c, k))
+        .collect();
+    json!({
+        "ok": true,
+        "diagnosis": told.plan.name,
+        "seed": told.seed,
+        "sizes": told.asked.sizes.iter().map(|&size| shown(size)).collect::<Vec<_>>(),
+        "hypotheses": hypotheses,
+        "visible": visible,
+        "right": right,
+        "planted": rows,
+        "controls": {
+            "empty": control(table.empty),
+            "parameter": control(table.parameter),
+            "unknown": control(table.open_set),
+            "unknown_neighbours": table.neighbours,
+            "sensor": control(table.sensor),
+        },
+        "without_site": told.siteless,
+        "cases": cases,
+    })
+}
+
+/// Planted cases that show, and those of them that are named right.
+pub(super) fn sums(told: &Told<'_>) -> (usize, usize) {
+    let rows = told.table.rows.iter();
+    rows.fold((0, 0), |(v, r), row| (v + row.visible, r + row.right))
+}
+
+/// A size as it is asked for.
+pub(super) fn shown(size: Size) -> String {
+    match size {
+        Size::Part(part) => format!("{part}"),
+        Size::Detectable(times) => format!("{times}x"),
+    }
+}
+
+fn named(told: &Told<'_>, number: usize) -> Value {
+    let hypothesis = &told.hypotheses[number];
+    json!({ "effect": hypothesis.effect, "site": hypothesis.site })
+}
+
+fn case(told: &Told<'_>, case: &Case, kept: &Kept) -> Value {
+    let planted = match case.kind {
+        Kind::Planted(number, _) | Kind::OpenSet(number, _) => Some(number),
+        Kind::Empty | Kind::Parameter(_) | Kind::Sensor(..) => None,
+    };
+    let outcome = match kept {
+        Err(reason) => return json!({ "name": case.key, "failed": reason }),
+        Ok(outcome) => outcome,
+    };
+    let claims: Vec<Value> = outcome
+        .claims
+        .iter()
+        .map(|claim| {
+            json!({
+                "effect": told.hypotheses[claim.hypothesis].effect,
+                "site": told.hypotheses[claim.hypothesis].site,
+                "size": claim.size,
+                "interval": [claim.interval.0, claim.interval.1],
+                "one_of": claim.alternatives.iter().map(|&n| named(told, n)).collect::<Vec<_>>(),
+            })
+        })
+        .collect();
+    let mut value = json!({
+        "name": case.key,
+        "verdict": word(outcome.verdict),
+        "effects": claims,
+        "unexplained": outcome.unexplained,
+    });
+    if let Some(number) = planted {
+        value["planted"] = named(told, number);
+        value["size"] = json!(outcome.size);
+        value["sizes"] = json!(outcome.planted.0);
+        value["shapes"] = json!(outcome.planted.1);
+        value["detectable"] = json!(outcome.detectable);
+        value["expected_gain"] = json!(outcome.expected.map(|(gain, _)| gain));
+        value["gate"] = json!(outcome.expected.map(|(_, gate)| gate));
+        value["shows"] = json!(outcome.is_visible());
+        value["right"] = json!(outcome.names(number));
+    }
+    value
+}

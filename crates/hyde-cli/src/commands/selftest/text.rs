@@ -1,0 +1,151 @@
+//! A self-test in lines of at most 80 columns.
+
+use super::Told;
+use super::json::{shown, sums};
+use hyde_calibrate::{Kind, Row};
+use hyde_units::significant;
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+
+/// The widest line.
+const WIDTH: usize = 80;
+
+/// The tables.
+pub(super) fn text(told: &Told<'_>) -> String {
+    let mut out = String::new();
+    let sizes: Vec<String> = told.asked.sizes.iter().map(|&size| shown(size)).collect();
+    let _ = writeln!(
+        out,
+        "{}: {} simulated sets of records, seed {}",
+        told.plan.name,
+        told.outcomes.len(),
+        told.seed
+    );
+    if !told.table.rows.is_empty() {
+        let _ = writeln!(
+            out,
+            "\n  planted at {} of the range; `2x` is twice what shows\n",
+            sizes.join(", ")
+        );
+        let _ = writeln!(
+            out,
+            "  {:<36} {:>7} {:>10} {:>9}  taken for",
+            "effect", "right", "shows from", "hidden"
+        );
+        for row in &told.table.rows {
+            line(&mut out, told, row);
+        }
+        let (visible, right) = sums(told);
+        let percent = 100.0 * right as f64 / (visible as f64).max(1.0);
+        let _ = writeln!(
+            out,
+            "\n  right effect and site named first: {right} of {visible} that show, {} %",
+            significant(percent, 3)
+        );
+    }
+    controls(&mut out, told);
+    refused(&mut out, told);
+    out
+}
+
+fn line(out: &mut String, told: &Told<'_>, row: &Row) {
+    let hypothesis = &told.hypotheses[row.hypothesis];
+    let unit = hypothesis.sizes.first().map_or("", |size| &size.unit);
+    let from = row.detectable.map_or_else(String::new, |size| {
+        let unit = if unit == "1" { "" } else { unit };
+        format!("{} {unit}", significant(size, 2))
+            .trim_end()
+            .to_owned()
+    });
+    let hidden = match (row.hidden, row.hidden_wrong) {
+        (0, _) => String::new(),
+        (hidden, 0) => format!("{hidden}"),
+        (hidden, wrong) => format!("{hidden} ({wrong}!)"),
+    };
+    let others: Vec<String> = row
+        .taken_for
+        .iter()
+        .map(|(other, count)| match other {
+            None => format!("{count} nothing"),
+            Some(number) => format!("{count} {}", named(told, *number)),
+        })
+        .collect();
+    let right = format!("{}/{}", row.right, row.visible);
+    let head = format!(
+        "  {:<36} {right:>7} {from:>10} {hidden:>9}",
+        named(told, row.hypothesis)
+    );
+    let _ = match others.as_slice() {
+        [] => writeln!(out, "{}", head.trim_end()),
+        [only] if head.len() + 2 + only.len() <= WIDTH => writeln!(out, "{head}  {only}"),
+        several => {
+            let lines = several
+                .iter()
+                .map(|other| format!("      taken for: {other}"));
+            writeln!(
+                out,
+                "{}\n{}",
+                head.trim_end(),
+                lines.collect::<Vec<_>>().join("\n")
+            )
+        }
+    };
+}
+
+fn controls(out: &mut String, told: &Told<'_>) {
+    let table = told.table;
+    let lines = [
+        ("nothing planted: verdict `none`", table.empty),
+        ("a parameter is off: verdict `none`", table.parameter),
+        (
+            "an effect that the search is not told of: nothing, or more",
+            table.open_set,
+        ),
+        ("a faulty sensor: no effect claimed", table.sensor),
+    ];
+    let _ = writeln!(out);
+    for (what, (cases, right)) in lines.into_iter().filter(|(_, (cases, _))| *cases > 0) {
+        let _ = writeln!(out, "  {what:<60} {right:>4} of {cases}");
+    }
+    for (key, claimed) in &table.wrong {
+        let names: Vec<String> = claimed.iter().map(|&n| named(told, n)).collect();
+        let found = match names.as_slice() {
+            [] => "something unknown".to_owned(),
+            names => names.join(", then "),
+        };
+        let _ = writeln!(out, "    {key}:\n      {found}");
+    }
+}
+
+/// What could not be planted or found, and why.
+fn refused(out: &mut String, told: &Told<'_>) {
+    let mut reasons: BTreeMap<&str, Vec<String>> = BTreeMap::new();
+    for (case, kept) in told.outcomes {
+        let (Kind::Planted(number, _) | Kind::OpenSet(number, _), Err(reason)) = (&case.kind, kept)
+        else {
+            continue;
+        };
+        let names = reasons.entry(reason).or_default();
+        let name = named(told, *number);
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    for (reason, names) in reasons {
+        let _ = writeln!(out, "\n  {reason}:");
+        for name in names {
+            let _ = writeln!(out, "    {name}");
+        }
+    }
+    if !told.siteless.is_empty() {
+        let _ = writeln!(out, "\n  no site on this model:");
+        for name in &told.siteless {
+            let _ = writeln!(out, "    {name}");
+        }
+    }
+}
+
+fn named(told: &Told<'_>, number: usize) -> String {
+    let hypothesis = &told.hypotheses[number];
+    format!("{} at {}", hypothesis.effect, hypothesis.site)
+}

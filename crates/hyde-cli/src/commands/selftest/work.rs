@@ -1,0 +1,98 @@
+//! What is missing of a self-test, done on all cores; each outcome is kept as soon as it is there.
+
+use super::kept::{self, Kept};
+use crate::batch::progress::Progress;
+use crate::batch::store::Store;
+use hyde_calibrate::{Axis, Case, SelftestError, Simulated, try_case};
+use hyde_diag::{Code, Diagnostic, Span};
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicUsize, Ordering};
+
+/// Why work ended before its end.
+pub(super) enum Ended {
+    /// It was told to, after so many of so many cases.
+    Interrupted(usize, usize),
+    /// A result could not be kept.
+    Store(String),
+}
+
+/// The outcomes of all cases, in their order; those that the store has are taken from there.
+pub(super) fn outcomes(
+    axis: &Axis<'_>,
+    cases: Vec<Case>,
+    store: Option<&Store>,
+    quiet: bool,
+) -> Result<Vec<(Case, Kept)>, Ended> {
+    let total = cases.len();
+    let known: Result<Vec<Option<Kept>>, String> = cases
+        .iter()
+        .map(
+            |case| match store.map(|store| store.get(&case.key)).transpose()? {
+                Some(Some(bytes)) => kept::decoded(&bytes).map(Some),
+                Some(None) | None => Ok(None),
+            },
+        )
+        .collect();
+    let known = known.map_err(Ended::Store)?;
+    let before = known.iter().flatten().count();
+    let done = AtomicUsize::new(before);
+    let progress = Progress::new(total, before, false, quiet);
+    let pairs: Vec<(Case, Option<Kept>)> = cases.into_iter().zip(known).collect();
+    let each = pairs.into_par_iter().with_max_len(1).map(|(case, known)| {
+        if let Some(kept) = known {
+            return Ok((case, kept));
+        }
+        let kept: Kept = match try_case(axis, &case) {
+            Ok(outcome) => Ok(outcome),
+            Err(SelftestError::Interrupted) => return Err(Ended::Interrupted(0, 0)),
+            Err(error) => {
+                progress.failed();
+                Err(reason(&error))
+            }
+        };
+        if let Some(store) = store {
+            let put = store.put(&case.key, &kept::encoded(&kept));
+            put.and_then(|()| store.sync()).map_err(Ended::Store)?;
+        }
+        progress.at(done.fetch_add(1, Ordering::Relaxed) + 1);
+        Ok((case, kept))
+    });
+    let found: Result<Vec<_>, Ended> = each.collect();
+    progress.finish();
+    found.map_err(|ended| match ended {
+        Ended::Interrupted(..) => Ended::Interrupted(done.load(Ordering::Relaxed), total),
+        Ended::Store(reason) => Ended::Store(reason),
+    })
+}
+
+/// Why a case has no outcome, in a few words.
+pub(super) fn reason(error: &SelftestError) -> String {
+    match error {
+        SelftestError::Interrupted => "interrupted".to_owned(),
+        SelftestError::Simulation(Simulated::Run(cause)) => match cause.as_ref() {
+            hyde_experiment::RunError::Failed(failure) => {
+                format!(
+                    "the run fails at {} s",
+                    hyde_units::significant(failure.t, 4)
+                )
+            }
+            other => format!("it cannot be run: {other:?}"),
+        },
+        SelftestError::Simulation(Simulated::Column(record, column)) => {
+            format!("no channel says what `{record}.{column}` holds")
+        }
+        SelftestError::Model => "an observer cannot run the model with it".to_owned(),
+        SelftestError::Record(error) => format!("the record cannot be observed: {error:?}"),
+        SelftestError::Unsupported(error) => format!("the model cannot be observed: {error:?}"),
+    }
+}
+
+/// An axis that cannot be tested at all.
+pub(super) fn cannot(error: &SelftestError, span: Span) -> Diagnostic {
+    Diagnostic::error(
+        Code::CannotObserve,
+        format!("records of this axis cannot be simulated: {}", reason(error)),
+    )
+    .label(span, "asked for by this study")
+    .help("run its experiment first: `hyde run FILE`; every recorded column needs its `measured` or `replay`")
+}

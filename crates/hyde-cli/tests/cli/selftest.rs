@@ -1,0 +1,104 @@
+//! Effects planted in simulated records of a small axis, and what its diagnosis makes of them: a sample of what
+//! `./dev long` does in full.
+
+use crate::command::{Folder, errors, hyde, status, text};
+use serde_json::Value;
+
+const AXIS: &str = "tests/models/small_axis/axis.hyde";
+
+fn tested(arguments: &[&str]) -> String {
+    let output = hyde(&[&["selftest", AXIS, "quick"], arguments].concat());
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    text(&output)
+}
+
+fn json(printed: &str) -> Value {
+    serde_json::from_str(printed).unwrap()
+}
+
+#[test]
+fn planted_effects_of_four_kinds_are_found_and_nothing_where_nothing_is() {
+    // Friction, a force, the transmission, a sensor; at a twentieth of their ranges they show clearly.
+    let wanted = "Stribeck,Pull,LeadError,TachoGain";
+    let only = [
+        "--only",
+        "planted,empty",
+        "--sizes",
+        "0.05",
+        "--empties",
+        "1",
+        "--effects",
+        wanted,
+    ];
+    let folder = Folder::new();
+    let out = folder.path("kept");
+    let report = json(&tested(&[&only[..], &["--out", &out, "--json"]].concat()));
+    assert_eq!(
+        report["controls"]["empty"],
+        serde_json::json!({ "cases": 1, "right": 1 })
+    );
+    let rows = report["planted"].as_array().unwrap();
+    assert_eq!(rows.len(), 4);
+    for row in rows {
+        let effect = row["planted"]["effect"].as_str().unwrap();
+        assert_eq!(
+            (&row["visible"], &row["right"]),
+            (&1.into(), &1.into()),
+            "{row:#}"
+        );
+        // The sizes are those planted: 15 % is what a diagnosis promises.
+        let ratio = row["size_found_over_planted"][0].as_f64().unwrap();
+        assert!((ratio - 1.0).abs() < 0.15, "{effect}: {ratio}");
+    }
+    // Nothing is done again, and what is kept says the same.
+    let again = tested(&[&only[..], &["--out", &out, "--json"]].concat());
+    assert_eq!(json(&again), report);
+    let printed = tested(&[&only[..], &["--out", &out]].concat());
+    assert!(printed.contains("named first: 4 of 4"), "{printed}");
+    assert!(
+        printed.lines().all(|line| line.chars().count() <= 80),
+        "{printed}"
+    );
+}
+
+#[test]
+fn a_report_is_the_same_from_any_number_of_threads_and_however_often_it_began_anew() {
+    let kinds = ["--only", "empty", "--seed", "7", "--json", "--empties"];
+    let folder = Folder::new();
+    let out = folder.path("kept");
+    // One case first, then the other: as if the first run had been interrupted.
+    let first = json(&tested(&[&kinds[..], &["1", "--out", &out]].concat()));
+    assert_eq!(first["cases"].as_array().unwrap().len(), 1);
+    let resumed = tested(&[&kinds[..], &["2", "--jobs", "1", "--out", &out]].concat());
+    let direct = tested(&[&kinds[..], &["2", "--jobs", "3"]].concat());
+    assert_eq!(resumed, direct);
+}
+
+#[test]
+fn the_records_of_a_case_are_what_its_diagnosis_reads() {
+    let folder = Folder::new();
+    let out = folder.path("records");
+    let case = "planted Pull@saddle.a 0.05 1";
+    tested(&[
+        "--only", "planted", "--sizes", "0.05", "--case", case, "--out", &out,
+    ]);
+    let output = hyde(&["diagnose", AXIS, "quick", "--data", &out, "--json"]);
+    let found = json(&text(&output));
+    assert_eq!(found["verdict"], "effect", "{found:#}");
+    assert_eq!(found["effects"][0]["effect"], "Pull");
+    // A twentieth of 1 kN, either way.
+    let size = found["effects"][0]["size"].as_f64().unwrap();
+    assert!((size.abs() - 50.0).abs() < 5.0, "{size}");
+}
+
+#[test]
+fn what_is_asked_wrongly_is_said() {
+    for (arguments, told) in [
+        (["--sizes", "3"], "`3` is no size"),
+        (["--effects", "Strybeck"], "`Strybeck` is no effect"),
+    ] {
+        let output = hyde(&[&["selftest", AXIS, "quick"], &arguments[..]].concat());
+        assert_eq!(status(&output), 2);
+        assert!(errors(&output).contains(told), "{}", errors(&output));
+    }
+}
