@@ -48,8 +48,8 @@ pub use plan::{CalibrationPlan, Source, Vary};
 pub use plant::Unsupported;
 pub use recording::{RecordError, Recording};
 pub use selftest::{
-    Asked, Axis, Case, Claim, Fault, Kind, Outcome, Row, SelftestError, Simulated, Size, Tally,
-    cases, simulated, tables_of, tally, try_case,
+    Asked, Axis, Case, Claim, Fault, Found, Outcome, Planting, Row, SelftestError, Simulated, Size,
+    Tally, cases, simulated, tables_of, tally, try_case,
 };
 pub use varied::Varied;
 pub use windows::{WINDOW_S, Windows};

@@ -16,7 +16,7 @@ mod simulated;
 mod table;
 mod trial;
 
-pub use case::{Asked, Case, Fault, Kind, Size, cases};
+pub use case::{Asked, Case, Fault, Planting, Size, cases};
 pub use simulated::{Simulated, simulated};
-pub use table::{Row, Table as Tally, tally};
+pub use table::{Found, Row, Table as Tally, tally};
 pub use trial::{Axis, Claim, Outcome, SelftestError, tables_of, try_case};

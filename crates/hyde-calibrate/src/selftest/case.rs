@@ -50,7 +50,7 @@ impl Fault {
 
 /// What is planted.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Kind {
+pub enum Planting {
     /// A hypothesis, by number, at a size.
     Planted(usize, Size),
     /// Nothing.
@@ -69,7 +69,7 @@ pub struct Case {
     /// Its name: says all that it depends on beside axis and seed.
     pub key: String,
     /// What is planted.
-    pub kind: Kind,
+    pub kind: Planting,
 }
 
 /// Which cases are wanted.
@@ -102,20 +102,20 @@ pub fn cases(
     let mut all = Vec::new();
     let mut add = |key: String, kind| all.push(Case { key, kind });
     for number in 0..asked.empties {
-        add(format!("empty {}", number + 1), Kind::Empty);
+        add(format!("empty {}", number + 1), Planting::Empty);
     }
     let uncertain = |(number, varied): (usize, &Varied)| varied.prior.map(|_| number);
     if asked.parameters {
         for number in varied.iter().enumerate().filter_map(uncertain) {
             let key = format!("parameter {}", varied[number].name);
-            add(key, Kind::Parameter(number));
+            add(key, Planting::Parameter(number));
         }
     }
     if asked.sensors {
         for (number, channel) in channels.iter().enumerate() {
             for fault in Fault::ALL {
                 let key = format!("sensor {channel} {}", fault.name());
-                add(key, Kind::Sensor(number, fault));
+                add(key, Planting::Sensor(number, fault));
             }
         }
     }
@@ -123,7 +123,7 @@ pub fn cases(
     if let (true, Some(size)) = (asked.open_set, largest) {
         for (number, hypothesis) in hypotheses.iter().enumerate().step_by(OPEN_SET) {
             let key = format!("unknown {} {}", named(hypothesis), shown(size));
-            add(key, Kind::OpenSet(number, size));
+            add(key, Planting::OpenSet(number, size));
         }
     }
     if asked.planted {
@@ -132,7 +132,7 @@ pub fn cases(
                 for seed in 0..asked.seeds {
                     let (name, size_name) = (named(hypothesis), shown(size));
                     let key = format!("planted {name} {size_name} {}", seed + 1);
-                    add(key, Kind::Planted(number, size));
+                    add(key, Planting::Planted(number, size));
                 }
             }
         }
@@ -154,9 +154,12 @@ impl Case {
             let half = varied.prior.unwrap_or(0.0) * 3.0_f64.sqrt();
             let part = random.between(-1.0, 1.0);
             let off = match self.kind {
-                Kind::Parameter(wrong) if wrong == number => OFF * part.signum(),
-                Kind::Parameter(_) => 0.0,
-                Kind::Planted(..) | Kind::Empty | Kind::OpenSet(..) | Kind::Sensor(..) => part,
+                Planting::Parameter(wrong) if wrong == number => OFF * part.signum(),
+                Planting::Parameter(_) => 0.0,
+                Planting::Planted(..)
+                | Planting::Empty
+                | Planting::OpenSet(..)
+                | Planting::Sensor(..) => part,
             };
             let value = varied.nominal + off * half;
             let (low, high) = varied.bounds;
@@ -285,8 +288,8 @@ mod tests {
         let all = cases(&hypotheses, &[], &["x".to_owned()], &asked);
         // Two empty, three faults, one effect withheld, 2 x 2 x 3 planted.
         assert_eq!(all.len(), 2 + 3 + 1 + 12);
-        assert_eq!(all[0].kind, Kind::Empty);
-        assert_eq!(all[5].kind, Kind::OpenSet(0, Size::Part(0.1)));
+        assert_eq!(all[0].kind, Planting::Empty);
+        assert_eq!(all[5].kind, Planting::OpenSet(0, Size::Part(0.1)));
         let mut keys: Vec<&str> = all.iter().map(|case| case.key.as_str()).collect();
         keys.sort_unstable();
         keys.dedup();

@@ -1,9 +1,30 @@
 //! [`tally`]: the outcomes of all cases, counted: what was planted against what was found.
 
-use super::case::{Case, Kind};
-use super::trial::Outcome;
-use crate::diagnosis::{Hypothesis, Verdict};
+use super::case::{Case, Planting};
+use super::trial::{Claim, Outcome};
+use crate::diagnosis::Verdict;
 use std::collections::BTreeMap;
+
+/// What is claimed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Found {
+    /// Nothing.
+    Nothing,
+    /// A hypothesis, by number.
+    Effect(usize),
+    /// A law that no known effect is.
+    Law,
+}
+
+impl Found {
+    fn of(claim: Option<&Claim>) -> Self {
+        match claim.map(|claim| claim.hypothesis) {
+            None => Self::Nothing,
+            Some(Some(number)) => Self::Effect(number),
+            Some(None) => Self::Law,
+        }
+    }
+}
 
 /// What became of one hypothesis, planted at all sizes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -22,8 +43,8 @@ pub struct Row {
     pub hidden_right: usize,
     /// Cases in which it did not show and another was named.
     pub hidden_wrong: usize,
-    /// What it was taken for where it showed: by hypothesis; `None` for nothing.
-    pub taken_for: BTreeMap<Option<usize>, usize>,
+    /// What it was taken for where it showed.
+    pub taken_for: BTreeMap<Found, usize>,
     /// Further effects claimed beside it.
     pub extras: usize,
     /// The least size at which it began to show, SI.
@@ -41,50 +62,51 @@ pub struct Table {
     pub empty: (usize, usize),
     /// A parameter off: right is `none`.
     pub parameter: (usize, usize),
-    /// An effect that the search does not know and that shows: right is to say that something is left, or nothing.
+    /// An effect that the search does not know and that shows: right is to claim no known one, or to say that something is
+    /// left beside it.
     pub open_set: (usize, usize),
     /// Of these, how often a neighbour was named that effect's own list of confusions has.
     pub neighbours: usize,
+    /// Of these, how often a law of its own was written.
+    pub laws: usize,
     /// A faulty sensor: right is to claim no effect.
     pub sensor: (usize, usize),
     /// Keys of controls that came out wrong, with what was claimed.
-    pub wrong: Vec<(String, Vec<usize>)>,
+    pub wrong: Vec<(String, Vec<Found>)>,
 }
 
 /// Counts outcomes. `confounds` says which hypotheses an effect is easily taken for.
 #[must_use]
-pub fn tally(
-    hypotheses: &[Hypothesis],
-    outcomes: &[(&Case, Outcome)],
-    confounds: &dyn Fn(usize, usize) -> bool,
-) -> Table {
+pub fn tally(outcomes: &[(&Case, Outcome)], confounds: &dyn Fn(usize, usize) -> bool) -> Table {
     let mut table = Table::default();
     let mut rows: BTreeMap<usize, Row> = BTreeMap::new();
     for (case, outcome) in outcomes {
-        let claimed: Vec<usize> = outcome
-            .claims
-            .iter()
-            .map(|claim| claim.hypothesis)
-            .collect();
+        let claims = outcome.claims.iter();
+        let claimed: Vec<Found> = claims.map(|claim| Found::of(Some(claim))).collect();
         let (counter, right) = match case.kind {
-            Kind::Planted(number, _) => {
+            Planting::Planted(number, _) => {
                 let row = rows.entry(number).or_default();
                 row.hypothesis = number;
                 count(row, outcome);
                 continue;
             }
-            Kind::Empty => (&mut table.empty, outcome.verdict == Verdict::None),
-            Kind::Parameter(_) => (&mut table.parameter, outcome.verdict == Verdict::None),
-            Kind::Sensor(..) => (&mut table.sensor, claimed.is_empty()),
-            Kind::OpenSet(number, _) => {
+            Planting::Empty => (&mut table.empty, outcome.verdict == Verdict::None),
+            Planting::Parameter(_) => (&mut table.parameter, outcome.verdict == Verdict::None),
+            Planting::Sensor(..) => (&mut table.sensor, claimed.is_empty()),
+            Planting::OpenSet(number, _) => {
                 if !outcome.is_visible() {
                     continue;
                 }
-                let near = |&other: &usize| {
-                    confounds(number, other) || hypotheses[other].site == hypotheses[number].site
+                // A law of one's own at the site is what an unknown effect asks for.
+                let near = |found: &Found| match *found {
+                    Found::Nothing | Found::Law => false,
+                    Found::Effect(other) => confounds(number, other),
                 };
                 table.neighbours += usize::from(claimed.first().is_some_and(near));
-                let right = claimed.is_empty() || outcome.unexplained;
+                table.laws += usize::from(claimed.contains(&Found::Law));
+                let known = |found: &Found| matches!(found, Found::Effect(_));
+                let claims_known = claimed.iter().any(known);
+                let right = !claims_known || outcome.unexplained;
                 (&mut table.open_set, right)
             }
         };
@@ -106,7 +128,7 @@ fn count(row: &mut Row, outcome: &Outcome) {
     };
     let first = outcome.claims.first();
     if let Some(claim) = first
-        && claim.hypothesis == row.hypothesis
+        && claim.hypothesis == Some(row.hypothesis)
         && outcome.size != 0.0
     {
         row.ratios.push(claim.size / outcome.size);
@@ -120,11 +142,10 @@ fn count(row: &mut Row, outcome: &Outcome) {
     row.visible += 1;
     row.right += usize::from(right);
     row.alone += usize::from(
-        first.is_some_and(|c| c.hypothesis == row.hypothesis && c.alternatives.is_empty()),
+        first.is_some_and(|c| c.hypothesis == Some(row.hypothesis) && c.alternatives.is_empty()),
     );
     row.extras += outcome.claims.len().saturating_sub(1);
     if !right {
-        let other = first.map(|claim| claim.hypothesis);
-        *row.taken_for.entry(other).or_default() += 1;
+        *row.taken_for.entry(Found::of(first)).or_default() += 1;
     }
 }

@@ -1,9 +1,11 @@
 //! [`try_case`]: simulates a case, diagnoses it, and says what was found for what was planted.
 
-use super::case::{Case, Fault, Kind, Size};
+use super::case::{Case, Fault, Planting, Size};
 use super::expected::{Reference, shows, size_of};
 use super::simulated::{Simulated, simulated};
-use crate::diagnosis::{Build, Built, Hypothesis, Verdict, diagnose};
+use crate::diagnosis::{
+    Author, Build, Built, Hypothesis, Inquiry, Site, Verdict, Written, diagnose, propose,
+};
 use crate::gain::Observer;
 use crate::plant::Unsupported;
 use crate::recording::{RecordError, Recording};
@@ -34,6 +36,10 @@ pub struct Axis<'a> {
     pub hypotheses: &'a [Hypothesis],
     /// Puts hypotheses on the observed form.
     pub build: &'a Build<'a>,
+    /// Where a law that no effect is may act.
+    pub sites: &'a [Site],
+    /// Puts hypotheses and written effects on the observed form.
+    pub author: &'a Author<'a>,
     /// Puts hypotheses on the recorded form; sizes and shapes of the last of them may shape the equations.
     pub simulate: &'a Simulate<'a>,
     /// How many effects a diagnosis claims at most.
@@ -63,8 +69,8 @@ pub enum SelftestError {
 /// An effect that a diagnosis claims, and those that it cannot tell from it; hypotheses by number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Claim {
-    /// The hypothesis.
-    pub hypothesis: usize,
+    /// The hypothesis; `None` where a law is claimed that no known effect is.
+    pub hypothesis: Option<usize>,
     /// Those that the records cannot tell from it.
     pub alternatives: Vec<usize>,
     /// Its size, SI, and the 95 % interval.
@@ -104,7 +110,7 @@ impl Outcome {
     pub fn names(&self, hypothesis: usize) -> bool {
         let first = self.claims.first();
         first.is_some_and(|claim| {
-            claim.hypothesis == hypothesis || claim.alternatives.contains(&hypothesis)
+            claim.hypothesis == Some(hypothesis) || claim.alternatives.contains(&hypothesis)
         })
     }
 }
@@ -122,6 +128,7 @@ impl<'a> Axis<'a> {
         set: &'a [(String, f64)],
         hypotheses: &'a [Hypothesis],
         build: &'a Build<'a>,
+        laws: (&'a [Site], &'a Author<'a>),
         simulate: &'a Simulate<'a>,
         max_effects: usize,
         seed: u64,
@@ -147,6 +154,8 @@ impl<'a> Axis<'a> {
             set,
             hypotheses,
             build,
+            sites: laws.0,
+            author: laws.1,
             simulate,
             max_effects,
             seed,
@@ -178,8 +187,10 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         Observer::new(axis.program, &recordings, &places).map_err(SelftestError::Unsupported)?;
     // An effect that the search does not know takes all its sites with it.
     let withheld = match case.kind {
-        Kind::OpenSet(number, _) => Some(axis.hypotheses[number].effect.as_str()),
-        Kind::Planted(..) | Kind::Empty | Kind::Parameter(_) | Kind::Sensor(..) => None,
+        Planting::OpenSet(number, _) => Some(axis.hypotheses[number].effect.as_str()),
+        Planting::Planted(..) | Planting::Empty | Planting::Parameter(_) | Planting::Sensor(..) => {
+            None
+        }
     };
     let known: Vec<usize> = (0..axis.hypotheses.len())
         .filter(|&number| withheld != Some(axis.hypotheses[number].effect.as_str()))
@@ -192,7 +203,11 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         let numbers: Vec<usize> = numbers.iter().map(|&number| known[number]).collect();
         (axis.build)(&numbers)
     };
-    let found = diagnose(
+    let author = |numbers: &[usize], written: &[Written]| {
+        let numbers: Vec<usize> = numbers.iter().map(|&number| known[number]).collect();
+        (axis.author)(&numbers, written)
+    };
+    let mut found = diagnose(
         &recordings,
         &observer,
         axis.varied,
@@ -202,15 +217,24 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         axis.max_effects,
     )
     .map_err(SelftestError::Unsupported)?;
+    let inquiry = Inquiry {
+        recordings: &recordings,
+        observer: &observer,
+        set: axis.set,
+        hypotheses: &hypotheses,
+        sites: axis.sites,
+        author: &author,
+    };
+    propose(&inquiry, &mut found).map_err(SelftestError::Unsupported)?;
     if axis.interrupted.load(Ordering::Relaxed) {
         return Err(SelftestError::Interrupted);
     }
     let claims = found.findings.iter().map(|finding| Claim {
-        hypothesis: known[finding.hypothesis],
+        hypothesis: known.get(finding.hypothesis).copied(),
         alternatives: finding
             .alternatives
             .iter()
-            .map(|&other| known[other])
+            .filter_map(|&other| known.get(other).copied())
             .collect(),
         size: finding.size.value,
         interval: finding.size.interval,
@@ -252,8 +276,10 @@ struct Planted {
 
 fn planted(axis: &Axis<'_>, case: &Case) -> Result<Planted, SelftestError> {
     let (number, size) = match case.kind {
-        Kind::Planted(number, size) | Kind::OpenSet(number, size) => (number, size),
-        Kind::Empty | Kind::Parameter(_) | Kind::Sensor(..) => return Ok(Planted::default()),
+        Planting::Planted(number, size) | Planting::OpenSet(number, size) => (number, size),
+        Planting::Empty | Planting::Parameter(_) | Planting::Sensor(..) => {
+            return Ok(Planted::default());
+        }
     };
     let hypothesis = &axis.hypotheses[number];
     let (whole, shapes) = case.direction(axis.seed, hypothesis);
@@ -305,8 +331,11 @@ fn tables(
         ..Options::default()
     };
     let faulty: Option<(usize, Fault)> = match case.kind {
-        Kind::Sensor(channel, fault) => Some((channel, fault)),
-        Kind::Planted(..) | Kind::Empty | Kind::Parameter(_) | Kind::OpenSet(..) => None,
+        Planting::Sensor(channel, fault) => Some((channel, fault)),
+        Planting::Planted(..)
+        | Planting::Empty
+        | Planting::Parameter(_)
+        | Planting::OpenSet(..) => None,
     };
     let made = records.iter().enumerate().map(|(number, tables)| {
         let purpose = format!("{} / record {number}", case.key);

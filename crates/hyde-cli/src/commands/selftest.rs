@@ -22,8 +22,9 @@ use crate::exit::Exit;
 use crate::files;
 use crate::project::{complain, print_error, print_output};
 use crate::study::{self, Calibration};
+use crate::unknown;
 use hyde_calibrate::{
-    Asked, Axis, Case, Hypothesis, Kind, SelftestError, Size, Tally, cases, tally,
+    Asked, Axis, Case, Hypothesis, Planting, SelftestError, Size, Tally, Written, cases, tally,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan};
 use hyde_experiment::batch::{Identity, digest};
@@ -64,9 +65,9 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
         ..args.study.clone()
     };
     let mut calibration = study::load(&of_calibration, true)?;
-    let candidates: Vec<Candidate> = calibration
-        .project
-        .candidates(&model_args)?
+    let candidates = calibration.project.candidates(&model_args)?;
+    let sites = unknown::sites(&candidates);
+    let candidates: Vec<Candidate> = candidates
         .into_iter()
         .filter(|candidate| plan.selects(candidate))
         .collect();
@@ -91,6 +92,7 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
         let simulate = |numbers: &[usize], sizes: &[f64], shapes: &[f64]| {
             models.recorded(numbers, sizes, shapes)
         };
+        let author = |numbers: &[usize], written: &[Written]| models.written(numbers, written);
         let interrupted = run::interrupted();
         let axis = Axis::new(
             &calibration.compiled.program,
@@ -99,6 +101,7 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
             &set,
             &hypotheses,
             &build,
+            (&sites, &author),
             &simulate,
             plan.max_effects,
             seed,
@@ -159,7 +162,7 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
         plan: &plan,
         seed,
         asked: &asked,
-        table: &tally(&hypotheses, &found, &confounds),
+        table: &tally(&found, &confounds),
         siteless: siteless(&calibration, &plan, &candidates),
         hypotheses: &hypotheses,
         outcomes: &outcomes,
@@ -220,12 +223,12 @@ fn chosen(
         ));
     }
     all.retain(|case| match case.kind {
-        Kind::Planted(number, _) | Kind::OpenSet(number, _) => {
+        Planting::Planted(number, _) | Planting::OpenSet(number, _) => {
             args.effects.is_empty() || args.effects.contains(&hypotheses[number].effect)
         }
-        Kind::Empty | Kind::Parameter(_) | Kind::Sensor(..) => true,
+        Planting::Empty | Planting::Parameter(_) | Planting::Sensor(..) => true,
     });
-    let is_planted = |case: &Case| matches!(case.kind, Kind::Planted(..));
+    let is_planted = |case: &Case| matches!(case.kind, Planting::Planted(..));
     let count = all.iter().filter(|case| is_planted(case)).count();
     if let Some(most) = args.sample.filter(|most| *most < count) {
         let mut number = 0;

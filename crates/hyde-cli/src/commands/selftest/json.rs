@@ -2,7 +2,7 @@
 
 use super::Told;
 use super::kept::{Kept, word};
-use hyde_calibrate::{Case, Kind, Size};
+use hyde_calibrate::{Case, Found, Planting, Size};
 use serde_json::{Value, json};
 
 /// The report.
@@ -16,7 +16,7 @@ pub(super) fn report(told: &Told<'_>) -> Value {
             let taken: Vec<Value> = row
                 .taken_for
                 .iter()
-                .map(|(other, count)| json!({ "found": other.map(|n| named(told, n)), "cases": count }))
+                .map(|(other, count)| json!({ "found": claimed(told, *other), "cases": count }))
                 .collect();
             json!({
                 "planted": named(told, row.hypothesis),
@@ -55,6 +55,7 @@ pub(super) fn report(told: &Told<'_>) -> Value {
             "parameter": control(table.parameter),
             "unknown": control(table.open_set),
             "unknown_neighbours": table.neighbours,
+            "unknown_laws": table.laws,
             "sensor": control(table.sensor),
         },
         "without_site": told.siteless,
@@ -76,6 +77,15 @@ pub(super) fn shown(size: Size) -> String {
     }
 }
 
+/// What is claimed; a law of its own has no name.
+fn claimed(told: &Told<'_>, found: Found) -> Value {
+    match found {
+        Found::Nothing => json!("nothing"),
+        Found::Law => json!("law"),
+        Found::Effect(number) => named(told, number),
+    }
+}
+
 fn named(told: &Told<'_>, number: usize) -> Value {
     let hypothesis = &told.hypotheses[number];
     json!({ "effect": hypothesis.effect, "site": hypothesis.site })
@@ -83,8 +93,8 @@ fn named(told: &Told<'_>, number: usize) -> Value {
 
 fn case(told: &Told<'_>, case: &Case, kept: &Kept) -> Value {
     let planted = match case.kind {
-        Kind::Planted(number, _) | Kind::OpenSet(number, _) => Some(number),
-        Kind::Empty | Kind::Parameter(_) | Kind::Sensor(..) => None,
+        Planting::Planted(number, _) | Planting::OpenSet(number, _) => Some(number),
+        Planting::Empty | Planting::Parameter(_) | Planting::Sensor(..) => None,
     };
     let outcome = match kept {
         Err(reason) => return json!({ "name": case.key, "failed": reason }),
@@ -95,8 +105,7 @@ fn case(told: &Told<'_>, case: &Case, kept: &Kept) -> Value {
         .iter()
         .map(|claim| {
             json!({
-                "effect": told.hypotheses[claim.hypothesis].effect,
-                "site": told.hypotheses[claim.hypothesis].site,
+                "claimed": claim.hypothesis.map(|n| named(told, n)),
                 "size": claim.size,
                 "interval": [claim.interval.0, claim.interval.1],
                 "one_of": claim.alternatives.iter().map(|&n| named(told, n)).collect::<Vec<_>>(),

@@ -19,7 +19,7 @@ struct StoredOutcome {
     detectable: Option<f64>,
     expected: Option<(f64, f64)>,
     verdict: String,
-    claims: Vec<(usize, Vec<usize>, f64, (f64, f64))>,
+    claims: Vec<(Option<usize>, Vec<usize>, f64, (f64, f64))>,
     unexplained: bool,
 }
 
@@ -102,7 +102,7 @@ mod tests {
             expected: Some((123.456, 70.0)),
             verdict: Verdict::OneOf,
             claims: vec![Claim {
-                hypothesis: 7,
+                hypothesis: Some(7),
                 alternatives: vec![1, 2],
                 size: 0.3,
                 interval: (0.25, 0.35),

@@ -3,7 +3,8 @@
 
 use crate::project::Project;
 use crate::records;
-use hyde_calibrate::Built;
+use crate::unknown;
+use hyde_calibrate::{Built, Written};
 use hyde_compiler::{Additions, Backend, Candidate, Form, Header, Request};
 use hyde_diag::Diagnostics;
 use std::collections::BTreeMap;
@@ -71,6 +72,13 @@ impl<'a> Models<'a> {
         Some(Built { program, paths })
     }
 
+    /// What an observer runs, with effects written for it.
+    pub(super) fn written(&self, numbers: &[usize], written: &[Written]) -> Option<Built> {
+        let settings: BTreeMap<String, f64> = self.project.set().into_iter().collect();
+        let request = self.request(&settings, Form::Observed);
+        unknown::built(&request, self.candidates, numbers, written)
+    }
+
     fn compiled(
         &self,
         numbers: &[usize],
@@ -86,19 +94,24 @@ impl<'a> Models<'a> {
             .collect();
         let mut settings: BTreeMap<String, f64> = project.set().into_iter().collect();
         settings.extend(values(&paths));
-        let request = Request {
+        let request = self.request(&settings, form);
+        let compiled = hyde_compiler::compile_with(&request, &additions, &mut Diagnostics::new())?;
+        Some((compiled.program, paths))
+    }
+
+    fn request<'r>(&'r self, settings: &'r BTreeMap<String, f64>, form: Form) -> Request<'r> {
+        let project = self.project;
+        Request {
             sources: &project.sources,
             file: &project.file,
             model: &project.model,
             experiment: project.experiment.as_deref(),
-            settings: &settings,
+            settings,
             records: &self.headers,
             free_inputs: false,
             ledger: false,
             form,
             backend: Backend::Native,
-        };
-        let compiled = hyde_compiler::compile_with(&request, &additions, &mut Diagnostics::new())?;
-        Some((compiled.program, paths))
+        }
     }
 }

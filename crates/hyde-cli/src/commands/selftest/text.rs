@@ -2,7 +2,7 @@
 
 use super::Told;
 use super::json::{shown, sums};
-use hyde_calibrate::{Kind, Row};
+use hyde_calibrate::{Found, Planting, Row};
 use hyde_units::significant;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -65,10 +65,7 @@ fn line(out: &mut String, told: &Told<'_>, row: &Row) {
     let others: Vec<String> = row
         .taken_for
         .iter()
-        .map(|(other, count)| match other {
-            None => format!("{count} nothing"),
-            Some(number) => format!("{count} {}", named(told, *number)),
-        })
+        .map(|(other, count)| format!("{count} {}", found_name(told, *other)))
         .collect();
     let right = format!("{}/{}", row.right, row.visible);
     let head = format!(
@@ -98,7 +95,7 @@ fn controls(out: &mut String, told: &Told<'_>) {
         ("nothing planted: verdict `none`", table.empty),
         ("a parameter is off: verdict `none`", table.parameter),
         (
-            "an effect that the search is not told of: nothing, or more",
+            "an effect withheld: no known one claimed, or more said",
             table.open_set,
         ),
         ("a faulty sensor: no effect claimed", table.sensor),
@@ -108,7 +105,7 @@ fn controls(out: &mut String, told: &Told<'_>) {
         let _ = writeln!(out, "  {what:<60} {right:>4} of {cases}");
     }
     for (key, claimed) in &table.wrong {
-        let names: Vec<String> = claimed.iter().map(|&n| named(told, n)).collect();
+        let names: Vec<String> = claimed.iter().map(|&f| found_name(told, f)).collect();
         let found = match names.as_slice() {
             [] => "something unknown".to_owned(),
             names => names.join(", then "),
@@ -121,7 +118,8 @@ fn controls(out: &mut String, told: &Told<'_>) {
 fn refused(out: &mut String, told: &Told<'_>) {
     let mut reasons: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for (case, kept) in told.outcomes {
-        let (Kind::Planted(number, _) | Kind::OpenSet(number, _), Err(reason)) = (&case.kind, kept)
+        let (Planting::Planted(number, _) | Planting::OpenSet(number, _), Err(reason)) =
+            (&case.kind, kept)
         else {
             continue;
         };
@@ -142,6 +140,14 @@ fn refused(out: &mut String, told: &Told<'_>) {
         for name in &told.siteless {
             let _ = writeln!(out, "    {name}");
         }
+    }
+}
+
+fn found_name(told: &Told<'_>, found: Found) -> String {
+    match found {
+        Found::Nothing => "nothing".to_owned(),
+        Found::Law => "a law of its own".to_owned(),
+        Found::Effect(number) => named(told, number),
     }
 }
 
