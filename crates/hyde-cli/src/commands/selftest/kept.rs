@@ -12,6 +12,9 @@ enum Stored {
     Failed(String),
 }
 
+/// Hypothesis, alternatives, size and interval.
+type StoredClaim = (Option<usize>, Vec<usize>, f64, (f64, f64));
+
 #[derive(Serialize, Deserialize)]
 struct StoredOutcome {
     planted: (Vec<f64>, Vec<f64>),
@@ -19,7 +22,7 @@ struct StoredOutcome {
     detectable: Option<f64>,
     expected: Option<(f64, f64)>,
     verdict: String,
-    claims: Vec<(Option<usize>, Vec<usize>, f64, (f64, f64))>,
+    claims: Vec<StoredClaim>,
     unexplained: bool,
 }
 

@@ -3,8 +3,11 @@
 use super::kept::{self, Kept};
 use crate::batch::progress::Progress;
 use crate::batch::store::Store;
+use crate::study;
 use hyde_calibrate::{Axis, Case, SelftestError, Simulated, try_case};
 use hyde_diag::{Code, Diagnostic, Span};
+use hyde_experiment::RunError;
+use hyde_units::significant;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -70,25 +73,31 @@ pub(super) fn reason(error: &SelftestError) -> String {
     match error {
         SelftestError::Interrupted => "interrupted".to_owned(),
         SelftestError::Simulation(Simulated::Run(cause)) => match cause.as_ref() {
-            hyde_experiment::RunError::Failed(failure) => {
-                format!(
-                    "the run fails at {} s",
-                    hyde_units::significant(failure.t, 4)
-                )
+            RunError::Failed(failure) => {
+                format!("the run fails at {} s", significant(failure.t, 4))
             }
-            other => format!("it cannot be run: {other:?}"),
+            RunError::NoParameter(name) => format!("it has no parameter `{name}`"),
+            RunError::CannotSet(name, cause) | RunError::NoGradientBy(name, cause) => {
+                format!("`{name}` cannot be set: {cause}")
+            }
+            RunError::NoStop => "its experiment does not say when to stop".to_owned(),
+            RunError::NotPositive(what, value) => format!("{what} is {value}"),
+            RunError::Compare(error) => format!("the channel `{}`: {}", error.channel, error.cause),
         },
         SelftestError::Simulation(Simulated::Column(record, column)) => {
             format!("no channel says what `{record}.{column}` holds")
         }
         SelftestError::Model => "an observer cannot run the model with it".to_owned(),
-        SelftestError::Record(error) => format!("the record cannot be observed: {error:?}"),
-        SelftestError::Unsupported(error) => format!("the model cannot be observed: {error:?}"),
+        SelftestError::Record(_) => "an observer cannot read its records".to_owned(),
+        SelftestError::Unsupported(_) => "an observer cannot run the model".to_owned(),
     }
 }
 
 /// An axis that cannot be tested at all.
 pub(super) fn cannot(error: &SelftestError, span: Span) -> Diagnostic {
+    if let SelftestError::Unsupported(error) = error {
+        return study::unsupported(error, span);
+    }
     Diagnostic::error(
         Code::CannotObserve,
         format!("records of this axis cannot be simulated: {}", reason(error)),
