@@ -16,8 +16,10 @@ const VISIBLE_SHAPE: f64 = 0.03;
 const FIRST_STEPS: usize = 3;
 /// Steps from the whole fit to that of a half.
 const FOLD_STEPS: usize = 2;
-/// A fit that gains this much more than the scan promised did not find the effect but a better fit of all else.
+/// A fit that gains this much more than the scan promised did not find the effect but a better fit of all else, as long as
+/// it gains less than a part of the number of innovations: above that it has moved a shape, or answered what is not small.
 const TOO_GOOD: f64 = 3.0;
+const REMAINDER: f64 = 0.02;
 
 /// A refit, what it varied, and the shapes it kept fixed.
 type Refit = (Solution, Vec<Varied>, Vec<(String, f64)>);
@@ -108,9 +110,11 @@ pub(crate) fn trial(
         value <= low + near || value >= high - near
     });
     let gain = stage.solution.cost - solution.cost;
+    let innovations = solution.innovations.iter().flat_map(|i| &i.channels);
+    let remainder = REMAINDER * innovations.map(Vec::len).sum::<usize>() as f64;
     let rejected = if at_bound {
         Some(Rejection::Bound)
-    } else if score.linear && gain > TOO_GOOD * score.gain() {
+    } else if score.linear && gain > TOO_GOOD * score.gain() && gain < remainder {
         Some(Rejection::TooGood)
     } else {
         None

@@ -8,11 +8,13 @@
 
 use crate::diagnosis::{Build, Built, Gates, Ground, Hypothesis, Projection, Stage, flat};
 use crate::gain::Observer;
+use crate::least_squares::Slopes;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
 use crate::varied::Varied;
 use hyde_program::Program;
+use nalgebra::DVector;
 
 /// Halvings of a range of sizes in which the size that shows is looked for, and steps of bisection then.
 const HALVINGS: i32 = 24;
@@ -54,9 +56,10 @@ impl Reference {
             set,
         };
         let start: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
-        let solution = ground
-            .problem(program, varied, &places, None)
-            .solve_in(&start, 0)?;
+        let solution =
+            ground
+                .problem(program, varied, &places, None)
+                .solve_in(&start, 0, Slopes::Tangents)?;
         let stage = Stage {
             program: program.clone(),
             effects: Vec::new(),
@@ -136,8 +139,9 @@ impl Effect<'_> {
     /// What it gains at some sizes.
     pub(super) fn gain(&self, sizes: &[f64]) -> Option<f64> {
         let with = self.innovations(sizes)?;
-        let change: Vec<f64> = with.iter().zip(&self.plain).map(|(a, b)| a - b).collect();
-        let back: Vec<f64> = change.iter().map(|d| -d).collect();
+        let differences = with.iter().zip(&self.plain).map(|(a, b)| a - b);
+        let change = DVector::from_iterator(with.len(), differences);
+        let back = -&change;
         let projection = &self.reference.projection;
         // Put on and taken off the innovations the noise counts with either sign.
         Some(-0.5 * (projection.gain(&change) + projection.gain(&back)))
