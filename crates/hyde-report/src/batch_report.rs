@@ -212,7 +212,8 @@ impl BatchReport {
                     return blocks;
                 }
                 pairs += 1;
-                let figure = scatter(input, &measure.column, &self.failed, *correlation);
+                let choice = self.choices.first();
+                let figure = scatter(input, &measure.column, &self.failed, *correlation, choice);
                 blocks.push(Block::Figure(figure));
             }
         }

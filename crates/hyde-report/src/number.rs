@@ -12,10 +12,14 @@ pub(crate) fn fixed(value: f64, decimals: usize) -> String {
     }
 }
 
-/// `value` rounded to `digits` significant digits; from 10⁶ on and below 10⁻³ as `1.23·10⁻⁵`, not finite as `–`.
+/// `value` rounded to `digits` significant digits; from 10⁶ on and below 10⁻³ as `1.23·10⁻⁵`, what is no number
+/// as `–`.
 pub(crate) fn significant(value: f64, digits: usize) -> String {
-    if !value.is_finite() {
+    if value.is_nan() {
         return "–".to_owned();
+    }
+    if value.is_infinite() {
+        return if value > 0.0 { "∞" } else { "−∞" }.to_owned();
     }
     if value.abs() < f64::MIN_POSITIVE {
         return "0".to_owned();
@@ -73,6 +77,7 @@ mod tests {
         assert_eq!(significant(2.0e9, 2), "2.0·10⁹");
         assert_eq!(significant(0.0, 3), "0");
         assert_eq!(significant(f64::NAN, 3), "–");
+        assert_eq!(significant(f64::NEG_INFINITY, 3), "−∞");
     }
 
     #[test]

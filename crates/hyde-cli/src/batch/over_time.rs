@@ -99,7 +99,16 @@ pub(crate) fn in_si(field: &Field, values: &Values) -> Option<Vec<f64>> {
 
 /// The SI unit of a column as it is shown; empty of a bare number.
 pub(crate) fn si_unit(field: &Field) -> String {
-    let unit = field.unit.as_ref().map(NamedUnit::unit);
-    let name = unit.map_or(String::new(), |unit| unit.dimension.usual_unit());
+    let name = field.unit.as_ref().map_or(String::new(), |named| {
+        let unit = named.unit();
+        // Its own name where that is one of SI: J and N.m, Hz and 1/s are not told from each other by their dimensions.
+        let coherent = unit.to_si(1.0).to_bits() == 1.0_f64.to_bits()
+            && unit.to_si(0.0).to_bits() == 0.0_f64.to_bits();
+        if coherent {
+            named.text().to_owned()
+        } else {
+            unit.dimension.usual_unit()
+        }
+    });
     crate::figures::shown(&name).to_owned()
 }

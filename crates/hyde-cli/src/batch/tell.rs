@@ -114,6 +114,13 @@ pub(crate) fn text(batch: &Prepared, summary: &Summary, took: Took, rerun: &str)
     for (case, reason) in &summary.failures {
         let _ = writeln!(out, "  case {case} failed, {reason}: {rerun} --case {case}");
     }
+    let more = summary.failed - summary.failures.len();
+    if more > 0 {
+        let _ = writeln!(
+            out,
+            "  and {more} more failed: column `reason` of the data set"
+        );
+    }
     out
 }
 

@@ -9,31 +9,50 @@ use crate::{
 const SMALL: (f64, f64) = (330.0, 190.0);
 /// No scatter has more points, no distribution more steps: the page stays small, and a reader sees no more.
 const POINTS: usize = 600;
-/// No more choices than these get a curve of their own.
+/// No more choices than these get a curve of their own; the colour behind theirs is that of failed cases.
 const OPTIONS: usize = 6;
 
-/// A measure over an input, a point a case; failed cases stand at the lower edge.
+/// A measure over an input, a point a case, in the colour of what was chosen; failed cases stand at the lower edge.
 pub(super) fn scatter(
     input: &CaseColumn,
     measure: &CaseColumn,
     failed: &[bool],
     correlation: f64,
+    choice: Option<&ChoiceColumn>,
 ) -> Figure {
     let x = Axis::scaled(input.name.as_str(), &input.unit, &input.values);
     let y = Axis::scaled(measure.name.as_str(), &measure.unit, &measure.values);
-    let cases = input
-        .values
-        .iter()
-        .copied()
-        .zip(measure.values.iter().copied());
-    let solved: Vec<(f64, f64)> = cases.filter(|(x, y)| (x + y).is_finite()).collect();
+    let cases = input.values.iter().zip(&measure.values).enumerate();
+    let solved: Vec<(usize, (f64, f64))> = cases
+        .map(|(case, (x, y))| (case, (*x, *y)))
+        .filter(|(_, (x, y))| (x + y).is_finite())
+        .collect();
     let extremes = extremes(&solved);
     let step = solved.len().div_ceil(POINTS).max(1);
     let kept = |at: &usize| at.is_multiple_of(step) || extremes.contains(at);
-    let (xs, ys) = (0..solved.len()).filter(kept).map(|at| solved[at]).unzip();
-    let label = if failed.contains(&true) { "solved" } else { "" };
-    let mut lines = vec![Line::new(label, xs, ys).with_style(LineStyle::Points)];
-    if failed.contains(&true) {
+    let shown: Vec<(usize, (f64, f64))> = (0..solved.len())
+        .filter(kept)
+        .map(|at| solved[at])
+        .collect();
+    let points = |label: &str, chosen: &dyn Fn(usize) -> bool| {
+        let own = shown.iter().filter(|(case, _)| chosen(*case));
+        let (xs, ys) = own.map(|(_, point)| *point).unzip();
+        Line::new(label, xs, ys).with_style(LineStyle::Points)
+    };
+    let (some_failed, some_chosen) = (failed.contains(&true), choice.is_some());
+    let mut lines: Vec<Line> = match choice {
+        None => vec![points(if some_failed { "solved" } else { "" }, &|_| true)],
+        Some(choice) => {
+            let options = choice.options().into_iter().take(OPTIONS);
+            let of = |option: &str| {
+                points(option, &|case| {
+                    choice.values.get(case).is_some_and(|value| value == option)
+                })
+            };
+            options.map(of).collect()
+        }
+    };
+    if some_failed {
         let floor = measure.ends().0;
         let places: Vec<f64> = input
             .values
@@ -47,7 +66,7 @@ pub(super) fn scatter(
         lines.push(
             Line::new("failed", places, floor)
                 .with_style(LineStyle::Points)
-                .with_colour(1),
+                .with_colour(if some_chosen { OPTIONS } else { 1 }),
         );
     }
     let caption = format!(
@@ -64,8 +83,8 @@ pub(super) fn scatter(
 }
 
 /// Where the least and the largest ordinate are.
-fn extremes(points: &[(f64, f64)]) -> [usize; 2] {
-    let by_y = |a: &usize, b: &usize| points[*a].1.total_cmp(&points[*b].1);
+fn extremes(points: &[(usize, (f64, f64))]) -> [usize; 2] {
+    let by_y = |a: &usize, b: &usize| points[*a].1.1.total_cmp(&points[*b].1.1);
     let least = (0..points.len()).min_by(by_y).unwrap_or(0);
     [least, (0..points.len()).max_by(by_y).unwrap_or(0)]
 }
@@ -106,12 +125,15 @@ pub(super) fn distribution(measure: &CaseColumn, choice: Option<&ChoiceColumn>) 
 
 /// The empirical distribution of values, in percent.
 fn steps(label: &str, values: impl Iterator<Item = f64>) -> Line {
-    let mut sorted: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+    let mut sorted: Vec<f64> = values.filter(|value| !value.is_nan()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
+    // What is infinite, as the time of what never settles, has its share, and no place.
     let count = sorted.len();
+    sorted.retain(|value| value.is_finite());
     let share = |at: usize| 100.0 * (at + 1) as f64 / count as f64;
     let step = count.div_ceil(POINTS).max(1);
-    let kept = (0..count).filter(|at| at.is_multiple_of(step) || at + 1 == count);
+    let drawn = sorted.len();
+    let kept = (0..drawn).filter(|at| at.is_multiple_of(step) || at + 1 == drawn);
     let (mut x, mut y): (Vec<f64>, Vec<f64>) = kept.map(|at| (sorted[at], share(at))).unzip();
     // It rises from nothing at the least value.
     if let Some(least) = x.first().copied() {

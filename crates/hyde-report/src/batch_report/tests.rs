@@ -141,3 +141,13 @@ fn an_envelope_is_drawn_between_its_quantiles() {
     assert_eq!(areas.count(), 2, "{svg}");
     assert!(svg.contains("x [mm]") && svg.contains("time [s]"), "{svg}");
 }
+
+#[test]
+fn what_never_settles_has_its_share() {
+    let times = [0.1, 0.2, f64::INFINITY, 0.3, f64::NAN];
+    let figure = distribution(&column("settled", "s", times.into_iter()), None);
+    // A failed case has no value; of the four others one is never at rest.
+    let line = &figure.panels[0].lines[0];
+    assert_eq!(line.x, [0.1, 0.1, 0.2, 0.3]);
+    assert_eq!(line.y, [0.0, 25.0, 50.0, 75.0]);
+}
