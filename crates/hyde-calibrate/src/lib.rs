@@ -9,6 +9,7 @@
 //! calibration    bounded least squares on innovations and priors                  least_squares.rs, varied.rs
 //! its worth      errors before and after, intervals, groups                       fit.rs
 //! measures       the error in three measures, before and after, over its floor                  measures.rs, windows.rs, free_run.rs
+//! what is left   what innovations depend on, and whether they are white                        residual_map.rs, whiteness.rs
 //! diagnosis      which effect is missing                                          diagnosis.rs
 //! self-test      what a diagnosis finds in records with a known effect              selftest.rs
 //! ```
@@ -27,10 +28,12 @@ mod observer;
 mod plan;
 mod plant;
 mod recording;
+mod residual_map;
 mod selftest;
 mod stepping;
 mod tangent;
 mod varied;
+mod whiteness;
 mod windows;
 
 pub use diagnosis::{
@@ -47,9 +50,11 @@ pub use observer::Innovations;
 pub use plan::{CalibrationPlan, Source, Vary};
 pub use plant::Unsupported;
 pub use recording::{RecordError, Recording};
+pub use residual_map::{ResidualMap, residual_maps};
 pub use selftest::{
     Asked, Axis, Case, Claim, Fault, Found, Outcome, Planting, Row, SelftestError, Simulated, Size,
     Tally, cases, simulated, tables_of, tally, try_case,
 };
 pub use varied::Varied;
+pub use whiteness::{Whiteness, whiteness};
 pub use windows::{WINDOW_S, Windows};

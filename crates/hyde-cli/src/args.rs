@@ -2,7 +2,7 @@
 
 mod study;
 
-pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs};
+pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 
 use crate::batch::inputs::{Inputs, Kind};
 use crate::files;
@@ -51,6 +51,8 @@ pub(crate) enum Command {
     Diagnose(DiagnoseArgs),
     /// Plant every known effect in simulated records of this axis, and count what its diagnosis makes of them
     Selftest(SelftestArgs),
+    /// How sizes and parameters went from one diagnosis to the next
+    Trend(TrendArgs),
     /// Run every experiment of a file or a package, and test what it expects and that its effects vanish
     Test(TestArgs),
     /// Write the pages of a package, of a file, or of the library

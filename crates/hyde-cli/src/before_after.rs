@@ -227,7 +227,7 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
     let mut out = String::new();
     let _ = writeln!(
         out,
-        "  {:<34} {:>9} {:>9}   about 1 where all is known",
+        "  {:<32} {:>9} {:>9}   about 1 is noise",
         "mean square of innovations", "before", "after"
     );
     for record in records {
@@ -237,8 +237,8 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
         };
         let _ = writeln!(
             out,
-            "  {:<34} {:>9} {:>9}",
-            shortened(&name, 34),
+            "  {:<32} {:>9} {:>9}",
+            shortened(&name, 32),
             significant(record.before.chi, 4),
             significant(record.after.chi, 4)
         );
@@ -254,7 +254,7 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
         |out: &mut String, title: &str, of: &dyn Fn(&RecordErrors, usize) -> Option<Change>| {
             let _ = writeln!(
                 out,
-                "\n  {:<34} {:>11} {:>11}   times the floor",
+                "\n  {:<32} {:>11} {:>11}   times the floor",
                 format!("{title}{where_}"),
                 "before",
                 "after"
@@ -270,7 +270,7 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
     table(&mut out, "rms of innovations", &|record, number| {
         Some(record.innovations(number, deviations))
     });
-    table(&mut out, "rms over 100 ms, open loop", &|record, number| {
+    table(&mut out, "rms of 100 ms windows", &|record, number| {
         Some(record.windows(number))
     });
     match shown().find_map(RecordErrors::no_free_run) {
@@ -285,8 +285,8 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
 fn line(name: &str, change: Change, dimension: Dimension) -> String {
     let times = |value: f64| significant(value / change.floor, 3);
     format!(
-        "  {:<34} {:>11} {:>11}   {} -> {}",
-        shortened(name, 34),
+        "  {:<32} {:>11} {:>11}   {} -> {}",
+        shortened(name, 32),
         engineering(change.before, dimension),
         engineering(change.after, dimension),
         times(change.before),

@@ -18,3 +18,4 @@ pub(crate) mod run;
 pub(crate) mod selftest;
 pub(crate) mod sweep;
 pub(crate) mod test;
+pub(crate) mod trend;

@@ -21,8 +21,8 @@ pub(crate) use text::text;
 use crate::before_after::{self, RecordErrors};
 use crate::study::Calibration;
 use hyde_calibrate::{
-    Diagnosis, FittedParameter, Hypothesis, Model, Rejection, Score, Trial, Unsupported,
-    fitted_parameters,
+    Diagnosis, FittedParameter, Hypothesis, Innovations, Model, Rejection, ResidualMap, Score,
+    Trial, Unsupported, Whiteness, fitted_parameters, residual_maps, whiteness,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Written};
 
@@ -36,6 +36,9 @@ pub(crate) struct Told<'a> {
     pub(crate) errors: Vec<RecordErrors>,
     /// Each parameter of the model: calibrated without effects, and with them.
     pub(crate) parameters: Vec<(FittedParameter, FittedParameter)>,
+    /// What innovations depend on in the records fitted, and whether they are white.
+    pub(crate) maps: Vec<ResidualMap>,
+    pub(crate) whiteness: Vec<Whiteness>,
     /// The model that has what was missing.
     pub(crate) written: Written,
 }
@@ -107,6 +110,12 @@ impl<'a> Told<'a> {
                 Some((old, new))
             })
             .collect();
+        let fitted = || errors.iter().filter(|record| !record.holdout);
+        let before: Vec<&Innovations> = fitted().map(|own| &own.before.whitened).collect();
+        let after: Vec<&Innovations> = fitted().map(|own| &own.after.whitened).collect();
+        let program = &calibration.compiled.program;
+        let maps = residual_maps(program, &calibration.fitted, &before, &after);
+        let whiteness = whiteness(program, &before, &after);
         let mut told = Self {
             plan,
             calibration,
@@ -114,6 +123,8 @@ impl<'a> Told<'a> {
             found,
             errors,
             parameters,
+            maps,
+            whiteness,
             written: Written {
                 text: String::new(),
                 model: String::new(),

@@ -65,6 +65,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Fit(args) => commands::fit::fit(args),
         Command::Diagnose(args) => commands::diagnose::diagnose(args),
         Command::Selftest(args) => commands::selftest::selftest(args),
+        Command::Trend(args) => commands::trend::trend(args),
         Command::Doc(args) => commands::doc::doc(args),
         Command::Explain(args) => commands::explain::explain(args),
     };

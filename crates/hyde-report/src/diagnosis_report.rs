@@ -20,6 +20,8 @@ pub struct DiagnosisReport {
     pub doubts: Vec<String>,
     /// The effects found: effect, site, quantity with interval, what cannot be told from it.
     pub effects: Vec<[String; 4]>,
+    /// Of a force at a site that no effect known explains: variable, what any function of it gains, and by chance.
+    pub unknown: Vec<[String; 3]>,
     /// The errors, record by record.
     pub records: Vec<RecordChange>,
     /// The parameters of the model.
@@ -28,6 +30,8 @@ pub struct DiagnosisReport {
     pub tried: Vec<TriedEffect>,
     /// What innovations depend on.
     pub maps: Vec<ResidualMap>,
+    /// Channel, correlation of successive innovations before and after, what they go with most, and how much.
+    pub whiteness: Vec<[String; 5]>,
     /// The text of the new model, its own part.
     pub model: String,
     /// Last line: by what the page was made.
@@ -177,6 +181,17 @@ impl DiagnosisReport {
                 ..Table::with_columns(&["effect", "site", "quantities", "not told from"])
             }));
         }
+        if !self.unknown.is_empty() {
+            blocks.push(Block::Table(Table {
+                rows: self.unknown.iter().map(|row| row.to_vec()).collect(),
+                note: Some(
+                    "What is left by all effects known, as a force at a site: how much of the sum \
+                     of squares any function of a variable would take away, and by chance."
+                        .to_owned(),
+                ),
+                ..Table::with_columns(&["a force over", ">gain", ">by chance"])
+            }));
+        }
         let note = |doubt: &String| Verdict {
             outcome: Outcome::Note,
             text: doubt.clone(),
@@ -275,13 +290,27 @@ impl DiagnosisReport {
     }
 
     fn map_blocks(&self) -> Vec<Block> {
-        if self.maps.is_empty() {
-            return Vec::new();
+        let mut blocks = Vec::new();
+        if !self.whiteness.is_empty() {
+            let heads = [
+                "channel",
+                ">row to row before",
+                ">after",
+                "goes most with",
+                ">correlation",
+            ];
+            blocks.push(Block::Table(Table {
+                rows: self.whiteness.iter().map(|row| row.to_vec()).collect(),
+                note: Some("Correlations of innovations; those of noise are 0.".to_owned()),
+                ..Table::with_columns(&heads)
+            }));
         }
-        let text = "The mean of innovations over time, motion and current, in their standard \
-                    deviations. What lies inside the grey band is what 99 of 100 shuffles of the \
-                    same innovations stay within.";
-        let mut blocks = vec![Block::Text(text.to_owned())];
+        let text = "The mean of innovations over time and motion, in their standard deviations; over \
+                    frequency their power beyond an even one. What lies inside the grey band is chance: so far went \
+                    the same innovations in 99 draws of the signs of their blocks of 50 ms.";
+        if !self.maps.is_empty() {
+            blocks.push(Block::Text(text.to_owned()));
+        }
         blocks.extend(self.maps.iter().map(|map| Block::Figure(map_figure(map))));
         blocks
     }
@@ -359,15 +388,10 @@ impl DiagnosisReport {
     }
 
     fn model_blocks(&self) -> Vec<Block> {
-        let lines = self.model.lines();
-        let rows: Vec<Vec<String>> = lines.map(|line| vec![line.to_owned()]).collect();
-        if rows.is_empty() {
-            return Vec::new();
+        match self.model.is_empty() {
+            true => Vec::new(),
+            false => vec![Block::Code(self.model.clone())],
         }
-        vec![Block::Table(Table {
-            rows,
-            ..Table::with_columns(&[""])
-        })]
     }
 }
 

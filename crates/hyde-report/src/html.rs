@@ -80,7 +80,7 @@ fn figures(section: &Section) -> impl Iterator<Item = (usize, &Figure)> {
         .enumerate()
         .filter_map(|(number, block)| match block {
             Block::Figure(figure) => Some((number, figure)),
-            Block::Text(_) | Block::Verdicts(_) | Block::Table(_) => None,
+            Block::Text(_) | Block::Code(_) | Block::Verdicts(_) | Block::Table(_) => None,
         })
 }
 
@@ -123,6 +123,7 @@ fn is_small(block: &Block) -> bool {
 fn write_block(section: usize, number: usize, block: &Block) -> String {
     match block {
         Block::Text(text) => format!("<p>{}</p>\n", escape(text)),
+        Block::Code(text) => format!("<pre>{}</pre>\n", escape(text)),
         Block::Verdicts(verdicts) => {
             let lines: String = verdicts.iter().map(write_verdict).collect();
             format!("<ul class=\"verdicts\">\n{lines}</ul>\n")

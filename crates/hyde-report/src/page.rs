@@ -29,6 +29,8 @@ pub struct Section {
 pub enum Block {
     /// A paragraph.
     Text(String),
+    /// Text as it is written in a file.
+    Code(String),
     /// Lines that say what held and what did not.
     Verdicts(Vec<Verdict>),
     /// A table.

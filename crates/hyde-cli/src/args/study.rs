@@ -123,3 +123,13 @@ pub(crate) enum CaseKind {
     /// Faulty sensors
     Sensors,
 }
+
+#[derive(Debug, Args)]
+pub(crate) struct TrendArgs {
+    /// Folders that `diagnose --out` left, the oldest first; names that begin with a date, `2026-03-14`, give the time
+    #[arg(required = true)]
+    pub(crate) folders: Vec<PathBuf>,
+    /// Print one JSON object on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
+}

@@ -33,6 +33,8 @@ pub(crate) fn json(told: &Told<'_>) -> Value {
             .map(|own| unknown::report(own, told.found)),
         "records": before_after::json(&told.errors, told.calibration),
         "parameters": parameters(told),
+        "maps": maps(told),
+        "whiteness": whiteness(told),
         "rejected": rejected(told),
         "new_model": told.written.model,
         "new_experiment": told.written.experiment,
@@ -97,6 +99,37 @@ fn parameters(told: &Told<'_>) -> Value {
             "before": of(old),
             "after": of(new),
             "suspicion": suspicion(new).to_lowercase(),
+        })
+    });
+    Value::Array(each.collect())
+}
+
+fn maps(told: &Told<'_>) -> Value {
+    let each = told.maps.iter().map(|map| {
+        json!({
+            "channel": map.channel,
+            "over": map.over,
+            "unit": map.unit,
+            "bins": map.bins,
+            "before": map.before,
+            "after": map.after,
+            "band": map.band,
+            "excess": { "before": map.excess.0, "after": map.excess.1 },
+        })
+    });
+    Value::Array(each.collect())
+}
+
+fn whiteness(told: &Told<'_>) -> Value {
+    let each = told.whiteness.iter().map(|own| {
+        let cross = own.cross.as_ref().map(|(channel, rows, correlation)| {
+            json!({ "channel": channel, "rows_later": rows, "correlation": correlation })
+        });
+        json!({
+            "channel": own.channel,
+            "correlation": { "before": own.correlation.0, "after": own.correlation.1 },
+            "cross": cross,
+            "limit": own.limit,
         })
     });
     Value::Array(each.collect())

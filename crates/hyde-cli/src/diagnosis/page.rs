@@ -3,7 +3,7 @@
 use super::{Told, named, suspicion, verdict};
 use crate::before_after::{Change, RecordErrors};
 use crate::figures::shown;
-use hyde_calibrate::FittedParameter;
+use hyde_calibrate::{FittedParameter, ResidualMap, Whiteness};
 use hyde_report::{
     ChannelChange, DiagnosisReport, ErrorChange, MovedParameter, RecordChange, TriedEffect,
 };
@@ -35,6 +35,7 @@ pub(crate) fn html(told: &Told<'_>) -> String {
         sentence: verdict::sentence(told),
         doubts: verdict::doubts(told),
         effects: effects(told),
+        unknown: unknown(told),
         records: told
             .errors
             .iter()
@@ -46,7 +47,8 @@ pub(crate) fn html(told: &Told<'_>) -> String {
             .map(|(old, new)| moved(told, old, new))
             .collect(),
         tried: tried(told),
-        maps: Vec::new(),
+        maps: maps(told),
+        whiteness: told.whiteness.iter().map(white).collect(),
         model: told.written.text[own_text..].trim().to_owned(),
         footer: format!("hyde {}", env!("CARGO_PKG_VERSION")),
     };
@@ -73,6 +75,22 @@ fn effects(told: &Told<'_>) -> Vec<[String; 4]> {
         ]
     };
     told.found.findings.iter().map(of).collect()
+}
+
+/// The map of what is missing and in no library.
+fn unknown(told: &Told<'_>) -> Vec<[String; 3]> {
+    let own = told.found.unknown.iter();
+    own.flat_map(|own| {
+        let site = &own.map.site.path;
+        own.map.panels.iter().map(move |panel| {
+            [
+                format!("{} at {site}", panel.variable.name()),
+                significant(panel.gain, 3),
+                significant(panel.band, 3),
+            ]
+        })
+    })
+    .collect()
 }
 
 fn errors(told: &Told<'_>, record: &RecordErrors) -> RecordChange {
@@ -120,6 +138,46 @@ fn moved(told: &Told<'_>, old: &FittedParameter, new: &FittedParameter) -> Moved
         after: of(new),
         suspicion: suspicion(new).to_lowercase(),
     }
+}
+
+/// The maps that say something, so many that a reader looks at them.
+fn maps(told: &Told<'_>) -> Vec<hyde_report::ResidualMap> {
+    const SHOWN: usize = 12;
+    let beyond = |map: &&ResidualMap| map.excess.0.max(map.excess.1) > 1.0;
+    let shown = told.maps.iter().filter(beyond).take(SHOWN);
+    shown
+        .map(|map| hyde_report::ResidualMap {
+            channel: map.channel.clone(),
+            over: map.over.clone(),
+            unit: shown_unit(&map.unit),
+            bins: map.bins.clone(),
+            before: map.before.clone(),
+            after: map.after.clone(),
+            band: map.band.clone(),
+            excess: map.excess,
+        })
+        .collect()
+}
+
+fn white(own: &Whiteness) -> [String; 5] {
+    let (other, correlation) = match &own.cross {
+        Some((channel, rows, correlation)) => (
+            format!("{channel}, {rows} rows later"),
+            significant(*correlation, 2),
+        ),
+        None => (String::new(), String::new()),
+    };
+    [
+        own.channel.clone(),
+        significant(own.correlation.0, 2),
+        significant(own.correlation.1, 2),
+        other,
+        correlation,
+    ]
+}
+
+fn shown_unit(unit: &str) -> String {
+    shown(unit).to_owned()
 }
 
 fn tried(told: &Told<'_>) -> Vec<TriedEffect> {

@@ -3,13 +3,16 @@
 use super::{Told, named, suspicion, verdict};
 use crate::before_after;
 use crate::unknown;
-use hyde_units::{engineering, significant};
+use hyde_calibrate::ResidualMap;
+use hyde_units::significant;
 use std::fmt::Write as _;
 
 /// Columns of a terminal.
 const WIDTH: usize = 80;
 /// What was tried is listed so far; the report has all.
 const TRIED: usize = 12;
+/// Maps are listed so far.
+const MAPS: usize = 6;
 
 /// The whole text.
 pub(crate) fn text(told: &Told<'_>) -> String {
@@ -28,6 +31,7 @@ pub(crate) fn text(told: &Told<'_>) -> String {
     }
     out.push('\n');
     out.push_str(&before_after::text(&told.errors, told.calibration));
+    left(&mut out, told);
     parameters(&mut out, told);
     tried(&mut out, told);
     out
@@ -45,29 +49,56 @@ fn findings(out: &mut String, told: &Told<'_>) {
     }
 }
 
+/// What is left depends on: the maps that leave their band.
+fn left(out: &mut String, told: &Told<'_>) {
+    let beyond = |map: &&ResidualMap| map.excess.0.max(map.excess.1) > 1.0;
+    let shown: Vec<&ResidualMap> = told.maps.iter().filter(beyond).take(MAPS).collect();
+    if shown.is_empty() {
+        out.push_str("\n  innovations go with nothing that was measured\n");
+        return;
+    }
+    let _ = writeln!(
+        out,
+        "\n  {:<40} {:>8} {:>8}   below 1: by chance",
+        "innovations go with", "before", "after"
+    );
+    for map in shown {
+        let name = format!("{} over {}", map.channel, map.over);
+        let _ = writeln!(
+            out,
+            "  {:<40} {:>8} {:>8}",
+            before_after::shortened(&name, 40),
+            significant(map.excess.0, 2),
+            significant(map.excess.1, 2)
+        );
+    }
+}
+
 fn parameters(out: &mut String, told: &Told<'_>) {
     let program = &told.calibration.compiled.program;
     let _ = writeln!(
         out,
-        "\n  {:<18} {:>11} {:>11} {:>11} {:>8}",
+        "\n  {:<18} {:>10} {:>10} {:>10} {:>8} unit",
         "parameter", "declared", "before", "after", "±"
     );
     for (old, new) in &told.parameters {
-        let dimension = program.parameter(&new.name).map(|(p, _)| p.dimension);
-        let number =
-            |value: f64| dimension.map_or_else(|| significant(value, 4), |d| engineering(value, d));
+        let known = program.parameter(&new.name);
+        let unit = known.map_or_else(String::new, |(p, _)| p.dimension.usual_unit());
+        let unit = if unit == "1" { String::new() } else { unit };
         let half = (new.interval.1 - new.interval.0) / 2.0;
         let part = significant(100.0 * (half / new.value).abs(), 2);
         let line = format!(
-            "  {:<18} {:>11} {:>11} {:>11} {:>8}  {}",
-            new.name,
-            number(new.nominal),
-            number(old.value),
-            number(new.value),
+            "  {:<18} {:>10} {:>10} {:>10} {:>8} {unit}",
+            before_after::shortened(&new.name, 18),
+            significant(new.nominal, 4),
+            significant(old.value, 4),
+            significant(new.value, 4),
             format!("{part} %"),
-            suspicion(new)
         );
         let _ = writeln!(out, "{}", line.trim_end());
+        if !suspicion(new).is_empty() {
+            let _ = writeln!(out, "      {}", suspicion(new));
+        }
     }
 }
 
@@ -78,7 +109,7 @@ fn tried(out: &mut String, told: &Told<'_>) {
     }
     let _ = writeln!(
         out,
-        "\n  {:<32} {:>8} {:>8}  {:<14} would be seen",
+        "\n  {:<27} {:>8} {:>8}  {:<18} seen from",
         "tried and rejected", "score", "gain", "because"
     );
     for tried in all.iter().take(TRIED) {
@@ -88,8 +119,8 @@ fn tried(out: &mut String, told: &Told<'_>) {
             format!("{} {unit}", significant(value, 2))
         });
         let line = format!(
-            "  {:<32} {:>8} {:>8}  {:<18} {}",
-            before_after::shortened(&named(tried.hypothesis), 32),
+            "  {:<27} {:>8} {:>8}  {:<18} {}",
+            before_after::shortened(&named(tried.hypothesis), 27),
             significant(tried.score.gain(), 3),
             tried
                 .trial

@@ -8,6 +8,7 @@
 
 mod analyses;
 mod command;
+mod diagnose;
 mod effects;
 mod files;
 mod parquet;

@@ -52,7 +52,7 @@ fn page(folder: &Folder, form: &str) -> String {
 }
 
 /// The texts between the tags, those of figures apart, a line each.
-fn outline(html: &str) -> Vec<String> {
+pub(crate) fn outline(html: &str) -> Vec<String> {
     let mut lines = Vec::new();
     let body = &html[html.find("<body>").unwrap()..];
     let mut rest = body;
@@ -169,8 +169,25 @@ fn a_folder_without_a_finished_batch_is_refused() {
 /// Browsers that render a page without a screen.
 const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 
+/// One of them that is here.
+pub(crate) fn browser() -> Option<&'static str> {
+    let there = BROWSERS.into_iter().find(|browser| {
+        let version = Command::new(browser).arg("--version").output();
+        version.is_ok_and(|output| output.status.success())
+    });
+    if there.is_none() {
+        println!("not tested: none of {} is here", BROWSERS.join(", "));
+    }
+    there
+}
+
 /// A browser's answer about a page; none where it is not there.
-fn browsed(browser: &str, profile: &str, options: &[&str], page: &str) -> Option<Vec<u8>> {
+pub(crate) fn browsed(
+    browser: &str,
+    profile: &str,
+    options: &[&str],
+    page: &str,
+) -> Option<Vec<u8>> {
     let output = Command::new(browser)
         .args([
             "--headless",
@@ -202,12 +219,7 @@ fn a_browser_shows_the_page() {
     let folder = Folder::new();
     let page = page(&folder, "parquet");
     let profile = folder.path("profile");
-    let there = BROWSERS.iter().find(|browser| {
-        let version = Command::new(browser).arg("--version").output();
-        version.is_ok_and(|output| output.status.success())
-    });
-    let Some(browser) = there else {
-        println!("not tested: none of {} is here", BROWSERS.join(", "));
+    let Some(browser) = browser() else {
         return;
     };
     let dom = browsed(browser, &profile, &["--dump-dom"], &page).unwrap();

@@ -93,7 +93,12 @@ pub(super) fn over_time(record: &RecordChange) -> Figure {
 /// Innovations over something, with the band of permutations.
 pub(super) fn map_figure(map: &ResidualMap) -> Figure {
     let x = Axis::scaled(map.over.as_str(), &map.unit, &map.bins);
-    let y = Axis::new(format!("mean, {}", map.channel), "");
+    // Over frequency it is a power, and bins are even in its logarithm.
+    let (x, what) = match map.unit.as_str() {
+        "Hz" => (x.with_scale(Scale::Log), "power"),
+        _ => (x, "mean"),
+    };
+    let y = Axis::new(format!("{what}, {}", map.channel), "");
     let line = |label: &str, values: &Vec<f64>, colour| {
         Line::new(label, map.bins.clone(), values.clone()).with_colour(colour)
     };
