@@ -137,7 +137,7 @@ fn against(value: &Value, schema: &Value, root: &Value, place: &str, wrong: &mut
     let fits = match &schema["type"] {
         Value::String(kind) => is(kind),
         Value::Array(kinds) => kinds.iter().any(|kind| is(kind.as_str().unwrap())),
-        _ => true,
+        Value::Null | Value::Bool(_) | Value::Number(_) | Value::Object(_) => true,
     };
     let constant = schema.get("const").is_none_or(|only| value == only);
     let listed = schema["enum"]
