@@ -59,7 +59,7 @@ fn left(out: &mut String, told: &Told<'_>) {
     }
     let _ = writeln!(
         out,
-        "\n  {:<40} {:>8} {:>8}   below 1: by chance",
+        "\n  {:<40} {:>8} {:>8}   1 is chance",
         "innovations go with", "before", "after"
     );
     for map in shown {
