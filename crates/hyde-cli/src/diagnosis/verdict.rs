@@ -18,7 +18,19 @@ pub(super) fn sentence(told: &Told<'_>) -> String {
         Verdict::Unknown if names.is_empty() => {
             "something is missing, and no effect known is it".to_owned()
         }
-        Verdict::Unknown => format!("missing is {}, and something more", names.join(", then ")),
+        Verdict::Unknown => {
+            let unknown = told.found.unknown.as_ref();
+            let written = unknown.and_then(|unknown| unknown.found.as_ref());
+            let own = match written {
+                Some(_) => ", an effect that no library has",
+                None => "",
+            };
+            let more = match told.found.unexplained || written.is_none() {
+                true => ", and something more",
+                false => "",
+            };
+            format!("missing is {}{own}{more}", names.join(", then "))
+        }
         Verdict::Effect => format!("missing is {}", names.join(", then ")),
         Verdict::OneOf => format!(
             "missing is {}, or what cannot be told from it",
