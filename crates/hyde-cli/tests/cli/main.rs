@@ -19,3 +19,4 @@ mod selftest;
 mod settings;
 mod status;
 mod sweep;
+mod sweep_lasts;
