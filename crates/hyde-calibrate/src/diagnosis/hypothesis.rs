@@ -32,6 +32,8 @@ pub struct Hypothesis {
     pub shapes: Vec<Knob>,
     /// The shape that is a period in space or an order of an angle, if it has one.
     pub periodic: Option<usize>,
+    /// The shape that is the frequency of a resonance, if it has one.
+    pub resonant: Option<usize>,
 }
 
 impl Hypothesis {

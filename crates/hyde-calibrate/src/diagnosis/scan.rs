@@ -20,9 +20,10 @@ const SMALL: f64 = 1e-4;
 const CHUNK: usize = 16;
 /// Nodes kept of each effect: where it is fitted from.
 const KEPT: usize = 3;
-/// Nodes of a shape at most, and of one that is a period or an order.
+/// Nodes of a shape at most, of one that is a period or an order, and of a resonance.
 const NODES: usize = 12;
 const PERIODIC_NODES: usize = 96;
+const RESONANT_NODES: usize = 24;
 /// Sizes tried of an effect with modes of its own: halves of its range.
 const HALVINGS: i32 = 9;
 
@@ -93,28 +94,43 @@ pub(crate) fn scan(
         || program.relations.len() > stage.program.relations.len();
     let shapes = grid(hypothesis);
     let mut tried = 0;
-    let mut nodes: Vec<Node> = Vec::new();
     let mut detectable: Option<f64> = None;
-    for chunk in shapes.chunks(CHUNK) {
-        let columns = runs.columns(hypothesis, chunk)?;
-        let answers = projection.answers(&columns, hypothesis.sizes.len());
-        for (shape, answer) in chunk.iter().zip(answers) {
-            tried += 1;
-            let seen = answer.reaches(gate, 0);
-            detectable = Some(detectable.map_or(seen, |least: f64| least.min(seen)));
-            let pairs = || hypothesis.sizes.iter().enumerate();
-            let sizes: Vec<f64> = pairs()
-                .map(|(i, size)| inside(answer.sizes[i], size))
-                .collect();
-            nodes.push(Node {
-                shapes: shape.clone(),
-                visible: pairs()
-                    .map(|(i, size)| visible(answer.squares[i], size))
-                    .collect(),
-                gain: answer.gain_of(&sizes),
-                sizes,
-            });
+    // What has states of its own moves by itself as its shapes say, also at size 0: each shape needs a run of its own.
+    let chunk = if program.n_unknowns > stage.program.n_unknowns {
+        1
+    } else {
+        CHUNK
+    };
+    let mut score = |shapes: &[Vec<f64>]| -> Option<Vec<Node>> {
+        let mut nodes = Vec::new();
+        for chunk in shapes.chunks(chunk) {
+            let columns = runs.columns(hypothesis, chunk)?;
+            let answers = projection.answers(&columns, hypothesis.sizes.len());
+            for (shape, answer) in chunk.iter().zip(answers) {
+                tried += 1;
+                let seen = answer.reaches(gate, 0);
+                detectable = Some(detectable.map_or(seen, |least: f64| least.min(seen)));
+                let pairs = || hypothesis.sizes.iter().enumerate();
+                let sizes: Vec<f64> = pairs()
+                    .map(|(i, size)| inside(answer.sizes[i], size))
+                    .collect();
+                nodes.push(Node {
+                    shapes: shape.clone(),
+                    visible: pairs()
+                        .map(|(i, size)| visible(answer.squares[i], size))
+                        .collect(),
+                    gain: answer.gain_of(&sizes),
+                    sizes,
+                });
+            }
         }
+        Some(nodes)
+    };
+    let mut nodes = score(&shapes)?;
+    best_first(&mut nodes);
+    if let Some(best) = nodes.first().filter(|node| node.gain > 0.25 * gate) {
+        let between = between(hypothesis, &best.shapes.clone());
+        nodes.extend(score(&between)?);
     }
     best_first(&mut nodes);
     nodes.truncate(KEPT);
@@ -258,32 +274,84 @@ fn largest(size: &Knob) -> f64 {
     }
 }
 
-/// The values of shapes that are tried: a fine grid of a period or an order, else of the first shape; of the others their
-/// declared values.
-fn grid(hypothesis: &Hypothesis) -> Vec<Vec<f64>> {
-    let declared: Vec<f64> = hypothesis.shapes.iter().map(|shape| shape.value).collect();
-    let Some(axis) = hypothesis.periodic.or((!declared.is_empty()).then_some(0)) else {
-        return vec![declared];
-    };
-    let values = axis_values(&hypothesis.shapes[axis], hypothesis.periodic.is_some());
-    let with = |value: f64| {
-        let mut shapes = declared.clone();
-        shapes[axis] = value;
-        shapes
-    };
-    values.into_iter().map(with).collect()
+/// The shape that is varied: a period, an order or a resonance, else the first.
+fn axis(hypothesis: &Hypothesis) -> Option<usize> {
+    hypothesis
+        .periodic
+        .or(hypothesis.resonant)
+        .or((!hypothesis.shapes.is_empty()).then_some(0))
 }
 
-fn axis_values(shape: &Knob, periodic: bool) -> Vec<f64> {
+/// The values of shapes that are tried: a grid of the one that is varied, fine for a period or an order; of the others
+/// their declared values.
+fn grid(hypothesis: &Hypothesis) -> Vec<Vec<f64>> {
+    let declared: Vec<f64> = hypothesis.shapes.iter().map(|shape| shape.value).collect();
+    let Some(axis) = axis(hypothesis) else {
+        return vec![declared];
+    };
+    let values = axis_values(&hypothesis.shapes[axis], count(hypothesis));
+    values
+        .into_iter()
+        .map(|value| with(&declared, axis, value))
+        .collect()
+}
+
+/// Values between the best node of the grid and its neighbours.
+fn between(hypothesis: &Hypothesis, best: &[f64]) -> Vec<Vec<f64>> {
+    let Some(axis) = axis(hypothesis).filter(|&axis| !hypothesis.shapes[axis].integer) else {
+        return Vec::new();
+    };
+    let shape = &hypothesis.shapes[axis];
     let (low, high) = shape.range;
-    let most = if periodic { PERIODIC_NODES } else { NODES };
-    if shape.integer {
+    let steps = count(hypothesis) as f64;
+    let at = |part: f64| {
+        let value = if by_ratio(shape) {
+            best[axis] * (high / low).powf(part / steps)
+        } else {
+            best[axis] + (high - low) * part / steps
+        };
+        with(best, axis, value.clamp(low, high))
+    };
+    [-0.75, -0.5, -0.25, 0.25, 0.5, 0.75].map(at).to_vec()
+}
+
+fn with(shapes: &[f64], axis: usize, value: f64) -> Vec<f64> {
+    let mut shapes = shapes.to_vec();
+    shapes[axis] = value;
+    shapes
+}
+
+fn count(hypothesis: &Hypothesis) -> usize {
+    match (hypothesis.periodic, hypothesis.resonant) {
+        (Some(_), _) => PERIODIC_NODES,
+        (None, Some(_)) => RESONANT_NODES,
+        (None, None) => NODES,
+    }
+}
+
+/// Whether nodes follow each other by a ratio.
+fn by_ratio(shape: &Knob) -> bool {
+    let (low, high) = shape.range;
+    low > 0.0 && high / low > 4.0
+}
+
+fn axis_values(shape: &Knob, most: usize) -> Vec<f64> {
+    let (low, high) = shape.range;
+    if shape.integer && high - low < most as f64 {
         let count = (high - low).round().max(0.0) as usize + 1;
-        return (0..count.min(most)).map(|k| low + k as f64).collect();
+        return (0..count).map(|k| low + k as f64).collect();
     }
     let parts = (0..most).map(|k| (k as f64 + 0.5) / most as f64);
-    if low > 0.0 && high / low > 4.0 {
-        return parts.map(|part| low * (high / low).powf(part)).collect();
+    let mut values: Vec<f64> = if by_ratio(shape) {
+        parts.map(|part| low * (high / low).powf(part)).collect()
+    } else {
+        parts.map(|part| low + (high - low) * part).collect()
+    };
+    if shape.integer {
+        values.push(shape.value);
+        values.iter_mut().for_each(|value| *value = value.round());
+        values.sort_by(f64::total_cmp);
+        values.dedup();
     }
-    parts.map(|part| low + (high - low) * part).collect()
+    values
 }

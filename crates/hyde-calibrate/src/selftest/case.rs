@@ -274,6 +274,7 @@ mod tests {
             sizes: vec![knob(0.0, (0.0, 1.0), false)],
             shapes: Vec::new(),
             periodic: None,
+            resonant: None,
         };
         let hypotheses = [hypothesis("A"), hypothesis("B")];
         let asked = Asked {

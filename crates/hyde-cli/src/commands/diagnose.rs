@@ -190,24 +190,25 @@ pub(crate) fn hypothesis(candidate: &Candidate) -> Hypothesis {
         integer: knob.integer,
         unit: knob.quantity.dimension.usual_unit(),
     };
-    let periodic = candidate
-        .signature
-        .iter()
-        .filter(|(mark, _)| matches!(mark.as_str(), "position" | "angle"))
-        .find_map(|(_, shape)| {
+    let marked = |marks: &[&str]| {
+        let mut marks = candidate
+            .signature
+            .iter()
+            .filter(|(mark, _)| marks.contains(&mark.as_str()));
+        marks.find_map(|(_, shape)| {
             let shape = shape.as_ref()?;
-            candidate
-                .shapes
-                .iter()
-                .position(|known| known.name == *shape)
-        });
+            let mut shapes = candidate.shapes.iter();
+            shapes.position(|known| known.name == *shape)
+        })
+    };
     Hypothesis {
         effect: candidate.name().to_owned(),
         site: candidate.site.clone(),
         aliases: candidate.aliases.clone(),
         sizes: candidate.sizes.iter().map(knob).collect(),
         shapes: candidate.shapes.iter().map(knob).collect(),
-        periodic,
+        periodic: marked(&["position", "angle"]),
+        resonant: marked(&["resonance"]),
     }
 }
 

@@ -235,6 +235,7 @@ impl Law {
             sizes,
             shapes,
             periodic: None,
+            resonant: None,
         };
         (written, hypothesis)
     }
