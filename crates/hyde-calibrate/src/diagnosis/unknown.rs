@@ -333,6 +333,17 @@ fn fitted(
         return None;
     }
     trial.fold_gain = Some(fold_gain);
+    // Trials are fitted by tangents: what is taken in is fitted to the end.
+    trial.stage = trial.stage.polished(ground).ok()?;
+    trial.gain = stage.solution.cost - trial.stage.solution.cost;
+    let path = &trial.stage.effects.last()?.1;
+    let names = [&hypothesis.sizes, &hypothesis.shapes].map(|knobs| Hypothesis::names(knobs, path));
+    let known = trial.stage.values();
+    let values = names.iter().flatten().map(|name| {
+        let value = known.iter().rev().find(|(other, _)| other == name);
+        value.map(|(_, value)| *value)
+    });
+    trial.values = values.collect::<Option<Vec<f64>>>()?;
     let first = own.gains.first().copied().unwrap_or(f64::NAN);
     let found = FoundLaw {
         gain: trial.gain,
