@@ -23,7 +23,7 @@ pub(super) const TOP1: Figure = Figure {
 /// Planted at this part of their ranges: about what is found in practice.
 const TYPICAL: &str = "0.05";
 /// Effects at sites of the small axis that are tried in a measurement.
-const SAMPLE: &str = "48";
+const SAMPLE: &str = "24";
 
 /// Sets of records with nothing in them for which the verdict is any but `none`.
 fn false_alarms(session: &Session) -> Result<Measured, String> {
@@ -41,7 +41,7 @@ fn top1(session: &Session) -> Result<Measured, String> {
     let percent = 100.0 * number("right")? / number("visible")?;
     Ok(Measured::Partly(
         percent,
-        "48 of the effects at their sites",
+        "24 effects at their sites, spread over all",
     ))
 }
 
