@@ -7,7 +7,7 @@ use crate::unknown;
 use hyde_calibrate::{FreeMeasure, Measures, Model, Unsupported, Written};
 use hyde_compiler::{Additions, Backend, Candidate, Form, Request};
 use hyde_diag::Diagnostics;
-use hyde_program::{Method, Program};
+use hyde_program::Program;
 use hyde_units::{Dimension, engineering, significant};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -104,12 +104,7 @@ pub(crate) fn closed(
     };
     let program = |additions: &Additions| {
         let compiled = hyde_compiler::compile_with(&request, additions, &mut Diagnostics::new())?;
-        let mut program = compiled.program;
-        // What restarts at every tick suits a loop that is sampled; the tolerance stays that of the experiment.
-        if !program.clocks.is_empty() {
-            program.experiment.method = Method::Auto;
-        }
-        Some(program)
+        Some(compiled.program)
     };
     let shifted = additions.clone().with_shifted_quantisers();
     Some((program(&additions)?, program(&shifted)?))
