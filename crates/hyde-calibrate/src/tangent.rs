@@ -37,7 +37,13 @@ pub(crate) struct Modes {
     pub(crate) first: DMatrix<f64>,
     pub(crate) second: DMatrix<f64>,
     pub(crate) outputs: DMatrix<f64>,
+    /// The outputs with rows of zeros below them, and exp, first and second beside each other: for products of matrices.
+    padded: DMatrix<f64>,
+    whole: DMatrix<f64>,
 }
+
+/// Products of matrices are fast from this many rows and columns on.
+const LEAST_WIDTH: usize = 8;
 
 /// Runs the observer over a record, parameters `set`, and differentiates what it finds.
 pub(crate) fn tangents(
@@ -64,10 +70,15 @@ pub(crate) fn tangents(
     let mut own = Own::new(program, &plant.p, directions);
     let mut known: Vec<Modes> = Vec::new();
     let mut number_of: Vec<Option<usize>> = Vec::new();
+    let touched = own.touched.len();
+    let padded = channels.max(LEAST_WIDTH);
+    let mut gain = DMatrix::<f64>::zeros(states, padded);
+    gain.columns_mut(0, channels).copy_from(&observer.gain);
+    // Errors of the states, forces at the start of a row, their growth over it.
+    let mut before = DMatrix::<f64>::zeros(states + 2 * touched, count);
     let mut errors = DMatrix::<f64>::zeros(states, count);
-    let mut room = errors.clone();
-    let mut answers = DMatrix::<f64>::zeros(channels, count);
-    let mut now = DMatrix::<f64>::zeros(own.touched.len(), count);
+    let mut answers = DMatrix::<f64>::zeros(padded, count);
+    let mut now = DMatrix::<f64>::zeros(touched, count);
     let mut then = now.clone();
     let mut error = vec![0.0; channels];
     let mut increment = vec![0.0; states];
@@ -86,7 +97,7 @@ pub(crate) fn tangents(
             };
         }
         let at = modes(&mut plant, &mut known, &mut number_of, &own.touched);
-        answers.gemm(-1.0, &known[at].outputs, &errors, 0.0);
+        answers.gemm(-1.0, &known[at].padded, &errors, 0.0);
         for (number, direction) in directions.iter().enumerate() {
             own.outputs_at(&mut plant, direction);
             for (channel, measured) in program.experiment.measured.iter().enumerate() {
@@ -99,7 +110,7 @@ pub(crate) fn tangents(
                 }
             }
         }
-        errors.gemm(1.0, &observer.gain, &answers, 1.0);
+        errors.gemm(1.0, &gain, &answers, 1.0);
         crate::dense::set_product(&observer.gain, &error, &mut increment);
         plant.begin_row(&increment);
         if row + 1 == recording.rows() {
@@ -110,17 +121,16 @@ pub(crate) fn tangents(
         plant.advance();
         own.forces(&mut plant, directions, &mut then);
         then -= &now;
-        let modes = &known[at];
-        room.gemm(1.0, &modes.exp, &errors, 0.0);
-        room.gemm(1.0, &modes.first, &now, 1.0);
-        room.gemm(1.0, &modes.second, &then, 1.0);
+        before.rows_mut(0, states).copy_from(&errors);
+        before.rows_mut(states, touched).copy_from(&now);
+        before.rows_mut(states + touched, touched).copy_from(&then);
+        errors.gemm(1.0, &known[at].whole, &before, 0.0);
         let states = &plant.places.states;
         for (position, _) in &plant.pinned {
             if let Some(state) = states.iter().position(|state| state == position) {
-                room.row_mut(state).fill(0.0);
+                errors.row_mut(state).fill(0.0);
             }
         }
-        std::mem::swap(&mut errors, &mut room);
     }
     Ok(found)
 }
@@ -142,11 +152,21 @@ pub(crate) fn modes(
     let step = &configuration.steps[0];
     let of_states = -configuration.inverse.select_rows(&plant.places.states);
     let rows = of_states.select_columns(touched);
+    let (first, second) = (&step.first * &rows, &step.second * &rows);
+    let (n, r) = (step.exp.nrows(), touched.len());
+    let mut whole = DMatrix::zeros(n, n + 2 * r);
+    whole.columns_mut(0, n).copy_from(&step.exp);
+    whole.columns_mut(n, r).copy_from(&first);
+    whole.columns_mut(n + r, r).copy_from(&second);
+    let mut padded = DMatrix::zeros(outputs.nrows().max(LEAST_WIDTH), n);
+    padded.rows_mut(0, outputs.nrows()).copy_from(&outputs);
     known.push(Modes {
         exp: step.exp.clone(),
-        first: &step.first * &rows,
-        second: &step.second * &rows,
+        first,
+        second,
         outputs,
+        padded,
+        whole,
     });
     number_of[at] = Some(known.len() - 1);
     known.len() - 1

@@ -11,7 +11,7 @@ use super::projection::Projection;
 use super::prune::prune;
 use super::scan::{Score, scan};
 use super::stage::{Ground, Stage};
-use super::trial::{Rejection, Trial, trial, unseen};
+use super::trial::{Begun, Rejection, Trial, begin, finish, unseen};
 use crate::fit::{correlation, covariance, inflation};
 use crate::gain::Observer;
 use crate::least_squares::Solution;
@@ -28,6 +28,8 @@ const MATERIAL: f64 = 0.002;
 /// Hypotheses fitted in a round at most, and the part of the best score that they must have.
 const SURVIVORS: usize = 6;
 const SURVIVING: f64 = 0.05;
+/// Of those only these are fitted to the end that have this part of the best gain after a few steps.
+const WORTH: f64 = 0.5;
 /// Rounds beside one an effect.
 const MORE_ROUNDS: usize = 2;
 /// Innovations that are explained: their mean square, and their correlation.
@@ -202,9 +204,17 @@ pub fn diagnose(
             .iter()
             .take_while(|score| score.gain() >= (SURVIVING * best).max(gates.gain(1)));
         let survivors: Vec<&Score> = survivors.take(SURVIVORS).collect();
-        let mut trials: Vec<Trial> = survivors
+        let begun: Vec<Begun<'_>> = survivors
             .into_par_iter()
-            .filter_map(|score| trial(&ground, &stage, hypotheses, score, build))
+            .filter_map(|score| begin(&ground, &stage, hypotheses, score, build))
+            .collect();
+        let ahead = begun.iter().map(|begun| begun.gain).fold(0.0, f64::max);
+        let mut trials: Vec<Trial> = begun
+            .into_par_iter()
+            .filter_map(|begun| {
+                let worth = begun.gain >= WORTH * ahead;
+                finish(&ground, &stage, hypotheses, begun, worth)
+            })
             .collect();
         judge(&ground, &stage, &mut trials, gates);
         let rank = |trial: &Trial| {

@@ -62,6 +62,16 @@ pub struct Trial {
     pub(crate) stage: Stage,
 }
 
+/// A hypothesis fitted in a few steps.
+pub(crate) struct Begun<'s> {
+    score: &'s Score,
+    program: Program,
+    effects: Vec<(usize, String)>,
+    refit: Refit,
+    /// What it gains so far.
+    pub(crate) gain: f64,
+}
+
 /// Fits a hypothesis from its best nodes; `None` where it cannot be run.
 pub(crate) fn trial(
     ground: &Ground<'_>,
@@ -70,6 +80,18 @@ pub(crate) fn trial(
     score: &Score,
     build: &Build<'_>,
 ) -> Option<Trial> {
+    let begun = begin(ground, stage, hypotheses, score, build)?;
+    finish(ground, stage, hypotheses, begun, true)
+}
+
+/// Fits a hypothesis in a few steps from each of its best nodes; `None` where it cannot be run.
+pub(crate) fn begin<'s>(
+    ground: &Ground<'_>,
+    stage: &Stage,
+    hypotheses: &[Hypothesis],
+    score: &'s Score,
+    build: &Build<'_>,
+) -> Option<Begun<'s>> {
     let hypothesis = &hypotheses[score.hypothesis];
     let mut list: Vec<usize> = stage.effects.iter().map(|(effect, _)| *effect).collect();
     list.push(score.hypothesis);
@@ -95,8 +117,34 @@ pub(crate) fn trial(
             best = Some((solution, varied, kept));
         }
     }
-    let (mut solution, varied, kept) = best?;
-    if !solution.converged {
+    let refit = best?;
+    Some(Begun {
+        score,
+        program,
+        effects: list.into_iter().zip(paths).collect(),
+        gain: stage.solution.cost - refit.0.cost,
+        refit,
+    })
+}
+
+/// Fits to the end what has begun, if it is worth it.
+pub(crate) fn finish(
+    ground: &Ground<'_>,
+    stage: &Stage,
+    hypotheses: &[Hypothesis],
+    begun: Begun<'_>,
+    worth: bool,
+) -> Option<Trial> {
+    let Begun {
+        score,
+        program,
+        effects,
+        refit: (mut solution, varied, kept),
+        ..
+    } = begun;
+    let hypothesis = &hypotheses[score.hypothesis];
+    let own_path = effects.last()?.1.clone();
+    if worth && !solution.converged {
         let set = ground.set_in(&program, &kept);
         let problem = ground.problem(&program, &varied, &set, None);
         solution = problem
@@ -112,7 +160,9 @@ pub(crate) fn trial(
     let gain = stage.solution.cost - solution.cost;
     let innovations = solution.innovations.iter().flat_map(|i| &i.channels);
     let remainder = REMAINDER * innovations.map(Vec::len).sum::<usize>() as f64;
-    let rejected = if at_bound {
+    let rejected = if !worth {
+        Some(Rejection::Behind)
+    } else if at_bound {
         Some(Rejection::Bound)
     } else if score.linear && gain > TOO_GOOD * score.gain() && gain < remainder {
         Some(Rejection::TooGood)
@@ -120,7 +170,6 @@ pub(crate) fn trial(
         None
     };
     let inflation = inflation(&solution.innovations);
-    let effects = list.into_iter().zip(paths).collect();
     let new = Stage {
         program,
         effects,
