@@ -5,6 +5,7 @@ mod batches;
 mod bench;
 mod clif_growth;
 mod compile;
+mod diagnosis;
 mod emps;
 mod emps_diagnosis;
 mod energy;
@@ -72,4 +73,7 @@ pub const FIGURES: &[Figure] = &[
     gradient::FIGURE,
     selftest::FALSE_ALARMS,
     selftest::TOP1,
+    diagnosis::RIGHT,
+    diagnosis::CHI,
+    diagnosis::MINUTES,
 ];

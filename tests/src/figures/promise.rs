@@ -110,6 +110,7 @@ pub struct Session {
     pub seed: u64,
     pub(crate) emps: OnceCell<Result<Vec<Measured>, String>>,
     pub(crate) bench: OnceCell<Result<Vec<Measured>, String>>,
+    pub(crate) diagnoses: OnceCell<Result<Vec<super::diagnosis::SetResult>, String>>,
     pub(crate) two_mass: OnceCell<Result<Vec<Measured>, String>>,
     pub(crate) ivp: OnceCell<Result<Option<Vec<f64>>, String>>,
 }
@@ -123,6 +124,7 @@ impl Session {
             seed: 1,
             emps: OnceCell::new(),
             bench: OnceCell::new(),
+            diagnoses: OnceCell::new(),
             two_mass: OnceCell::new(),
             ivp: OnceCell::new(),
         }

@@ -1,0 +1,188 @@
+//! `bench_sets_right`, `bench_chi_minus_truth_max`, `diagnose_minutes`: the command on the six sets of the bench, whose
+//! answers are those of their SOURCE.md. The command is this program itself.
+
+use super::promise::{Figure, Measured, Promise, Session};
+use crate::root;
+use serde_json::Value;
+use std::path::Path;
+use std::process::Command;
+use std::time::Instant;
+
+pub(super) const RIGHT: Figure = Figure {
+    name: "bench_sets_right",
+    unit: "of 6",
+    promise: Promise::Exactly(6.0),
+    measure: |session| {
+        of_sets(session, |sets| {
+            sets.iter().map(|set| f64::from(u8::from(set.right))).sum()
+        })
+    },
+};
+
+pub(super) const CHI: Figure = Figure {
+    name: "bench_chi_minus_truth_max",
+    unit: "on records held out",
+    promise: Promise::AtMost(0.02),
+    measure: |session| of_sets(session, |sets| most(sets, |set| set.above_truth)),
+};
+
+pub(super) const MINUTES: Figure = Figure {
+    name: "diagnose_minutes",
+    unit: "min, the slowest set",
+    promise: Promise::AtMost(3.0),
+    measure: |session| of_sets(session, |sets| most(sets, |set| set.minutes)),
+};
+
+/// What a set holds: effect, site, size, shapes, all SI; and how the axis is written with it.
+struct Answer {
+    effect: &'static str,
+    site: &'static str,
+    size: f64,
+    shapes: &'static [(&'static str, f64)],
+    with: &'static str,
+}
+
+const ANSWERS: [Option<Answer>; 6] = [
+    None,
+    Some(Answer {
+        effect: "Stribeck",
+        site: "guide",
+        size: 180.0,
+        shapes: &[("vs", 8e-3)],
+        with: "Effects.Stribeck(dF = 180 [N], vs = 8 [mm/s]) on guide",
+    }),
+    Some(Answer {
+        effect: "NutBacklash",
+        site: "screw",
+        size: 12e-6,
+        shapes: &[],
+        with: "Effects.NutBacklash(gap = 12 [um]) on screw",
+    }),
+    Some(Answer {
+        effect: "Rocking",
+        site: "saddle.a",
+        size: 140.0,
+        shapes: &[("f", 35.0), ("zeta", 0.02)],
+        with: "Effects.Rocking(m = 140 [kg], f = 35 [Hz], zeta = 0.02) on saddle.a",
+    }),
+    Some(Answer {
+        effect: "Cogging",
+        site: "motor.shaft",
+        size: 0.3,
+        shapes: &[("N", 12.0), ("phase", 0.4)],
+        with: "Effects.Cogging(As = 0.276318 [N.m], Ac = 0.116826 [N.m], N = 12) on motor.shaft",
+    }),
+    Some(Answer {
+        effect: "LeadError",
+        site: "screw",
+        size: 4e-6,
+        shapes: &[("order", 1.0), ("phase", 0.9)],
+        with: "Effects.LeadError(as = 2.48644 [um], ac = 3.13331 [um], order = 1) on screw",
+    }),
+];
+
+/// How far a size may be off.
+const SIZE: f64 = 0.15;
+
+/// How the diagnosis of a set came out.
+#[derive(Clone, Debug)]
+pub(crate) struct SetResult {
+    right: bool,
+    above_truth: f64,
+    minutes: f64,
+}
+
+fn most(sets: &[SetResult], of: impl Fn(&SetResult) -> f64) -> f64 {
+    sets.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
+}
+
+fn of_sets(session: &Session, of: impl Fn(&[SetResult]) -> f64) -> Result<Measured, String> {
+    let folder = session.data.join("bench");
+    if !folder.is_dir() {
+        let what = "bench, the six sets of the bench axis, is not below the data folder";
+        return Ok(Measured::Absent(what.to_owned()));
+    }
+    let each = || {
+        let sets = ANSWERS.iter().enumerate();
+        sets.map(|(number, answer)| set(&folder.join(format!("bench-{number}")), answer.as_ref()))
+            .collect()
+    };
+    let sets: Vec<SetResult> = session.diagnoses.get_or_init(each).clone()?;
+    Ok(Measured::Value(of(&sets)))
+}
+
+fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
+    let axis = root().join("examples/bench_axis/axis.hyde");
+    let begin = Instant::now();
+    let report = command("diagnose", &axis, data)?;
+    let minutes = begin.elapsed().as_secs_f64() / 60.0;
+    // The axis with the true effect, calibrated in the same way.
+    let text = std::fs::read_to_string(&axis).map_err(|error| error.to_string())?;
+    let with = answer.map_or(String::new(), |answer| format!(" with {}", answer.with));
+    let text = text
+        .replace("calibrate bench of Axis", "calibrate bench of Truth")
+        .replace(") of Axis \"a record", ") of Truth \"a record")
+        .replace(
+            "experiment bench",
+            &format!("model Truth = Axis{with};\n\nexperiment bench"),
+        );
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let record = root().join("examples/bench_axis/strokes.csv");
+    std::fs::copy(&record, folder.path().join("strokes.csv")).map_err(|error| error.to_string())?;
+    let truth = folder.path().join("truth.hyde");
+    std::fs::write(&truth, text).map_err(|error| error.to_string())?;
+    let fitted = match answer {
+        Some(_) => command("fit", &truth, data)?,
+        None => command("fit", &axis, data)?,
+    };
+    Ok(SetResult {
+        right: right(&report, answer),
+        above_truth: chi(&report) - chi(&fitted),
+        minutes,
+    })
+}
+
+fn command(name: &str, file: &Path, data: &Path) -> Result<Value, String> {
+    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+    let output = Command::new(program)
+        .arg(name)
+        .arg(file)
+        .args(["bench", "--json", "--data"])
+        .arg(data)
+        .output()
+        .map_err(|error| error.to_string())?;
+    if !output.status.success() {
+        return Err(String::from_utf8_lossy(&output.stderr).into_owned());
+    }
+    serde_json::from_slice(&output.stdout).map_err(|error| error.to_string())
+}
+
+/// Mean square of whitened innovations over the records held out.
+fn chi(report: &Value) -> f64 {
+    let records = report["records"].as_array().map_or(&[][..], Vec::as_slice);
+    let held: Vec<f64> = records
+        .iter()
+        .filter(|record| record["holdout"] == true)
+        .filter_map(|record| record["chi"]["after"].as_f64())
+        .collect();
+    held.iter().sum::<f64>() / held.len() as f64
+}
+
+fn right(report: &Value, answer: Option<&Answer>) -> bool {
+    let Some(answer) = answer else {
+        return report["verdict"] == "none";
+    };
+    let effects = report["effects"].as_array().map_or(&[][..], Vec::as_slice);
+    let [found] = effects else { return false };
+    let covers = |(name, value): &(&str, f64)| {
+        let shape = &found["shape"][*name];
+        let ends = (shape["interval"][0].as_f64(), shape["interval"][1].as_f64());
+        matches!(ends, (Some(low), Some(high)) if low <= *value && *value <= high)
+    };
+    let size = found["size"].as_f64().unwrap_or(f64::NAN);
+    report["verdict"] == "effect"
+        && found["effect"] == answer.effect
+        && found["site"] == answer.site
+        && (size / answer.size - 1.0).abs() <= SIZE
+        && answer.shapes.iter().all(covers)
+}
