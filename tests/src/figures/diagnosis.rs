@@ -111,6 +111,10 @@ fn of_sets(session: &Session, of: impl Fn(&[SetResult]) -> f64) -> Result<Measur
     Ok(Measured::Value(of(&sets)))
 }
 
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the model with the true effect is written for the command"
+)]
 fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
     let axis = root().join("examples/bench_axis/axis.hyde");
     let begin = Instant::now();
