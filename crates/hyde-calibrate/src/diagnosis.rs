@@ -28,5 +28,5 @@ pub use search::{Diagnosis, Finding, Gates, Quantity, Round, Verdict, diagnose};
 pub use trial::{Rejection, Trial};
 pub use unknown::{
     Author, Factor, FoundLaw, Inquiry, Kind, LatentForce, Law, Map, Panel, Scales, Seen, Site,
-    Term, Unknown, Variable, Written, propose,
+    Summand, Unknown, Variable, Written, propose,
 };

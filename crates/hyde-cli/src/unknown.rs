@@ -1,6 +1,6 @@
 //! What is missing and in no library: the sites where a law may act, written effects compiled, and what is told of them.
 
-use hyde_calibrate::{Built, Diagnosis, FoundLaw, Kind, Panel, Site, Term, Unknown, Written};
+use hyde_calibrate::{Built, Diagnosis, FoundLaw, Kind, Panel, Site, Summand, Unknown, Written};
 use hyde_compiler::{Additions, Candidate, Request};
 use hyde_diag::Diagnostics;
 use hyde_units::significant;
@@ -201,7 +201,7 @@ fn law(own: &FoundLaw, found: &Diagnosis) -> Value {
 }
 
 /// A term in words.
-fn named(term: &Term) -> String {
+fn named(term: &Summand) -> String {
     let names: Vec<String> = term.factors.iter().map(|factor| factor.words()).collect();
     match names.as_slice() {
         [] => "a constant".to_owned(),

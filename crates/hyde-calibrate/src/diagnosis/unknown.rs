@@ -24,7 +24,7 @@ mod site;
 
 pub use factor::{Factor, Scales, Seen};
 pub use latent::LatentForce;
-pub use law::{Law, Term};
+pub use law::{Law, Summand};
 pub use map::{Map, Panel, Variable};
 pub use site::{Kind, Site, Written};
 
@@ -103,7 +103,7 @@ pub struct FoundLaw {
     /// What it gains of what the best panel of the map does.
     pub share: f64,
     /// Other forms of the first term with the part of its gain that they have.
-    pub equivalents: Vec<(Term, f64)>,
+    pub equivalents: Vec<(Summand, f64)>,
 }
 
 /// Asks what is missing where innovations are not explained, and puts the answer into the diagnosis.
@@ -307,7 +307,7 @@ fn fitted(
     let score = Score {
         hypothesis: number,
         nodes: vec![Node {
-            shapes: terms().flat_map(Term::constants).collect(),
+            shapes: terms().flat_map(Summand::constants).collect(),
             sizes: terms().flat_map(|term| term.sizes.clone()).collect(),
             visible: columns
                 .map(|column| (VISIBLE / dot(&column, &column).max(1e-300)).sqrt())

@@ -2,7 +2,7 @@
 
 use super::factor::{Scales, Seen};
 use super::latent::Carrier;
-use super::law::Term;
+use super::law::Summand;
 use super::site::{Site, probe};
 use super::{Author, numbers};
 use crate::diagnosis::stage::{Ground, Stage};
@@ -47,7 +47,7 @@ impl Felt {
     }
 
     /// The changes of innovations a unit of each size of a term.
-    pub(crate) fn columns(&self, term: &Term) -> Vec<Vec<f64>> {
+    pub(crate) fn columns(&self, term: &Summand) -> Vec<Vec<f64>> {
         let turns = self.site.kind.turns();
         let mut lists: Vec<Vec<f64>> = vec![Vec::new(); term.sizes.len()];
         for carrier in &self.carriers {

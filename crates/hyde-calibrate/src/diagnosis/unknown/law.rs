@@ -9,7 +9,7 @@ use std::fmt::Write as _;
 
 /// A product of shapes with one size, or of a wave two.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Term {
+pub struct Summand {
     /// Its shapes; none is a constant.
     pub factors: Vec<Factor>,
     /// Its sizes, SI.
@@ -22,12 +22,12 @@ pub struct Law {
     /// Where it acts.
     pub site: Site,
     /// Its terms.
-    pub terms: Vec<Term>,
+    pub terms: Vec<Summand>,
     /// What the records show of the site.
     pub seen: Seen,
 }
 
-impl Term {
+impl Summand {
     pub(crate) fn new(factors: &[Factor]) -> Self {
         let pair = factors.iter().any(|factor| factor.is_pair());
         Self {
@@ -92,7 +92,7 @@ impl Law {
             (own, sizes) = sizes.split_at(term.sizes.len().min(sizes.len()));
             let shapes;
             (shapes, constants) = constants.split_at(term.constants().len().min(constants.len()));
-            Term {
+            Summand {
                 sizes: own.to_vec(),
                 ..term.with(shapes)
             }

@@ -3,7 +3,7 @@
 
 use super::factor::{Factor, Seen};
 use super::felt::Felt;
-use super::law::{Law, Term};
+use super::law::{Law, Summand};
 use crate::diagnosis::projection::Projection;
 use rayon::prelude::*;
 
@@ -24,7 +24,7 @@ pub(crate) struct Selected {
     /// What it gains after each term.
     pub(crate) gains: Vec<f64>,
     /// Other first terms, with what they gain alone, the best first.
-    pub(crate) others: Vec<(Term, f64)>,
+    pub(crate) others: Vec<(Summand, f64)>,
     /// Number of terms tried.
     pub(crate) tried: usize,
 }
@@ -32,18 +32,18 @@ pub(crate) struct Selected {
 /// Selects terms until the next one gains too little.
 pub(crate) fn select(felt: &Felt, projection: &Projection, gate: f64) -> Option<Selected> {
     let dictionary = dictionary(felt);
-    let mut terms: Vec<Term> = Vec::new();
+    let mut terms: Vec<Summand> = Vec::new();
     let mut gains: Vec<f64> = Vec::new();
     let mut others = Vec::new();
     let mut tried = 0;
     while terms.len() < MOST_TERMS {
         let known: Vec<Vec<f64>> = terms.iter().flat_map(|term| felt.columns(term)).collect();
-        let gain_of = |term: &Term| {
+        let gain_of = |term: &Summand| {
             let mut columns = known.clone();
             columns.extend(felt.columns(term));
             projection.answer(&columns).gain
         };
-        let mut scored: Vec<(Term, f64)> = dictionary
+        let mut scored: Vec<(Summand, f64)> = dictionary
             .par_iter()
             .map(|term| (term.clone(), gain_of(term)))
             .filter(|(_, gain)| gain.is_finite())
@@ -51,7 +51,7 @@ pub(crate) fn select(felt: &Felt, projection: &Projection, gate: f64) -> Option<
         tried += scored.len();
         scored.sort_by(|a, b| b.1.total_cmp(&a.1));
         // The best of each form.
-        let mut forms: Vec<(Term, f64)> = Vec::new();
+        let mut forms: Vec<(Summand, f64)> = Vec::new();
         for (term, gain) in scored {
             if forms.len() < REFINED && !forms.iter().any(|(known, _)| same_form(known, &term)) {
                 forms.push((term, gain));
@@ -60,7 +60,7 @@ pub(crate) fn select(felt: &Felt, projection: &Projection, gate: f64) -> Option<
         let refined = forms
             .into_par_iter()
             .map(|(term, gain)| refine(felt, &term, gain, &gain_of));
-        let mut refined: Vec<(Term, f64)> = refined.collect();
+        let mut refined: Vec<(Summand, f64)> = refined.collect();
         refined.sort_by(|a, b| b.1.total_cmp(&a.1));
         let best = refined.first()?.1;
         let before = gains.last().copied().unwrap_or(0.0);
@@ -71,7 +71,7 @@ pub(crate) fn select(felt: &Felt, projection: &Projection, gate: f64) -> Option<
             break;
         }
         // Of those that are as good, the one with the fewest constants.
-        let freedoms = |term: &Term| term.sizes.len() + term.constants().len();
+        let freedoms = |term: &Summand| term.sizes.len() + term.constants().len();
         let alike = refined.iter().enumerate();
         let (chosen, _) = alike
             .filter(|(_, (_, gain))| *gain >= best - gate)
@@ -104,7 +104,7 @@ pub(crate) fn select(felt: &Felt, projection: &Projection, gate: f64) -> Option<
     })
 }
 
-fn same_form(a: &Term, b: &Term) -> bool {
+fn same_form(a: &Summand, b: &Summand) -> bool {
     a.factors.len() == b.factors.len()
         && a.factors
             .iter()
@@ -115,10 +115,10 @@ fn same_form(a: &Term, b: &Term) -> bool {
 /// Constants by which a term gains most: a pattern search (Hooke and Jeeves, J. ACM 8, 1961, 212).
 fn refine(
     felt: &Felt,
-    term: &Term,
+    term: &Summand,
     gain: f64,
-    gain_of: &(dyn Fn(&Term) -> f64 + Sync),
-) -> (Term, f64) {
+    gain_of: &(dyn Fn(&Summand) -> f64 + Sync),
+) -> (Summand, f64) {
     let (mut best, mut most) = (term.clone(), gain);
     let mut steps = first_steps(term, &felt.seen, felt.site.kind.turns());
     let first = steps.clone();
@@ -163,7 +163,7 @@ fn refine(
 }
 
 /// Whether a constant is a place or a speed about which something is, which may be 0.
-fn is_centre(term: &Term, which: usize) -> bool {
+fn is_centre(term: &Summand, which: usize) -> bool {
     let mut number = 0;
     for factor in &term.factors {
         let own = factor.constants().len();
@@ -176,7 +176,7 @@ fn is_centre(term: &Term, which: usize) -> bool {
 }
 
 /// The steps that a search for constants begins with: half of a grid's.
-fn first_steps(term: &Term, seen: &Seen, turns: bool) -> Vec<f64> {
+fn first_steps(term: &Summand, seen: &Seen, turns: bool) -> Vec<f64> {
     let mut steps = Vec::new();
     for factor in &term.factors {
         let constants = factor.constants();
@@ -207,7 +207,7 @@ fn first_steps(term: &Term, seen: &Seen, turns: bool) -> Vec<f64> {
 }
 
 /// The terms that are tried at a site: shapes of speed times shapes of place or time.
-fn dictionary(felt: &Felt) -> Vec<Term> {
+fn dictionary(felt: &Felt) -> Vec<Summand> {
     let kind = felt.site.kind;
     let seen = &felt.seen;
     let parts = |count: i32, least: f64| -> Vec<f64> {
@@ -280,7 +280,7 @@ fn dictionary(felt: &Felt) -> Vec<Term> {
     let mut found = Vec::new();
     let mut add = |speed: &[Factor], other: &[Factor]| {
         let factors = [speed, other].concat();
-        found.push(Term::new(&factors));
+        found.push(Summand::new(&factors));
     };
     for speed in &speeds {
         for other in &others {
