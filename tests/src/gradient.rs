@@ -15,7 +15,7 @@ use std::collections::BTreeMap;
 /// Relative steps of a parameter.
 const STEPS: [f64; 4] = [3e-3, 1e-3, 1e-4, 1e-5];
 /// Those for the bench axis, whose runs take long.
-const STEPS_OF_BENCH: [f64; 2] = [0.08, 0.02];
+const STEPS_OF_BENCH: [f64; 3] = [0.08, 0.02, 0.005];
 
 /// The parameters of the bench axis that are uncertain, and a gain.
 pub const BENCH: [&str; 13] = [

@@ -22,15 +22,21 @@ fn a_plain_parameter_changes_no_code_and_a_structural_one_does() {
     assert_eq!(code(&["--set", "saddle.M=400 [kg]"]), as_it_is);
     assert_ne!(code(&["--set", "screw.n=12"]), as_it_is);
     assert_eq!(unknowns(&["--set", "saddle.M=400 [kg]"]), unknowns(&[]));
-    // 12 cells fewer, an angle and a speed each.
-    assert_eq!(unknowns(&["--set", "screw.n=12"]) + 24, unknowns(&[]));
+    // Six cells more, an angle and a speed each.
+    assert_eq!(unknowns(&["--set", "screw.n=12"]), unknowns(&[]) + 12);
 }
 
 #[test]
 fn missing_data_are_told_in_plain_words() {
     let folder = Folder::new();
     let empty = folder.path("");
-    let line = ["run", "examples/emps/emps.hyde", "--data", &empty];
+    let line = [
+        "run",
+        "examples/emps/emps.hyde",
+        "tracking",
+        "--data",
+        &empty,
+    ];
     let output = hyde(&line);
     assert_eq!(status(&output), 1);
     let told = errors(&output);
@@ -38,7 +44,7 @@ fn missing_data_are_told_in_plain_words() {
         assert!(told.contains(part), "`{part}` is not in\n{told}");
     }
     // Without its record the model can still be checked.
-    let output = hyde(&["check", "examples/emps/emps.hyde", "--data", &empty]);
+    let output = hyde(&["check", "examples/emps/emps.hyde", "tracking", "--data", &empty]);
     assert_eq!(status(&output), 0, "{}", errors(&output));
     assert!(errors(&output).contains("E0802"), "{}", errors(&output));
 }
@@ -51,6 +57,7 @@ fn records_are_found_by_data_and_by_name() {
     let by_data = hyde(&[
         "run",
         model,
+        "tracking",
         "--stop",
         "0.1",
         "--json",
@@ -59,7 +66,7 @@ fn records_are_found_by_data_and_by_name() {
     ]);
     let by_name = format!("file={log}");
     let by_name = hyde(&[
-        "run", model, "--stop", "0.1", "--json", "--record", &by_name,
+        "run", model, "tracking", "--stop", "0.1", "--json", "--record", &by_name,
     ]);
     for output in [by_data, by_name] {
         assert_eq!(status(&output), 0, "{}", errors(&output));
