@@ -44,7 +44,13 @@ fn missing_data_are_told_in_plain_words() {
         assert!(told.contains(part), "`{part}` is not in\n{told}");
     }
     // Without its record the model can still be checked.
-    let output = hyde(&["check", "examples/emps/emps.hyde", "tracking", "--data", &empty]);
+    let output = hyde(&[
+        "check",
+        "examples/emps/emps.hyde",
+        "tracking",
+        "--data",
+        &empty,
+    ]);
     assert_eq!(status(&output), 0, "{}", errors(&output));
     assert!(errors(&output).contains("E0802"), "{}", errors(&output));
 }
