@@ -26,7 +26,7 @@ pub(crate) const MAX_STEPS: usize = 15;
 /// A step that gains less than this of the sum of squares is the last: a standard deviation of one parameter gains 1.
 const LEAST_GAIN: f64 = 0.5;
 /// Steps by differences of runs at most, behind those by tangents.
-const LAST_STEPS: usize = 4;
+const LAST_STEPS: usize = 10;
 
 /// A program, records, and what may be varied.
 #[derive(Clone, Copy)]

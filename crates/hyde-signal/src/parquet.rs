@@ -5,7 +5,7 @@
 //! What other programs wrote may say the unit in the name, `x [mm]`, as a CSV header does.
 //!
 //! A [`Frame`] is what a file holds: columns of numbers, integers or texts. A record is one whose columns are numbers over
-//! time: [`read`] and [`write`]. A number that is not there (NaN) is a null. Equal frames give equal bytes.
+//! time: [`read`] and [`write()`]. A number that is not there (NaN) is a null. Equal frames give equal bytes.
 
 mod error;
 mod read;

@@ -1,6 +1,6 @@
 //! [`Score`]: what an effect at a site gains at best, over its shapes and sizes, before anything is fitted.
 //!
-//! How innovations change with a small size is differentiated along one run ([`super::tangent`]). Where the effect is
+//! How innovations change with a small size is differentiated along one run ([`crate::tangent`]). Where the effect is
 //! linear in its sizes the best ones follow at once; what is gained there is then tried by the model itself. An effect
 //! that brings modes of its own, as play does, is nothing to begin with and is tried at sizes all over its range.
 

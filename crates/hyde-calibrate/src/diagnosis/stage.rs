@@ -1,7 +1,7 @@
 //! [`Stage`]: the model as far as the search has come: effects taken in, parameters calibrated with them.
 
 use crate::gain::Observer;
-use crate::least_squares::{Fold, Linearised, Problem, Slopes, Solution};
+use crate::least_squares::{Fold, Linearised, MAX_STEPS, Problem, Slopes, Solution};
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
@@ -67,12 +67,22 @@ impl Stage {
             .linearise(&self.solution.values, Slopes::Tangents)
     }
 
-    /// The stage fitted to the end.
+    /// The stage fitted to the end, once from where it is and once from what was declared: without the effect the
+    /// parameters stood in for it, and may have been led into a minimum of their own.
     pub(crate) fn polished(&self, ground: &Ground<'_>) -> Result<Self, Unsupported> {
         let set = ground.set_in(&self.program, &self.kept);
-        let solution = ground
-            .problem(&self.program, &self.varied, &set, None)
-            .solve(&self.solution.values)?;
+        let problem = ground.problem(&self.program, &self.varied, &set, None);
+        let pairs = self.varied.iter().zip(&self.solution.values);
+        let declared: Vec<f64> = pairs
+            .map(|(varied, &value)| varied.prior.map_or(value, |_| varied.nominal))
+            .collect();
+        let again = problem.solve_in(&declared, MAX_STEPS, Slopes::Tangents)?;
+        let start = if again.cost < self.solution.cost {
+            &again.values
+        } else {
+            &self.solution.values
+        };
+        let solution = problem.solve(start)?;
         Ok(Self {
             solution,
             ..self.clone()

@@ -14,7 +14,7 @@ use hyde_units::NamedUnit;
 /// What differs from case to case: a column of the data set.
 #[derive(Clone, Debug)]
 pub struct Input {
-    /// A parameter's name, a start value's as `x.start`, or that of a [`Choice`].
+    /// A parameter's name, a start value's as `x.start`, or that of a choice of variants.
     pub name: String,
     /// The unit that a number is printed in; `None` of a choice.
     pub unit: Option<NamedUnit>,
