@@ -5,7 +5,7 @@ use crate::records;
 use crate::study::Calibration;
 use crate::unknown;
 use hyde_calibrate::{FreeMeasure, Measures, Model, Unsupported, Written};
-use hyde_compiler::{Additions, Backend, Candidate, Form, Request};
+use hyde_compiler::{Additions, Candidate, Form, Request};
 use hyde_diag::Diagnostics;
 use hyde_program::Program;
 use hyde_units::{Dimension, engineering, significant};
@@ -93,14 +93,7 @@ pub(crate) fn closed(
     let request = Request {
         sources: &sources,
         file: &file,
-        model: &project.model,
-        experiment: project.experiment.as_deref(),
-        settings: &settings,
-        records: &headers,
-        free_inputs: false,
-        ledger: false,
-        form: Form::Run,
-        backend: Backend::Native,
+        ..project.request(&settings, &headers, Form::Run)
     };
     let program = |additions: &Additions| {
         let compiled = hyde_compiler::compile_with(&request, additions, &mut Diagnostics::new())?;

@@ -186,7 +186,7 @@ fn reason(rejection: Rejection) -> &'static str {
 }
 
 /// What a parameter is suspected of.
-fn suspicion(parameter: &FittedParameter) -> &'static str {
+pub(crate) fn suspicion(parameter: &FittedParameter) -> &'static str {
     if parameter.at_bound {
         "AT ITS BOUND"
     } else if parameter.left_range {

@@ -10,7 +10,7 @@ use crate::render;
 use crate::run_failure;
 use crate::settings::{self, Setting};
 use crate::tables::{self, Table};
-use hyde_compiler::{Backend, Compiled, File, Form, Request};
+use hyde_compiler::{Backend, Compiled, File, Form, Header, Request};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::Experiment;
 use serde_json::json;
@@ -267,6 +267,27 @@ impl Project {
         };
         let found = hyde_compiler::candidates(&request, &mut self.diagnostics);
         found.ok_or_else(|| self.finish_with_errors(args))
+    }
+
+    /// What is asked of the compiler for the project in a form, with these settings and the headers of its records.
+    pub(crate) fn request<'a>(
+        &'a self,
+        settings: &'a BTreeMap<String, f64>,
+        records: &'a BTreeMap<String, Header>,
+        form: Form,
+    ) -> Request<'a> {
+        Request {
+            sources: &self.sources,
+            file: &self.file,
+            model: &self.model,
+            experiment: self.experiment.as_deref(),
+            settings,
+            records,
+            free_inputs: false,
+            ledger: false,
+            form,
+            backend: Backend::Native,
+        }
     }
 
     /// The plain values set from outside, as the run takes them.

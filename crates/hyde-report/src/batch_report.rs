@@ -149,16 +149,10 @@ impl BatchReport {
             ("Failed cases", table(self.failure_table())),
             ("Inputs", table(self.input_table())),
         ];
-        let sections = blocks.into_iter().filter(|(_, blocks)| !blocks.is_empty());
         Page {
             title: self.title.clone(),
             facts: self.facts.clone(),
-            sections: sections
-                .map(|(heading, blocks)| Section {
-                    heading: heading.to_owned(),
-                    blocks,
-                })
-                .collect(),
+            sections: Section::all(blocks),
             footer: self.footer.clone(),
         }
     }

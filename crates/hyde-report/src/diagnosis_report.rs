@@ -159,16 +159,10 @@ impl DiagnosisReport {
             ("Tried and rejected", self.tried_blocks()),
             ("The new model", self.model_blocks()),
         ];
-        let sections = blocks.into_iter().filter(|(_, blocks)| !blocks.is_empty());
         Page {
             title: self.title.clone(),
             facts: self.facts.clone(),
-            sections: sections
-                .map(|(heading, blocks)| Section {
-                    heading: heading.to_owned(),
-                    blocks,
-                })
-                .collect(),
+            sections: Section::all(blocks),
             footer: self.footer.clone(),
         }
     }

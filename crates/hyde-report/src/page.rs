@@ -24,6 +24,20 @@ pub struct Section {
     pub blocks: Vec<Block>,
 }
 
+impl Section {
+    /// Sections by their headings, in this order; those without anything under them are left out.
+    pub(crate) fn all<'a>(headings: impl IntoIterator<Item = (&'a str, Vec<Block>)>) -> Vec<Self> {
+        headings
+            .into_iter()
+            .filter(|(_, blocks)| !blocks.is_empty())
+            .map(|(heading, blocks)| Self {
+                heading: heading.to_owned(),
+                blocks,
+            })
+            .collect()
+    }
+}
+
 /// One thing in a section.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Block {

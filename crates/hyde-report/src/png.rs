@@ -81,16 +81,9 @@ impl Canvas {
     }
 
     fn polyline(&mut self, points: &[Point], stroke: &Stroke) {
-        let mut path = PathBuilder::new();
-        for (place, point) in points.iter().enumerate() {
-            let (x, y) = (point.x as f32, point.y as f32);
-            if place == 0 {
-                path.move_to(x, y)
-            } else {
-                path.line_to(x, y)
-            }
-        }
-        let Some(path) = path.finish() else { return };
+        let Some(path) = through(points).finish() else {
+            return;
+        };
         let style = tiny_skia::Stroke {
             width: stroke.width as f32,
             line_join: LineJoin::Round,
@@ -132,15 +125,7 @@ impl Canvas {
     }
 
     fn polygon(&mut self, points: &[Point], fill: &Fill) {
-        let mut path = PathBuilder::new();
-        for (place, point) in points.iter().enumerate() {
-            let (x, y) = (point.x as f32, point.y as f32);
-            if place == 0 {
-                path.move_to(x, y)
-            } else {
-                path.line_to(x, y)
-            }
-        }
+        let mut path = through(points);
         path.close();
         if let Some(path) = path.finish() {
             let paint = paint(fill.colour, fill.opacity);
@@ -274,6 +259,20 @@ fn dashes(start: f64, end: f64, pattern: &[f64], scale: f64) -> Vec<(f64, f64)> 
     begins
         .map(|begin| (begin, (begin + drawn.round()).min(end)))
         .collect()
+}
+
+/// A path from point to point.
+fn through(points: &[Point]) -> PathBuilder {
+    let mut path = PathBuilder::new();
+    for (place, point) in points.iter().enumerate() {
+        let (x, y) = (point.x as f32, point.y as f32);
+        if place == 0 {
+            path.move_to(x, y)
+        } else {
+            path.line_to(x, y)
+        }
+    }
+    path
 }
 
 fn paint(colour: Colour, opacity: f64) -> Paint<'static> {

@@ -126,18 +126,12 @@ impl RunReport {
             ("Solver", table_block(self.solver_table())),
             ("Parameters", table_block(self.parameter_table())),
         ];
-        let sections = blocks.into_iter().filter(|(_, blocks)| !blocks.is_empty());
         Page {
             title: self.title.clone(),
             facts: facts
                 .map(|(name, value)| (name.to_owned(), value.clone()))
                 .collect(),
-            sections: sections
-                .map(|(heading, blocks)| Section {
-                    heading: heading.to_owned(),
-                    blocks,
-                })
-                .collect(),
+            sections: Section::all(blocks),
             footer: self.footer.clone(),
         }
     }

@@ -1,6 +1,7 @@
 //! Observers on the bench axis: their fixed steps against the exact run, and what calibration finds in records that the
 //! exact run has made.
 
+use crate::points::Random;
 use hyde_calibrate::{Innovations, Observer, Problem, Recording, Varied, fit};
 use hyde_compiler::{Backend, Compiled};
 use hyde_experiment::Options;
@@ -74,22 +75,6 @@ fn made(
     });
     let table = Table::every(1e-3, columns.collect()).unwrap();
     BTreeMap::from([("file".to_owned(), table)])
-}
-
-/// Normal numbers: sums of twelve uniform ones of a linear congruential generator (Knuth, MMIX).
-struct Random(u64);
-
-impl Random {
-    fn normal(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
 }
 
 fn mean_square(list: &[f64]) -> f64 {

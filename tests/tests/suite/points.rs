@@ -6,14 +6,23 @@ use hyde_program::{Point, Program};
 pub(crate) struct Random(pub(crate) u64);
 
 impl Random {
-    /// Between -1 and 1.
-    pub(crate) fn next(&mut self) -> f64 {
+    /// Between 0 and 1.
+    fn unit(&mut self) -> f64 {
         self.0 = self
             .0
             .wrapping_mul(6_364_136_223_846_793_005)
             .wrapping_add(1_442_695_040_888_963_407);
-        let unit = (self.0 >> 11) as f64 / (1_u64 << 53) as f64;
-        2.0 * unit - 1.0
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Between -1 and 1.
+    pub(crate) fn next(&mut self) -> f64 {
+        2.0 * self.unit() - 1.0
+    }
+
+    /// Normal, of mean 0 and variance 1: the sum of twelve uniform ones.
+    pub(crate) fn normal(&mut self) -> f64 {
+        (0..12).map(|_| self.unit()).sum::<f64>() - 6.0
     }
 
     /// One of the first `n` whole numbers.

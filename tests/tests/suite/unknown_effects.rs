@@ -1,5 +1,6 @@
 //! Effects that no library has: planted on a small axis, found as laws of the model's own variables.
 
+use crate::points::Random;
 use hyde_tests::root;
 use serde_json::Value;
 use std::fmt::Write as _;
@@ -70,22 +71,6 @@ fn record(folder: &Path) {
     }
     assert_eq!(rows, 3001);
     write(&folder.join("fit-1.csv"), &text);
-}
-
-/// Normal numbers: sums of twelve uniform ones of a linear congruential generator (Knuth, MMIX).
-struct Random(u64);
-
-impl Random {
-    fn normal(&mut self) -> f64 {
-        let mut uniform = || {
-            self.0 = self
-                .0
-                .wrapping_mul(6_364_136_223_846_793_005)
-                .wrapping_add(1_442_695_040_888_963_407);
-            (self.0 >> 11) as f64 / (1_u64 << 53) as f64
-        };
-        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
-    }
 }
 
 fn hyde(folder: &Path, arguments: &[&str]) -> String {

@@ -8,6 +8,7 @@ use super::case::Fault;
 use super::random::Random;
 use hyde_experiment::{Options, RunError};
 use hyde_program::{Constant, Measured, Preparation, Program};
+use hyde_signal::statistics::rms;
 use hyde_signal::{Column, Table};
 use hyde_sim::Results;
 use std::collections::BTreeMap;
@@ -138,11 +139,6 @@ fn rows(results: &Results, channel: &Measured, table: &Table) -> Vec<f64> {
         })
     };
     table.time().iter().map(at).collect()
-}
-
-fn rms(values: &[f64]) -> f64 {
-    let squares: f64 = values.iter().map(|value| value * value).sum();
-    (squares / (values.len() as f64).max(1.0)).sqrt()
 }
 
 fn freeze(values: &mut [f64], table: &Table) {

@@ -9,7 +9,7 @@ use crate::records;
 use crate::study;
 use crate::unknown;
 use hyde_calibrate::{Built, Hypothesis, Inquiry, Knob};
-use hyde_compiler::{Additions, Backend, Candidate, DiagnosisPlan, Form, Request};
+use hyde_compiler::{Additions, Candidate, DiagnosisPlan, Form};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::{Study, StudyKind};
 use serde_json::Value;
@@ -48,18 +48,7 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
         let project = &calibration.project;
         let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
         let headers = records::headers(&project.records);
-        let request = Request {
-            sources: &project.sources,
-            file: &project.file,
-            model: &project.model,
-            experiment: project.experiment.as_deref(),
-            settings: &settings,
-            records: &headers,
-            free_inputs: false,
-            ledger: false,
-            form: Form::Observed,
-            backend: Backend::Native,
-        };
+        let request = project.request(&settings, &headers, Form::Observed);
         let build = |numbers: &[usize]| {
             let file = project.file.files.first()?.0;
             let mut additions = Additions::kept();

@@ -2,11 +2,12 @@
 
 use crate::args::FitArgs;
 use crate::before_after::{self, RecordErrors};
+use crate::diagnosis::suspicion;
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{complain, print_output};
 use crate::study::{self, Calibration};
-use hyde_calibrate::{Fit, FittedParameter, Model, Unsupported};
+use hyde_calibrate::{Fit, Model, Unsupported};
 use hyde_units::{engineering, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -127,7 +128,7 @@ fn text(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> String
             number(parameter.nominal),
             number(parameter.value),
             percent,
-            remark(parameter)
+            suspicion(parameter)
         );
         let _ = writeln!(out, "{}", line.trim_end());
     }
@@ -141,18 +142,6 @@ fn text(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> String
     out.push('\n');
     out.push_str(&before_after::text(errors, calibration));
     out
-}
-
-fn remark(parameter: &FittedParameter) -> &'static str {
-    if parameter.at_bound {
-        "AT ITS BOUND"
-    } else if parameter.left_range {
-        "LEFT ITS RANGE"
-    } else if parameter.untold {
-        "not told"
-    } else {
-        ""
-    }
 }
 
 /// The calibration as JSON; numbers are SI.

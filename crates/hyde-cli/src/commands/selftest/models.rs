@@ -5,7 +5,7 @@ use crate::project::Project;
 use crate::records;
 use crate::unknown;
 use hyde_calibrate::{Built, Written};
-use hyde_compiler::{Additions, Backend, Candidate, Form, Header, Request};
+use hyde_compiler::{Additions, Candidate, Form, Header, Request};
 use hyde_diag::Diagnostics;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
@@ -100,18 +100,6 @@ impl<'a> Models<'a> {
     }
 
     fn request<'r>(&'r self, settings: &'r BTreeMap<String, f64>, form: Form) -> Request<'r> {
-        let project = self.project;
-        Request {
-            sources: &project.sources,
-            file: &project.file,
-            model: &project.model,
-            experiment: project.experiment.as_deref(),
-            settings,
-            records: &self.headers,
-            free_inputs: false,
-            ledger: false,
-            form,
-            backend: Backend::Native,
-        }
+        self.project.request(settings, &self.headers, form)
     }
 }
