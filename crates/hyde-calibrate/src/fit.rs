@@ -116,10 +116,13 @@ pub fn fit(
     }
     let lowest = solutions
         .iter()
-        .map(|s| s.cost)
+        .map(Solution::cost)
         .fold(f64::INFINITY, f64::min);
-    let agreeing = solutions.iter().filter(|s| s.cost < lowest + 1.0).count();
-    let best = solutions.iter().position(|s| s.cost <= lowest).unwrap_or(0);
+    let agreeing = solutions.iter().filter(|s| s.cost() < lowest + 1.0).count();
+    let best = solutions
+        .iter()
+        .position(|s| s.cost() <= lowest)
+        .unwrap_or(0);
     let solution = solutions.swap_remove(best);
     let after = Problem {
         recordings: holdout,

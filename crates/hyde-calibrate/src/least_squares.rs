@@ -2,10 +2,13 @@
 //!
 //! The sum of squares of whitened innovations is, up to a constant, minus twice the logarithm of the likelihood (Ljung,
 //! System Identification, 2nd ed. 1999, section 7.4); what is known of parameters beforehand stands beside it as rows
-//! `(p - nominal)/sd`. Derivatives are differences over a small part of what the data tell about a parameter, each an
-//! observer's run of its own: all of them, and all records, at the same time. Sums are formed in a fixed order, so the
-//! number of threads changes nothing.
+//! `(p - nominal)/sd`, weighed by how much less innovations tell than as many independent ones: where the model lacks
+//! something, its sum of squares would else outweigh all that is known, and drive parameters where no part can be.
+//! Derivatives are those along one run ([`crate::tangent`]), in the end differences over a small part of what the data
+//! tell about a parameter, each an observer's run of its own: all of them, and all records, at the same time. Sums are
+//! formed in a fixed order, so the number of threads changes nothing.
 
+use crate::fit::inflation;
 use crate::gain::Observer;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
@@ -20,7 +23,7 @@ use rayon::prelude::*;
 const DIFFERENCE: f64 = 0.1;
 const SMALL: f64 = 1e-4;
 /// Parameters that one run is differentiated by.
-const AT_ONCE: usize = 8;
+const AT_ONCE: usize = 16;
 /// Steps at most.
 pub(crate) const MAX_STEPS: usize = 15;
 /// A step that gains less than this of the sum of squares is the last: a standard deviation of one parameter gains 1.
@@ -97,8 +100,12 @@ pub(crate) enum Slopes {
 pub struct Solution {
     /// Values of what was varied, SI.
     pub values: Vec<f64>,
-    /// The sum of squares: innovations and priors.
-    pub cost: f64,
+    /// The sum of squares of innovations.
+    pub data: f64,
+    /// The sum of squares of what is known beforehand.
+    pub priors: f64,
+    /// By how much innovations tell less than as many independent ones: priors weigh so much more.
+    pub weight: f64,
     /// Innovations of each record.
     pub innovations: Vec<Innovations>,
     /// Half the second derivatives of the cost, in units of [`Varied`]'s scale: of the innovations and of the priors.
@@ -107,6 +114,28 @@ pub struct Solution {
     pub steps: usize,
     /// Whether the last step gained nothing any more.
     pub converged: bool,
+}
+
+impl Solution {
+    /// What was minimised.
+    #[must_use]
+    pub fn cost(&self) -> f64 {
+        self.data + self.weight * self.priors
+    }
+
+    /// What it gains over another, priors weighed as here.
+    #[must_use]
+    pub fn gain_over(&self, other: &Self) -> f64 {
+        other.data + self.weight * other.priors - self.cost()
+    }
+}
+
+/// The normal equations: half the second derivatives, of data and of priors, and half the gradients.
+pub(crate) struct Normal {
+    pub(crate) data: DMatrix<f64>,
+    pub(crate) priors: DMatrix<f64>,
+    of_data: DVector<f64>,
+    of_priors: DVector<f64>,
 }
 
 /// Innovations and their derivatives, record by record.
@@ -144,21 +173,27 @@ impl Problem<'_> {
         let mut lambda = 1e-3;
         let (mut steps, mut converged) = (0, false);
         let mut here = self.linearise(&values, slopes)?;
-        let mut cost = self.cost(&values, &here.innovations);
-        let (mut curvature, mut gradient) = self.normal(&values, &here);
+        let (mut data, mut priors) = (sum_of_squares(&here.innovations), self.priors(&values));
+        let mut weight = inflation(&here.innovations);
+        let mut normal = self.normal(&values, &here);
         while steps < most && !converged {
             let mut taken = false;
-            for _ in 0..8 {
-                let step = self.step(&values, &curvature, &gradient, lambda);
+            for failed in 0..8 {
+                let step = self.step(&values, &normal, weight, lambda);
                 let new: Vec<f64> = self.moved(&values, &step);
-                let innovations = self.innovations(&new)?;
-                let new_cost = self.cost(&new, &innovations);
-                let gain = cost - new_cost;
-                if gain >= 0.0 && new_cost.is_finite() {
-                    converged = gain < LEAST_GAIN;
-                    (values, cost, taken) = (new, new_cost, true);
-                    lambda = (lambda * 0.1).max(1e-9);
+                let new_priors = self.priors(&new);
+                let limit = data + weight * (priors - new_priors);
+                if let Some(innovations) = self.within(&new, limit)? {
+                    let new_data = sum_of_squares(&innovations);
+                    converged = limit - new_data < LEAST_GAIN * weight;
+                    (values, data, priors) = (new, new_data, new_priors);
+                    weight = inflation(&innovations).min(weight);
+                    // A damping that was found only after others failed is kept.
+                    if failed == 0 {
+                        lambda = (lambda * 0.1).max(1e-9);
+                    }
                     here.innovations = innovations;
+                    taken = true;
                     break;
                 }
                 lambda *= 10.0;
@@ -169,14 +204,16 @@ impl Problem<'_> {
             }
             if !converged {
                 here = self.linearise(&values, slopes)?;
-                (curvature, gradient) = self.normal(&values, &here);
+                normal = self.normal(&values, &here);
             }
         }
         Ok(Solution {
             values,
-            cost,
+            data,
+            priors,
+            weight,
             innovations: here.innovations,
-            curvature,
+            curvature: (normal.data, normal.priors),
             steps,
             converged,
         })
@@ -192,6 +229,20 @@ impl Problem<'_> {
         self.recordings.par_iter().map(each).collect()
     }
 
+    /// The same, as long as the sum of their squares does not exceed a limit.
+    fn within(&self, values: &[f64], limit: f64) -> Result<Option<Vec<Innovations>>, Unsupported> {
+        let set = self.settings(values);
+        let run = |recording: &Recording| match self.fold {
+            // Rows that do not count have no limit.
+            Some(_) => self.run(recording, &set).map(Some),
+            None => Innovations::within(self.program, recording, self.observer, &set, limit),
+        };
+        let each: Result<Vec<Option<Innovations>>, Unsupported> =
+            self.recordings.par_iter().map(run).collect();
+        let all: Option<Vec<Innovations>> = each?.into_iter().collect();
+        Ok(all.filter(|all| sum_of_squares(all) <= limit))
+    }
+
     fn run(&self, recording: &Recording, set: &[(usize, f64)]) -> Result<Innovations, Unsupported> {
         let mut found = Innovations::of(self.program, recording, self.observer, set)?;
         if let Some(fold) = self.fold {
@@ -200,19 +251,14 @@ impl Problem<'_> {
         Ok(found)
     }
 
-    /// The sum of squares of innovations and priors.
-    #[must_use]
-    pub fn cost(&self, values: &[f64], innovations: &[Innovations]) -> f64 {
-        let data: f64 = innovations.iter().map(Innovations::sum_of_squares).sum();
-        let priors = self
-            .varied
-            .iter()
-            .zip(values)
-            .filter_map(|(varied, value)| {
-                let sd = varied.prior?;
-                Some(((value - varied.nominal) / sd).powi(2))
-            });
-        data + priors.sum::<f64>()
+    /// The sum of squares of what is known beforehand.
+    fn priors(&self, values: &[f64]) -> f64 {
+        let pairs = self.varied.iter().zip(values);
+        let known = pairs.filter_map(|(varied, value)| {
+            let sd = varied.prior?;
+            Some(((value - varied.nominal) / sd).powi(2))
+        });
+        known.sum()
     }
 
     pub(crate) fn settings(&self, values: &[f64]) -> Vec<(usize, f64)> {
@@ -334,45 +380,38 @@ impl Problem<'_> {
         })
     }
 
-    /// Half the second derivatives, of data and of priors, and half the gradient of the cost, in units of the scales.
-    pub(crate) fn normal(
-        &self,
-        values: &[f64],
-        at: &Linearised,
-    ) -> ((DMatrix<f64>, DMatrix<f64>), DVector<f64>) {
+    /// The normal equations, in units of the scales.
+    pub(crate) fn normal(&self, values: &[f64], at: &Linearised) -> Normal {
         let n = self.varied.len();
-        let mut data = DMatrix::zeros(n, n);
-        let mut priors = DMatrix::zeros(n, n);
-        let mut gradient = DVector::zeros(n);
+        let mut normal = Normal {
+            data: DMatrix::zeros(n, n),
+            priors: DMatrix::zeros(n, n),
+            of_data: DVector::zeros(n),
+            of_priors: DVector::zeros(n),
+        };
         for (own, innovations) in at.derivatives.iter().zip(&at.innovations) {
-            data += own.tr_mul(own);
-            gradient += own.tr_mul(&DVector::from_vec(innovations.channels.concat()));
+            normal.data += own.tr_mul(own);
+            normal.of_data += own.tr_mul(&DVector::from_vec(innovations.channels.concat()));
         }
         for (i, varied) in self.varied.iter().enumerate() {
             if let Some(sd) = varied.prior {
                 let scale = varied.scale() / sd;
-                priors[(i, i)] = scale * scale;
-                gradient[i] += scale * (values[i] - varied.nominal) / sd;
+                normal.priors[(i, i)] = scale * scale;
+                normal.of_priors[i] = scale * (values[i] - varied.nominal) / sd;
             }
         }
-        ((data, priors), gradient)
+        normal
     }
 
     /// A damped step, in units of the scales. Parameters at a bound that the step would leave stay.
-    fn step(
-        &self,
-        values: &[f64],
-        curvature: &(DMatrix<f64>, DMatrix<f64>),
-        gradient: &DVector<f64>,
-        lambda: f64,
-    ) -> DVector<f64> {
+    fn step(&self, values: &[f64], normal: &Normal, weight: f64, lambda: f64) -> DVector<f64> {
         let n = self.varied.len();
-        let mut matrix = &curvature.0 + &curvature.1;
+        let mut matrix = &normal.data + weight * &normal.priors;
         let largest = matrix.diagonal().max();
         for i in 0..n {
             matrix[(i, i)] += lambda * matrix[(i, i)] + 1e-12 * largest;
         }
-        let mut right = -gradient;
+        let mut right = -(&normal.of_data + weight * &normal.of_priors);
         let mut free = vec![true; n];
         for _ in 0..=n {
             let mut reduced = matrix.clone();
@@ -415,6 +454,10 @@ impl Problem<'_> {
             .map(|(varied, value)| value.clamp(varied.bounds.0, varied.bounds.1))
             .collect()
     }
+}
+
+fn sum_of_squares(innovations: &[Innovations]) -> f64 {
+    innovations.iter().map(Innovations::sum_of_squares).sum()
 }
 
 /// How far a parameter is moved for a difference: inwards where it is at its upper bound.

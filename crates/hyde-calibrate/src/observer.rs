@@ -4,6 +4,7 @@ use crate::gain::Observer;
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
 use hyde_program::{Function, Program};
+use std::ops::ControlFlow;
 
 /// Whitened innovations of a record: each channel's, row by row, in standard deviations.
 #[derive(Clone, Debug)]
@@ -23,6 +24,24 @@ impl Innovations {
         observer: &Observer,
         set: &[(usize, f64)],
     ) -> Result<Self, Unsupported> {
+        let whole = Self::within(program, recording, observer, set, f64::INFINITY)?;
+        Ok(whole.unwrap_or(Self {
+            channels: Vec::new(),
+        }))
+    }
+
+    /// The same as long as the sum of their squares stays within a limit, else `None`: what is worse than that is not run
+    /// to its end.
+    ///
+    /// # Errors
+    /// The program has no fixed-step form.
+    pub(crate) fn within(
+        program: &Program,
+        recording: &Recording,
+        observer: &Observer,
+        set: &[(usize, f64)],
+        limit: f64,
+    ) -> Result<Option<Self>, Unsupported> {
         let mut plant = Plant::new(program, recording, set)?;
         let observer = observer.of(&plant);
         if let Some(tolerances) = observer.tolerances() {
@@ -30,16 +49,24 @@ impl Innovations {
         }
         let rows = recording.rows() - recording.first_row;
         let mut channels = vec![Vec::with_capacity(rows); recording.channels.len()];
-        run(&mut plant, &observer, |_, row, error| {
+        let mut sum = 0.0;
+        let end = run_while(&mut plant, &observer, |_, row, error| {
             if row >= recording.first_row {
                 for ((list, error), deviation) in
                     channels.iter_mut().zip(error).zip(&observer.deviations)
                 {
-                    list.push(whitened(*error, *deviation));
+                    let value = whitened(*error, *deviation);
+                    sum += value * value;
+                    list.push(value);
                 }
             }
+            if sum <= limit {
+                ControlFlow::Continue(())
+            } else {
+                ControlFlow::Break(())
+            }
         });
-        Ok(Self { channels })
+        Ok(end.is_continue().then_some(Self { channels }))
     }
 
     /// Their mean square, over all channels.
@@ -73,6 +100,18 @@ pub(crate) fn run(
     observer: &Observer,
     mut visit: impl FnMut(&Plant<'_>, usize, &[f64]),
 ) {
+    let _end = run_while(plant, observer, |plant, row, error| {
+        visit(plant, row, error);
+        ControlFlow::Continue(())
+    });
+}
+
+/// The same, as long as `visit` says so.
+fn run_while(
+    plant: &mut Plant<'_>,
+    observer: &Observer,
+    mut visit: impl FnMut(&Plant<'_>, usize, &[f64]) -> ControlFlow<()>,
+) -> ControlFlow<()> {
     let recording = plant.recording;
     let program = plant.program;
     let mut outputs = vec![0.0; program.outputs.len()];
@@ -86,7 +125,7 @@ pub(crate) fn run(
         for (channel, measured) in program.experiment.measured.iter().enumerate() {
             error[channel] = recording.channels[channel][row] - outputs[measured.output];
         }
-        visit(plant, row, &error);
+        visit(plant, row, &error)?;
         // A value that is missing corrects nothing.
         error
             .iter_mut()
@@ -98,4 +137,5 @@ pub(crate) fn run(
             plant.advance();
         }
     }
+    ControlFlow::Continue(())
 }

@@ -59,6 +59,18 @@ pub(crate) struct Plant<'a> {
     /// Positions fixed by modes, with their values.
     pub(crate) pinned: Vec<(usize, f64)>,
     pub(crate) room: Room,
+    /// The steps of the last row.
+    pub(crate) legs: Vec<Leg>,
+}
+
+/// A step that was taken.
+pub(crate) struct Leg {
+    /// Its level: a row's time over 2^level.
+    pub(crate) level: usize,
+    /// The combination of modes it was taken in.
+    pub(crate) configuration: usize,
+    /// Where an event ended it, the positions of the states that are fixed from there on.
+    pub(crate) fixed: Option<Vec<usize>>,
 }
 
 impl<'a> Plant<'a> {
@@ -119,6 +131,7 @@ impl<'a> Plant<'a> {
             conditions: vec![false; program.reactions.len()],
             pinned: Vec::new(),
             room: Room::new(program, &places),
+            legs: Vec::new(),
             places,
             p,
         };
@@ -173,21 +186,34 @@ impl<'a> Plant<'a> {
 
     /// On to the next row, up to what drives the axis there.
     pub(crate) fn advance(&mut self) {
+        self.legs.clear();
         while self.index < shortest_steps() {
             while !self.index.is_multiple_of(size_of(self.level)) {
                 self.level += 1;
             }
-            match self.step(self.level) {
+            let (level, configuration) = (self.level, self.current);
+            match self.step(level) {
                 Outcome::Taken => {
-                    self.index += size_of(self.level);
+                    self.index += size_of(level);
+                    self.legs.push(Leg {
+                        level,
+                        configuration,
+                        fixed: None,
+                    });
                     if self.level > LONGEST && self.index.is_multiple_of(size_of(self.level - 1)) {
                         self.level -= 1;
                     }
                 }
                 Outcome::TooLong => self.level += 1,
                 Outcome::Event => {
-                    self.index += size_of(self.level);
+                    self.index += size_of(level);
                     self.settle();
+                    let fixed = self.pinned.iter().map(|(position, _)| *position);
+                    self.legs.push(Leg {
+                        level,
+                        configuration,
+                        fixed: Some(fixed.collect()),
+                    });
                 }
             }
         }

@@ -2,6 +2,12 @@
 
 use hyde_program::{Prior, Program};
 
+/// A parameter of which no range is declared may be so many times further off than it is said to be known. Further away a
+/// model that lacks something drives its parameters where no part can be: a soft nut for backlash.
+const FURTHER: f64 = 3.0;
+/// A parameter known to some per cent keeps its sign, and so much of its value.
+const LEAST: f64 = 0.01;
+
 /// A parameter that calibration may change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Varied {
@@ -66,7 +72,7 @@ impl Varied {
                     prior: prior.filter(|sd| *sd > 0.0),
                     bounds: parameter
                         .range
-                        .unwrap_or((f64::NEG_INFINITY, f64::INFINITY)),
+                        .unwrap_or_else(|| bounds(parameter.prior, nominal)),
                     visible: None,
                 }
             })
@@ -83,4 +89,21 @@ impl Varied {
             None => 1.0,
         }
     }
+}
+
+/// How far a parameter may go of which no range is declared.
+fn bounds(prior: Option<Prior>, nominal: f64) -> (f64, f64) {
+    let (width, relative) = match prior {
+        Some(Prior::Relative(part)) => (part.abs() * nominal.abs(), part.abs() < 1.0),
+        Some(Prior::Absolute(width)) => (width.abs(), false),
+        None => return (f64::NEG_INFINITY, f64::INFINITY),
+    };
+    let (mut low, mut high) = (nominal - FURTHER * width, nominal + FURTHER * width);
+    if relative && nominal > 0.0 {
+        low = low.max(LEAST * nominal);
+    }
+    if relative && nominal < 0.0 {
+        high = high.min(LEAST * nominal);
+    }
+    (low, high)
 }

@@ -112,11 +112,13 @@ pub(crate) fn errors(
 ) -> Result<Vec<RecordErrors>, Unsupported> {
     let mut found = Vec::new();
     for (holdout, recordings) in [(false, &calibration.fitted), (true, &calibration.holdout)] {
-        let new = after.measures(recordings, &calibration.observer)?;
-        let old = match before {
-            Some(before) => before.measures(recordings, &calibration.observer)?,
-            None => new.clone(),
-        };
+        let observer = &calibration.observer;
+        let (new, old) = rayon::join(
+            || after.measures(recordings, observer),
+            || before.map(|before| before.measures(recordings, observer)),
+        );
+        let new = new?;
+        let old = old.transpose()?.unwrap_or_else(|| new.clone());
         let pairs = old.into_iter().zip(new);
         found.extend(pairs.map(|(before, after)| RecordErrors {
             holdout,

@@ -26,6 +26,8 @@ pub(crate) struct Inputs<'a> {
 
 struct Input<'a> {
     signal: Signal<'a>,
+    /// The instants at which it jumps.
+    jumps: Vec<f64>,
     mean_step_s: f64,
     next: bool,
     cursor: Cursor,
@@ -47,6 +49,10 @@ impl<'a> Inputs<'a> {
                 .and_then(hyde_signal::Table::mean_step)
                 .unwrap_or(f64::INFINITY);
             columns.push(Input {
+                jumps: match column.continuous {
+                    true => signal.jumps().collect(),
+                    false => Vec::new(),
+                },
                 signal,
                 mean_step_s,
                 next: column.next,
@@ -104,7 +110,10 @@ impl<'a> Inputs<'a> {
 
     /// The next instant after `t` at which a column that the equations read jumps.
     pub(crate) fn next_jump(&self, t: f64) -> f64 {
-        let later = |&number: &usize| self.columns[number].signal.jumps().find(|&jump| jump > t);
+        let later = |&number: &usize| {
+            let jumps = &self.columns[number].jumps;
+            jumps.get(jumps.partition_point(|&jump| jump <= t)).copied()
+        };
         let jumps = self.continuous.iter().filter_map(later);
         let row = |&number: &usize| {
             let column = &self.columns[number];

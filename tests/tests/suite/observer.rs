@@ -156,6 +156,6 @@ fn calibration_finds_the_parameters_that_a_record_was_made_with() {
         pool.install(|| problem.solve(&start)).unwrap()
     };
     let (one, three) = (of(1), of(3));
-    assert_eq!(one.cost.to_bits(), three.cost.to_bits());
+    assert_eq!(one.cost().to_bits(), three.cost().to_bits());
     assert_eq!(one.values, three.values);
 }

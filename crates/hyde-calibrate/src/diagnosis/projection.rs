@@ -6,14 +6,18 @@
 //! a small size s with d = s*c that is the score test of Rao (Proc. Camb. Phil. Soc. 44, 1948, 50) with nuisance
 //! parameters: `b^2/M`.
 
+use super::products::Products;
 use super::stage::{Stage, flat};
 use crate::least_squares::Linearised;
+use crate::observer::Innovations;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Innovations, with what parameters can do about them.
 pub(crate) struct Projection {
     pub(crate) innovations: DVector<f64>,
     derivatives: DMatrix<f64>,
+    /// Of each record, row by row with its channels beside each other: derivatives, and the innovation below them.
+    pub(crate) records: Vec<DMatrix<f64>>,
     factor: Cholesky<f64, Dyn>,
     h: DVector<f64>,
     least: f64,
@@ -55,13 +59,17 @@ impl Projection {
             derivatives.rows_mut(first, own.nrows()).copy_from(own);
             first += own.nrows();
         }
+        let records = at.derivatives.iter().zip(&at.innovations);
+        let records = records
+            .map(|(own, innovations)| beside(own, innovations))
+            .collect();
         let mut a = derivatives.tr_mul(&derivatives);
         let mut h = derivatives.tr_mul(&innovations);
         for (i, varied) in stage.varied.iter().enumerate() {
             if let Some(sd) = varied.prior {
-                let scale = varied.scale() / sd;
-                a[(i, i)] += scale * scale;
-                h[i] += scale * (stage.solution.values[i] - varied.nominal) / sd;
+                let (scale, weight) = (varied.scale() / sd, stage.solution.weight);
+                a[(i, i)] += weight * scale * scale;
+                h[i] += weight * scale * (stage.solution.values[i] - varied.nominal) / sd;
             }
         }
         let floor = 1e-12 * a.diagonal().iter().fold(1e-300_f64, |most, v| most.max(*v));
@@ -73,10 +81,16 @@ impl Projection {
         Some(Self {
             innovations,
             derivatives,
+            records,
             factor,
             h,
             least,
         })
+    }
+
+    /// The number of parameters.
+    pub(crate) fn parameters(&self) -> usize {
+        self.h.len()
     }
 
     /// What a change of innovations gains.
@@ -106,15 +120,30 @@ impl Projection {
         h: &DVector<f64>,
     ) -> Answer {
         let onto = self.derivatives.tr_mul(columns);
-        let solved = self.factor.solve(&onto);
-        let mut m = columns.tr_mul(columns);
+        self.answer_to(
+            &onto,
+            columns.tr_mul(columns),
+            &columns.tr_mul(innovations),
+            h,
+        )
+    }
+
+    /// The same from products: of derivatives, of columns, and of innovations with columns.
+    fn answer_to(
+        &self,
+        onto: &DMatrix<f64>,
+        mut m: DMatrix<f64>,
+        with_innovations: &DVector<f64>,
+        h: &DVector<f64>,
+    ) -> Answer {
+        let solved = self.factor.solve(onto);
         let squares: Vec<f64> = m.diagonal().iter().copied().collect();
         m -= onto.tr_mul(&solved);
         // What parameters answer to within rounding is no column of its own.
         for (i, own) in squares.iter().enumerate() {
             m[(i, i)] += 1e-9 * own + 1e-300;
         }
-        let b = solved.tr_mul(h) - columns.tr_mul(innovations);
+        let b = solved.tr_mul(h) - with_innovations;
         let factor = Cholesky::new(m.clone());
         let best = factor.map_or_else(|| DVector::zeros(b.len()), |factor| factor.solve(&b));
         Answer {
@@ -126,15 +155,35 @@ impl Projection {
         }
     }
 
-    /// The sizes that gain most if answers are linear: so many columns, one behind the other, are the changes of innovations
-    /// a unit of the sizes of one shape.
-    pub(crate) fn answers(&self, columns: &DMatrix<f64>, sizes: usize) -> Vec<Answer> {
-        let answer = |shape: usize| {
-            let own = columns.columns(shape * sizes, sizes).into_owned();
-            self.answer_of(&own, &self.innovations, &self.h)
+    /// The sizes that gain most if answers are linear, shape by shape.
+    pub(crate) fn answers(&self, products: &Products) -> Vec<Answer> {
+        let (n, sizes) = (self.h.len(), products.sizes);
+        let answer = |(shape, own): (usize, &DMatrix<f64>)| {
+            let columns = products.with_record.columns(shape * sizes, sizes);
+            let onto = columns.rows(0, n).into_owned();
+            let with_innovations = columns.row(n).transpose();
+            self.answer_to(&onto, own.clone(), &with_innovations, &self.h)
         };
-        (0..columns.ncols() / sizes).map(answer).collect()
+        products
+            .with_each_other
+            .iter()
+            .enumerate()
+            .map(answer)
+            .collect()
     }
+}
+
+/// Derivatives and innovations of a record as [`Products`] takes them.
+fn beside(derivatives: &DMatrix<f64>, innovations: &Innovations) -> DMatrix<f64> {
+    let (n, channels) = (derivatives.ncols(), innovations.channels.len());
+    let rows = derivatives.nrows() / channels.max(1);
+    DMatrix::from_fn(n + 1, rows * channels, |i, at| {
+        let (row, channel) = (at / channels, at % channels);
+        match i == n {
+            true => innovations.channels[channel][row],
+            false => derivatives[(channel * rows + row, i)],
+        }
+    })
 }
 
 fn matrix(columns: &[Vec<f64>]) -> DMatrix<f64> {

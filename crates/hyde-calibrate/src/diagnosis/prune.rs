@@ -25,11 +25,11 @@ pub(crate) fn prune(
             .collect();
         let least = without
             .into_iter()
-            .min_by(|a, b| a.1.solution.cost.total_cmp(&b.1.solution.cost));
+            .min_by(|a, b| a.1.solution.cost().total_cmp(&b.1.solution.cost()));
         let Some((number, less)) = least else { break };
         let freedoms = stage.varied.len() - less.varied.len();
         let gate = gates.gain(freedoms) * inflation(&stage.solution.innovations);
-        if less.solution.cost - stage.solution.cost >= gate.max(gates.material()) {
+        if stage.solution.gain_over(&less.solution) >= gate.max(gates.material()) {
             break;
         }
         *stage = less;

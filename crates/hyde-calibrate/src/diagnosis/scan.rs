@@ -5,21 +5,35 @@
 //! that brings modes of its own, as play does, is nothing to begin with and is tried at sizes all over its range.
 
 use super::hypothesis::{Build, Built, Hypothesis, Knob};
+use super::products::Products;
 use super::projection::Projection;
 use super::stage::{Ground, Stage, flat};
 use crate::observer::Innovations;
-use crate::tangent::{Direction, tangents};
+use crate::recording::Recording;
+use crate::tangent::{Direction, along};
 use hyde_program::Program;
 use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 /// A visible change of innovations: the sum of its squares.
 const VISIBLE: f64 = 100.0;
 /// The part of its range that a size is given to differentiate by it.
 const SMALL: f64 = 1e-4;
+/// Innovations whose sum of squares is so many times what it is without the effect are not looked at to their end.
+const HOPELESS: f64 = 100.0;
+/// A gain is looked at from this part of the gate on, and where it promises this part of the best.
+const PASSABLE: f64 = 0.25;
+const WORTHWHILE: f64 = 0.01;
+/// So many are tried before the best is known better.
+const AT_A_TIME: usize = 8;
+/// A run that gains this part of what tangents promise is as expected.
+const AS_EXPECTED: f64 = 0.7;
 /// Shapes scored at once.
-const CHUNK: usize = 16;
+const CHUNK: usize = 96;
 /// Nodes kept of each effect: where it is fitted from.
 const KEPT: usize = 3;
+/// Nodes are beside each other up to so many steps of the grid.
+const BESIDE: f64 = 1.5;
 /// Nodes of a shape at most, of one that is a period or an order, and of a resonance.
 const NODES: usize = 12;
 const PERIODIC_NODES: usize = 96;
@@ -38,6 +52,10 @@ pub struct Node {
     pub(crate) visible: Vec<f64>,
     /// What is gained of the sum of squares.
     pub gain: f64,
+    /// The least value of its first size that would be seen, SI.
+    pub(crate) seen: f64,
+    /// Whether its sizes are those of a linear answer.
+    pub(crate) linear: bool,
 }
 
 /// What an effect at a site gains at best.
@@ -63,126 +81,216 @@ impl Score {
     }
 }
 
-/// Scores a hypothesis beside what a stage has; `None` where it cannot be put on the model.
-pub(crate) fn scan(
-    ground: &Ground<'_>,
-    stage: &Stage,
-    projection: &Projection,
-    hypotheses: &[Hypothesis],
+/// What is scanned: a stage, and what is known of its innovations.
+pub(crate) struct Scanner<'s> {
+    pub(crate) ground: &'s Ground<'s>,
+    pub(crate) stage: &'s Stage,
+    pub(crate) projection: &'s Projection,
+    pub(crate) hypotheses: &'s [Hypothesis],
+    pub(crate) build: &'s Build<'s>,
+    /// What a gain has to reach at least.
+    pub(crate) gate: f64,
+}
+
+/// A hypothesis with what tangents promise of it.
+struct Promised {
     number: usize,
-    build: &Build<'_>,
-    gate: f64,
-) -> Option<Score> {
-    let hypothesis = &hypotheses[number];
-    let mut list: Vec<usize> = stage.effects.iter().map(|(effect, _)| *effect).collect();
-    list.push(number);
-    let Built { program, paths } = build(&list)?;
-    let path = paths.last()?;
-    let runs = Runs {
-        ground,
-        program: &program,
-        values: stage.values(),
-        sizes: Hypothesis::names(&hypothesis.sizes, path),
-        shapes: Hypothesis::names(&hypothesis.shapes, path),
-        plain: DVector::zeros(0),
-    };
-    let zeros = vec![0.0; hypothesis.sizes.len()];
-    let declared: Vec<f64> = hypothesis.shapes.iter().map(|shape| shape.value).collect();
-    let plain = runs.innovations(&zeros, &declared)?;
-    let runs = Runs { plain, ..runs };
-    let own_modes = program.automata.len() > stage.program.automata.len()
-        || program.relations.len() > stage.program.relations.len();
-    let shapes = grid(hypothesis);
-    let mut tried = 0;
-    let mut detectable: Option<f64> = None;
-    // What has states of its own moves by itself as its shapes say, also at size 0: each shape needs a run of its own.
-    let chunk = if program.n_unknowns > stage.program.n_unknowns {
-        1
-    } else {
-        CHUNK
-    };
-    let mut score = |shapes: &[Vec<f64>]| -> Option<Vec<Node>> {
+    program: Program,
+    path: String,
+    plain: DVector<f64>,
+    nodes: Vec<Node>,
+    tried: usize,
+    own_modes: bool,
+    detectable: Option<f64>,
+}
+
+impl Promised {
+    fn gain(&self) -> f64 {
+        self.nodes.first().map_or(0.0, |node| node.gain)
+    }
+
+    fn score(self, linear: bool) -> Score {
+        Score {
+            hypothesis: self.number,
+            nodes: self.nodes,
+            tried: self.tried,
+            linear,
+            detectable: self.detectable.filter(|_| linear),
+        }
+    }
+}
+
+impl Scanner<'_> {
+    /// The scores of all hypotheses that can be put on the model, the best first. What promises too little beside the best is
+    /// not tried by runs of its own: its score is what tangents promise.
+    pub(crate) fn scores(&self) -> Vec<Score> {
+        let all = (0..self.hypotheses.len()).into_par_iter();
+        let mut promised: Vec<Promised> = all.filter_map(|number| self.promised(number)).collect();
+        promised.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
+        let mut rest = promised.into_iter().peekable();
+        let mut scores: Vec<Score> = Vec::new();
+        let mut best = 0.0;
+        while let Some(next) = rest.peek() {
+            if next.gain() < (WORTHWHILE * best).max(PASSABLE * self.gate) {
+                break;
+            }
+            let few: Vec<Promised> = rest.by_ref().take(AT_A_TIME).collect();
+            let tried = few.into_par_iter().map(|promised| self.tried(promised));
+            scores.extend(tried.collect::<Vec<Score>>());
+            best = scores.iter().map(Score::gain).fold(best, f64::max);
+        }
+        scores.extend(rest.map(|promised| {
+            let linear = !promised.own_modes;
+            promised.score(linear)
+        }));
+        scores.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
+        scores
+    }
+
+    /// What tangents promise of a hypothesis, over the grid of its shapes; `None` where it cannot be put on the model.
+    fn promised(&self, number: usize) -> Option<Promised> {
+        let hypothesis = &self.hypotheses[number];
+        let known = self.stage.effects.iter().map(|(effect, _)| *effect);
+        let list: Vec<usize> = known.chain([number]).collect();
+        let Built { program, paths } = (self.build)(&list)?;
+        let before = &self.stage.program;
+        let mut promised = Promised {
+            number,
+            own_modes: program.automata.len() > before.automata.len()
+                || program.relations.len() > before.relations.len(),
+            path: paths.last()?.clone(),
+            program,
+            plain: DVector::zeros(0),
+            nodes: Vec::new(),
+            tried: 0,
+            detectable: None,
+        };
+        let (nodes, plain) = self.nodes(&promised, &grid(hypothesis))?;
+        promised.plain = plain;
+        promised.tried = nodes.len();
+        let seen = nodes.iter().map(|node| node.seen);
+        promised.detectable = Some(seen.fold(f64::INFINITY, f64::min));
+        promised.nodes = nodes;
+        if promised.own_modes {
+            self.try_sizes(&mut promised);
+        }
+        promised.nodes = peaks(hypothesis, promised.nodes);
+        Some(promised)
+    }
+
+    /// The nodes of some shapes; and the innovations without the effect.
+    fn nodes(&self, promised: &Promised, shapes: &[Vec<f64>]) -> Option<(Vec<Node>, DVector<f64>)> {
+        let hypothesis = &self.hypotheses[promised.number];
+        let runs = self.runs(promised);
+        // What has states of its own moves by itself as its shapes say, also at size 0: each shape needs a run of its own.
+        let chunk = if promised.program.n_unknowns > self.stage.program.n_unknowns {
+            1
+        } else {
+            CHUNK
+        };
         let mut nodes = Vec::new();
+        let mut plain = None;
         for chunk in shapes.chunks(chunk) {
-            let columns = runs.columns(hypothesis, chunk)?;
-            let answers = projection.answers(&columns, hypothesis.sizes.len());
+            let (products, innovations) = runs.products(hypothesis, self.projection, chunk)?;
+            let answers = self.projection.answers(&products);
             for (shape, answer) in chunk.iter().zip(answers) {
-                tried += 1;
-                let seen = answer.reaches(gate, 0);
-                detectable = Some(detectable.map_or(seen, |least: f64| least.min(seen)));
                 let pairs = || hypothesis.sizes.iter().enumerate();
                 let sizes: Vec<f64> = pairs()
                     .map(|(i, size)| inside(answer.sizes[i], size))
                     .collect();
-                nodes.push(Node {
+                let node = Node {
                     shapes: shape.clone(),
                     visible: pairs()
                         .map(|(i, size)| visible(answer.squares[i], size))
                         .collect(),
                     gain: answer.gain_of(&sizes),
                     sizes,
-                });
+                    seen: answer.reaches(self.gate, 0),
+                    linear: true,
+                };
+                nodes.push(node);
             }
+            plain = plain.or(Some(innovations));
         }
-        Some(nodes)
-    };
-    let mut nodes = score(&shapes)?;
-    best_first(&mut nodes);
-    if let Some(best) = nodes.first().filter(|node| node.gain > 0.25 * gate) {
-        let between = between(hypothesis, &best.shapes.clone());
-        nodes.extend(score(&between)?);
+        Some((nodes, plain?))
     }
-    best_first(&mut nodes);
-    nodes.truncate(KEPT);
-    let mut linear = !own_modes;
-    for node in &mut nodes {
-        if node.gain < 0.25 * gate {
-            continue;
-        }
-        let promised = node.gain;
-        node.gain = f64::NEG_INFINITY;
-        for factor in [1.0, 0.5, 2.0] {
-            let sizes: Vec<f64> = node
-                .sizes
-                .iter()
-                .zip(&hypothesis.sizes)
-                .map(|(s, size)| (s * factor).clamp(size.range.0, size.range.1))
-                .collect();
-            let gain = projection.gain(&runs.change(&sizes, &node.shapes)?);
-            tried += 1;
-            if gain > node.gain {
-                (node.gain, node.sizes) = (gain, sizes);
-            }
-            if node.gain > 0.7 * promised {
-                break;
-            }
-            linear = false;
-        }
-    }
-    if own_modes {
+
+    /// Tries sizes all over the range of what has modes of its own: tangents tell little of it.
+    fn try_sizes(&self, promised: &mut Promised) {
+        let hypothesis = &self.hypotheses[promised.number];
+        let declared: Vec<f64> = hypothesis.shapes.iter().map(|shape| shape.value).collect();
         let largest = largest(&hypothesis.sizes[0]);
         for halving in 0..HALVINGS {
-            let mut sizes = zeros.clone();
+            let mut sizes = vec![0.0; hypothesis.sizes.len()];
             sizes[0] = largest * 0.5_f64.powi(halving);
-            let gain = projection.gain(&runs.change(&sizes, &declared)?);
-            tried += 1;
-            nodes.push(Node {
+            let gain = self.gain(promised, &sizes, &declared);
+            promised.tried += 1;
+            promised.nodes.push(Node {
                 shapes: declared.clone(),
                 visible: sizes.iter().map(|s| 0.1 * s.abs()).collect(),
                 sizes,
                 gain,
+                seen: f64::INFINITY,
+                linear: false,
             });
         }
     }
-    best_first(&mut nodes);
-    nodes.truncate(KEPT);
-    Some(Score {
-        hypothesis: number,
-        nodes,
-        tried,
-        linear,
-        detectable: detectable.filter(|_| linear),
-    })
+
+    /// Looks between the nodes of the grid, and tries by the model itself what tangents promise of the best.
+    fn tried(&self, mut promised: Promised) -> Score {
+        let hypothesis = &self.hypotheses[promised.number];
+        let best = promised.nodes.first().map(|best| best.shapes.clone());
+        if let Some(best) = best {
+            let between = between(hypothesis, &best);
+            if let Some((nodes, _)) = self.nodes(&promised, &between) {
+                promised.tried += nodes.len();
+                promised.nodes.extend(nodes);
+            }
+        }
+        promised.nodes = peaks(hypothesis, promised.nodes);
+        let mut linear = !promised.own_modes;
+        let mut nodes = std::mem::take(&mut promised.nodes);
+        for node in &mut nodes {
+            if node.gain < PASSABLE * self.gate {
+                continue;
+            }
+            let expected = node.gain;
+            node.gain = f64::NEG_INFINITY;
+            for factor in [1.0, 0.5, 2.0] {
+                let pairs = node.sizes.iter().zip(&hypothesis.sizes);
+                let sizes: Vec<f64> = pairs.map(|(s, size)| inside(s * factor, size)).collect();
+                let gain = self.gain(&promised, &sizes, &node.shapes);
+                promised.tried += 1;
+                if gain > node.gain {
+                    (node.gain, node.sizes) = (gain, sizes);
+                }
+                if node.gain > AS_EXPECTED * expected {
+                    break;
+                }
+                linear = false;
+            }
+        }
+        best_first(&mut nodes);
+        promised.nodes = nodes;
+        promised.score(linear)
+    }
+
+    /// What a run with some sizes and shapes gains.
+    fn gain(&self, promised: &Promised, sizes: &[f64], shapes: &[f64]) -> f64 {
+        let change = self.runs(promised).change(sizes, shapes, &promised.plain);
+        change.map_or(f64::NEG_INFINITY, |change| self.projection.gain(&change))
+    }
+
+    fn runs<'r>(&'r self, promised: &'r Promised) -> Runs<'r> {
+        let hypothesis = &self.hypotheses[promised.number];
+        Runs {
+            ground: self.ground,
+            program: &promised.program,
+            values: self.stage.values(),
+            sizes: Hypothesis::names(&hypothesis.sizes, &promised.path),
+            shapes: Hypothesis::names(&hypothesis.shapes, &promised.path),
+        }
+    }
 }
 
 /// Innovations of a model with the effect at some sizes.
@@ -192,34 +300,35 @@ struct Runs<'s> {
     values: Vec<(String, f64)>,
     sizes: Vec<String>,
     shapes: Vec<String>,
-    plain: DVector<f64>,
 }
 
 impl Runs<'_> {
-    fn innovations(&self, sizes: &[f64], shapes: &[f64]) -> Option<DVector<f64>> {
+    /// How innovations change from what they are without the effect; `None` where it cannot be run, or where they become so
+    /// large that no parameter could answer it.
+    fn change(&self, sizes: &[f64], shapes: &[f64], plain: &DVector<f64>) -> Option<DVector<f64>> {
         let set = self.set(sizes, shapes);
-        let each: Option<Vec<Innovations>> = self
-            .ground
-            .recordings
-            .iter()
-            .map(|recording| {
-                Innovations::of(self.program, recording, self.ground.observer, &set).ok()
-            })
-            .collect();
-        Some(DVector::from_vec(flat(&each?)))
+        let limit = HOPELESS * plain.norm_squared();
+        let run = |recording: &Recording| {
+            let observer = self.ground.observer;
+            Innovations::within(self.program, recording, observer, &set, limit).ok()?
+        };
+        let each: Option<Vec<Innovations>> = self.ground.recordings.iter().map(run).collect();
+        Some(DVector::from_vec(flat(&each?)) - plain)
     }
 
-    fn change(&self, sizes: &[f64], shapes: &[f64]) -> Option<DVector<f64>> {
-        Some(self.innovations(sizes, shapes)? - &self.plain)
-    }
-
-    /// The changes of innovations a unit of each size, for some shapes: a column each.
-    fn columns(&self, hypothesis: &Hypothesis, shapes: &[Vec<f64>]) -> Option<DMatrix<f64>> {
+    /// Products of the changes of innovations a unit of each size, for some shapes; and the innovations.
+    fn products(
+        &self,
+        hypothesis: &Hypothesis,
+        projection: &Projection,
+        shapes: &[Vec<f64>],
+    ) -> Option<(Products, DVector<f64>)> {
         let count = hypothesis.sizes.len();
         let zeros = vec![0.0; count];
-        let mut columns = DMatrix::zeros(self.plain.len(), shapes.len() * count);
-        let mut first = 0;
-        for recording in self.ground.recordings {
+        let set = self.set(&zeros, shapes.first()?);
+        let mut products = Products::new(projection.parameters(), shapes.len(), count);
+        let mut innovations = Vec::new();
+        for (recording, record) in self.ground.recordings.iter().zip(&projection.records) {
             let mut directions = Vec::new();
             for shape in shapes {
                 for which in 0..count {
@@ -231,15 +340,14 @@ impl Runs<'_> {
                     });
                 }
             }
-            let set = self.set(&zeros, shapes.first()?);
+            let mut adding = products.adding(record, recording.channels.len());
             let observer = self.ground.observer;
-            let own = tangents(self.program, recording, observer, &set, &directions).ok()?;
-            columns
-                .rows_mut(first, own.change.nrows())
-                .copy_from(&own.change);
-            first += own.change.nrows();
+            let each = |_, changes: &DMatrix<f64>| adding.row(changes);
+            let own = along(self.program, recording, observer, &set, &directions, each);
+            innovations.push(own.ok()?);
+            adding.end();
         }
-        Some(columns)
+        Some((products, DVector::from_vec(flat(&innovations))))
     }
 
     fn set(&self, sizes: &[f64], shapes: &[f64]) -> Vec<(usize, f64)> {
@@ -263,6 +371,33 @@ fn visible(squares: f64, size: &Knob) -> f64 {
 
 fn best_first(nodes: &mut [Node]) {
     nodes.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+}
+
+/// The best nodes, those apart that lie beside a better one: fits from there end at the same place.
+fn peaks(hypothesis: &Hypothesis, mut nodes: Vec<Node>) -> Vec<Node> {
+    best_first(&mut nodes);
+    let axis = axis(hypothesis);
+    let beside = |a: &Node, b: &Node| {
+        let shapes = axis.is_none_or(|axis| {
+            let shape = &hypothesis.shapes[axis];
+            let (a, b) = (a.shapes[axis], b.shapes[axis]);
+            let (low, high) = shape.range;
+            let part = match by_ratio(shape) {
+                true => (a / b).ln() / (high / low).ln(),
+                false => (a - b) / (high - low),
+            };
+            part.abs() * count(hypothesis) as f64 <= BESIDE
+        });
+        // Where nothing is linear, sizes lead to places of their own.
+        shapes && a.linear && b.linear
+    };
+    let mut kept: Vec<Node> = Vec::new();
+    for node in nodes {
+        if kept.len() < KEPT && !kept.iter().any(|better| beside(better, &node)) {
+            kept.push(node);
+        }
+    }
+    kept
 }
 
 fn largest(size: &Knob) -> f64 {

@@ -9,7 +9,7 @@
 use super::hypothesis::{Build, Built, Hypothesis};
 use super::projection::Projection;
 use super::prune::prune;
-use super::scan::{Score, scan};
+use super::scan::{Scanner, Score};
 use super::stage::{Ground, Stage};
 use super::trial::{Begun, Rejection, Trial, begin, finish, unseen};
 use crate::fit::{correlation, covariance, inflation};
@@ -184,21 +184,16 @@ pub fn diagnose(
     while stage.effects.len() < max_effects && rounds.len() < max_effects + MORE_ROUNDS {
         let at = stage.linearise(&ground)?;
         let projection = Projection::new(&stage, &at).ok_or_else(singular)?;
-        let gate = gates.gain(1);
-        let scored = (0..hypotheses.len()).into_par_iter().filter_map(|number| {
-            scan(
-                &ground,
-                &stage,
-                &projection,
-                hypotheses,
-                number,
-                build,
-                gate,
-            )
-        });
-        let mut scores: Vec<Score> = scored.collect();
+        let scanner = Scanner {
+            ground: &ground,
+            stage: &stage,
+            projection: &projection,
+            hypotheses,
+            build,
+            gate: gates.gain(1),
+        };
+        let scores = scanner.scores();
         gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
-        scores.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
         let best = scores.first().map_or(0.0, Score::gain);
         let survivors = scores
             .iter()

@@ -77,7 +77,7 @@ impl Stage {
             .map(|(varied, &value)| varied.prior.map_or(value, |_| varied.nominal))
             .collect();
         let again = problem.solve_in(&declared, MAX_STEPS, Slopes::Tangents)?;
-        let start = if again.cost < self.solution.cost {
+        let start = if again.gain_over(&self.solution) > 0.0 {
             &again.values
         } else {
             &self.solution.values

@@ -112,7 +112,7 @@ pub(crate) fn begin<'s>(
         };
         if best
             .as_ref()
-            .is_none_or(|(known, ..)| solution.cost < known.cost)
+            .is_none_or(|(known, ..)| solution.gain_over(known) > 0.0)
         {
             best = Some((solution, varied, kept));
         }
@@ -122,7 +122,7 @@ pub(crate) fn begin<'s>(
         score,
         program,
         effects: list.into_iter().zip(paths).collect(),
-        gain: stage.solution.cost - refit.0.cost,
+        gain: refit.0.gain_over(&stage.solution),
         refit,
     })
 }
@@ -157,7 +157,7 @@ pub(crate) fn finish(
         let near = 1e-6 * (high - low);
         value <= low + near || value >= high - near
     });
-    let gain = stage.solution.cost - solution.cost;
+    let gain = solution.gain_over(&stage.solution);
     let innovations = solution.innovations.iter().flat_map(|i| &i.channels);
     let remainder = REMAINDER * innovations.map(Vec::len).sum::<usize>() as f64;
     let rejected = if !worth {

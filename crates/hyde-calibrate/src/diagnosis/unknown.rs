@@ -36,6 +36,7 @@ use super::stage::{Ground, Stage};
 use super::trial::{Trial, trial, unseen};
 use crate::fit::inflation;
 use crate::gain::Observer;
+use crate::least_squares::Solution;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
 use felt::Felt;
@@ -135,19 +136,20 @@ pub fn propose(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis) -> Result<(), U
     // as both, and where it does significantly better than what was taken in, or as well with fewer constants.
     if !last.effects.is_empty() {
         let alone = law(inquiry, &ground, &base, gates)?;
-        let trial = |answer: &Option<Answer>| {
-            let (trial, _) = answer.as_ref()?.found.as_ref()?;
-            Some((trial.stage.solution.cost, trial.freedoms))
-        };
+        fn trial(answer: Option<&Answer>) -> Option<(&Solution, usize)> {
+            let (trial, _) = answer?.found.as_ref()?;
+            Some((&trial.stage.solution, trial.freedoms))
+        }
         let gate = gates.gain(1) * inflation(&last.solution.innovations);
         let known = (
-            last.solution.cost,
+            &last.solution,
             last.varied.len() + last.kept.len() - base.varied.len(),
         );
-        let better = match (trial(&alone), trial(&answer)) {
-            (Some(alone), Some(both)) => alone.0 <= both.0 + gate,
+        let better = match (trial(alone.as_ref()), trial(answer.as_ref())) {
+            (Some(alone), Some(both)) => alone.0.gain_over(both.0) >= -gate,
             (Some(alone), None) => {
-                alone.0 <= known.0 - gate || (alone.1 < known.1 && alone.0 <= known.0)
+                let gain = alone.0.gain_over(known.0);
+                gain >= gate || (alone.1 < known.1 && gain >= 0.0)
             }
             (None, _) => false,
         };
@@ -313,6 +315,8 @@ fn fitted(
                 .map(|column| (VISIBLE / dot(&column, &column).max(1e-300)).sqrt())
                 .collect(),
             gain: *own.gains.last()?,
+            seen: f64::INFINITY,
+            linear: true,
         }],
         tried: own.tried,
         linear: false,
@@ -335,7 +339,7 @@ fn fitted(
     trial.fold_gain = Some(fold_gain);
     // Trials are fitted by tangents: what is taken in is fitted to the end.
     trial.stage = trial.stage.polished(ground).ok()?;
-    trial.gain = stage.solution.cost - trial.stage.solution.cost;
+    trial.gain = trial.stage.solution.gain_over(&stage.solution);
     let path = &trial.stage.effects.last()?.1;
     let names = [&hypothesis.sizes, &hypothesis.shapes].map(|knobs| Hypothesis::names(knobs, path));
     let known = trial.stage.values();
