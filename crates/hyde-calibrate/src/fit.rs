@@ -7,7 +7,7 @@ use crate::plant::Unsupported;
 use crate::recording::Recording;
 use crate::varied::Varied;
 use hyde_program::Program;
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DVector};
 
 /// Parameters are of one group if some pair of their errors is correlated more than this.
 const CORRELATED: f64 = 0.9;
@@ -230,19 +230,27 @@ pub(crate) fn inflation(innovations: &[Innovations]) -> f64 {
     (sum / f64::max(count, 1.0)).max(1.0)
 }
 
-/// The covariance of the parameters, in units of their scales.
+/// The covariance of the parameters, in units of their scales: that of independent innovations, less what they tell less than
+/// such, and no deviation smaller than the scatter of gradients from second to second says. What a model lacks is not
+/// independent from row to row, and shows there (White, Econometrica 50, 1982, 1; Liang and Zeger, Biometrika 73, 1986, 13).
 pub(crate) fn covariance(solution: &Solution, inflation: f64) -> DMatrix<f64> {
     let (data, priors) = &solution.curvature;
     let n = data.nrows();
-    let floor = 1e-12
-        * data
-            .diagonal()
-            .iter()
-            .fold(1e-300_f64, |most, v| most.max(*v));
-    let matrix = data / inflation + priors + DMatrix::identity(n, n) * floor;
-    matrix
-        .try_inverse()
-        .unwrap_or_else(|| DMatrix::from_element(n, n, f64::NAN))
+    let largest = data
+        .diagonal()
+        .iter()
+        .fold(1e-300_f64, |most, v| most.max(*v));
+    let floor = DMatrix::identity(n, n) * (1e-12 * largest);
+    let unknown = || DMatrix::from_element(n, n, f64::NAN);
+    let inverse = |matrix: DMatrix<f64>| matrix.try_inverse().unwrap_or_else(unknown);
+    let independent = inverse(data / inflation + priors + &floor);
+    let weighed = solution.weight * priors;
+    let bread = inverse(data + &weighed + floor);
+    let scattered = &bread * (&solution.scatter + weighed) * &bread;
+    let wider = DVector::from_fn(n, |i, _| {
+        (scattered[(i, i)] / independent[(i, i)]).max(1.0).sqrt()
+    });
+    DMatrix::from_fn(n, n, |i, j| independent[(i, j)] * wider[i] * wider[j])
 }
 
 fn parameters(

@@ -16,7 +16,7 @@ use crate::recording::Recording;
 use crate::tangent::{Direction, Tangents, tangents};
 use crate::varied::Varied;
 use hyde_program::Program;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, DVectorView};
 use rayon::prelude::*;
 
 /// Differences of runs are taken over this part of a parameter's scale, those of kernels over this one.
@@ -64,7 +64,7 @@ impl Fold {
 
     /// Takes what does not count out of a record's innovations.
     pub(crate) fn keep(self, innovations: &mut Innovations, recording: &Recording) {
-        let block = ((1.0 / recording.step_s).round() as usize).max(1);
+        let block = rows_of_a_block(recording);
         for list in &mut innovations.channels {
             for (number, value) in list.iter_mut().enumerate() {
                 if ((number / block) % 2 == 1) != self.odd {
@@ -76,7 +76,7 @@ impl Fold {
 
     /// The same of derivatives.
     fn keep_rows(self, derivatives: &mut DMatrix<f64>, recording: &Recording) {
-        let block = ((1.0 / recording.step_s).round() as usize).max(1);
+        let block = rows_of_a_block(recording);
         let rows = recording.rows() - recording.first_row;
         for (number, mut row) in derivatives.row_iter_mut().enumerate() {
             if ((number % rows / block) % 2 == 1) != self.odd {
@@ -110,6 +110,8 @@ pub struct Solution {
     pub innovations: Vec<Innovations>,
     /// Half the second derivatives of the cost, in units of [`Varied`]'s scale: of the innovations and of the priors.
     pub curvature: (DMatrix<f64>, DMatrix<f64>),
+    /// How much the gradients of blocks of a second scatter: the sum of their squares, in the same units.
+    pub scatter: DMatrix<f64>,
     /// Steps taken.
     pub steps: usize,
     /// Whether the last step gained nothing any more.
@@ -136,6 +138,7 @@ pub(crate) struct Normal {
     pub(crate) priors: DMatrix<f64>,
     of_data: DVector<f64>,
     of_priors: DVector<f64>,
+    scatter: DMatrix<f64>,
 }
 
 /// Innovations and their derivatives, record by record.
@@ -214,6 +217,7 @@ impl Problem<'_> {
             weight,
             innovations: here.innovations,
             curvature: (normal.data, normal.priors),
+            scatter: normal.scatter,
             steps,
             converged,
         })
@@ -388,10 +392,15 @@ impl Problem<'_> {
             priors: DMatrix::zeros(n, n),
             of_data: DVector::zeros(n),
             of_priors: DVector::zeros(n),
+            scatter: DMatrix::zeros(n, n),
         };
-        for (own, innovations) in at.derivatives.iter().zip(&at.innovations) {
+        let records = at.derivatives.iter().zip(&at.innovations);
+        for (recording, (own, innovations)) in self.recordings.iter().zip(records) {
             normal.data += own.tr_mul(own);
-            normal.of_data += own.tr_mul(&DVector::from_vec(innovations.channels.concat()));
+            for block in blocks(own, innovations, recording) {
+                normal.scatter.ger(1.0, &block, &block, 1.0);
+                normal.of_data += block;
+            }
         }
         for (i, varied) in self.varied.iter().enumerate() {
             if let Some(sd) = varied.prior {
@@ -454,6 +463,33 @@ impl Problem<'_> {
             .map(|(varied, value)| value.clamp(varied.bounds.0, varied.bounds.1))
             .collect()
     }
+}
+
+/// Half the gradients of the sum of squares over each second of a record.
+fn blocks(
+    derivatives: &DMatrix<f64>,
+    innovations: &Innovations,
+    recording: &Recording,
+) -> Vec<DVector<f64>> {
+    let rows = recording.rows() - recording.first_row;
+    let length = rows_of_a_block(recording);
+    let mut found = Vec::new();
+    for first in (0..rows).step_by(length) {
+        let count = length.min(rows - first);
+        let mut sum = DVector::zeros(derivatives.ncols());
+        for (channel, list) in innovations.channels.iter().enumerate() {
+            let own = derivatives.rows(channel * rows + first, count);
+            let values = DVectorView::from_slice(&list[first..first + count], count);
+            sum += own.tr_mul(&values);
+        }
+        found.push(sum);
+    }
+    found
+}
+
+/// Rows of a second.
+fn rows_of_a_block(recording: &Recording) -> usize {
+    ((1.0 / recording.step_s).round() as usize).max(1)
 }
 
 fn sum_of_squares(innovations: &[Innovations]) -> f64 {
