@@ -330,15 +330,18 @@ fn choice(trials: &[Trial], gates: Gates) -> Option<(usize, Vec<usize>)> {
     Some((simplest, others))
 }
 
-/// Whether innovations are what the noise makes of them.
+/// Whether innovations are what the noise makes of them: no channel of a record is materially larger, or more like itself
+/// from row to row, beyond what chance makes of so many rows.
 pub(super) fn explained(solution: &Solution) -> bool {
-    let channels = solution.innovations.iter().flat_map(|i| &i.channels);
-    let mut fine = true;
-    for list in channels {
-        let chi = list.iter().map(|r| r * r).sum::<f64>() / (list.len() as f64).max(1.0);
-        fine &= chi <= EXPLAINED.0 && correlation(list) <= EXPLAINED.1;
-    }
-    fine
+    let channels = || solution.innovations.iter().flat_map(|i| &i.channels);
+    let chance = normal_quantile(CHANCE / channels().count().max(1) as f64);
+    channels().all(|list| {
+        let rows = list.len().max(1) as f64;
+        let chi = list.iter().map(|r| r * r).sum::<f64>() / rows;
+        let (size, likeness) = EXPLAINED;
+        chi <= size + chance * (2.0 / rows).sqrt()
+            && correlation(list) <= likeness + chance / rows.sqrt()
+    })
 }
 
 /// The effects with their quantities and intervals.
