@@ -3,6 +3,7 @@
 //! ```text
 //! hypothesis     an effect at a site, with sizes and shapes; a model with some put on     diagnosis/hypothesis.rs
 //! projection     what a change of innovations gains once parameters have answered it      diagnosis/projection.rs
+//! grid           the values of its shapes that are tried                                   diagnosis/grid.rs
 //! products       sums over rows that scores are made of                                   diagnosis/products.rs
 //! scan           scores of an effect over its shapes and sizes                            diagnosis/scan.rs
 //! trial          a survivor fitted together with all parameters, and judged on folds      diagnosis/trial.rs
@@ -11,6 +12,7 @@
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
+mod grid;
 mod hypothesis;
 mod products;
 mod projection;

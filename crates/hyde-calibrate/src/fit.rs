@@ -232,7 +232,8 @@ pub(crate) fn inflation(innovations: &[Innovations]) -> f64 {
 
 /// The covariance of the parameters, in units of their scales: that of independent innovations, less what they tell less than
 /// such, and no deviation smaller than the scatter of gradients from second to second says. What a model lacks is not
-/// independent from row to row, and shows there (White, Econometrica 50, 1982, 1; Liang and Zeger, Biometrika 73, 1986, 13).
+/// independent from row to row, and shows there (White, Econometrica 50, 1982, 1). The scatter of few blocks is itself uncertain:
+/// Student's quantile for one freedom less takes the normal one's place (Cameron and Miller, J. Hum. Resour. 50, 2015, 317).
 pub(crate) fn covariance(solution: &Solution, inflation: f64) -> DMatrix<f64> {
     let (data, priors) = &solution.curvature;
     let n = data.nrows();
@@ -246,11 +247,22 @@ pub(crate) fn covariance(solution: &Solution, inflation: f64) -> DMatrix<f64> {
     let independent = inverse(data / inflation + priors + &floor);
     let weighed = solution.weight * priors;
     let bread = inverse(data + &weighed + floor);
-    let scattered = &bread * (&solution.scatter + weighed) * &bread;
+    let (scatter, blocks) = &solution.scatter;
+    let blocks = blocks.max(&2);
+    let few = *blocks as f64 / (blocks - 1) as f64 * student(blocks - 1).powi(2);
+    let scattered = &bread * (scatter * few + weighed) * &bread;
     let wider = DVector::from_fn(n, |i, _| {
         (scattered[(i, i)] / independent[(i, i)]).max(1.0).sqrt()
     });
     DMatrix::from_fn(n, n, |i, j| independent[(i, j)] * wider[i] * wider[j])
+}
+
+/// Student's 97.5 % quantile over the normal one (Abramowitz and Stegun 26.7.5).
+fn student(freedoms: usize) -> f64 {
+    let (x, n) = (TWO_SIDED, freedoms.max(1) as f64);
+    let first = (x.powi(2) + 1.0) / 4.0;
+    let second = (5.0 * x.powi(4) + 16.0 * x.powi(2) + 3.0) / 96.0;
+    1.0 + first / n + second / n.powi(2)
 }
 
 fn parameters(

@@ -29,7 +29,7 @@ pub(crate) const MAX_STEPS: usize = 15;
 /// A step that gains less than this of the sum of squares is the last: a standard deviation of one parameter gains 1.
 const LEAST_GAIN: f64 = 0.5;
 /// Steps by differences of runs at most, behind those by tangents.
-const LAST_STEPS: usize = 10;
+pub(crate) const LAST_STEPS: usize = 10;
 
 /// A program, records, and what may be varied.
 #[derive(Clone, Copy)]
@@ -110,8 +110,9 @@ pub struct Solution {
     pub innovations: Vec<Innovations>,
     /// Half the second derivatives of the cost, in units of [`Varied`]'s scale: of the innovations and of the priors.
     pub curvature: (DMatrix<f64>, DMatrix<f64>),
-    /// How much the gradients of blocks of a second scatter: the sum of their squares, in the same units.
-    pub scatter: DMatrix<f64>,
+    /// How much the gradients of blocks of a second scatter: the sum of their squares, in the same units, and how many they
+    /// are.
+    pub scatter: (DMatrix<f64>, usize),
     /// Steps taken.
     pub steps: usize,
     /// Whether the last step gained nothing any more.
@@ -138,7 +139,7 @@ pub(crate) struct Normal {
     pub(crate) priors: DMatrix<f64>,
     of_data: DVector<f64>,
     of_priors: DVector<f64>,
-    scatter: DMatrix<f64>,
+    scatter: (DMatrix<f64>, usize),
 }
 
 /// Innovations and their derivatives, record by record.
@@ -392,13 +393,14 @@ impl Problem<'_> {
             priors: DMatrix::zeros(n, n),
             of_data: DVector::zeros(n),
             of_priors: DVector::zeros(n),
-            scatter: DMatrix::zeros(n, n),
+            scatter: (DMatrix::zeros(n, n), 0),
         };
         let records = at.derivatives.iter().zip(&at.innovations);
         for (recording, (own, innovations)) in self.recordings.iter().zip(records) {
             normal.data += own.tr_mul(own);
             for block in blocks(own, innovations, recording) {
-                normal.scatter.ger(1.0, &block, &block, 1.0);
+                normal.scatter.0.ger(1.0, &block, &block, 1.0);
+                normal.scatter.1 += 1;
                 normal.of_data += block;
             }
         }

@@ -2,10 +2,14 @@
 //! summed row by row: all that a score needs of them. The changes themselves are not kept.
 
 use super::projection::dot;
-use nalgebra::DMatrix;
+use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Rows summed at once.
 const BLOCK: usize = 32;
+/// Parts with sizes of their own, in s.
+const PART_S: f64 = 0.25;
+/// A sum over parts is more than chance by so many standard deviations.
+const BEYOND: f64 = 5.0;
 
 /// Sums over all records of products with the changes by each size of some shapes.
 pub(crate) struct Products {
@@ -15,6 +19,9 @@ pub(crate) struct Products {
     pub(crate) with_record: DMatrix<f64>,
     /// Of each shape, the products of its columns.
     pub(crate) with_each_other: Vec<DMatrix<f64>>,
+    /// Of each shape, what parts of a second gain on their own; and how many there were.
+    apart: Vec<f64>,
+    parts: usize,
 }
 
 impl Products {
@@ -24,7 +31,16 @@ impl Products {
             sizes,
             with_record: DMatrix::zeros(derivatives + 1, shapes * sizes),
             with_each_other: vec![DMatrix::zeros(sizes, sizes); shapes],
+            apart: vec![0.0; shapes],
+            parts: 0,
         }
+    }
+
+    /// What a shape would gain if each part of a second had sizes of its own, parameters standing still, less what chance
+    /// makes of as many parts: of a sum of squares of normal numbers that is their number, and the root of twice of it.
+    pub(crate) fn apart(&self, shape: usize) -> f64 {
+        let freedoms = (self.parts * self.sizes) as f64;
+        self.apart[shape] - freedoms - BEYOND * (2.0 * freedoms).sqrt()
     }
 
     /// Adds the rows of a record as they come: see [`Adding`].
@@ -32,10 +48,14 @@ impl Products {
         &'p mut self,
         record: &'p DMatrix<f64>,
         channels: usize,
+        step_s: f64,
     ) -> Adding<'p> {
         let block = DMatrix::zeros(BLOCK * channels, self.with_record.ncols());
+        let part = Part::new(self.with_each_other.len(), self.sizes);
         Adding {
             products: self,
+            part,
+            blocks_of_a_part: ((PART_S / step_s / BLOCK as f64).round() as usize).max(1),
             record,
             channels,
             block,
@@ -45,9 +65,36 @@ impl Products {
     }
 }
 
+/// Sums over a part of a second.
+struct Part {
+    blocks: usize,
+    with_innovations: Vec<DVector<f64>>,
+    with_each_other: Vec<DMatrix<f64>>,
+}
+
+impl Part {
+    fn new(shapes: usize, sizes: usize) -> Self {
+        Self {
+            blocks: 0,
+            with_innovations: vec![DVector::zeros(sizes); shapes],
+            with_each_other: vec![DMatrix::zeros(sizes, sizes); shapes],
+        }
+    }
+
+    /// What a shape gains in this part alone.
+    fn gain(&self, shape: usize) -> f64 {
+        let (b, m) = (&self.with_innovations[shape], &self.with_each_other[shape]);
+        let rounding = DMatrix::identity(m.nrows(), m.nrows()) * (1e-6 * m.trace() + 1e-300);
+        let factor = Cholesky::new(m + rounding);
+        factor.map_or(0.0, |factor| b.dot(&factor.solve(b)))
+    }
+}
+
 /// Rows of a record on their way into sums.
 pub(crate) struct Adding<'p> {
     products: &'p mut Products,
+    part: Part,
+    blocks_of_a_part: usize,
     record: &'p DMatrix<f64>,
     channels: usize,
     block: DMatrix<f64>,
@@ -70,12 +117,23 @@ impl Adding<'_> {
     /// Sums what is left.
     pub(crate) fn end(mut self) {
         self.sum();
+        self.end_part();
+    }
+
+    fn end_part(&mut self) {
+        let (shapes, sizes) = (self.products.apart.len(), self.products.sizes);
+        for shape in 0..shapes {
+            self.products.apart[shape] += self.part.gain(shape);
+        }
+        self.products.parts += 1;
+        self.part = Part::new(shapes, sizes);
     }
 
     fn sum(&mut self) {
         let rows = self.block.rows(0, self.filled);
         let own = self.record.columns(self.first, self.filled);
         self.products.with_record.gemm(1.0, &own, &rows, 1.0);
+        let innovations = own.row(own.nrows() - 1).transpose();
         let (sizes, stride) = (self.products.sizes, self.block.nrows());
         let values = self.block.as_slice();
         let column = |number: usize| &values[number * stride..number * stride + self.filled];
@@ -83,14 +141,23 @@ impl Adding<'_> {
             for i in 0..sizes {
                 for j in 0..=i {
                     let product = dot(column(shape * sizes + i), column(shape * sizes + j));
-                    products[(i, j)] += product;
-                    if i != j {
-                        products[(j, i)] += product;
+                    let part = &mut self.part.with_each_other[shape];
+                    for sum in [&mut *products, part] {
+                        sum[(i, j)] += product;
+                        if i != j {
+                            sum[(j, i)] += product;
+                        }
                     }
                 }
+                self.part.with_innovations[shape][i] +=
+                    dot(column(shape * sizes + i), innovations.as_slice());
             }
         }
         self.first += self.filled;
         self.filled = 0;
+        self.part.blocks += 1;
+        if self.part.blocks == self.blocks_of_a_part {
+            self.end_part();
+        }
     }
 }

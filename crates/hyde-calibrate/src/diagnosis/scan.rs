@@ -4,6 +4,7 @@
 //! linear in its sizes the best ones follow at once; what is gained there is then tried by the model itself. An effect
 //! that brings modes of its own, as play does, is nothing to begin with and is tried at sizes all over its range.
 
+use super::grid::Grid;
 use super::hypothesis::{Build, Built, Hypothesis, Knob};
 use super::products::Products;
 use super::projection::Projection;
@@ -32,12 +33,6 @@ const AS_EXPECTED: f64 = 0.7;
 const CHUNK: usize = 96;
 /// Nodes kept of each effect: where it is fitted from.
 const KEPT: usize = 3;
-/// Nodes are beside each other up to so many steps of the grid.
-const BESIDE: f64 = 1.5;
-/// Nodes of a shape at most, of one that is a period or an order, and of a resonance.
-const NODES: usize = 12;
-const PERIODIC_NODES: usize = 96;
-const RESONANT_NODES: usize = 24;
 /// Sizes tried of an effect with modes of its own: halves of its range.
 const HALVINGS: i32 = 9;
 
@@ -52,6 +47,8 @@ pub struct Node {
     pub(crate) visible: Vec<f64>,
     /// What is gained of the sum of squares.
     pub gain: f64,
+    /// What it would gain if each part of a second had sizes of its own, beyond what chance makes of so many.
+    pub(crate) apart: f64,
     /// The least value of its first size that would be seen, SI.
     pub(crate) seen: f64,
     /// Whether its sizes are those of a linear answer.
@@ -165,8 +162,14 @@ impl Scanner<'_> {
             tried: 0,
             detectable: None,
         };
-        let (nodes, plain) = self.nodes(&promised, &grid(hypothesis))?;
+        let grid = Grid::new(hypothesis);
+        let (mut nodes, plain) = self.nodes(&promised, &grid.shapes())?;
         promised.plain = plain;
+        // The peak of a period is the narrower, the further the axis goes; over a part of a second it is wide.
+        let fine = grid.fine(&nodes.iter().map(|node| node.apart).collect::<Vec<f64>>());
+        if !fine.is_empty() {
+            nodes.extend(self.nodes(&promised, &fine)?.0);
+        }
         promised.tried = nodes.len();
         let seen = nodes.iter().map(|node| node.seen);
         promised.detectable = Some(seen.fold(f64::INFINITY, f64::min));
@@ -174,7 +177,7 @@ impl Scanner<'_> {
         if promised.own_modes {
             self.try_sizes(&mut promised);
         }
-        promised.nodes = peaks(hypothesis, promised.nodes);
+        promised.nodes = peaks(&grid, promised.nodes);
         Some(promised)
     }
 
@@ -193,7 +196,7 @@ impl Scanner<'_> {
         for chunk in shapes.chunks(chunk) {
             let (products, innovations) = runs.products(hypothesis, self.projection, chunk)?;
             let answers = self.projection.answers(&products);
-            for (shape, answer) in chunk.iter().zip(answers) {
+            for (number, (shape, answer)) in chunk.iter().zip(answers).enumerate() {
                 let pairs = || hypothesis.sizes.iter().enumerate();
                 let sizes: Vec<f64> = pairs()
                     .map(|(i, size)| inside(answer.sizes[i], size))
@@ -205,6 +208,7 @@ impl Scanner<'_> {
                         .collect(),
                     gain: answer.gain_of(&sizes),
                     sizes,
+                    apart: products.apart(number),
                     seen: answer.reaches(self.gate, 0),
                     linear: true,
                 };
@@ -230,6 +234,7 @@ impl Scanner<'_> {
                 visible: sizes.iter().map(|s| 0.1 * s.abs()).collect(),
                 sizes,
                 gain,
+                apart: 0.0,
                 seen: f64::INFINITY,
                 linear: false,
             });
@@ -239,15 +244,16 @@ impl Scanner<'_> {
     /// Looks between the nodes of the grid, and tries by the model itself what tangents promise of the best.
     fn tried(&self, mut promised: Promised) -> Score {
         let hypothesis = &self.hypotheses[promised.number];
+        let grid = Grid::new(hypothesis);
         let best = promised.nodes.first().map(|best| best.shapes.clone());
         if let Some(best) = best {
-            let between = between(hypothesis, &best);
+            let between = grid.between(&best);
             if let Some((nodes, _)) = self.nodes(&promised, &between) {
                 promised.tried += nodes.len();
                 promised.nodes.extend(nodes);
             }
         }
-        promised.nodes = peaks(hypothesis, promised.nodes);
+        promised.nodes = peaks(&grid, promised.nodes);
         let mut linear = !promised.own_modes;
         let mut nodes = std::mem::take(&mut promised.nodes);
         for node in &mut nodes {
@@ -340,7 +346,7 @@ impl Runs<'_> {
                     });
                 }
             }
-            let mut adding = products.adding(record, recording.channels.len());
+            let mut adding = products.adding(record, recording.channels.len(), recording.step_s);
             let observer = self.ground.observer;
             let each = |_, changes: &DMatrix<f64>| adding.row(changes);
             let own = along(self.program, recording, observer, &set, &directions, each);
@@ -373,27 +379,16 @@ fn best_first(nodes: &mut [Node]) {
     nodes.sort_by(|a, b| b.gain.total_cmp(&a.gain));
 }
 
-/// The best nodes, those apart that lie beside a better one: fits from there end at the same place.
-fn peaks(hypothesis: &Hypothesis, mut nodes: Vec<Node>) -> Vec<Node> {
+/// The best nodes, without those that lie beside a better one: fits from there end at the same place.
+fn peaks(grid: &Grid<'_>, mut nodes: Vec<Node>) -> Vec<Node> {
     best_first(&mut nodes);
-    let axis = axis(hypothesis);
-    let beside = |a: &Node, b: &Node| {
-        let shapes = axis.is_none_or(|axis| {
-            let shape = &hypothesis.shapes[axis];
-            let (a, b) = (a.shapes[axis], b.shapes[axis]);
-            let (low, high) = shape.range;
-            let part = match by_ratio(shape) {
-                true => (a / b).ln() / (high / low).ln(),
-                false => (a - b) / (high - low),
-            };
-            part.abs() * count(hypothesis) as f64 <= BESIDE
-        });
-        // Where nothing is linear, sizes lead to places of their own.
-        shapes && a.linear && b.linear
-    };
     let mut kept: Vec<Node> = Vec::new();
     for node in nodes {
-        if kept.len() < KEPT && !kept.iter().any(|better| beside(better, &node)) {
+        // Where nothing is linear, sizes lead to places of their own.
+        let beside = |better: &Node| {
+            better.linear && node.linear && grid.beside(&better.shapes, &node.shapes)
+        };
+        if kept.len() < KEPT && !kept.iter().any(beside) {
             kept.push(node);
         }
     }
@@ -407,86 +402,4 @@ fn largest(size: &Knob) -> f64 {
     } else {
         size.range.0
     }
-}
-
-/// The shape that is varied: a period, an order or a resonance, else the first.
-fn axis(hypothesis: &Hypothesis) -> Option<usize> {
-    hypothesis
-        .periodic
-        .or(hypothesis.resonant)
-        .or((!hypothesis.shapes.is_empty()).then_some(0))
-}
-
-/// The values of shapes that are tried: a grid of the one that is varied, fine for a period or an order; of the others
-/// their declared values.
-fn grid(hypothesis: &Hypothesis) -> Vec<Vec<f64>> {
-    let declared: Vec<f64> = hypothesis.shapes.iter().map(|shape| shape.value).collect();
-    let Some(axis) = axis(hypothesis) else {
-        return vec![declared];
-    };
-    let values = axis_values(&hypothesis.shapes[axis], count(hypothesis));
-    values
-        .into_iter()
-        .map(|value| with(&declared, axis, value))
-        .collect()
-}
-
-/// Values between the best node of the grid and its neighbours.
-fn between(hypothesis: &Hypothesis, best: &[f64]) -> Vec<Vec<f64>> {
-    let Some(axis) = axis(hypothesis).filter(|&axis| !hypothesis.shapes[axis].integer) else {
-        return Vec::new();
-    };
-    let shape = &hypothesis.shapes[axis];
-    let (low, high) = shape.range;
-    let steps = count(hypothesis) as f64;
-    let at = |part: f64| {
-        let value = if by_ratio(shape) {
-            best[axis] * (high / low).powf(part / steps)
-        } else {
-            best[axis] + (high - low) * part / steps
-        };
-        with(best, axis, value.clamp(low, high))
-    };
-    [-0.75, -0.5, -0.25, 0.25, 0.5, 0.75].map(at).to_vec()
-}
-
-fn with(shapes: &[f64], axis: usize, value: f64) -> Vec<f64> {
-    let mut shapes = shapes.to_vec();
-    shapes[axis] = value;
-    shapes
-}
-
-fn count(hypothesis: &Hypothesis) -> usize {
-    match (hypothesis.periodic, hypothesis.resonant) {
-        (Some(_), _) => PERIODIC_NODES,
-        (None, Some(_)) => RESONANT_NODES,
-        (None, None) => NODES,
-    }
-}
-
-/// Whether nodes follow each other by a ratio.
-fn by_ratio(shape: &Knob) -> bool {
-    let (low, high) = shape.range;
-    low > 0.0 && high / low > 4.0
-}
-
-fn axis_values(shape: &Knob, most: usize) -> Vec<f64> {
-    let (low, high) = shape.range;
-    if shape.integer && high - low < most as f64 {
-        let count = (high - low).round().max(0.0) as usize + 1;
-        return (0..count).map(|k| low + k as f64).collect();
-    }
-    let parts = (0..most).map(|k| (k as f64 + 0.5) / most as f64);
-    let mut values: Vec<f64> = if by_ratio(shape) {
-        parts.map(|part| low * (high / low).powf(part)).collect()
-    } else {
-        parts.map(|part| low + (high - low) * part).collect()
-    };
-    if shape.integer {
-        values.push(shape.value);
-        values.iter_mut().for_each(|value| *value = value.round());
-        values.sort_by(f64::total_cmp);
-        values.dedup();
-    }
-    values
 }

@@ -30,6 +30,8 @@ const SURVIVORS: usize = 6;
 const SURVIVING: f64 = 0.05;
 /// Of those only these are fitted to the end that have this part of the best gain after a few steps.
 const WORTH: f64 = 0.5;
+/// Trials that gain this part of the best are told apart by the last steps of their fits only.
+const CONTENDING: f64 = 0.98;
 /// Rounds beside one an effect.
 const MORE_ROUNDS: usize = 2;
 /// Innovations that are explained: their mean square, and their correlation.
@@ -211,6 +213,7 @@ pub fn diagnose(
                 finish(&ground, &stage, hypotheses, begun, worth)
             })
             .collect();
+        refine(&ground, &stage, &mut trials);
         judge(&ground, &stage, &mut trials, gates);
         let rank = |trial: &Trial| {
             (
@@ -273,6 +276,20 @@ pub fn diagnose(
         unexplained,
         unknown: None,
     })
+}
+
+/// Fits to the end those that gain nearly as much as the best, if it is not alone: the same effect one shaft further gains
+/// all but a few units of it, and tangents leave as many.
+fn refine(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial]) {
+    let fine = |trial: &Trial| trial.rejected.is_none();
+    let best = trials.iter().filter(|trial| fine(trial));
+    let best = best.map(|trial| trial.gain).fold(0.0, f64::max);
+    let contends = |trial: &Trial| fine(trial) && trial.gain >= CONTENDING * best;
+    if trials.iter().filter(|trial| contends(trial)).count() < 2 {
+        return;
+    }
+    let contenders = trials.par_iter_mut().filter(|trial| contends(trial));
+    contenders.for_each(|trial| trial.refine(ground, stage));
 }
 
 /// Puts the gates to the trials, the best first; halves are fitted only of those that pass the others and come near the

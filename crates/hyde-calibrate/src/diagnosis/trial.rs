@@ -5,7 +5,7 @@ use super::hypothesis::{Build, Built, Hypothesis, Knob};
 use super::scan::{Node, Score};
 use super::stage::{Ground, Stage};
 use crate::fit::inflation;
-use crate::least_squares::{Fold, MAX_STEPS, Slopes, Solution};
+use crate::least_squares::{Fold, LAST_STEPS, MAX_STEPS, Slopes, Solution};
 use crate::observer::Innovations;
 use crate::varied::Varied;
 use hyde_program::Program;
@@ -59,7 +59,30 @@ pub struct Trial {
     pub rejected: Option<Rejection>,
     /// Sizes, then shapes, SI.
     pub values: Vec<f64>,
+    names: Vec<String>,
     pub(crate) stage: Stage,
+}
+
+impl Trial {
+    /// Fits on by differences of runs, as long as that gains.
+    pub(super) fn refine(&mut self, ground: &Ground<'_>, stage: &Stage) {
+        let own = &self.stage;
+        let set = ground.set_in(&own.program, &own.kept);
+        let problem = ground.problem(&own.program, &own.varied, &set, None);
+        let Ok(solution) = problem.solve_in(&own.solution.values, LAST_STEPS, Slopes::Differences)
+        else {
+            return;
+        };
+        self.settle(solution, stage);
+    }
+
+    /// Ends at a solution.
+    pub(super) fn settle(&mut self, solution: Solution, stage: &Stage) {
+        self.gain = solution.gain_over(&stage.solution);
+        self.inflation = inflation(&solution.innovations);
+        self.stage.solution = solution;
+        self.values = values_of(&self.names, &self.stage);
+    }
 }
 
 /// A hypothesis fitted in a few steps.
@@ -182,14 +205,6 @@ pub(crate) fn finish(
         Hypothesis::names(&hypothesis.shapes, &own_path),
     ]
     .concat();
-    let values = new.values();
-    let value = |name: &String| {
-        values
-            .iter()
-            .rev()
-            .find(|(known, _)| known == name)
-            .map_or(f64::NAN, |(_, v)| *v)
-    };
     Some(Trial {
         hypothesis: score.hypothesis,
         score: score.gain(),
@@ -198,9 +213,20 @@ pub(crate) fn finish(
         inflation,
         freedoms: own.len(),
         rejected,
-        values: names.iter().map(value).collect(),
+        values: values_of(&names, &new),
+        names,
         stage: new,
     })
+}
+
+/// What a stage has for some names.
+fn values_of(names: &[String], stage: &Stage) -> Vec<f64> {
+    let values = stage.values();
+    let value = |name: &String| {
+        let known = values.iter().rev().find(|(known, _)| known == name);
+        known.map_or(f64::NAN, |(_, value)| *value)
+    };
+    names.iter().map(value).collect()
 }
 
 /// Costs on each half of the records after a fit to the other.

@@ -315,6 +315,7 @@ fn fitted(
                 .map(|column| (VISIBLE / dot(&column, &column).max(1e-300)).sqrt())
                 .collect(),
             gain: *own.gains.last()?,
+            apart: 0.0,
             seen: f64::INFINITY,
             linear: true,
         }],
@@ -338,16 +339,8 @@ fn fitted(
     }
     trial.fold_gain = Some(fold_gain);
     // Trials are fitted by tangents: what is taken in is fitted to the end.
-    trial.stage = trial.stage.polished(ground).ok()?;
-    trial.gain = trial.stage.solution.gain_over(&stage.solution);
-    let path = &trial.stage.effects.last()?.1;
-    let names = [&hypothesis.sizes, &hypothesis.shapes].map(|knobs| Hypothesis::names(knobs, path));
-    let known = trial.stage.values();
-    let values = names.iter().flatten().map(|name| {
-        let value = known.iter().rev().find(|(other, _)| other == name);
-        value.map(|(_, value)| *value)
-    });
-    trial.values = values.collect::<Option<Vec<f64>>>()?;
+    let polished = trial.stage.polished(ground).ok()?;
+    trial.settle(polished.solution, stage);
     let first = own.gains.first().copied().unwrap_or(f64::NAN);
     let found = FoundLaw {
         gain: trial.gain,
