@@ -8,10 +8,12 @@
 //! scan           scores of an effect over its shapes and sizes                            diagnosis/scan.rs
 //! trial          a survivor fitted together with all parameters, and judged on folds      diagnosis/trial.rs
 //! search         forward, until nothing passes the gates                                  diagnosis/search.rs
+//! apart          the experiment that would tell alternatives apart                        diagnosis/apart.rs
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
+mod apart;
 mod grid;
 mod hypothesis;
 mod products;
@@ -26,6 +28,7 @@ mod unknown;
 pub(crate) use projection::Projection;
 pub(crate) use stage::{Ground, Stage, flat};
 
+pub use apart::{Alternative, Experiment};
 pub use hypothesis::{Build, Built, Hypothesis, Knob};
 pub use scan::Score;
 pub use search::{Diagnosis, Finding, Gates, Quantity, Round, Verdict, diagnose};

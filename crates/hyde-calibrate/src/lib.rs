@@ -37,9 +37,10 @@ mod whiteness;
 mod windows;
 
 pub use diagnosis::{
-    Author, Build, Built, Diagnosis, Factor, Finding, FoundLaw, Gates, Hypothesis, Inquiry, Kind,
-    Knob, LatentForce, Law, Map, Panel, Quantity, Rejection, Round, Scales, Score, Seen, Site,
-    Summand, Trial, Unknown, Variable, Verdict, Written, diagnose, propose,
+    Alternative, Author, Build, Built, Diagnosis, Experiment, Factor, Finding, FoundLaw, Gates,
+    Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, Map, Panel, Quantity, Rejection, Round,
+    Scales, Score, Seen, Site, Summand, Trial, Unknown, Variable, Verdict, Written, diagnose,
+    propose,
 };
 pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};

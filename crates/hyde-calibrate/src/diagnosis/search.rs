@@ -6,6 +6,7 @@
 //! innovations tell less than independent ones. A gain on what was not fitted is also to be material: a part of the
 //! number of innovations. Everything is chosen inside the records to fit.
 
+use super::apart::{Alternative, telling};
 use super::hypothesis::{Build, Built, Hypothesis};
 use super::projection::Projection;
 use super::prune::prune;
@@ -85,7 +86,7 @@ pub struct Finding {
     /// Its shapes; the phase of a pair behind them.
     pub shapes: Vec<Quantity>,
     /// Other hypotheses that the records cannot tell from it.
-    pub alternatives: Vec<usize>,
+    pub alternatives: Vec<Alternative>,
 }
 
 /// A round of the search.
@@ -181,7 +182,7 @@ pub fn diagnose(
         innovations,
     };
     let mut rounds = Vec::new();
-    let mut alternatives: Vec<Vec<usize>> = Vec::new();
+    let mut alternatives: Vec<Vec<Alternative>> = Vec::new();
     // An effect that is dropped again makes room for another: so many rounds more at most.
     while stage.effects.len() < max_effects && rounds.len() < max_effects + MORE_ROUNDS {
         let at = stage.linearise(&ground)?;
@@ -227,11 +228,13 @@ pub fn diagnose(
         });
         let taken = choice(&trials, gates);
         let accepted = taken.as_ref().map(|(best, others)| {
-            let others = others
-                .iter()
-                .map(|&other| trials[other].hypothesis)
-                .collect();
-            (*best, others)
+            let own = &trials[*best];
+            let gate = gates.gain(own.freedoms) * own.inflation;
+            let other = |&other: &usize| Alternative {
+                hypothesis: trials[other].hypothesis,
+                experiment: telling(recordings, own, &trials[other], gate),
+            };
+            (*best, others.iter().map(other).collect())
         });
         match accepted {
             None => {
@@ -365,7 +368,7 @@ pub(super) fn explained(solution: &Solution) -> bool {
 pub(super) fn findings(
     stage: &Stage,
     hypotheses: &[Hypothesis],
-    alternatives: &[Vec<usize>],
+    alternatives: &[Vec<Alternative>],
 ) -> Vec<Finding> {
     let covariance = covariance(&stage.solution, inflation(&stage.solution.innovations));
     let values = stage.values();

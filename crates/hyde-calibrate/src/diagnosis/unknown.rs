@@ -28,6 +28,7 @@ pub use law::{Law, Summand};
 pub use map::{Map, Panel, Variable};
 pub use site::{Kind, Site, Written};
 
+use super::apart::Alternative;
 use super::hypothesis::{Built, Hypothesis};
 use super::projection::{Projection, dot};
 use super::scan::{Node, Score};
@@ -177,7 +178,7 @@ fn is_chain(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> bool {
 /// A map with the law that was found.
 struct Answer {
     unknown: Unknown,
-    found: Option<(Trial, Vec<Vec<usize>>)>,
+    found: Option<(Trial, Vec<Vec<Alternative>>)>,
 }
 
 /// The model without any effect, and with those of the diagnosis.
@@ -368,7 +369,7 @@ fn take_in(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis, answer: Answer) {
         let mut hypotheses = inquiry.hypotheses.to_vec();
         hypotheses.push(own.hypothesis.clone());
         let known = std::mem::take(&mut diagnosis.findings);
-        let alternatives: Vec<Vec<usize>> = stage
+        let alternatives: Vec<Vec<Alternative>> = stage
             .effects
             .iter()
             .zip(alternatives)

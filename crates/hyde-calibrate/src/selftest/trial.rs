@@ -234,7 +234,7 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         alternatives: finding
             .alternatives
             .iter()
-            .filter_map(|&other| known.get(other).copied())
+            .filter_map(|other| known.get(other.hypothesis).copied())
             .collect(),
         size: finding.size.value,
         interval: finding.size.interval,

@@ -52,9 +52,16 @@ fn effects(told: &Told<'_>) -> Value {
         let one_of: Vec<Value> = finding
             .alternatives
             .iter()
-            .map(|&other| {
-                let other = &told.hypotheses[other];
-                json!({ "effect": other.effect, "site": other.site })
+            .map(|other| {
+                let hypothesis = &told.hypotheses[other.hypothesis];
+                let experiment = other.experiment.as_ref().map(|experiment| {
+                    json!({
+                        "record": experiment.record,
+                        "times": experiment.times,
+                        "second_s": experiment.second_s,
+                    })
+                });
+                json!({ "effect": hypothesis.effect, "site": hypothesis.site, "experiment": experiment })
             })
             .collect();
         json!({

@@ -70,10 +70,10 @@ pub(super) fn written(
     )];
     about.push(format!("{}.", super::verdict::sentence(told)));
     for finding in &told.found.findings {
-        for &other in &finding.alternatives {
+        for other in &finding.alternatives {
             about.push(format!(
                 "These records do not tell it from {}.",
-                named(&told.hypotheses[other])
+                named(&told.hypotheses[other.hypothesis])
             ));
         }
     }

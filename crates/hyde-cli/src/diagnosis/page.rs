@@ -65,13 +65,13 @@ fn effects(told: &Told<'_>) -> Vec<[String; 4]> {
         let others: Vec<String> = finding
             .alternatives
             .iter()
-            .map(|&other| named(&told.hypotheses[other]))
+            .map(|other| verdict::alternative(told, other))
             .collect();
         [
             hypothesis.effect.clone(),
             hypothesis.site.clone(),
             quantities.join("; "),
-            others.join(", "),
+            others.join("; "),
         ]
     };
     told.found.findings.iter().map(of).collect()

@@ -43,8 +43,8 @@ fn findings(out: &mut String, told: &Told<'_>) {
         for quantity in std::iter::once(&finding.size).chain(&finding.shapes) {
             let _ = writeln!(out, "    {}", verdict::quantity(quantity));
         }
-        for &other in &finding.alternatives {
-            let _ = writeln!(out, "    or {}", named(&told.hypotheses[other]));
+        for other in &finding.alternatives {
+            wrapped(out, "    or ", &verdict::alternative(told, other));
         }
     }
 }

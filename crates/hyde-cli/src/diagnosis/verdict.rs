@@ -90,7 +90,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
         let others: Vec<String> = finding
             .alternatives
             .iter()
-            .map(|&other| named(&told.hypotheses[other]))
+            .map(|other| named(&told.hypotheses[other.hypothesis]))
             .collect();
         if !others.is_empty() {
             doubts.push(format!(
@@ -122,6 +122,20 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
     doubts
 }
 
+/// An alternative, and the experiment that would tell.
+pub(super) fn alternative(told: &Told<'_>, other: &hyde_calibrate::Alternative) -> String {
+    let name = named(&told.hypotheses[other.hypothesis]);
+    match &other.experiment {
+        Some(experiment) => format!(
+            "{name}: {} times as much of the motion of {} would tell, most of all what it does from {} s on",
+            significant(experiment.times.max(1.0), 2),
+            experiment.record,
+            significant(experiment.second_s, 3)
+        ),
+        None => format!("{name}: no motion of these records tells them apart"),
+    }
+}
+
 /// Of the round that took in the last effect, the hypothesis that came nearest to it.
 fn next_best(told: &Told<'_>) -> Option<String> {
     let finding = told.found.findings.last()?;
@@ -139,7 +153,10 @@ fn next_best(told: &Told<'_>) -> Option<String> {
         .iter()
         .filter(|trial| {
             trial.hypothesis != finding.hypothesis
-                && !finding.alternatives.contains(&trial.hypothesis)
+                && !finding
+                    .alternatives
+                    .iter()
+                    .any(|other| other.hypothesis == trial.hypothesis)
         })
         .max_by(|a, b| a.gain.total_cmp(&b.gain))?;
     Some(format!(
