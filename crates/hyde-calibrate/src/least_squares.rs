@@ -8,6 +8,7 @@
 //! tell about a parameter, each an observer's run of its own: all of them, and all records, at the same time. Sums are
 //! formed in a fixed order, so the number of threads changes nothing.
 
+use crate::blocks::{Fold, gradients};
 use crate::fit::inflation;
 use crate::gain::Observer;
 use crate::observer::Innovations;
@@ -16,7 +17,7 @@ use crate::recording::Recording;
 use crate::tangent::{Direction, Tangents, tangents};
 use crate::varied::Varied;
 use hyde_program::Program;
-use nalgebra::{DMatrix, DVector, DVectorView};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Differences of runs are taken over this part of a parameter's scale, those of kernels over this one.
@@ -46,44 +47,6 @@ pub struct Problem<'a> {
     pub set: &'a [(usize, f64)],
     /// The rows that count; all where nothing is said.
     pub fold: Option<Fold>,
-}
-
-/// Every other block of a second, of each record: what one half has been fitted to, the other judges.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Fold {
-    /// Whether the odd blocks count.
-    pub odd: bool,
-}
-
-impl Fold {
-    /// The other half.
-    #[must_use]
-    pub fn other(self) -> Self {
-        Self { odd: !self.odd }
-    }
-
-    /// Takes what does not count out of a record's innovations.
-    pub(crate) fn keep(self, innovations: &mut Innovations, recording: &Recording) {
-        let block = rows_of_a_block(recording);
-        for list in &mut innovations.channels {
-            for (number, value) in list.iter_mut().enumerate() {
-                if ((number / block) % 2 == 1) != self.odd {
-                    *value = 0.0;
-                }
-            }
-        }
-    }
-
-    /// The same of derivatives.
-    fn keep_rows(self, derivatives: &mut DMatrix<f64>, recording: &Recording) {
-        let block = rows_of_a_block(recording);
-        let rows = recording.rows() - recording.first_row;
-        for (number, mut row) in derivatives.row_iter_mut().enumerate() {
-            if ((number % rows / block) % 2 == 1) != self.odd {
-                row.fill(0.0);
-            }
-        }
-    }
 }
 
 /// How innovations are differentiated.
@@ -398,7 +361,7 @@ impl Problem<'_> {
         let records = at.derivatives.iter().zip(&at.innovations);
         for (recording, (own, innovations)) in self.recordings.iter().zip(records) {
             normal.data += own.tr_mul(own);
-            for block in blocks(own, innovations, recording) {
+            for block in gradients(own, innovations, recording) {
                 normal.scatter.0.ger(1.0, &block, &block, 1.0);
                 normal.scatter.1 += 1;
                 normal.of_data += block;
@@ -465,33 +428,6 @@ impl Problem<'_> {
             .map(|(varied, value)| value.clamp(varied.bounds.0, varied.bounds.1))
             .collect()
     }
-}
-
-/// Half the gradients of the sum of squares over each second of a record.
-fn blocks(
-    derivatives: &DMatrix<f64>,
-    innovations: &Innovations,
-    recording: &Recording,
-) -> Vec<DVector<f64>> {
-    let rows = recording.rows() - recording.first_row;
-    let length = rows_of_a_block(recording);
-    let mut found = Vec::new();
-    for first in (0..rows).step_by(length) {
-        let count = length.min(rows - first);
-        let mut sum = DVector::zeros(derivatives.ncols());
-        for (channel, list) in innovations.channels.iter().enumerate() {
-            let own = derivatives.rows(channel * rows + first, count);
-            let values = DVectorView::from_slice(&list[first..first + count], count);
-            sum += own.tr_mul(&values);
-        }
-        found.push(sum);
-    }
-    found
-}
-
-/// Rows of a second.
-fn rows_of_a_block(recording: &Recording) -> usize {
-    ((1.0 / recording.step_s).round() as usize).max(1)
 }
 
 fn sum_of_squares(innovations: &[Innovations]) -> f64 {

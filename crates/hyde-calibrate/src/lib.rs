@@ -6,7 +6,7 @@
 //! observer       a fixed Kalman gain; whitened innovations                        gain.rs, observer.rs
 //! tangent        how innovations change with parameters, along one run                tangent.rs
 //! plan           what a `calibrate` block asks for                                 plan.rs
-//! calibration    bounded least squares on innovations and priors                  least_squares.rs, varied.rs
+//! calibration    bounded least squares on innovations and priors                  least_squares.rs, blocks.rs, varied.rs
 //! its worth      errors before and after, intervals, groups                       fit.rs
 //! measures       the error in three measures, before and after, over its floor                  measures.rs, windows.rs, free_run.rs
 //! what is left   what innovations depend on, and whether they are white                        residual_map.rs, whiteness.rs
@@ -14,6 +14,7 @@
 //! self-test      what a diagnosis finds in records with a known effect              selftest.rs
 //! ```
 
+mod blocks;
 mod configuration;
 mod dense;
 mod diagnosis;
@@ -36,6 +37,7 @@ mod varied;
 mod whiteness;
 mod windows;
 
+pub use blocks::Fold;
 pub use diagnosis::{
     Alternative, Author, Build, Built, Diagnosis, Experiment, Factor, Finding, FoundLaw, Gates,
     Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, Map, Panel, Quantity, Rejection, Round,
@@ -45,7 +47,7 @@ pub use diagnosis::{
 pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};
 pub use gain::Observer;
-pub use least_squares::{Fold, Problem, Solution};
+pub use least_squares::{Problem, Solution};
 pub use measures::{FreeMeasure, Measures, Model};
 pub use observer::Innovations;
 pub use plan::{CalibrationPlan, Source, Vary};

@@ -1,7 +1,8 @@
 //! [`Stage`]: the model as far as the search has come: effects taken in, parameters calibrated with them.
 
+use crate::blocks::Fold;
 use crate::gain::Observer;
-use crate::least_squares::{Fold, Linearised, MAX_STEPS, Problem, Slopes, Solution};
+use crate::least_squares::{Linearised, MAX_STEPS, Problem, Slopes, Solution};
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;

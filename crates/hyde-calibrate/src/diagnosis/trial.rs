@@ -4,8 +4,9 @@
 use super::hypothesis::{Build, Built, Hypothesis, Knob};
 use super::scan::{Node, Score};
 use super::stage::{Ground, Stage};
+use crate::blocks::Fold;
 use crate::fit::inflation;
-use crate::least_squares::{Fold, LAST_STEPS, MAX_STEPS, Slopes, Solution};
+use crate::least_squares::{LAST_STEPS, MAX_STEPS, Slopes, Solution};
 use crate::observer::Innovations;
 use crate::varied::Varied;
 use hyde_program::Program;
