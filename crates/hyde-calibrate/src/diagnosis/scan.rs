@@ -62,7 +62,7 @@ pub struct Score {
     pub hypothesis: usize,
     /// Its best nodes, the best first.
     pub nodes: Vec<Node>,
-    /// Number of nodes tried.
+    /// Number of nodes of its grid.
     pub tried: usize,
     /// Whether it is linear in its sizes.
     pub linear: bool,
@@ -165,12 +165,13 @@ impl Scanner<'_> {
         let grid = Grid::new(hypothesis);
         let (mut nodes, plain) = self.nodes(&promised, &grid.shapes())?;
         promised.plain = plain;
+        // What lies between the nodes of the grid is no other try: neighbours gain or fail together.
+        promised.tried = nodes.len();
         // The peak of a period is the narrower, the further the axis goes; over a part of a second it is wide.
         let fine = grid.fine(&nodes.iter().map(|node| node.apart).collect::<Vec<f64>>());
         if !fine.is_empty() {
             nodes.extend(self.nodes(&promised, &fine)?.0);
         }
-        promised.tried = nodes.len();
         let seen = nodes.iter().map(|node| node.seen);
         promised.detectable = Some(seen.fold(f64::INFINITY, f64::min));
         promised.nodes = nodes;
@@ -249,7 +250,6 @@ impl Scanner<'_> {
         if let Some(best) = best {
             let between = grid.between(&best);
             if let Some((nodes, _)) = self.nodes(&promised, &between) {
-                promised.tried += nodes.len();
                 promised.nodes.extend(nodes);
             }
         }
@@ -266,7 +266,6 @@ impl Scanner<'_> {
                 let pairs = node.sizes.iter().zip(&hypothesis.sizes);
                 let sizes: Vec<f64> = pairs.map(|(s, size)| inside(s * factor, size)).collect();
                 let gain = self.gain(&promised, &sizes, &node.shapes);
-                promised.tried += 1;
                 if gain > node.gain {
                     (node.gain, node.sizes) = (gain, sizes);
                 }
