@@ -66,6 +66,6 @@ pub(crate) fn gradients(
 }
 
 /// Rows of a second.
-fn rows_of_a_block(recording: &Recording) -> usize {
+pub(crate) fn rows_of_a_block(recording: &Recording) -> usize {
     ((1.0 / recording.step_s).round() as usize).max(1)
 }

@@ -200,7 +200,7 @@ fn start_values(varied: &[Varied], number: usize) -> Vec<f64> {
 pub(crate) fn channel_errors(innovations: &Innovations, observer: &Observer) -> Vec<ChannelError> {
     let each = innovations.channels.iter().zip(&observer.deviations);
     each.map(|(list, deviation)| {
-        let chi = list.iter().map(|r| r * r).sum::<f64>() / (list.len() as f64).max(1.0);
+        let chi = mean_square(list);
         ChannelError {
             chi,
             rms: chi.sqrt() * deviation,
@@ -208,6 +208,11 @@ pub(crate) fn channel_errors(innovations: &Innovations, observer: &Observer) -> 
         }
     })
     .collect()
+}
+
+/// Mean of the squares; 0 of none.
+pub(crate) fn mean_square(list: &[f64]) -> f64 {
+    list.iter().map(|r| r * r).sum::<f64>() / (list.len() as f64).max(1.0)
 }
 
 /// Correlation of successive values.

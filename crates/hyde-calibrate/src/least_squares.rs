@@ -97,9 +97,9 @@ impl Solution {
 }
 
 /// The normal equations: half the second derivatives, of data and of priors, and half the gradients.
-pub(crate) struct Normal {
-    pub(crate) data: DMatrix<f64>,
-    pub(crate) priors: DMatrix<f64>,
+struct Normal {
+    data: DMatrix<f64>,
+    priors: DMatrix<f64>,
     of_data: DVector<f64>,
     of_priors: DVector<f64>,
     scatter: (DMatrix<f64>, usize),
@@ -349,7 +349,7 @@ impl Problem<'_> {
     }
 
     /// The normal equations, in units of the scales.
-    pub(crate) fn normal(&self, values: &[f64], at: &Linearised) -> Normal {
+    fn normal(&self, values: &[f64], at: &Linearised) -> Normal {
         let n = self.varied.len();
         let mut normal = Normal {
             data: DMatrix::zeros(n, n),

@@ -9,6 +9,7 @@
 //! right to first order, for its force does not jump where it begins and ends to stick; of contacts it is a part. Modes that
 //! begin within a row act from there on.
 
+use crate::configuration::{Configuration, Places};
 use crate::exponential::Step;
 use crate::gain::{Observer, output_matrix};
 use crate::observer::{Innovations, whitened};
@@ -197,9 +198,8 @@ impl Legs {
     fn of(&mut self, plant: &Plant<'_>, leg: &Leg, touched: &[usize]) -> &DMatrix<f64> {
         let make = || {
             let configuration = &plant.configurations[leg.configuration].1;
-            let of_states = -configuration.inverse.select_rows(&plant.places.states);
-            let rows = of_states.select_columns(touched);
-            beside(&configuration.steps[leg.level], &rows)
+            let rates = rates_by_forces(configuration, &plant.places, touched);
+            beside(&configuration.steps[leg.level], &rates)
         };
         self.known
             .entry((leg.configuration, leg.level))
@@ -207,16 +207,26 @@ impl Legs {
     }
 }
 
+/// The rates of the states that forces in some equations make.
+fn rates_by_forces(
+    configuration: &Configuration,
+    places: &Places,
+    touched: &[usize],
+) -> DMatrix<f64> {
+    let of_states = -configuration.inverse.select_rows(&places.states);
+    of_states.select_columns(touched)
+}
+
 /// What a step makes of errors and forces: exp, and the integrals for forces at its start and for their growth.
-fn beside(step: &Step, rows: &DMatrix<f64>) -> DMatrix<f64> {
-    let (n, r) = (step.exp.nrows(), rows.ncols());
+fn beside(step: &Step, rates: &DMatrix<f64>) -> DMatrix<f64> {
+    let (n, r) = (step.exp.nrows(), rates.ncols());
     let mut whole = DMatrix::zeros(n, n + 2 * r);
     whole.columns_mut(0, n).copy_from(&step.exp);
-    whole.columns_mut(n, r).copy_from(&(&step.first * rows));
+    whole.columns_mut(n, r).copy_from(&(&step.first * rates));
     // phi2 is that of a growth over the whole step.
     whole
         .columns_mut(n + r, r)
-        .copy_from(&(&step.second * rows));
+        .copy_from(&(&step.second * rates));
     whole
 }
 
@@ -249,17 +259,15 @@ pub(crate) fn modes(
     let outputs = output_matrix(plant);
     let configuration = plant.configuration();
     let step = &configuration.steps[0];
-    let of_states = -configuration.inverse.select_rows(&plant.places.states);
-    let rows = of_states.select_columns(touched);
-    let (first, second) = (&step.first * &rows, &step.second * &rows);
-    let n = step.exp.nrows();
-    let whole = beside(step, &rows);
+    let rates = rates_by_forces(configuration, &plant.places, touched);
+    let whole = beside(step, &rates);
+    let (n, r) = (step.exp.nrows(), touched.len());
     let mut padded = DMatrix::zeros(outputs.nrows().max(LEAST_WIDTH), n);
     padded.rows_mut(0, outputs.nrows()).copy_from(&outputs);
     known.push(Modes {
         exp: step.exp.clone(),
-        first,
-        second,
+        first: whole.columns(n, r).into_owned(),
+        second: whole.columns(n + r, r).into_owned(),
         outputs,
         padded,
         whole,

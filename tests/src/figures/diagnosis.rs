@@ -111,32 +111,14 @@ fn of_sets(session: &Session, of: impl Fn(&[SetResult]) -> f64) -> Result<Measur
     Ok(Measured::Value(of(&sets)))
 }
 
-#[allow(
-    clippy::disallowed_methods,
-    reason = "the model with the true effect is written for the command"
-)]
+#[allow(clippy::disallowed_methods, reason = "a duration is what is measured")]
 fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
     let axis = root().join("examples/bench_axis/axis.hyde");
     let begin = Instant::now();
     let report = command("diagnose", &axis, data)?;
     let minutes = begin.elapsed().as_secs_f64() / 60.0;
-    // The axis with the true effect, calibrated in the same way.
-    let text = std::fs::read_to_string(&axis).map_err(|error| error.to_string())?;
-    let with = answer.map_or(String::new(), |answer| format!(" with {}", answer.with));
-    let text = text
-        .replace("calibrate bench of Axis", "calibrate bench of Truth")
-        .replace(") of Axis \"a record", ") of Truth \"a record")
-        .replace(
-            "experiment bench",
-            &format!("model Truth = Axis{with};\n\nexperiment bench"),
-        );
-    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-    let record = root().join("examples/bench_axis/strokes.csv");
-    std::fs::copy(&record, folder.path().join("strokes.csv")).map_err(|error| error.to_string())?;
-    let truth = folder.path().join("truth.hyde");
-    std::fs::write(&truth, text).map_err(|error| error.to_string())?;
     let fitted = match answer {
-        Some(_) => command("fit", &truth, data)?,
+        Some(answer) => truth(&axis, data, answer)?,
         None => command("fit", &axis, data)?,
     };
     Ok(SetResult {
@@ -144,6 +126,31 @@ fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
         above_truth: chi(&report) - chi(&fitted),
         minutes,
     })
+}
+
+/// The axis with the true effect, calibrated in the same way.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "the model with the true effect is written for the command"
+)]
+fn truth(axis: &Path, data: &Path, answer: &Answer) -> Result<Value, String> {
+    let text = std::fs::read_to_string(axis).map_err(|error| error.to_string())?;
+    let text = text
+        .replace("calibrate bench of Axis", "calibrate bench of Truth")
+        .replace(") of Axis \"a record", ") of Truth \"a record")
+        .replace(
+            "experiment bench",
+            &format!(
+                "model Truth = Axis with {};\n\nexperiment bench",
+                answer.with
+            ),
+        );
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let record = root().join("examples/bench_axis/strokes.csv");
+    std::fs::copy(&record, folder.path().join("strokes.csv")).map_err(|error| error.to_string())?;
+    let file = folder.path().join("truth.hyde");
+    std::fs::write(&file, text).map_err(|error| error.to_string())?;
+    command("fit", &file, data)
 }
 
 fn command(name: &str, file: &Path, data: &Path) -> Result<Value, String> {

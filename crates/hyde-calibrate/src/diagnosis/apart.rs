@@ -5,6 +5,7 @@
 //! missing, of the motion that tells most (discrimination of models; Hunter and Reiner, Technometrics 7, 1965, 307).
 
 use super::trial::Trial;
+use crate::blocks::rows_of_a_block;
 use crate::recording::Recording;
 
 /// What would take more records than this is told apart by no motion of this kind.
@@ -40,7 +41,7 @@ pub(super) fn telling(
     let pairs = one.stage.solution.innovations.iter();
     let pairs = pairs.zip(&other.stage.solution.innovations);
     let each = recordings.iter().zip(pairs).map(|(recording, (a, b))| {
-        let length = ((1.0 / recording.step_s).round() as usize).max(1);
+        let length = rows_of_a_block(recording);
         let rows = a.channels.first().map_or(0, Vec::len);
         let mut seconds = vec![0.0; rows.div_ceil(length)];
         for (a, b) in a.channels.iter().zip(&b.channels) {

@@ -142,7 +142,7 @@ impl<'h> Grid<'h> {
         let Some(shape) = self.axis.map(|axis| &self.hypothesis.shapes[axis]) else {
             return Measure::Itself;
         };
-        let order = shape.unit.is_empty() || shape.unit == "1" || shape.unit == "-";
+        let order = shape.unit == "1";
         match self.hypothesis.periodic {
             Some(_) if order || shape.range.0 <= 0.0 => Measure::Itself,
             Some(_) => Measure::Inverse,

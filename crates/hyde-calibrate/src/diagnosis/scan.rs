@@ -47,10 +47,6 @@ pub struct Node {
     pub(crate) visible: Vec<f64>,
     /// What is gained of the sum of squares.
     pub gain: f64,
-    /// What it would gain if each part of a second had sizes of its own, beyond what chance makes of so many.
-    pub(crate) apart: f64,
-    /// The least value of its first size that would be seen, SI.
-    pub(crate) seen: f64,
     /// Whether its sizes are those of a linear answer.
     pub(crate) linear: bool,
 }
@@ -98,7 +94,18 @@ struct Promised {
     nodes: Vec<Node>,
     tried: usize,
     own_modes: bool,
-    detectable: Option<f64>,
+    detectable: f64,
+}
+
+/// What tangents show of some shapes.
+struct Look {
+    nodes: Vec<Node>,
+    /// What each would gain if parts of a second had sizes of their own, beyond what chance makes of so many.
+    apart: Vec<f64>,
+    /// The least value of the first size that would be seen, SI.
+    seen: f64,
+    /// Innovations without the effect.
+    plain: DVector<f64>,
 }
 
 impl Promised {
@@ -112,7 +119,7 @@ impl Promised {
             nodes: self.nodes,
             tried: self.tried,
             linear,
-            detectable: self.detectable.filter(|_| linear),
+            detectable: linear.then_some(self.detectable),
         }
     }
 }
@@ -160,21 +167,22 @@ impl Scanner<'_> {
             plain: DVector::zeros(0),
             nodes: Vec::new(),
             tried: 0,
-            detectable: None,
+            detectable: f64::INFINITY,
         };
         let grid = Grid::new(hypothesis);
-        let (mut nodes, plain) = self.nodes(&promised, &grid.shapes())?;
-        promised.plain = plain;
+        let coarse = self.look(&promised, &grid.shapes())?;
         // What lies between the nodes of the grid is no other try: neighbours gain or fail together.
-        promised.tried = nodes.len();
+        promised.tried = coarse.nodes.len();
+        promised.plain = coarse.plain;
+        promised.nodes = coarse.nodes;
+        promised.detectable = coarse.seen;
         // The peak of a period is the narrower, the further the axis goes; over a part of a second it is wide.
-        let fine = grid.fine(&nodes.iter().map(|node| node.apart).collect::<Vec<f64>>());
+        let fine = grid.fine(&coarse.apart);
         if !fine.is_empty() {
-            nodes.extend(self.nodes(&promised, &fine)?.0);
+            let fine = self.look(&promised, &fine)?;
+            promised.nodes.extend(fine.nodes);
+            promised.detectable = promised.detectable.min(fine.seen);
         }
-        let seen = nodes.iter().map(|node| node.seen);
-        promised.detectable = Some(seen.fold(f64::INFINITY, f64::min));
-        promised.nodes = nodes;
         if promised.own_modes {
             self.try_sizes(&mut promised);
         }
@@ -182,8 +190,8 @@ impl Scanner<'_> {
         Some(promised)
     }
 
-    /// The nodes of some shapes; and the innovations without the effect.
-    fn nodes(&self, promised: &Promised, shapes: &[Vec<f64>]) -> Option<(Vec<Node>, DVector<f64>)> {
+    /// Looks at some shapes by tangents; `None` where there are none, or the model cannot be run.
+    fn look(&self, promised: &Promised, shapes: &[Vec<f64>]) -> Option<Look> {
         let hypothesis = &self.hypotheses[promised.number];
         let runs = self.runs(promised);
         // What has states of its own moves by itself as its shapes say, also at size 0: each shape needs a run of its own.
@@ -192,7 +200,8 @@ impl Scanner<'_> {
         } else {
             CHUNK
         };
-        let mut nodes = Vec::new();
+        let (mut nodes, mut apart) = (Vec::new(), Vec::new());
+        let mut seen = f64::INFINITY;
         let mut plain = None;
         for chunk in shapes.chunks(chunk) {
             let (products, innovations) = runs.products(hypothesis, self.projection, chunk)?;
@@ -209,15 +218,20 @@ impl Scanner<'_> {
                         .collect(),
                     gain: answer.gain_of(&sizes),
                     sizes,
-                    apart: products.apart(number),
-                    seen: answer.reaches(self.gate, 0),
                     linear: true,
                 };
                 nodes.push(node);
+                apart.push(products.apart(number));
+                seen = seen.min(answer.reaches(self.gate, 0));
             }
             plain = plain.or(Some(innovations));
         }
-        Some((nodes, plain?))
+        Some(Look {
+            nodes,
+            apart,
+            seen,
+            plain: plain?,
+        })
     }
 
     /// Tries sizes all over the range of what has modes of its own: tangents tell little of it.
@@ -235,8 +249,6 @@ impl Scanner<'_> {
                 visible: sizes.iter().map(|s| 0.1 * s.abs()).collect(),
                 sizes,
                 gain,
-                apart: 0.0,
-                seen: f64::INFINITY,
                 linear: false,
             });
         }
@@ -249,8 +261,8 @@ impl Scanner<'_> {
         let best = promised.nodes.first().map(|best| best.shapes.clone());
         if let Some(best) = best {
             let between = grid.between(&best);
-            if let Some((nodes, _)) = self.nodes(&promised, &between) {
-                promised.nodes.extend(nodes);
+            if let Some(found) = self.look(&promised, &between) {
+                promised.nodes.extend(found.nodes);
             }
         }
         promised.nodes = peaks(&grid, promised.nodes);

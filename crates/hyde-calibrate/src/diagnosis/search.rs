@@ -13,7 +13,7 @@ use super::prune::prune;
 use super::scan::{Scanner, Score};
 use super::stage::{Ground, Stage};
 use super::trial::{Begun, Rejection, Trial, begin, finish, unseen};
-use crate::fit::{correlation, covariance, inflation};
+use crate::fit::{correlation, covariance, inflation, mean_square};
 use crate::gain::Observer;
 use crate::least_squares::Solution;
 use crate::plant::Unsupported;
@@ -357,9 +357,8 @@ pub(super) fn explained(solution: &Solution) -> bool {
     let chance = normal_quantile(CHANCE / channels().count().max(1) as f64);
     channels().all(|list| {
         let rows = list.len().max(1) as f64;
-        let chi = list.iter().map(|r| r * r).sum::<f64>() / rows;
         let (size, likeness) = EXPLAINED;
-        chi <= size + chance * (2.0 / rows).sqrt()
+        mean_square(list) <= size + chance * (2.0 / rows).sqrt()
             && correlation(list) <= likeness + chance / rows.sqrt()
     })
 }

@@ -316,8 +316,6 @@ fn fitted(
                 .map(|column| (VISIBLE / dot(&column, &column).max(1e-300)).sqrt())
                 .collect(),
             gain: *own.gains.last()?,
-            apart: 0.0,
-            seen: f64::INFINITY,
             linear: true,
         }],
         tried: own.tried,
