@@ -193,20 +193,29 @@ fn linearity(
         },
         workspace,
     );
+    let columns = 2 * program.columns.len();
     let linear: Vec<f64> =
         at.u.iter()
             .enumerate()
-            .map(|(i, u)| u + f64::from(u8::from(i % 2 == 0)))
+            .map(|(i, u)| u + f64::from(u8::from(i < columns && i % 2 == 0)))
             .collect();
     let between = residual(Point { u: &linear, ..at }, workspace);
-    let same = |other: &[f64]| {
+    let same = |before: &[f64], other: &[f64]| {
         before
             .iter()
             .zip(other)
             .all(|(a, b)| a.to_bits() == b.to_bits())
     };
+    let delayed = |u: &[f64], workspace: &mut Workspace| {
+        let mut out = vec![0.0; program.delays.len()];
+        program
+            .kernels
+            .evaluate(Function::Delayed, Point { u, ..at }, workspace, &mut out);
+        out
+    };
+    let held = same(&delayed(at.u, workspace), &delayed(&linear, workspace));
     (
         constant,
-        affine && same(&later) && same(&between) && program.delays.is_empty(),
+        affine && same(&before, &later) && same(&before, &between) && held,
     )
 }

@@ -45,7 +45,8 @@ impl FreeChannel {
     }
 }
 
-/// Runs a program over a record with its loop closed, with some parameters set by name (SI).
+/// Runs a program over a record with its loop closed, with some parameters set by name (SI); those that shape its equations
+/// have been set before.
 ///
 /// # Errors
 /// The run has none, or ends before its end; see [`RunError`].
@@ -54,8 +55,13 @@ pub fn free_run(
     recording: &Recording,
     set: &[(String, f64)],
 ) -> Result<Vec<FreeChannel>, RunError> {
+    let shapes = |name: &str| {
+        let known = program.parameter(name);
+        known.is_some_and(|(parameter, _)| parameter.structural)
+    };
+    let plain = set.iter().filter(|(name, _)| !shapes(name));
     let options = Options {
-        set: set.to_vec(),
+        set: plain.cloned().collect(),
         ..Options::default()
     };
     let run = hyde_experiment::run(program, &recording.tables, &options)?;

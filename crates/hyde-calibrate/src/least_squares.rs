@@ -197,6 +197,26 @@ impl Problem<'_> {
         self.recordings.par_iter().map(each).collect()
     }
 
+    /// A solution with its values moved, in units of the scales; what is known of slopes stays.
+    ///
+    /// # Errors
+    /// The program has no fixed-step form.
+    pub(crate) fn moved_by(
+        &self,
+        solution: &Solution,
+        step: &DVector<f64>,
+    ) -> Result<Solution, Unsupported> {
+        let values = self.moved(&solution.values, step);
+        let innovations = self.innovations(&values)?;
+        Ok(Solution {
+            data: sum_of_squares(&innovations),
+            priors: self.priors(&values),
+            values,
+            innovations,
+            ..solution.clone()
+        })
+    }
+
     /// The same, as long as the sum of their squares does not exceed a limit.
     fn within(&self, values: &[f64], limit: f64) -> Result<Option<Vec<Innovations>>, Unsupported> {
         let set = self.settings(values);
@@ -253,44 +273,67 @@ impl Problem<'_> {
     }
 
     fn by_tangents(&self, values: &[f64]) -> Result<Linearised, Unsupported> {
-        let all: Vec<usize> = (0..self.varied.len()).collect();
         let set = self.settings(values);
+        let direction = |recording: &Recording, number: usize| {
+            let varied = &self.varied[number];
+            let step = difference(varied, values[number], SMALL);
+            let mut set = set.clone();
+            set.push((varied.place, values[number] + step));
+            Direction {
+                p: recording.parameters(self.program, &set),
+                step: step / varied.scale(),
+            }
+        };
+        // What is delayed arrives at other instants: no kernel tells what that does.
+        let delays = |number: &usize| {
+            self.recordings.first().is_some_and(|first| {
+                let p = first.parameters(self.program, &set);
+                crate::past::moves(self.program, &p, &direction(first, *number).p)
+            })
+        };
+        let (late, along): (Vec<usize>, Vec<usize>) = (0..self.varied.len()).partition(delays);
+        if along.is_empty() {
+            return self.by_differences(values);
+        }
+        let parts = along.chunks(AT_ONCE).count();
         let runs: Vec<(&Recording, &[usize])> = self
             .recordings
             .iter()
-            .flat_map(|recording| all.chunks(AT_ONCE).map(move |part| (recording, part)))
+            .flat_map(|recording| along.chunks(AT_ONCE).map(move |part| (recording, part)))
             .collect();
-        let found: Result<Vec<Tangents>, Unsupported> = runs
-            .into_par_iter()
-            .map(|(recording, part)| {
-                let direction = |&number: &usize| {
-                    let varied = &self.varied[number];
-                    let step = difference(varied, values[number], SMALL);
-                    let mut set = set.clone();
-                    set.push((varied.place, values[number] + step));
-                    Direction {
-                        p: recording.parameters(self.program, &set),
-                        step: step / varied.scale(),
-                    }
-                };
-                let directions: Vec<Direction> = part.iter().map(direction).collect();
-                tangents(self.program, recording, self.observer, &set, &directions)
-            })
-            .collect();
+        let (found, late_columns) = rayon::join(
+            || -> Result<Vec<Tangents>, Unsupported> {
+                let each = runs.into_par_iter().map(|(recording, part)| {
+                    let own = part.iter().map(|&number| direction(recording, number));
+                    let own: Vec<Direction> = own.collect();
+                    tangents(self.program, recording, self.observer, &set, &own)
+                });
+                each.collect()
+            },
+            || self.moved_runs(values, &late),
+        );
+        let (late_columns, mut found) = (late_columns?, found?.into_iter());
         let (mut innovations, mut derivatives) = (Vec::new(), Vec::new());
-        let mut found = found?.into_iter();
-        for recording in self.recordings {
-            let mut columns: Vec<DVector<f64>> = Vec::new();
+        for (recording, moved) in self.recordings.iter().zip(late_columns) {
+            let mut matrix = DMatrix::zeros(0, 0);
             let mut own = None;
-            for part in found.by_ref().take(all.chunks(AT_ONCE).len()) {
-                columns.extend(part.change.column_iter().map(|column| column.into_owned()));
+            let mut numbers = along.iter();
+            for part in found.by_ref().take(parts) {
+                if own.is_none() {
+                    matrix = DMatrix::zeros(part.change.nrows(), self.varied.len());
+                }
+                for (column, &number) in part.change.column_iter().zip(numbers.by_ref()) {
+                    matrix.set_column(number, &column);
+                }
                 own = own.or(Some(part.innovations));
             }
             let Some(mut own) = own else { continue };
-            let mut matrix = DMatrix::from_columns(&columns);
             if let Some(fold) = self.fold {
                 fold.keep(&mut own, recording);
                 fold.keep_rows(&mut matrix, recording);
+            }
+            for (&number, (size, moved)) in late.iter().zip(&moved) {
+                matrix.set_column(number, &change(moved, &own, *size));
             }
             innovations.push(own);
             derivatives.push(matrix);
@@ -302,50 +345,41 @@ impl Problem<'_> {
     }
 
     fn by_differences(&self, values: &[f64]) -> Result<Linearised, Unsupported> {
-        let count = self.recordings.len();
-        // Run 0 of a record is where the parameters are, run j + 1 with parameter j moved.
-        let runs: Vec<(usize, usize)> = (0..=self.varied.len())
-            .flat_map(|run| (0..count).map(move |record| (run, record)))
-            .collect();
-        let moves: Vec<f64> = self
-            .varied
-            .iter()
-            .zip(values)
-            .map(|(varied, &value)| difference(varied, value, DIFFERENCE))
-            .collect();
-        let results: Result<Vec<Innovations>, Unsupported> = runs
-            .par_iter()
-            .map(|&(run, record)| {
-                let mut values = values.to_vec();
-                if let Some(varied) = run.checked_sub(1) {
-                    values[varied] += moves[varied];
-                }
-                self.run(&self.recordings[record], &self.settings(&values))
-            })
-            .collect();
-        let mut results = results?;
-        let moved = results.split_off(count);
-        let of_record = |record: usize| {
-            let old = &results[record];
-            let columns: Vec<DVector<f64>> = (0..self.varied.len())
-                .map(|number| {
-                    let factor = self.varied[number].scale() / moves[number];
-                    let new = &moved[number * count + record];
-                    let pairs = new
-                        .channels
-                        .iter()
-                        .flatten()
-                        .zip(old.channels.iter().flatten());
-                    let change: Vec<f64> = pairs.map(|(new, old)| (new - old) * factor).collect();
-                    DVector::from_vec(change)
-                })
-                .collect();
-            DMatrix::from_columns(&columns)
+        let all: Vec<usize> = (0..self.varied.len()).collect();
+        let (own, moved) = rayon::join(
+            || self.innovations(values),
+            || self.moved_runs(values, &all),
+        );
+        let innovations = own?;
+        let of_record = |(own, moved): (&Innovations, Vec<(f64, Innovations)>)| {
+            let columns = moved.iter().map(|(size, moved)| change(moved, own, *size));
+            DMatrix::from_columns(&columns.collect::<Vec<_>>())
         };
         Ok(Linearised {
-            derivatives: (0..count).map(of_record).collect(),
-            innovations: results,
+            derivatives: innovations.iter().zip(moved?).map(of_record).collect(),
+            innovations,
         })
+    }
+
+    /// Of each record: innovations with each of some parameters moved, and by how much of its scale.
+    fn moved_runs(
+        &self,
+        values: &[f64],
+        numbers: &[usize],
+    ) -> Result<Vec<Vec<(f64, Innovations)>>, Unsupported> {
+        let run = |recording: &Recording, number: usize| {
+            let move_by = difference(&self.varied[number], values[number], DIFFERENCE);
+            let mut values = values.to_vec();
+            values[number] += move_by;
+            let found = self.run(recording, &self.settings(&values))?;
+            Ok((move_by / self.varied[number].scale(), found))
+        };
+        let each = self.recordings.par_iter();
+        let of = |recording| {
+            let numbers = numbers.par_iter();
+            numbers.map(|&number| run(recording, number)).collect()
+        };
+        each.map(of).collect()
     }
 
     /// The normal equations, in units of the scales.
@@ -432,6 +466,19 @@ impl Problem<'_> {
 
 fn sum_of_squares(innovations: &[Innovations]) -> f64 {
     innovations.iter().map(Innovations::sum_of_squares).sum()
+}
+
+/// How innovations change a unit, from runs.
+fn change(moved: &Innovations, own: &Innovations, size: f64) -> DVector<f64> {
+    let (moved, own) = (
+        moved.channels.iter().flatten(),
+        own.channels.iter().flatten(),
+    );
+    let change: Vec<f64> = moved
+        .zip(own)
+        .map(|(moved, own)| (moved - own) / size)
+        .collect();
+    DVector::from_vec(change)
 }
 
 /// How far a parameter is moved for a difference: inwards where it is at its upper bound.

@@ -26,6 +26,7 @@ mod gain;
 mod least_squares;
 mod measures;
 mod observer;
+mod past;
 mod plan;
 mod plant;
 mod recording;

@@ -7,6 +7,7 @@
 //! stays there bitwise.
 
 use crate::configuration::{Configuration, Places};
+use crate::past::Past;
 use crate::recording::Recording;
 use crate::stepping::{Outcome, Room, gather};
 use hyde_program::{Function, Point, Program, Workspace};
@@ -14,6 +15,9 @@ use hyde_program::{Function, Point, Program, Workspace};
 /// Steps of a row's time: the longest is its half, the shortest a 64th of that.
 const LONGEST: usize = 1;
 pub(crate) const LEVELS: usize = 8;
+
+/// A step into which a delayed jump falls is at least so short.
+const JUMP_LEVEL: usize = 5;
 
 /// How exact a step is before an observer says what is worth it, SI.
 const DEFAULT_TOLERANCE: f64 = 1e-7;
@@ -23,7 +27,7 @@ const DEFAULT_TOLERANCE: f64 = 1e-7;
 pub enum Unsupported {
     /// A clocked part drives the axis and is not replayed: its name.
     Clock(String),
-    /// Quantities are delayed.
+    /// What is delayed depends on states.
     Delay,
     /// States are chosen while running.
     ChosenStates,
@@ -61,6 +65,9 @@ pub(crate) struct Plant<'a> {
     pub(crate) room: Room,
     /// The steps of the last row.
     pub(crate) legs: Vec<Leg>,
+    past: Past,
+    /// Delayed values where the next step begins, and where it ends.
+    late: (Vec<f64>, Vec<f64>),
 }
 
 /// A step that was taken.
@@ -102,6 +109,7 @@ impl<'a> Plant<'a> {
         p: Vec<f64>,
         modes: &[(usize, usize)],
     ) -> Result<Self, Unsupported> {
+        let past = Past::new(program, recording, &p)?;
         let start = hyde_sim::operating_point(program, &recording.tables, &p, modes)
             .map_err(|failure| Unsupported::Start(format!("{:?}", failure.kind)))?;
         let places = Places::new(program, &start.z);
@@ -132,10 +140,15 @@ impl<'a> Plant<'a> {
             pinned: Vec::new(),
             room: Room::new(program, &places),
             legs: Vec::new(),
+            past,
+            late: (
+                vec![0.0; program.delays.len()],
+                vec![0.0; program.delays.len()],
+            ),
             places,
             p,
         };
-        plant.read_inputs(0);
+        plant.read_inputs();
         plant.pin();
         plant.enter()?;
         Ok(plant)
@@ -173,7 +186,7 @@ impl<'a> Plant<'a> {
 
     /// Begins a row: what drives the axis jumps, the states change by an increment, those that modes fix apart.
     pub(crate) fn begin_row(&mut self, increment: &[f64]) {
-        self.read_inputs(self.row);
+        self.read_inputs();
         for (&position, change) in self.places.states.iter().zip(increment) {
             self.y[position] += change;
         }
@@ -190,6 +203,10 @@ impl<'a> Plant<'a> {
         while self.index < shortest_steps() {
             while !self.index.is_multiple_of(size_of(self.level)) {
                 self.level += 1;
+            }
+            if !self.past.is_empty() && !self.read_past() {
+                self.level += 1;
+                continue;
             }
             let (level, configuration) = (self.level, self.current);
             match self.step(level) {
@@ -294,25 +311,68 @@ impl<'a> Plant<'a> {
         }
     }
 
-    fn read_inputs(&mut self, row: usize) {
-        for (number, column) in self.recording.columns.iter().enumerate() {
-            let value = column[row.min(column.len() - 1)];
-            self.u[2 * number] = value;
-            self.u[2 * number + 1] = value;
+    /// What drives the axis where a row begins.
+    fn read_inputs(&mut self) {
+        interpolate(self.program, self.recording, self.row, 0, &mut self.u);
+        if !self.past.is_empty() {
+            let at = self.row as f64;
+            let (begin, end) = &mut self.late;
+            self.past.over(at, at, begin, end);
+            self.u[2 * self.program.columns.len()..].copy_from_slice(begin);
         }
     }
 
-    /// Linear columns between the rows; `next` ones step.
-    pub(crate) fn interpolate_inputs(&mut self, index: usize) {
-        let part = index as f64 / shortest_steps() as f64;
-        for (number, column) in self.recording.columns.iter().enumerate() {
-            if self.program.columns[number].next || !self.program.columns[number].continuous {
-                continue;
-            }
-            let last = column.len() - 1;
-            let (now, then) = (column[self.row.min(last)], column[(self.row + 1).min(last)]);
-            self.u[2 * number] = now + (then - now) * part;
+    /// What drives the axis where a step ends.
+    pub(crate) fn read_inputs_at_end(&mut self, index: usize) {
+        interpolate(self.program, self.recording, self.row, index, &mut self.u);
+        self.u[2 * self.program.columns.len()..].copy_from_slice(&self.late.1);
+    }
+
+    /// Delayed values of the next step, the rates following where they jump; false where it is too long for a jump within.
+    fn read_past(&mut self) -> bool {
+        let rows = shortest_steps() as f64;
+        let from = self.row as f64 + self.index as f64 / rows;
+        let to = from + size_of(self.level) as f64 / rows;
+        if self.level < JUMP_LEVEL && self.past.jumps(from, to) {
+            return false;
         }
+        let (begin, end) = &mut self.late;
+        self.past.over(from, to, begin, end);
+        let known = &mut self.u[2 * self.program.columns.len()..];
+        if known != begin.as_slice() {
+            known.copy_from_slice(begin);
+            interpolate(
+                self.program,
+                self.recording,
+                self.row,
+                self.index,
+                &mut self.u,
+            );
+            self.make_consistent();
+        }
+        true
+    }
+}
+
+/// Columns at a part of a row: where it begins what steps has its new value, and linear ones are on their way to the next.
+pub(crate) fn interpolate(
+    program: &Program,
+    recording: &Recording,
+    row: usize,
+    index: usize,
+    u: &mut [f64],
+) {
+    let part = index as f64 / shortest_steps() as f64;
+    for (number, (column, read)) in recording.columns.iter().zip(&program.columns).enumerate() {
+        let last = column.len() - 1;
+        let (now, then) = (column[row.min(last)], column[(row + 1).min(last)]);
+        let linear = read.continuous && !read.next;
+        u[2 * number] = if linear {
+            now + (then - now) * part
+        } else {
+            now
+        };
+        u[2 * number + 1] = now;
     }
 }
 
@@ -328,9 +388,6 @@ fn supported(program: &Program) -> Result<(), Unsupported> {
     }
     if let Some(measured) = program.experiment.measured.iter().find(|m| m.clocked) {
         return Err(Unsupported::Clock(measured.name.clone()));
-    }
-    if !program.delays.is_empty() {
-        return Err(Unsupported::Delay);
     }
     if !program.selections.is_empty() {
         return Err(Unsupported::ChosenStates);

@@ -115,7 +115,7 @@ impl Plant<'_> {
                 * (self.row as f64
                     + (self.index + size_of(level)) as f64 / shortest_steps() as f64);
         let t = self.time();
-        self.interpolate_inputs(self.index + size_of(level));
+        self.read_inputs_at_end(self.index + size_of(level));
         let Self {
             program,
             recording,

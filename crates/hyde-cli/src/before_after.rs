@@ -71,14 +71,16 @@ impl RecordErrors {
 }
 
 /// The program of a project with its loop closed, candidates, by number, and written effects put on, and the same with
-/// quantisers shifted; `None` where that has errors.
+/// quantisers shifted; `None` where that has errors. What of the values (by name, SI) shapes the equations is set.
 pub(crate) fn closed(
     project: &Project,
     candidates: &[Candidate],
     known: &[usize],
     written: &[&Written],
+    values: &[(String, f64)],
 ) -> Option<(Program, Program)> {
-    let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
+    let all = project.set().into_iter().chain(values.iter().cloned());
+    let settings: BTreeMap<String, f64> = all.collect();
     let headers = records::headers(&project.records);
     let texts = written.iter().map(|one| one.text.as_str());
     let (sources, file) = hyde_compiler::with_written(&project.sources, &project.file, texts)?;

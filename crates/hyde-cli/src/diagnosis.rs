@@ -74,8 +74,6 @@ impl<'a> Told<'a> {
             .map(|law| &law.written)
             .into_iter()
             .collect();
-        let plain = before_after::closed(project, candidates, &[], &[]);
-        let with_effects = before_after::closed(project, candidates, &known, &written);
         let values = |names: &[hyde_calibrate::Varied], values: &[f64]| {
             let each = names.iter().zip(values);
             let each = each.map(|(varied, &value)| (varied.name.clone(), value));
@@ -86,6 +84,8 @@ impl<'a> Told<'a> {
         let before = values(&calibration.varied, &found.before.values);
         let mut after = values(&found.varied, &found.after.values);
         after.extend(found.kept.iter().cloned());
+        let plain = before_after::closed(project, candidates, &[], &[], &before);
+        let with_effects = before_after::closed(project, candidates, &known, &written, &after);
         let errors = before_after::errors(
             calibration,
             (!found.findings.is_empty()).then_some(Model {

@@ -434,8 +434,8 @@ pub(crate) fn unsupported(error: &Unsupported, span: Span) -> Diagnostic {
             "replay what it puts out: `replay motor.i_ref = file.i_ref;` in the experiment",
         ),
         Unsupported::Delay => (
-            "it delays quantities".to_owned(),
-            "this version observes no model with `delay(u, T)`",
+            "it delays what depends on states".to_owned(),
+            "an observer delays only what the record drives the model with: replay what is delayed, `replay x = file.x;`",
         ),
         Unsupported::ChosenStates => (
             "its states are chosen while running".to_owned(),

@@ -49,8 +49,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) connections: Vec<crate::connect::Connection>,
     /// Held variables by clock and source.
     pub(crate) held: BTreeMap<(ClockId, VarId), VarId>,
-    /// Delayed variables by what is delayed and the bits of the time.
-    pub(crate) delayed: BTreeMap<(ExprId, u64), VarId>,
+    /// Delayed variables by what is delayed and the time.
+    pub(crate) delayed: BTreeMap<(ExprId, ExprId), VarId>,
     /// Column variables: linear and held.
     pub(crate) column_variables: BTreeMap<ColumnId, (VarId, VarId)>,
     /// Parameters that stand for the first value of a column or its mean.

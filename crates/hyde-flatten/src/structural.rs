@@ -56,6 +56,15 @@ impl<'a> Model<'a, '_> {
 
     /// The value of a lowered expression of parameters, which become structural.
     pub(crate) fn evaluate(&mut self, id: ExprId) -> Option<f64> {
+        self.value_of(id, true)
+    }
+
+    /// The value that a lowered expression of parameters has now; they stay as they are.
+    pub(crate) fn current_value(&mut self, id: ExprId) -> Option<f64> {
+        self.value_of(id, false)
+    }
+
+    fn value_of(&mut self, id: ExprId, structural: bool) -> Option<f64> {
         let leaves: Vec<Ir> = self
             .flat
             .exprs
@@ -67,7 +76,7 @@ impl<'a> Model<'a, '_> {
         for leaf in leaves {
             if let Ir::Param(param, index) = leaf {
                 let element = usize::try_from(index.offset).unwrap_or(0);
-                values.push((leaf, self.parameter_value(param, element)?));
+                values.push((leaf, self.parameter_value(param, element, structural)?));
             }
         }
         let leaf = |expr: Ir| {
@@ -80,18 +89,20 @@ impl<'a> Model<'a, '_> {
         self.flat.exprs.evaluate(id, leaf).ok()
     }
 
-    fn parameter_value(&mut self, param: ParamId, element: usize) -> Option<f64> {
-        self.flat.parameters[param].structural = true;
+    fn parameter_value(&mut self, param: ParamId, element: usize, structural: bool) -> Option<f64> {
+        self.flat.parameters[param].structural |= structural;
         if self.parameters[param.index()].state != Lowering::Done {
             self.lower_parameter(param);
         }
         if let Some(&value) = self.input.settings.get(&self.flat.parameters[param].name) {
-            // What else uses the parameter sees the value that is set as well.
-            self.flat.parameters[param].value = vec![self.flat.exprs.constant(value)];
+            if structural {
+                // What else uses the parameter sees the value that is set as well.
+                self.flat.parameters[param].value = vec![self.flat.exprs.constant(value)];
+            }
             return Some(value);
         }
         let values = &self.flat.parameters[param].value;
         let value = *values.get(element).or_else(|| values.first())?;
-        self.evaluate(value)
+        self.value_of(value, structural)
     }
 }

@@ -119,15 +119,17 @@ pub struct ClockedEquation {
     pub equation: Equation,
 }
 
-/// `delay(u, T)`. The time is a number: the parameters it is made of are structural, for without a delay the equations
-/// are others.
+/// `delay(u, T)`. In a run the time is a number: the parameters it is made of are structural, for without a delay the
+/// equations are others. In the observed form they are plain, and the time may be 0: what an observer delays is known.
 #[derive(Clone, Debug)]
 pub struct Delay {
     /// Values of the counter: one an element of an array.
     pub range: Range,
     /// What is delayed.
     pub value: ExprId,
-    /// By how much, in s, above 0.
+    /// By how much: made of parameters.
+    pub time: ExprId,
+    /// Its value in s where parameters are as declared.
     pub time_s: f64,
     /// The variable that stands for the result.
     pub var: VarId,

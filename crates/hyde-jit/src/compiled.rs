@@ -316,6 +316,11 @@ impl Compiled {
             Constant::Period(clock) => dae.ticks[ClockId::from_index(clock)].period,
             Constant::Delay(clock) => dae.ticks[ClockId::from_index(clock)].delay,
             Constant::Phase(clock) => dae.ticks[ClockId::from_index(clock)].phase,
+            Constant::Lateness(number) => {
+                let each = dae.delays.iter();
+                let mut each = each.flat_map(|delay| delay.range.iter().map(|_| delay.time));
+                each.nth(number)?
+            }
             Constant::TimeEvent(relation) => {
                 dae.relations[hyde_ir::RelationId::from_index(relation)].time_event?
             }

@@ -155,7 +155,8 @@ pub struct Hold {
 /// A quantity as it was earlier: its value now is of the same number in [`crate::Function::Delayed`].
 #[derive(Clone, Debug)]
 pub struct Delay {
-    /// By how much, in s, above 0.
+    /// By how much, in s, above 0: as declared; in the observed form parameters decide it
+    /// ([`crate::Constant::Lateness`]).
     pub time_s: f64,
     /// Whether the continuous equations read it: a jump that arrives is an event.
     pub read: bool,

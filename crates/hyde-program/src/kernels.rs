@@ -88,6 +88,8 @@ pub enum Constant {
     Delay(usize),
     /// First tick of a clock in s.
     Phase(usize),
+    /// How late a delayed value is, by its number, in s.
+    Lateness(usize),
     /// Instant of a relation that is scheduled, in s.
     TimeEvent(usize),
     /// End of the run in s.

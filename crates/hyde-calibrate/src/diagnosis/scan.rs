@@ -158,11 +158,14 @@ impl Scanner<'_> {
         let list: Vec<usize> = known.chain([number]).collect();
         let Built { program, paths } = (self.build)(&list)?;
         let before = &self.stage.program;
+        let path = paths.last()?.clone();
+        let sizes = Hypothesis::names(&hypothesis.sizes, &path);
         let mut promised = Promised {
             number,
             own_modes: program.automata.len() > before.automata.len()
-                || program.relations.len() > before.relations.len(),
-            path: paths.last()?.clone(),
+                || program.relations.len() > before.relations.len()
+                || self.delays(&program, &sizes[0]),
+            path,
             program,
             plain: DVector::zeros(0),
             nodes: Vec::new(),
@@ -188,6 +191,19 @@ impl Scanner<'_> {
         }
         promised.nodes = peaks(&grid, promised.nodes);
         Some(promised)
+    }
+
+    /// Whether a parameter says how late something comes, of which tangents show nothing.
+    fn delays(&self, program: &Program, parameter: &str) -> bool {
+        let set = |value| {
+            self.ground
+                .set_in(program, &[(parameter.to_owned(), value)])
+        };
+        let mut each = self.ground.recordings.iter();
+        each.next().is_some_and(|first| {
+            let p = |value| first.parameters(program, &set(value));
+            crate::past::moves(program, &p(0.0), &p(1.0))
+        })
     }
 
     /// Looks at some shapes by tangents; `None` where there are none, or the model cannot be run.

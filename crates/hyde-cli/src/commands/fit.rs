@@ -62,21 +62,25 @@ pub(crate) fn fit(args: &FitArgs) -> Exit {
 
 /// The errors with the declared values and with the calibrated ones.
 fn errors(calibration: &Calibration, found: &Fit) -> Result<Vec<RecordErrors>, Unsupported> {
-    let closed = before_after::closed(&calibration.project, &[], &[], &[]);
     let declared = calibration.project.set();
     let mut calibrated = declared.clone();
     calibrated.extend(found.parameters.iter().map(|p| (p.name.clone(), p.value)));
-    let model = |set| Model {
-        observed: &calibration.compiled.program,
-        closed: closed.as_ref().map(|(own, _)| own),
+    let closed = |set| before_after::closed(&calibration.project, &[], &[], &[], set);
+    let (old, new) = (closed(&declared), closed(&calibrated));
+    let observed = &calibration.compiled.program;
+    let before = Model {
+        observed,
+        closed: old.as_ref().map(|(own, _)| own),
         shifted: None,
-        set,
+        set: &declared,
     };
     let after = Model {
-        shifted: closed.as_ref().map(|(_, shifted)| shifted),
-        ..model(&calibrated)
+        observed,
+        closed: new.as_ref().map(|(own, _)| own),
+        shifted: new.as_ref().map(|(_, shifted)| shifted),
+        set: &calibrated,
     };
-    before_after::errors(calibration, Some(model(&declared)), after)
+    before_after::errors(calibration, Some(before), after)
 }
 
 /// Tells why there is no calibration.

@@ -4,8 +4,9 @@
 //! back = delay(v, 20 [ms])       back(t) = v(t - 20 ms), before that time v as it was at the start
 //! ```
 //! What is delayed is a variable; an expression gets one. T is structural: where it is 0, `delay(u, T)` is u itself, and
-//! the equations are others.
+//! the equations are others. In the observed form it is a plain parameter, so that it can be looked for.
 
+use crate::Form;
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
@@ -14,6 +15,15 @@ use hyde_ir::flat::{Delay, Equation};
 use hyde_ir::{DelayId, Expr as Ir, ExprId, Id as _, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::Expr;
 use hyde_units::Dimension;
+
+/// How late a quantity is.
+#[derive(Clone, Copy)]
+struct DelayTime {
+    id: ExprId,
+    value_s: f64,
+    /// Parameters decide it that may change from run to run: else `id` is a number.
+    plain: bool,
+}
 
 impl<'a> Model<'a, '_> {
     pub(super) fn delay(&mut self, args: &[&'a Expr], scope: &Scope<'a>, span: Span) -> Typed {
@@ -36,15 +46,16 @@ impl<'a> Model<'a, '_> {
             self.report(diagnostic);
             return self.poison(span);
         }
-        let Some(time_s) = self.delay_time(by, scope) else {
+        let Some(time) = self.delay_time(by, scope) else {
             return self.poison(span);
         };
         let u = self.lower(u, &scope.with(Setting::Equation));
         let fixed = self.flat.exprs.is_parametric(u.id);
-        let id = if time_s == 0.0 || fixed {
+        let none = time.value_s == 0.0 && !time.plain;
+        let id = if none || fixed {
             u.id
         } else {
-            self.delayed(&u, time_s, scope, span)
+            self.delayed(&u, time, scope, span)
         };
         Typed {
             truth: u.truth,
@@ -53,7 +64,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The time in s, known before the run and not negative.
-    fn delay_time(&mut self, by: &'a Expr, scope: &Scope<'a>) -> Option<f64> {
+    fn delay_time(&mut self, by: &'a Expr, scope: &Scope<'a>) -> Option<DelayTime> {
         let in_seconds = Typed {
             dim: Dim::known(Dimension::TIME),
             ..self.poison(by.span)
@@ -66,7 +77,11 @@ impl<'a> Model<'a, '_> {
             "a delay is a time, this relates",
             scope.instance,
         );
-        let value = self.evaluate(given.id);
+        let observed = self.input.form == Form::Observed;
+        let value = match observed {
+            true => self.current_value(given.id),
+            false => self.evaluate(given.id),
+        };
         if self.diagnostics.error_count() > errors {
             return None;
         }
@@ -82,11 +97,21 @@ impl<'a> Model<'a, '_> {
             );
             return None;
         }
-        Some(value)
+        let exprs = &mut self.flat.exprs;
+        let plain = observed && exprs.any(given.id, |expr| matches!(expr, Ir::Param(..)));
+        Some(DelayTime {
+            id: if plain {
+                given.id
+            } else {
+                exprs.constant(value)
+            },
+            value_s: value,
+            plain,
+        })
     }
 
     /// The variable that is `u` a time ago; of an element that moves with a counter, that of the whole array.
-    fn delayed(&mut self, u: &Typed, time_s: f64, scope: &Scope<'a>, span: Span) -> ExprId {
+    fn delayed(&mut self, u: &Typed, time: DelayTime, scope: &Scope<'a>, span: Span) -> ExprId {
         let (var, index) = match self.flat.exprs[u.id].access() {
             Some((var, index, false)) => (var, index),
             Some(_) | None if self.flat.exprs.any(u.id, moves_with_counter) => {
@@ -110,11 +135,11 @@ impl<'a> Model<'a, '_> {
             0 => (index, Index::SCALAR),
             _ => (whole, index),
         };
-        let key = (self.flat.exprs.add(Ir::Var(var, of)), time_s.to_bits());
+        let key = (self.flat.exprs.add(Ir::Var(var, of)), time.id);
         let delayed = match self.delayed.get(&key) {
             Some(&known) => known,
             None => {
-                let made = self.delayed_variable((var, of), u, time_s, scope, span);
+                let made = self.delayed_variable((var, of), u, time, scope, span);
                 self.delayed.insert(key, made);
                 made
             }
@@ -154,7 +179,7 @@ impl<'a> Model<'a, '_> {
         &mut self,
         (source, of): (VarId, Index),
         u: &Typed,
-        time_s: f64,
+        time: DelayTime,
         scope: &Scope<'a>,
         span: Span,
     ) -> VarId {
@@ -165,7 +190,10 @@ impl<'a> Model<'a, '_> {
             None => variable.element_name(usize::try_from(of.offset).unwrap_or(0)),
         };
         let kind = VariableKind::Delayed(DelayId::from_index(self.flat.delays.len()));
-        let name = format!("delay({name}, {time_s} s)");
+        let name = match time.plain {
+            true => format!("delay({name})"),
+            false => format!("delay({name}, {} s)", time.value_s),
+        };
         let var = self.add_variable(
             scope.instance,
             name,
@@ -182,7 +210,8 @@ impl<'a> Model<'a, '_> {
         self.flat.delays.push(Delay {
             range: Range { first: 0, last },
             value,
-            time_s,
+            time: time.id,
+            time_s: time.value_s,
             var,
             origin,
         });
