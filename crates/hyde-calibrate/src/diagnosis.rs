@@ -7,16 +7,22 @@
 //! products       sums over rows that scores are made of                                   diagnosis/products.rs
 //! scan           scores of an effect over its shapes and sizes                            diagnosis/scan.rs
 //! trial          a survivor fitted together with all parameters, and judged on folds      diagnosis/trial.rs
+//! contest        survivors beside each other: gates, and which of them is taken in        diagnosis/contest.rs
+//! profile        the last of a fit: numbers of effects at the bottom of their profiles    diagnosis/profile.rs
 //! search         forward, until nothing passes the gates                                  diagnosis/search.rs
+//! exchange       earlier effects once more against their rivals                           diagnosis/exchange.rs
 //! apart          the experiment that would tell alternatives apart                        diagnosis/apart.rs
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
 mod apart;
+mod contest;
+mod exchange;
 mod grid;
 mod hypothesis;
 mod products;
+mod profile;
 mod projection;
 mod prune;
 mod scan;

@@ -39,7 +39,12 @@ pub(crate) fn prune(
 }
 
 /// The stage fitted without one of its effects; `None` where it cannot be run.
-fn without(ground: &Ground<'_>, stage: &Stage, number: usize, build: &Build<'_>) -> Option<Stage> {
+pub(crate) fn without(
+    ground: &Ground<'_>,
+    stage: &Stage,
+    number: usize,
+    build: &Build<'_>,
+) -> Option<Stage> {
     let mut others = stage.effects.clone();
     let (_, gone) = others.remove(number);
     let list: Vec<usize> = others.iter().map(|(effect, _)| *effect).collect();

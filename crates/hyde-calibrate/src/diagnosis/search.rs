@@ -6,20 +6,21 @@
 //! innovations tell less than independent ones. A gain on what was not fitted is also to be material: a part of the
 //! number of innovations. Everything is chosen inside the records to fit.
 
-use super::apart::{Alternative, telling};
+use super::apart::Alternative;
+use super::contest::{Contest, contest};
+use super::exchange::{Exchange, Taken};
 use super::hypothesis::{Build, Built, Hypothesis};
 use super::projection::Projection;
 use super::prune::prune;
 use super::scan::{Scanner, Score};
 use super::stage::{Ground, Stage};
-use super::trial::{Begun, Rejection, Trial, begin, finish, unseen};
+use super::trial::Trial;
 use crate::fit::{correlation, covariance, inflation, mean_square};
 use crate::gain::Observer;
 use crate::least_squares::Solution;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
 use crate::varied::Varied;
-use rayon::prelude::*;
 
 /// One of this many sets of records without an effect may pass a single gate by chance, and the margin above that.
 const CHANCE: f64 = 0.01;
@@ -29,10 +30,6 @@ const MATERIAL: f64 = 0.002;
 /// Hypotheses fitted in a round at most, and the part of the best score that they must have.
 const SURVIVORS: usize = 6;
 const SURVIVING: f64 = 0.05;
-/// Of those only these are fitted to the end that have this part of the best gain after a few steps.
-const WORTH: f64 = 0.5;
-/// Trials that gain this part of the best are told apart by the last steps of their fits only.
-const CONTENDING: f64 = 0.98;
 /// Rounds beside one an effect.
 const MORE_ROUNDS: usize = 2;
 /// Innovations that are explained: their mean square, and their correlation.
@@ -182,7 +179,7 @@ pub fn diagnose(
         innovations,
     };
     let mut rounds = Vec::new();
-    let mut alternatives: Vec<Vec<Alternative>> = Vec::new();
+    let mut taken: Vec<Taken> = Vec::new();
     // An effect that is dropped again makes room for another: so many rounds more at most.
     while stage.effects.len() < max_effects && rounds.len() < max_effects + MORE_ROUNDS {
         let at = stage.linearise(&ground)?;
@@ -202,40 +199,8 @@ pub fn diagnose(
             .iter()
             .take_while(|score| score.gain() >= (SURVIVING * best).max(gates.gain(1)));
         let survivors: Vec<&Score> = survivors.take(SURVIVORS).collect();
-        let begun: Vec<Begun<'_>> = survivors
-            .into_par_iter()
-            .filter_map(|score| begin(&ground, &stage, hypotheses, score, build))
-            .collect();
-        let ahead = begun.iter().map(|begun| begun.gain).fold(0.0, f64::max);
-        let mut trials: Vec<Trial> = begun
-            .into_par_iter()
-            .filter_map(|begun| {
-                let worth = begun.gain >= WORTH * ahead;
-                finish(&ground, &stage, hypotheses, begun, worth)
-            })
-            .collect();
-        refine(&ground, &stage, &mut trials);
-        judge(&ground, &stage, &mut trials, gates);
-        let rank = |trial: &Trial| {
-            (
-                trial.rejected.is_none(),
-                trial.fold_gain.unwrap_or(trial.gain),
-            )
-        };
-        trials.sort_by(|a, b| {
-            let (a, b) = (rank(a), rank(b));
-            b.0.cmp(&a.0).then(b.1.total_cmp(&a.1))
-        });
-        let taken = choice(&trials, gates);
-        let accepted = taken.as_ref().map(|(best, others)| {
-            let own = &trials[*best];
-            let gate = gates.gain(own.freedoms) * own.inflation;
-            let other = |&other: &usize| Alternative {
-                hypothesis: trials[other].hypothesis,
-                experiment: telling(recordings, own, &trials[other], gate),
-            };
-            (*best, others.iter().map(other).collect())
-        });
+        let Contest { trials, accepted } =
+            contest(&ground, &stage, hypotheses, survivors, build, gates);
         match accepted {
             None => {
                 rounds.push(Round {
@@ -247,9 +212,12 @@ pub fn diagnose(
             }
             Some((best, others)) => {
                 stage = trials[best].stage.polished(&ground)?;
-                alternatives.push(others);
+                taken.push(Taken {
+                    round: rounds.len(),
+                    alternatives: others,
+                });
                 for number in prune(&ground, &mut stage, build, gates) {
-                    alternatives.remove(number);
+                    taken.remove(number);
                 }
                 rounds.push(Round {
                     scores,
@@ -259,6 +227,20 @@ pub fn diagnose(
             }
         }
     }
+    let search = Exchange {
+        ground: &ground,
+        hypotheses,
+        build,
+        gates,
+        rounds: &rounds,
+    };
+    if search.exchange(&mut stage, &mut taken)? {
+        for number in prune(&ground, &mut stage, build, gates) {
+            taken.remove(number);
+        }
+    }
+    let alternatives: Vec<Vec<Alternative>> =
+        taken.into_iter().map(|taken| taken.alternatives).collect();
     let findings: Vec<Finding> = findings(&stage, hypotheses, &alternatives);
     let unexplained = !explained(&stage.solution);
     let verdict = match findings.as_slice() {
@@ -279,75 +261,6 @@ pub fn diagnose(
         unexplained,
         unknown: None,
     })
-}
-
-/// Fits to the end those that gain nearly as much as the best, if it is not alone: the same effect one shaft further gains
-/// all but a few units of it, and tangents leave as many.
-fn refine(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial]) {
-    let fine = |trial: &Trial| trial.rejected.is_none();
-    let best = trials.iter().filter(|trial| fine(trial));
-    let best = best.map(|trial| trial.gain).fold(0.0, f64::max);
-    let contends = |trial: &Trial| fine(trial) && trial.gain >= CONTENDING * best;
-    if trials.iter().filter(|trial| contends(trial)).count() < 2 {
-        return;
-    }
-    let contenders = trials.par_iter_mut().filter(|trial| contends(trial));
-    contenders.for_each(|trial| trial.refine(ground, stage));
-}
-
-/// Puts the gates to the trials, the best first; halves are fitted only of those that pass the others and come near the
-/// best that passes.
-fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates) {
-    trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let mut plain: Option<[f64; 2]> = None;
-    let mut passed: Option<f64> = None;
-    for trial in trials {
-        let gate = gates.gain(trial.freedoms) * trial.inflation;
-        let behind = passed.is_some_and(|best| trial.gain < best - gate);
-        trial.rejected = trial
-            .rejected
-            .or((trial.score < gate).then_some(Rejection::Score))
-            .or((trial.gain < gate).then_some(Rejection::Gain))
-            .or(behind.then_some(Rejection::Behind));
-        if trial.rejected.is_some() {
-            continue;
-        }
-        plain = plain.or_else(|| unseen(ground, stage));
-        let (Some(before), Some(after)) = (plain, unseen(ground, &trial.stage)) else {
-            trial.rejected = Some(Rejection::Folds);
-            continue;
-        };
-        let gained = before[0] + before[1] - after[0] - after[1];
-        trial.fold_gain = Some(gained);
-        if gained < gate.max(gates.material()) {
-            trial.rejected = Some(Rejection::Folds);
-        } else {
-            passed = Some(passed.unwrap_or(trial.gain));
-        }
-    }
-}
-
-/// The trial to take in, and those that cannot be told from it. Of these the one with the fewest sizes and shapes.
-fn choice(trials: &[Trial], gates: Gates) -> Option<(usize, Vec<usize>)> {
-    let passed: Vec<usize> = (0..trials.len())
-        .filter(|&t| trials[t].rejected.is_none())
-        .collect();
-    let gained = |t: usize| trials[t].fold_gain.unwrap_or(0.0);
-    let best = passed
-        .iter()
-        .copied()
-        .max_by(|&a, &b| gained(a).total_cmp(&gained(b)))?;
-    let within = gates.gain(trials[best].freedoms) * trials[best].inflation;
-    let close = |&t: &usize| {
-        gained(t) >= gained(best) - within && trials[t].gain >= trials[best].gain - within
-    };
-    let alike: Vec<usize> = passed.into_iter().filter(close).collect();
-    let simplest = alike.iter().copied().min_by(|&a, &b| {
-        let freedoms = trials[a].freedoms.cmp(&trials[b].freedoms);
-        freedoms.then(gained(b).total_cmp(&gained(a)))
-    })?;
-    let others = alike.into_iter().filter(|&t| t != simplest).collect();
-    Some((simplest, others))
 }
 
 /// Whether innovations are what the noise makes of them: no channel of a record is materially larger, or more like itself

@@ -1,5 +1,6 @@
 //! [`Stage`]: the model as far as the search has come: effects taken in, parameters calibrated with them.
 
+use super::profile::profiled;
 use crate::blocks::Fold;
 use crate::gain::Observer;
 use crate::least_squares::{Linearised, MAX_STEPS, Problem, Slopes, Solution};
@@ -69,7 +70,8 @@ impl Stage {
     }
 
     /// The stage fitted to the end, once from where it is and once from what was declared: without the effect the
-    /// parameters stood in for it, and may have been led into a minimum of their own.
+    /// parameters stood in for it, and may have been led into a minimum of their own. Numbers of effects end at the bottom
+    /// of their profiles.
     pub(crate) fn polished(&self, ground: &Ground<'_>) -> Result<Self, Unsupported> {
         let set = ground.set_in(&self.program, &self.kept);
         let problem = ground.problem(&self.program, &self.varied, &set, None);
@@ -83,10 +85,22 @@ impl Stage {
         } else {
             &self.solution.values
         };
+        let own = self.varied.iter().enumerate();
+        let of_effects = own.filter(|(_, varied)| self.is_of_effect(&varied.name));
         let solution = problem.solve(start)?;
+        let solution = profiled(&problem, solution, of_effects.map(|(number, _)| number))?;
         Ok(Self {
             solution,
             ..self.clone()
+        })
+    }
+
+    /// Whether a parameter is one of an effect.
+    fn is_of_effect(&self, name: &str) -> bool {
+        let mut paths = self.effects.iter().map(|(_, path)| path.as_str());
+        paths.any(|path| {
+            name.strip_prefix(path)
+                .is_some_and(|rest| rest.starts_with('.'))
         })
     }
 

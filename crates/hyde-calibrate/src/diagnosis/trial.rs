@@ -15,8 +15,8 @@ use hyde_program::Program;
 const VISIBLE_SHAPE: f64 = 0.03;
 /// Steps from a node before nodes are compared.
 const FIRST_STEPS: usize = 3;
-/// Steps from the whole fit to that of a half.
-const FOLD_STEPS: usize = 2;
+/// Steps from the whole fit to that of a half: laws that are far from linear need more than one or two.
+const FOLD_STEPS: usize = 6;
 /// A fit that gains this much more than the scan promised did not find the effect but a better fit of all else, as long as
 /// it gains less than a part of the number of innovations: above that it has moved a shape, or answered what is not small.
 const TOO_GOOD: f64 = 3.0;

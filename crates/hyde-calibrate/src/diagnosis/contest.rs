@@ -1,0 +1,137 @@
+//! [`contest`]: hypotheses fitted beside each other, judged, and the one that is taken in.
+
+use super::apart::{Alternative, telling};
+use super::hypothesis::{Build, Hypothesis};
+use super::scan::Score;
+use super::search::Gates;
+use super::stage::{Ground, Stage};
+use super::trial::{Begun, Rejection, Trial, begin, finish, unseen};
+use rayon::prelude::*;
+
+/// Of all only these are fitted to the end that have this part of the best gain after a few steps.
+const WORTH: f64 = 0.5;
+/// Trials that gain this part of the best are told apart by the last steps of their fits only.
+const CONTENDING: f64 = 0.98;
+
+/// How a contest ended.
+pub(crate) struct Contest {
+    /// What was fitted, the best first.
+    pub(crate) trials: Vec<Trial>,
+    /// The number of the trial to take in, and what the records cannot tell from it.
+    pub(crate) accepted: Option<(usize, Vec<Alternative>)>,
+}
+
+/// Fits some hypotheses on a stage, from the nodes of their scores.
+pub(crate) fn contest(
+    ground: &Ground<'_>,
+    stage: &Stage,
+    hypotheses: &[Hypothesis],
+    scores: Vec<&Score>,
+    build: &Build<'_>,
+    gates: Gates,
+) -> Contest {
+    let begun: Vec<Begun<'_>> = scores
+        .into_par_iter()
+        .filter_map(|score| begin(ground, stage, hypotheses, score, build))
+        .collect();
+    let ahead = begun.iter().map(|begun| begun.gain).fold(0.0, f64::max);
+    let mut trials: Vec<Trial> = begun
+        .into_par_iter()
+        .filter_map(|begun| {
+            let worth = begun.gain >= WORTH * ahead;
+            finish(ground, stage, hypotheses, begun, worth)
+        })
+        .collect();
+    refine(ground, stage, &mut trials);
+    judge(ground, stage, &mut trials, gates);
+    let rank = |trial: &Trial| {
+        (
+            trial.rejected.is_none(),
+            trial.fold_gain.unwrap_or(trial.gain),
+        )
+    };
+    trials.sort_by(|a, b| {
+        let (a, b) = (rank(a), rank(b));
+        b.0.cmp(&a.0).then(b.1.total_cmp(&a.1))
+    });
+    let taken = choice(&trials, gates);
+    let accepted = taken.map(|(best, others)| {
+        let own = &trials[best];
+        let gate = gates.gain(own.freedoms) * own.inflation;
+        let other = |other: usize| Alternative {
+            hypothesis: trials[other].hypothesis,
+            experiment: telling(ground.recordings, own, &trials[other], gate),
+        };
+        (best, others.into_iter().map(other).collect())
+    });
+    Contest { trials, accepted }
+}
+
+/// Fits to the end those that gain nearly as much as the best, if it is not alone: the same effect one shaft further gains
+/// all but a few units of it, and tangents leave as many.
+fn refine(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial]) {
+    let fine = |trial: &Trial| trial.rejected.is_none();
+    let best = trials.iter().filter(|trial| fine(trial));
+    let best = best.map(|trial| trial.gain).fold(0.0, f64::max);
+    let contends = |trial: &Trial| fine(trial) && trial.gain >= CONTENDING * best;
+    if trials.iter().filter(|trial| contends(trial)).count() < 2 {
+        return;
+    }
+    let contenders = trials.par_iter_mut().filter(|trial| contends(trial));
+    contenders.for_each(|trial| trial.refine(ground, stage));
+}
+
+/// Puts the gates to the trials, the best first; halves are fitted only of those that pass the others and come near the
+/// best that passes.
+fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates) {
+    trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    let mut plain: Option<[f64; 2]> = None;
+    let mut passed: Option<f64> = None;
+    for trial in trials {
+        let gate = gates.gain(trial.freedoms) * trial.inflation;
+        let behind = passed.is_some_and(|best| trial.gain < best - gate);
+        trial.rejected = trial
+            .rejected
+            .or((trial.score < gate).then_some(Rejection::Score))
+            .or((trial.gain < gate).then_some(Rejection::Gain))
+            .or(behind.then_some(Rejection::Behind));
+        if trial.rejected.is_some() {
+            continue;
+        }
+        plain = plain.or_else(|| unseen(ground, stage));
+        let (Some(before), Some(after)) = (plain, unseen(ground, &trial.stage)) else {
+            trial.rejected = Some(Rejection::Folds);
+            continue;
+        };
+        let gained = before[0] + before[1] - after[0] - after[1];
+        trial.fold_gain = Some(gained);
+        if gained < gate.max(gates.material()) {
+            trial.rejected = Some(Rejection::Folds);
+        } else {
+            passed = Some(passed.unwrap_or(trial.gain));
+        }
+    }
+}
+
+/// The trial to take in, and those that cannot be told from it. Of these the one with the fewest sizes and shapes.
+fn choice(trials: &[Trial], gates: Gates) -> Option<(usize, Vec<usize>)> {
+    let passed: Vec<usize> = (0..trials.len())
+        .filter(|&t| trials[t].rejected.is_none())
+        .collect();
+    let gained = |t: usize| trials[t].fold_gain.unwrap_or(0.0);
+    let best = passed
+        .iter()
+        .copied()
+        .max_by(|&a, &b| gained(a).total_cmp(&gained(b)))?;
+    let within = gates.gain(trials[best].freedoms) * trials[best].inflation;
+    let close = |&t: &usize| {
+        gained(t) >= gained(best) - within && trials[t].gain >= trials[best].gain - within
+    };
+    let alike: Vec<usize> = passed.into_iter().filter(close).collect();
+    let simplest = alike.iter().copied().min_by(|&a, &b| {
+        let freedoms = trials[a].freedoms.cmp(&trials[b].freedoms);
+        freedoms.then(gained(b).total_cmp(&gained(a)))
+    })?;
+    let others = alike.into_iter().filter(|&t| t != simplest).collect();
+    Some((simplest, others))
+}

@@ -1,0 +1,89 @@
+//! [`profiled`]: the last of a fit with effects: each number of theirs at the bottom of its profile.
+//!
+//! ```text
+//! cost(p + t d)      d: how all parameters follow one number of an effect, from the curvature, a standard deviation of it long
+//! ```
+//! Innovations of play and of sticking are not smooth: least squares by slopes end where the next step gains nothing, some
+//! deviations of a weak direction from its bottom. A parabola through costs that are further apart finds it (Seber and
+//! Wild, Nonlinear Regression, 1989, section 5.4, on profiles).
+
+use crate::least_squares::{Problem, Solution};
+use crate::plant::Unsupported;
+use nalgebra::{DMatrix, DVector};
+
+/// Costs are compared this many standard deviations apart, and the bottom is looked for so far from them.
+const APART: f64 = 2.0;
+const FURTHEST: f64 = 2.0 * APART;
+/// A bottom so near is reached, in standard deviations.
+const REACHED: f64 = 0.3;
+/// Parabolas at most for one number.
+const ROUNDS: usize = 6;
+
+/// The solution with some of what is varied, by number, at the bottom of their profiles.
+pub(crate) fn profiled(
+    problem: &Problem<'_>,
+    mut solution: Solution,
+    numbers: impl Iterator<Item = usize>,
+) -> Result<Solution, Unsupported> {
+    let (data, priors) = &solution.curvature;
+    let Some(covariance) = (data + priors * solution.weight).try_inverse() else {
+        return Ok(solution);
+    };
+    for number in numbers {
+        let Some(direction) = direction(&covariance, number) else {
+            continue;
+        };
+        for _ in 0..ROUNDS {
+            let (low, high) = rayon::join(
+                || problem.moved_by(&solution, &(-APART * &direction)),
+                || problem.moved_by(&solution, &(APART * &direction)),
+            );
+            let (low, high) = (low?, high?);
+            let Some(bottom) = bottom(low.cost(), solution.cost(), high.cost()) else {
+                break;
+            };
+            let there = problem.moved_by(&solution, &(bottom * &direction))?;
+            let best = [low, high, there]
+                .into_iter()
+                .min_by(|a, b| a.cost().total_cmp(&b.cost()));
+            match best {
+                Some(best) if best.gain_over(&solution) > 0.0 => solution = best,
+                Some(_) | None => break,
+            }
+        }
+    }
+    Ok(solution)
+}
+
+/// How everything follows one number, by a standard deviation of it.
+fn direction(covariance: &DMatrix<f64>, number: usize) -> Option<DVector<f64>> {
+    let variance = covariance[(number, number)];
+    (variance > 0.0).then(|| covariance.column(number) / variance.sqrt())
+}
+
+/// Where a parabola through three costs has its bottom, in standard deviations; `None` where that is reached.
+fn bottom(low: f64, here: f64, high: f64) -> Option<f64> {
+    let bend = low + high - 2.0 * here;
+    let place = if bend > 0.0 {
+        0.5 * APART * (low - high) / bend
+    } else {
+        // No bottom between them: on towards the lower one.
+        FURTHEST * (low - high).signum()
+    };
+    let place = place.clamp(-FURTHEST, FURTHEST);
+    (place.is_finite() && place.abs() > REACHED).then_some(place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_parabola_has_its_bottom_where_it_is() {
+        let cost = |t: f64| 3.0 + 0.7 * (t - 1.3) * (t - 1.3);
+        let found = bottom(cost(-APART), cost(0.0), cost(APART)).unwrap();
+        assert!((found - 1.3).abs() < 1e-12, "{found}");
+        assert_eq!(bottom(1.0, 0.5, 1.0), None);
+        assert_eq!(bottom(3.0, 2.0, 1.0), Some(FURTHEST));
+    }
+}
