@@ -60,3 +60,14 @@ fn exact_friction_costs_less_than_the_smoothed_one() {
     // A block that ticks every millisecond restarts the solver a thousand times a second.
     assert!(3 * exact < smoothed, "{exact} and {smoothed}");
 }
+
+#[test]
+fn what_sticks_takes_steps_of_a_record() {
+    let example = Example::load("tests/models/pushed.hyde", Some("steps")).unwrap();
+    let example = example.record("file", "tests/records/pushed.csv");
+    let (_, run) = example.run().unwrap();
+    let measures: Vec<f64> = run.measures.iter().map(|measure| measure.value).collect();
+    for (value, expected) in measures.iter().zip([0.5, -0.5, 0.01]) {
+        assert!((value - expected).abs() < 1e-8, "{measures:?}");
+    }
+}

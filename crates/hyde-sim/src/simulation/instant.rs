@@ -35,6 +35,9 @@ impl Simulation<'_> {
         let arrived = delays::arrive(&mut self.integrator, &mut self.consistent)?;
         let t = self.integrator.t;
         let entered = self.integrator.state_mut().inputs.enter(t);
+        if entered {
+            self.be_consistent()?;
+        }
         let mut changed = arrived.read | entered;
         changed |= self.iterate(scheduled, false)?;
         if changed || restart || *cause != Cause::Time {
@@ -112,6 +115,17 @@ impl Simulation<'_> {
         self.integrator.y = y;
         self.integrator.yp = yp;
         outcome
+    }
+
+    /// Consistent values with what the equations read now: guards are to see what a step of an input does to them.
+    fn be_consistent(&mut self) -> Result<(), Box<Failure>> {
+        let (mut y, mut yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
+        let t = self.integrator.t;
+        self.consistent
+            .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
+        self.integrator.y = y;
+        self.integrator.yp = yp;
+        Ok(())
     }
 
     /// The values now.
