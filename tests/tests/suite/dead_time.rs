@@ -111,7 +111,8 @@ fn a_dead_time_is_calibrated_to_what_noise_leaves() {
         );
         assert!(deviation < 1e-5, "{deviation}");
         let chi = fit["records"][0]["chi"]["after"].as_f64().unwrap();
-        assert!((chi - 1.0).abs() < 0.15, "{chi}");
+        // The observer allows for a part of the rates that no model gets right: here there is none.
+        assert!((0.5..1.05).contains(&chi), "{chi}");
     }
 }
 
