@@ -36,6 +36,7 @@ mod reactions;
 mod rectifier;
 mod reductions;
 mod sampled;
+mod shipped_sets;
 mod stages;
 mod starts;
 mod stepped;
