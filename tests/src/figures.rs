@@ -28,6 +28,7 @@ mod travelling_nut;
 mod two_mass;
 
 pub use promise::{Figure, Measured, Promise, Session};
+pub use selftest::record;
 pub use start::{START, first_step};
 
 /// Every figure, in the order printed.

@@ -56,8 +56,8 @@ pub use plant::Unsupported;
 pub use recording::{RecordError, Recording};
 pub use residual_map::{ResidualMap, residual_maps};
 pub use selftest::{
-    Asked, Axis, Case, Claim, Fault, Found, Outcome, Planting, Row, SelftestError, Simulated, Size,
-    Tally, cases, simulated, tables_of, tally, try_case,
+    Asked, Axis, Case, Claim, Fault, Faulty, Found, Outcome, Planting, Row, SelftestError,
+    Simulated, Size, Tally, cases, simulated, tables_of, tally, try_case,
 };
 pub use varied::Varied;
 pub use whiteness::{Whiteness, whiteness};

@@ -17,6 +17,6 @@ mod table;
 mod trial;
 
 pub use case::{Asked, Case, Fault, Planting, Size, cases};
-pub use simulated::{Simulated, simulated};
+pub use simulated::{Faulty, Simulated, simulated};
 pub use table::{Found, Row, Table as Tally, tally};
 pub use trial::{Axis, Claim, Outcome, SelftestError, tables_of, try_case};

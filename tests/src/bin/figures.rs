@@ -1,5 +1,5 @@
-//! `figures [--seed S] [NAME…]`: measures the promises of the project and prints a line each. Exit status 1 where one falls short, 2
-//! where there is none of that name.
+//! `figures [--whole] [--seed S] [NAME…]`: measures the promises of the project and prints a line each. Exit status 1 where one falls
+//! short, 2 where there is none of that name. `--whole` plants the whole library first and records what became of it.
 
 use hyde_tests::figures::{FIGURES, Figure, Session};
 use std::process::ExitCode;
@@ -28,6 +28,10 @@ fn main() -> ExitCode {
         session.seed = seed;
         names.drain(at..at + 2);
     }
+    if let Some(at) = names.iter().position(|name| name == "--whole") {
+        session.whole = true;
+        names.remove(at);
+    }
     let mut chosen: Vec<&Figure> = Vec::new();
     for name in &names {
         match FIGURES.iter().find(|figure| figure.name == name) {
@@ -44,6 +48,15 @@ fn main() -> ExitCode {
     }
     if names.is_empty() {
         chosen = FIGURES.iter().collect();
+    }
+    if session.whole {
+        match hyde_tests::figures::record(&session) {
+            Ok(path) => eprintln!("the self-test in full is in {}", path.display()),
+            Err(reason) => {
+                eprintln!("{reason}");
+                return ExitCode::from(1);
+            }
+        }
     }
     let mut any_short = false;
     for figure in chosen {

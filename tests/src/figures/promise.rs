@@ -108,6 +108,8 @@ pub struct Session {
     pub data: PathBuf,
     /// What random numbers of long studies begin with.
     pub seed: u64,
+    /// Whether what is sampled otherwise is measured in full.
+    pub whole: bool,
     pub(crate) emps: OnceCell<Result<Vec<Measured>, String>>,
     pub(crate) bench: OnceCell<Result<Vec<Measured>, String>>,
     pub(crate) diagnoses: OnceCell<Result<Vec<super::diagnosis::SetResult>, String>>,
@@ -122,6 +124,7 @@ impl Session {
         Self {
             data,
             seed: 1,
+            whole: false,
             emps: OnceCell::new(),
             bench: OnceCell::new(),
             diagnoses: OnceCell::new(),

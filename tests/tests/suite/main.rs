@@ -37,6 +37,7 @@ mod reactions;
 mod rectifier;
 mod reductions;
 mod sampled;
+mod shipped_sets;
 mod stages;
 mod starts;
 mod stepped;

@@ -113,6 +113,11 @@ impl Reference {
         Some(Effect { plain, ..effect })
     }
 
+    /// The deviation of a channel's noise and rounding, SI.
+    pub(super) fn noise(&self, channel: usize) -> f64 {
+        self.observer.noise.get(channel).copied().unwrap_or(0.0)
+    }
+
     /// What a gain has to reach for the effect to be claimed.
     pub(super) fn gate(&self, hypothesis: &Hypothesis) -> f64 {
         let freedoms = hypothesis.sizes.len() + hypothesis.shapes.len();

@@ -8,7 +8,6 @@ use super::case::Fault;
 use super::random::Random;
 use hyde_experiment::{Options, RunError};
 use hyde_program::{Constant, Measured, Preparation, Program};
-use hyde_signal::statistics::rms;
 use hyde_signal::{Column, Table};
 use hyde_sim::Results;
 use std::collections::BTreeMap;
@@ -31,8 +30,20 @@ pub enum Simulated {
     Column(String, String),
 }
 
+/// A channel that does what none should.
+#[derive(Clone, Copy, Debug)]
+pub struct Faulty {
+    /// Its number.
+    pub channel: usize,
+    /// What it does.
+    pub fault: Fault,
+    /// The deviation of its noise and rounding where all is well, SI. The recorded form does not tell that of a count,
+    /// which is rounded before it is measured.
+    pub deviation: f64,
+}
+
 /// Replaces every measured and replayed column of the records by what the axis would leave there. `program` is in the
-/// recorded form; stimuli are read from `tables`; `faulty` names a column's channel.
+/// recorded form; stimuli are read from `tables`.
 ///
 /// # Errors
 /// See [`Simulated`].
@@ -40,7 +51,7 @@ pub fn simulated(
     program: &Program,
     tables: &BTreeMap<String, Table>,
     options: &Options,
-    faulty: Option<(usize, Fault)>,
+    faulty: Option<Faulty>,
     seed: u64,
     purpose: &str,
 ) -> Result<BTreeMap<String, Table>, Simulated> {
@@ -66,27 +77,19 @@ pub fn simulated(
             constant(Constant::Noise(number)),
             constant(Constant::Rounding(number)),
         );
-        let fault = faulty.and_then(|(which, fault)| (which == number).then_some(fault));
+        let faulty = faulty.filter(|faulty| faulty.channel == number);
         let mut values = rows(&run.results, channel, table);
-        let deviation = match noise.hypot(width / 12.0_f64.sqrt()) {
-            known if known > 0.0 => known,
-            _ => 1e-3 * rms(&values),
-        };
         for value in &mut values {
             *value += noise * random.normal();
-            match fault {
-                Some(Fault::Noise) => *value += NOISY * deviation * random.normal(),
-                Some(Fault::Spikes) if random.uniform() < SPIKES => {
-                    *value += FAR * deviation * random.sign();
-                }
-                Some(Fault::Spikes | Fault::Frozen) | None => {}
+            if let Some(faulty) = faulty {
+                *value += faulty.deviation * error(faulty.fault, &mut random);
             }
             if width > 0.0 {
                 // No -0: it would be written as something else.
                 *value = (*value / width).round() * width + 0.0;
             }
         }
-        if fault == Some(Fault::Frozen) {
+        if faulty.is_some_and(|faulty| faulty.fault == Fault::Frozen) {
             freeze(&mut values, table);
         }
         values.iter_mut().for_each(|value| *value /= factor);
@@ -139,6 +142,15 @@ fn rows(results: &Results, channel: &Measured, table: &Table) -> Vec<f64> {
         })
     };
     table.time().iter().map(at).collect()
+}
+
+/// What a fault adds to a row, in deviations.
+fn error(fault: Fault, random: &mut Random) -> f64 {
+    match fault {
+        Fault::Noise => NOISY * random.normal(),
+        Fault::Spikes if random.uniform() < SPIKES => FAR * random.sign(),
+        Fault::Spikes | Fault::Frozen => 0.0,
+    }
 }
 
 fn freeze(values: &mut [f64], table: &Table) {

@@ -1,8 +1,8 @@
 //! [`try_case`]: simulates a case, diagnoses it, and says what was found for what was planted.
 
-use super::case::{Case, Fault, Planting, Size};
+use super::case::{Case, Planting, Size};
 use super::expected::{Reference, shows, size_of};
-use super::simulated::{Simulated, simulated};
+use super::simulated::{Faulty, Simulated, simulated};
 use crate::diagnosis::{
     Author, Build, Built, Hypothesis, Inquiry, Site, Verdict, Written, diagnose, propose,
 };
@@ -330,8 +330,12 @@ fn tables(
         interrupted: Arc::clone(&axis.interrupted),
         ..Options::default()
     };
-    let faulty: Option<(usize, Fault)> = match case.kind {
-        Planting::Sensor(channel, fault) => Some((channel, fault)),
+    let faulty = match case.kind {
+        Planting::Sensor(channel, fault) => Some(Faulty {
+            channel,
+            fault,
+            deviation: axis.reference.noise(channel),
+        }),
         Planting::Planted(..)
         | Planting::Empty
         | Planting::Parameter(_)

@@ -119,8 +119,13 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
                         .map(|()| Exit::Done)
                         .map_err(refused);
                 }
-                let store = args.out.as_ref().map(|folder| store(folder, identity));
-                let store = store.transpose().map_err(refused)?;
+                let store = match &args.out {
+                    Some(folder) => with_program(&identity)
+                        .and_then(|own| store(folder, own))
+                        .map(Some),
+                    None => Ok(None),
+                };
+                let store = store.map_err(refused)?;
                 let quiet = args.study.json || args.study.quiet;
                 match work::outcomes(&axis, all, store.as_ref(), quiet) {
                     Ok(outcomes) => Ok(outcomes),
@@ -267,10 +272,17 @@ fn siteless(
         .collect()
 }
 
-/// The store of a folder.
+/// The store of a folder; cases of another axis, seed or program are in others beside it.
 fn store(folder: &Path, identity: Identity) -> Result<Store, String> {
     files::make_folder(folder)?;
-    Store::open(&folder.join("journal"), identity)
+    let own: String = identity.0[..6].iter().map(|b| format!("{b:02x}")).collect();
+    Store::open(&folder.join(format!("journal-{own}")), identity)
+}
+
+/// The identity with that of this very program: another one may judge otherwise.
+fn with_program(identity: &Identity) -> Result<Identity, String> {
+    let program = std::env::current_exe().map_err(|error| error.to_string())?;
+    Ok(digest(&[&identity.0, &files::read(&program)?]))
 }
 
 /// What decides the outcome of a case beside its name: all texts of the model and the library, the records, the seed.

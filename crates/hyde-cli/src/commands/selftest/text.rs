@@ -104,6 +104,16 @@ fn controls(out: &mut String, told: &Told<'_>) {
     for (what, (cases, right)) in lines.into_iter().filter(|(_, (cases, _))| *cases > 0) {
         let _ = writeln!(out, "  {what:<60} {right:>4} of {cases}");
     }
+    let withheld = [
+        ("a law of its own was written", table.laws),
+        (
+            "one was claimed that the effect says it is like",
+            table.neighbours,
+        ),
+    ];
+    for (what, cases) in withheld.into_iter().filter(|(_, cases)| *cases > 0) {
+        let _ = writeln!(out, "    {what:<58} {cases:>4}");
+    }
     for (key, claimed) in &table.wrong {
         let names: Vec<String> = claimed.iter().map(|&f| found_name(told, f)).collect();
         let found = match names.as_slice() {
