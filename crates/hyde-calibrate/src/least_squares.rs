@@ -197,6 +197,14 @@ impl Problem<'_> {
         self.recordings.par_iter().map(each).collect()
     }
 
+    /// What is minimised, priors weighed so much.
+    ///
+    /// # Errors
+    /// The program has no fixed-step form.
+    pub(crate) fn cost(&self, values: &[f64], weight: f64) -> Result<f64, Unsupported> {
+        Ok(sum_of_squares(&self.innovations(values)?) + weight * self.priors(values))
+    }
+
     /// A solution with its values moved, in units of the scales; what is known of slopes stays.
     ///
     /// # Errors

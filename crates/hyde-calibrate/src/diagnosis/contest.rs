@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// Of all only these are fitted to the end that have this part of the best gain after a few steps.
 const WORTH: f64 = 0.5;
 /// Trials that gain this part of the best are told apart by the last steps of their fits only.
-const CONTENDING: f64 = 0.98;
+const CONTENDING: f64 = 0.95;
 
 /// How a contest ended.
 pub(crate) struct Contest {
@@ -93,7 +93,7 @@ fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates)
         trial.rejected = trial
             .rejected
             .or((trial.score < gate).then_some(Rejection::Score))
-            .or((trial.gain < gate).then_some(Rejection::Gain))
+            .or((trial.gain < gate || !trial.is_told()).then_some(Rejection::Gain))
             .or(behind.then_some(Rejection::Behind));
         if trial.rejected.is_some() {
             continue;
@@ -113,7 +113,8 @@ fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates)
     }
 }
 
-/// The trial to take in, and those that cannot be told from it. Of these the one with the fewest sizes and shapes.
+/// The trial to take in, and those that cannot be told from it. Of these one without a shape on its bound, and of those the
+/// one with the fewest sizes and shapes.
 fn choice(trials: &[Trial], gates: Gates) -> Option<(usize, Vec<usize>)> {
     let passed: Vec<usize> = (0..trials.len())
         .filter(|&t| trials[t].rejected.is_none())
@@ -129,8 +130,10 @@ fn choice(trials: &[Trial], gates: Gates) -> Option<(usize, Vec<usize>)> {
     };
     let alike: Vec<usize> = passed.into_iter().filter(close).collect();
     let simplest = alike.iter().copied().min_by(|&a, &b| {
-        let freedoms = trials[a].freedoms.cmp(&trials[b].freedoms);
-        freedoms.then(gained(b).total_cmp(&gained(a)))
+        let measure = |t: usize| (trials[t].limited, trials[t].freedoms);
+        measure(a)
+            .cmp(&measure(b))
+            .then(gained(b).total_cmp(&gained(a)))
     })?;
     let others = alike.into_iter().filter(|&t| t != simplest).collect();
     Some((simplest, others))

@@ -2,6 +2,9 @@
 
 use hyde_program::Program;
 
+/// Values are on a bound that are so near it, of the range.
+pub(crate) const NEAR: f64 = 1e-6;
+
 /// A size or a shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Knob {
@@ -15,6 +18,17 @@ pub struct Knob {
     pub integer: bool,
     /// Its unit in SI.
     pub unit: String,
+}
+
+impl Knob {
+    /// Whether a value is on a bound of its range that is neither 0 nor what is declared, which are simpler laws.
+    #[must_use]
+    pub fn is_at_bound(&self, value: f64) -> bool {
+        let (low, high) = self.range;
+        let near = |a: f64, b: f64| (a - b).abs() <= NEAR * (high - low);
+        let simple = near(value, 0.0) || near(value, self.value);
+        (near(value, low) || near(value, high)) && !simple
+    }
 }
 
 /// An effect at a site.

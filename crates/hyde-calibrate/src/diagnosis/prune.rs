@@ -10,6 +10,7 @@ use super::stage::{Ground, Stage};
 use crate::fit::inflation;
 use crate::least_squares::{MAX_STEPS, Slopes};
 use crate::varied::Varied;
+use nalgebra::DVector;
 
 /// The places among the effects of those that were dropped, in the order in which they were.
 pub(crate) fn prune(
@@ -38,6 +39,39 @@ pub(crate) fn prune(
     dropped
 }
 
+/// The values of a stage once the sizes of an effect have gone to 0, by slopes: what had been led away by them comes back at
+/// once, where a fit from where it is may be stuck.
+fn answered(stage: &Stage, gone: &str) -> Vec<f64> {
+    let values = &stage.solution.values;
+    let scale = |number: usize| stage.varied[number].scale();
+    let is_size = |number: &usize| {
+        let name = &stage.varied[*number].name;
+        let below = name
+            .strip_prefix(gone)
+            .is_some_and(|rest| rest.starts_with('.'));
+        let known = stage.program.parameter(name);
+        below && known.is_some_and(|(parameter, _)| parameter.is_size)
+    };
+    let sizes: Vec<usize> = (0..values.len()).filter(is_size).collect();
+    let (data, priors) = &stage.solution.curvature;
+    let move_by = (data + priors * stage.solution.weight)
+        .try_inverse()
+        .and_then(|covariance| {
+            let own = covariance.select_rows(&sizes).select_columns(&sizes);
+            let to_nought = sizes.iter().map(|&size| -values[size] / scale(size));
+            let to_nought = DVector::from_iterator(sizes.len(), to_nought);
+            Some(covariance.select_columns(&sizes) * own.try_inverse()? * to_nought)
+        });
+    let moved = |(number, value): (usize, &f64)| {
+        let step = move_by
+            .as_ref()
+            .map_or(0.0, |step| step[number] * scale(number));
+        let (low, high) = stage.varied[number].bounds;
+        (value + step).clamp(low, high)
+    };
+    values.iter().enumerate().map(moved).collect()
+}
+
 /// The stage fitted without one of its effects; `None` where it cannot be run.
 pub(crate) fn without(
     ground: &Ground<'_>,
@@ -59,8 +93,10 @@ pub(crate) fn without(
         let own = pairs.find_map(|((_, old), new)| Some(format!("{new}.{}", below(old)?)));
         Some(own.unwrap_or_else(|| name.to_owned()))
     };
-    let (mut varied, mut start) = (Vec::new(), Vec::new());
-    for (known, &value) in stage.varied.iter().zip(&stage.solution.values) {
+    let answered = answered(stage, &gone);
+    let (mut varied, mut start, mut follow) = (Vec::new(), Vec::new(), Vec::new());
+    let values = stage.solution.values.iter().zip(&answered);
+    for (known, (&value, &answered)) in stage.varied.iter().zip(values) {
         let Some(name) = renamed(&known.name) else {
             continue;
         };
@@ -71,6 +107,7 @@ pub(crate) fn without(
             ..known.clone()
         });
         start.push(value);
+        follow.push(answered);
     }
     let kept: Vec<(String, f64)> = stage
         .kept
@@ -78,10 +115,13 @@ pub(crate) fn without(
         .filter_map(|(name, value)| Some((renamed(name)?, *value)))
         .collect();
     let set = ground.set_in(&program, &kept);
-    let solution = ground
-        .problem(&program, &varied, &set, None)
-        .solve_in(&start, MAX_STEPS, Slopes::Tangents)
-        .ok()?;
+    let problem = ground.problem(&program, &varied, &set, None);
+    let weight = stage.solution.weight;
+    let cost = |values: &[f64]| problem.cost(values, weight).unwrap_or(f64::INFINITY);
+    if cost(&follow) < cost(&start) {
+        start = follow;
+    }
+    let solution = problem.solve_in(&start, MAX_STEPS, Slopes::Tangents).ok()?;
     Some(Stage {
         program,
         effects: list.into_iter().zip(paths).collect(),

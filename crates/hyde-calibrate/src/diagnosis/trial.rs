@@ -1,15 +1,16 @@
 //! [`Trial`]: a hypothesis fitted together with all parameters, and judged on halves of the records that its fit has not
 //! seen.
 
-use super::hypothesis::{Build, Built, Hypothesis, Knob};
+use super::hypothesis::{Build, Built, Hypothesis, Knob, NEAR};
 use super::scan::{Node, Score};
 use super::stage::{Ground, Stage};
 use crate::blocks::Fold;
-use crate::fit::inflation;
+use crate::fit::{covariance, inflation};
 use crate::least_squares::{LAST_STEPS, MAX_STEPS, Slopes, Solution};
 use crate::observer::Innovations;
 use crate::varied::Varied;
 use hyde_program::Program;
+use nalgebra::DVector;
 
 /// A shape is visibly another by this part of its value or its range.
 const VISIBLE_SHAPE: f64 = 0.03;
@@ -21,6 +22,9 @@ const FOLD_STEPS: usize = 6;
 /// it gains less than a part of the number of innovations: above that it has moved a shape, or answered what is not small.
 const TOO_GOOD: f64 = 3.0;
 const REMAINDER: f64 = 0.02;
+
+/// The 95 % quantile of chi squared for one size, and for a pair.
+const TOLD: [f64; 2] = [3.841, 5.991];
 
 /// A refit, what it varied, and the shapes it kept fixed.
 type Refit = (Solution, Vec<Varied>, Vec<(String, f64)>);
@@ -34,7 +38,7 @@ pub enum Rejection {
     Gain,
     /// It gains too little on what it was not fitted to.
     Folds,
-    /// A size or a shape is on its bound.
+    /// A size is on its bound.
     Bound,
     /// Another one gains more.
     Behind,
@@ -56,15 +60,39 @@ pub struct Trial {
     pub inflation: f64,
     /// Number of sizes and shapes fitted.
     pub freedoms: usize,
+    /// A shape stands on a bound that is neither its declared value nor 0: of its kind, the effect is not this one.
+    pub limited: bool,
     /// Why it was not taken in.
     pub rejected: Option<Rejection>,
     /// Sizes, then shapes, SI.
     pub values: Vec<f64>,
     names: Vec<String>,
+    /// Numbers of the sizes among what its stage varies, if it is linear in them.
+    linear: Option<std::ops::Range<usize>>,
     pub(crate) stage: Stage,
 }
 
 impl Trial {
+    /// Whether its sizes are told from 0 by the slopes too, where it is linear: a fit that was stuck before gains by every
+    /// column that moves it on.
+    pub(super) fn is_told(&self) -> bool {
+        let Some(sizes) = self.linear.clone() else {
+            return true;
+        };
+        let solution = &self.stage.solution;
+        let covariance = covariance(solution, self.inflation);
+        let varied = &self.stage.varied[sizes.clone()];
+        let pairs = varied.iter().zip(&solution.values[sizes.clone()]);
+        let values: Vec<f64> = pairs.map(|(own, value)| value / own.scale()).collect();
+        let values = DVector::from_vec(values);
+        let count = sizes.len();
+        let own = covariance.view((sizes.start, sizes.start), (count, count));
+        let inverse = own.into_owned().try_inverse();
+        inverse.is_some_and(|inverse| {
+            (values.transpose() * inverse * values)[0] >= TOLD[count.min(2) - 1]
+        })
+    }
+
     /// Fits on by differences of runs, as long as that gains.
     pub(super) fn refine(&mut self, ground: &Ground<'_>, stage: &Stage) {
         let own = &self.stage;
@@ -175,11 +203,18 @@ pub(crate) fn finish(
             .solve_in(&solution.values, MAX_STEPS, Slopes::Tangents)
             .ok()?;
     }
-    let own: Vec<usize> = (stage.varied.len()..varied.len()).collect();
-    let at_bound = own.iter().any(|&number| {
+    let own = stage.varied.len()..varied.len();
+    let sizes = own.start..own.start + hypothesis.sizes.len().min(own.len());
+    let at_bound = sizes.clone().any(|number| {
         let (value, (low, high)) = (solution.values[number], varied[number].bounds);
-        let near = 1e-6 * (high - low);
+        let near = NEAR * (high - low);
         value <= low + near || value >= high - near
+    });
+    let limited = (sizes.end..own.end).any(|number| {
+        let mut shapes = hypothesis.shapes.iter();
+        let name = &varied[number].name;
+        let own = shapes.find(|shape| name.ends_with(&format!(".{}", shape.name)));
+        own.is_some_and(|shape| shape.is_at_bound(solution.values[number]))
     });
     let gain = solution.gain_over(&stage.solution);
     let innovations = solution.innovations.iter().flat_map(|i| &i.channels);
@@ -213,6 +248,8 @@ pub(crate) fn finish(
         fold_gain: None,
         inflation,
         freedoms: own.len(),
+        limited,
+        linear: score.linear.then_some(sizes),
         rejected,
         values: values_of(&names, &new),
         names,
