@@ -240,8 +240,14 @@ pub(crate) fn inflation(innovations: &[Innovations]) -> f64 {
 /// independent from row to row, and shows there (White, Econometrica 50, 1982, 1). The scatter of few blocks is itself uncertain:
 /// Student's quantile for one freedom less takes the normal one's place (Cameron and Miller, J. Hum. Resour. 50, 2015, 317).
 pub(crate) fn covariance(solution: &Solution, inflation: f64) -> DMatrix<f64> {
+    covariance_of_first(solution, inflation, solution.values.len())
+}
+
+/// The same of the first `n` parameters, the others held where they are.
+pub(crate) fn covariance_of_first(solution: &Solution, inflation: f64, n: usize) -> DMatrix<f64> {
+    let first = |matrix: &DMatrix<f64>| matrix.view((0, 0), (n, n)).into_owned();
     let (data, priors) = &solution.curvature;
-    let n = data.nrows();
+    let (data, priors) = (&first(data), &first(priors));
     let largest = data
         .diagonal()
         .iter()
@@ -252,7 +258,7 @@ pub(crate) fn covariance(solution: &Solution, inflation: f64) -> DMatrix<f64> {
     let independent = inverse(data / inflation + priors + &floor);
     let weighed = solution.weight * priors;
     let bread = inverse(data + &weighed + floor);
-    let (scatter, blocks) = &solution.scatter;
+    let (scatter, blocks) = (first(&solution.scatter.0), &solution.scatter.1);
     let blocks = blocks.max(&2);
     let few = *blocks as f64 / (blocks - 1) as f64 * student(blocks - 1).powi(2);
     let scattered = &bread * (scatter * few + weighed) * &bread;

@@ -4,12 +4,18 @@
 //! ```text
 //! u held      ____      a jump of row k arrives within a row: the step that it falls into has the mean of both sides,
 //!         ___|          and is short enough for its place in the step not to show
+//! u linear    ____
+//!         ___/          so is the step into which a kink falls
 //! ```
 //! What depends on states is not known beforehand: a model that delays such a thing is refused.
 
 use crate::plant::{Unsupported, interpolate, shortest_steps};
 use crate::recording::Recording;
 use hyde_program::{Constant, Function, Point, Program, Workspace, Wrt};
+
+/// A step into which a jump falls is at least so short, and one into which a kink does: a row's time over 2^level.
+const JUMP_LEVEL: usize = 5;
+const KINK_LEVEL: usize = 4;
 
 /// Delayed values of a run.
 pub(crate) struct Past {
@@ -71,9 +77,20 @@ impl Past {
         self.late.is_empty()
     }
 
-    /// Whether a jump arrives within a step, between two places in rows.
-    pub(crate) fn jumps(&self, from: f64, to: f64) -> bool {
-        (0..self.late.len()).any(|number| self.jump(number, from, to).is_some())
+    /// The level that a step has at least, between two places in rows, for what arrives within it.
+    pub(crate) fn level(&self, from: f64, to: f64) -> usize {
+        let of = |number: usize| {
+            let Some(row) = self.border(number, from, to) else {
+                return 0;
+            };
+            let slope = |row| self.value(number, row, 1.0) - self.value(number, row, 0.0);
+            match self.jump(number, from, to) {
+                Some(_) => JUMP_LEVEL,
+                None if slope(row).to_bits() != slope(row + 1).to_bits() => KINK_LEVEL,
+                None => 0,
+            }
+        };
+        (0..self.late.len()).map(of).max().unwrap_or(0)
     }
 
     /// The values where a step begins and where it ends; over a jump the mean.
@@ -99,19 +116,21 @@ impl Past {
         }
     }
 
-    /// Where in the past a jump lies that arrives within a step, and the value behind it.
-    fn jump(&self, number: usize, from: f64, to: f64) -> Option<(f64, f64)> {
+    /// The row in the past that ends within a step.
+    fn border(&self, number: usize, from: f64, to: f64) -> Option<isize> {
         let late = self.late[number];
         let (row, _) = place(from - late);
-        let next = (row + 1) as f64;
-        if next >= to - late - ROUNDING {
-            return None;
-        }
+        ((row + 1) as f64 + ROUNDING < to - late).then_some(row)
+    }
+
+    /// Where in the past a jump lies that arrives within a step, and the value behind it.
+    fn jump(&self, number: usize, from: f64, to: f64) -> Option<(f64, f64)> {
+        let row = self.border(number, from, to)?;
         let (before, behind) = (
             self.value(number, row, 1.0),
             self.value(number, row + 1, 0.0),
         );
-        (before.to_bits() != behind.to_bits()).then_some((next, behind))
+        (before.to_bits() != behind.to_bits()).then_some(((row + 1) as f64, behind))
     }
 
     fn value(&self, number: usize, row: isize, part: f64) -> f64 {

@@ -16,9 +16,6 @@ use hyde_program::{Function, Point, Program, Workspace};
 const LONGEST: usize = 1;
 pub(crate) const LEVELS: usize = 8;
 
-/// A step into which a delayed jump falls is at least so short.
-const JUMP_LEVEL: usize = 5;
-
 /// How exact a step is before an observer says what is worth it, SI.
 const DEFAULT_TOLERANCE: f64 = 1e-7;
 
@@ -328,12 +325,12 @@ impl<'a> Plant<'a> {
         self.u[2 * self.program.columns.len()..].copy_from_slice(&self.late.1);
     }
 
-    /// Delayed values of the next step, the rates following where they jump; false where it is too long for a jump within.
+    /// Delayed values of the next step, the rates following where they jump; false where it is too long for what arrives within.
     fn read_past(&mut self) -> bool {
         let rows = shortest_steps() as f64;
         let from = self.row as f64 + self.index as f64 / rows;
         let to = from + size_of(self.level) as f64 / rows;
-        if self.level < JUMP_LEVEL && self.past.jumps(from, to) {
+        if self.level < self.past.level(from, to) {
             return false;
         }
         let (begin, end) = &mut self.late;

@@ -5,7 +5,7 @@ use super::hypothesis::{Build, Built, Hypothesis, Knob, NEAR};
 use super::scan::{Node, Score};
 use super::stage::{Ground, Stage};
 use crate::blocks::Fold;
-use crate::fit::{covariance, inflation};
+use crate::fit::{covariance_of_first, inflation};
 use crate::least_squares::{LAST_STEPS, MAX_STEPS, Slopes, Solution};
 use crate::observer::Innovations;
 use crate::varied::Varied;
@@ -73,14 +73,14 @@ pub struct Trial {
 }
 
 impl Trial {
-    /// Whether its sizes are told from 0 by the slopes too, where it is linear: a fit that was stuck before gains by every
-    /// column that moves it on.
+    /// Whether its sizes are told from 0 by the slopes too, its shapes held, where it is linear: a fit that was stuck before
+    /// gains by every column that moves it on.
     pub(super) fn is_told(&self) -> bool {
         let Some(sizes) = self.linear.clone() else {
             return true;
         };
         let solution = &self.stage.solution;
-        let covariance = covariance(solution, self.inflation);
+        let covariance = covariance_of_first(solution, self.inflation, sizes.end);
         let varied = &self.stage.varied[sizes.clone()];
         let pairs = varied.iter().zip(&solution.values[sizes.clone()]);
         let values: Vec<f64> = pairs.map(|(own, value)| value / own.scale()).collect();
