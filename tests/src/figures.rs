@@ -76,5 +76,7 @@ pub const FIGURES: &[Figure] = &[
     selftest::TOP1,
     diagnosis::RIGHT,
     diagnosis::CHI,
+    diagnosis::WINDOWS,
+    diagnosis::FREE_RUN,
     diagnosis::MINUTES,
 ];

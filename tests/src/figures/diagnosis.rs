@@ -1,5 +1,6 @@
-//! `bench_sets_right`, `bench_chi_minus_truth_max`, `diagnose_minutes`: the command on the six sets of the bench, whose
-//! answers are those of their SOURCE.md. The command is this program itself.
+//! `bench_sets_right`, `bench_chi_minus_truth_max`, `bench_windows_over_truth_max`, `bench_free_run_over_truth_max`,
+//! `diagnose_minutes`: the command on the six sets of the bench, whose answers are those of their SOURCE.md. The command is
+//! this program itself.
 
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::root;
@@ -24,6 +25,20 @@ pub(super) const CHI: Figure = Figure {
     unit: "on records held out",
     promise: Promise::AtMost(0.02),
     measure: |session| of_sets(session, |sets| most(sets, |set| set.above_truth)),
+};
+
+pub(super) const WINDOWS: Figure = Figure {
+    name: "bench_windows_over_truth_max",
+    unit: "on records held out",
+    promise: Promise::AtMost(1.05),
+    measure: |session| of_sets(session, |sets| most(sets, |set| set.windows_over_truth)),
+};
+
+pub(super) const FREE_RUN: Figure = Figure {
+    name: "bench_free_run_over_truth_max",
+    unit: "on records held out",
+    promise: Promise::AtMost(1.05),
+    measure: |session| of_sets(session, |sets| most(sets, |set| set.free_run_over_truth)),
 };
 
 pub(super) const MINUTES: Figure = Figure {
@@ -89,6 +104,8 @@ const SIZE: f64 = 0.15;
 pub(crate) struct SetResult {
     right: bool,
     above_truth: f64,
+    windows_over_truth: f64,
+    free_run_over_truth: f64,
     minutes: f64,
 }
 
@@ -124,6 +141,8 @@ fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
     Ok(SetResult {
         right: right(&report, answer),
         above_truth: chi(&report) - chi(&fitted),
+        windows_over_truth: over(&report, &fitted, "windows"),
+        free_run_over_truth: over(&report, &fitted, "free_run"),
         minutes,
     })
 }
@@ -168,12 +187,27 @@ fn command(name: &str, file: &Path, data: &Path) -> Result<Value, String> {
     serde_json::from_slice(&output.stdout).map_err(|error| error.to_string())
 }
 
+/// The records held out.
+fn held_out(report: &Value) -> impl Iterator<Item = &Value> {
+    let records = report["records"].as_array().map_or(&[][..], Vec::as_slice);
+    records.iter().filter(|record| record["holdout"] == true)
+}
+
+/// An error over all records held out of one model over that of another, in the channel where that is largest.
+fn over(one: &Value, other: &Value, measure: &str) -> f64 {
+    let channels = |record: &Value| record["channels"].as_array().map_or(0, Vec::len);
+    let count = held_out(one).map(channels).max().unwrap_or(0);
+    let total = |report: &Value, channel: usize| -> f64 {
+        let each = held_out(report).map(|record| &record["channels"][channel][measure]["after"]);
+        each.filter_map(Value::as_f64).map(|rms| rms * rms).sum()
+    };
+    let of = |channel| (total(one, channel) / total(other, channel)).sqrt();
+    (0..count).map(of).fold(f64::NAN, f64::max)
+}
+
 /// Mean square of whitened innovations over the records held out.
 fn chi(report: &Value) -> f64 {
-    let records = report["records"].as_array().map_or(&[][..], Vec::as_slice);
-    let held: Vec<f64> = records
-        .iter()
-        .filter(|record| record["holdout"] == true)
+    let held: Vec<f64> = held_out(report)
         .filter_map(|record| record["chi"]["after"].as_f64())
         .collect();
     held.iter().sum::<f64>() / held.len() as f64
