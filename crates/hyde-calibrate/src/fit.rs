@@ -1,10 +1,11 @@
 //! [`Fit`]: a calibration with what it is worth: errors before and after, intervals, what the data cannot tell apart.
 
 use crate::gain::Observer;
-use crate::least_squares::{Problem, Solution};
+use crate::least_squares::Problem;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
+use crate::solution::Solution;
 use crate::varied::Varied;
 use hyde_program::Program;
 use nalgebra::{DMatrix, DVector};

@@ -14,6 +14,7 @@ use crate::gain::Observer;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
+use crate::solution::Solution;
 use crate::tangent::{Direction, Tangents, tangents};
 use crate::varied::Varied;
 use hyde_program::Program;
@@ -56,44 +57,6 @@ pub(crate) enum Slopes {
     Tangents,
     /// By differences of runs.
     Differences,
-}
-
-/// Where least squares have arrived.
-#[derive(Clone, Debug)]
-pub struct Solution {
-    /// Values of what was varied, SI.
-    pub values: Vec<f64>,
-    /// The sum of squares of innovations.
-    pub data: f64,
-    /// The sum of squares of what is known beforehand.
-    pub priors: f64,
-    /// By how much innovations tell less than as many independent ones: priors weigh so much more.
-    pub weight: f64,
-    /// Innovations of each record.
-    pub innovations: Vec<Innovations>,
-    /// Half the second derivatives of the cost, in units of [`Varied`]'s scale: of the innovations and of the priors.
-    pub curvature: (DMatrix<f64>, DMatrix<f64>),
-    /// How much the gradients of blocks of a second scatter: the sum of their squares, in the same units, and how many they
-    /// are.
-    pub scatter: (DMatrix<f64>, usize),
-    /// Steps taken.
-    pub steps: usize,
-    /// Whether the last step gained nothing any more.
-    pub converged: bool,
-}
-
-impl Solution {
-    /// What was minimised.
-    #[must_use]
-    pub fn cost(&self) -> f64 {
-        self.data + self.weight * self.priors
-    }
-
-    /// What it gains over another, priors weighed as here.
-    #[must_use]
-    pub fn gain_over(&self, other: &Self) -> f64 {
-        other.data + self.weight * other.priors - self.cost()
-    }
 }
 
 /// The normal equations: half the second derivatives, of data and of priors, and half the gradients.
@@ -293,10 +256,12 @@ impl Problem<'_> {
             }
         };
         // What is delayed arrives at other instants: no kernel tells what that does.
-        let delays = |number: &usize| {
-            self.recordings.first().is_some_and(|first| {
-                let p = first.parameters(self.program, &set);
-                crate::past::moves(self.program, &p, &direction(first, *number).p)
+        let first = self.recordings.first();
+        let first = first.filter(|_| !self.program.delays.is_empty());
+        let own = first.map(|first| (first, first.parameters(self.program, &set)));
+        let delays = |&number: &usize| {
+            own.as_ref().is_some_and(|(first, p)| {
+                crate::past::moves(self.program, p, &direction(first, number).p)
             })
         };
         let (late, along): (Vec<usize>, Vec<usize>) = (0..self.varied.len()).partition(delays);
@@ -453,7 +418,8 @@ impl Problem<'_> {
         DVector::zeros(n)
     }
 
-    fn moved(&self, values: &[f64], step: &DVector<f64>) -> Vec<f64> {
+    /// Values moved by a step in units of the scales, inside their bounds.
+    pub(crate) fn moved(&self, values: &[f64], step: &DVector<f64>) -> Vec<f64> {
         let new: Vec<f64> = self
             .varied
             .iter()

@@ -2,11 +2,11 @@
 //!
 //! ```text
 //! recording      a record, evenly sampled                                         recording.rs
-//! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, stepping.rs, configuration.rs, events.rs
+//! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, stepping.rs, configuration.rs, events.rs, past.rs
 //! observer       a fixed Kalman gain; whitened innovations                        gain.rs, observer.rs
 //! tangent        how innovations change with parameters, along one run                tangent.rs
 //! plan           what a `calibrate` block asks for                                 plan.rs
-//! calibration    bounded least squares on innovations and priors                  least_squares.rs, blocks.rs, varied.rs
+//! calibration    bounded least squares on innovations and priors                  least_squares.rs, solution.rs, blocks.rs, varied.rs
 //! its worth      errors before and after, intervals, groups                       fit.rs
 //! measures       the error in three measures, before and after, over its floor                  measures.rs, windows.rs, free_run.rs
 //! what is left   what innovations depend on, and whether they are white                        residual_map.rs, whiteness.rs
@@ -32,6 +32,7 @@ mod plant;
 mod recording;
 mod residual_map;
 mod selftest;
+mod solution;
 mod stepping;
 mod tangent;
 mod varied;
@@ -48,7 +49,7 @@ pub use diagnosis::{
 pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};
 pub use gain::Observer;
-pub use least_squares::{Problem, Solution};
+pub use least_squares::Problem;
 pub use measures::{FreeMeasure, Measures, Model};
 pub use observer::Innovations;
 pub use plan::{CalibrationPlan, Source, Vary};
@@ -59,6 +60,7 @@ pub use selftest::{
     Asked, Axis, Case, Claim, Fault, Faulty, Found, Outcome, Planting, Row, SelftestError,
     Simulated, Size, Tally, cases, simulated, tables_of, tally, try_case,
 };
+pub use solution::Solution;
 pub use varied::Varied;
 pub use whiteness::{Whiteness, whiteness};
 pub use windows::{WINDOW_S, Windows};

@@ -32,6 +32,13 @@ impl Past {
         p: &[f64],
     ) -> Result<Self, Unsupported> {
         let count = program.delays.len();
+        let mut past = Self {
+            late: Vec::new(),
+            rows: Vec::new(),
+        };
+        if count == 0 {
+            return Ok(past);
+        }
         let late = |number| {
             let late_s = program.kernels.constant(Constant::Lateness(number), p);
             late_s.map(|late_s| late_s.max(0.0) / recording.step_s)
@@ -40,13 +47,7 @@ impl Past {
         let Some(late) = late.filter(|_| is_known(program)) else {
             return Err(Unsupported::Delay);
         };
-        let mut past = Self {
-            late,
-            rows: Vec::new(),
-        };
-        if count == 0 {
-            return Ok(past);
-        }
+        past.late = late;
         let (y, z) = (vec![0.0; program.n_unknowns], vec![0.0; program.n_memory]);
         let mut workspace = Workspace::new(program.n_work);
         let mut u = vec![0.0; 2 * program.columns.len() + count];

@@ -1,10 +1,8 @@
-//! A dead time between what a record drives a model with and what it does: calibrated, and found where none was declared.
+//! A dead time between what a record drives a model with and what it does, calibrated.
 
+use crate::command::{report, write};
 use crate::points::Random;
-use serde_json::Value;
 use std::fmt::Write as _;
-use std::path::Path;
-use std::process::Command;
 
 /// Time between rows, time constant of the lag, and the delay, in s.
 const ROW: f64 = 1e-3;
@@ -101,7 +99,7 @@ fn a_dead_time_is_calibrated_to_what_noise_leaves() {
         let folder = tempfile::tempdir().unwrap();
         write(&folder.path().join("dead.hyde"), &drive.model());
         write(&folder.path().join("record.csv"), &drive.record());
-        let fit = hyde(folder.path(), &["fit", "dead.hyde", "late", "--json"]);
+        let fit = report(folder.path(), &["fit", "dead.hyde", "late"]);
         let found = &fit["parameters"][0];
         let value = found["value"].as_f64().unwrap();
         let deviation = found["deviation"].as_f64().unwrap();
@@ -114,20 +112,4 @@ fn a_dead_time_is_calibrated_to_what_noise_leaves() {
         // The observer allows for a part of the rates that no model gets right: here there is none.
         assert!((0.5..1.05).contains(&chi), "{chi}");
     }
-}
-
-fn hyde(folder: &Path, arguments: &[&str]) -> Value {
-    let output = Command::new(env!("CARGO_BIN_EXE_hyde-tested"))
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{errors}");
-    serde_json::from_slice(&output.stdout).unwrap()
-}
-
-#[allow(clippy::disallowed_methods, reason = "a record is made in a folder")]
-fn write(path: &Path, text: &str) {
-    std::fs::write(path, text).unwrap();
 }

@@ -11,6 +11,7 @@ mod chosen_states;
 mod clocks;
 mod closed_form;
 mod clutch;
+mod command;
 mod dead_time;
 mod delays;
 mod derivatives;

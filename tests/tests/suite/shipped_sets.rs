@@ -1,10 +1,10 @@
 //! The loop on the shipped sets of the bench axis, whose records are of another simulator: nothing is found where nothing is
 //! missing; a cogging motor is found and measured, and the model that is written says what the axis does.
 
+use crate::command::{self, report};
 use hyde_tests::root;
 use serde_json::Value;
 use std::path::Path;
-use std::process::Command;
 
 const AXIS: &str = "examples/bench_axis/axis.hyde";
 
@@ -17,20 +17,10 @@ const PHASE: f64 = 0.4;
 fn diagnosed(set: &str, out: &Path) -> Value {
     let data = format!("examples/bench_axis/{set}");
     let out = out.to_str().unwrap();
-    hyde(&[
-        "diagnose", AXIS, "bench", "--data", &data, "--out", out, "--json",
-    ])
-}
-
-fn hyde(arguments: &[&str]) -> Value {
-    let output = Command::new(env!("CARGO_BIN_EXE_hyde-tested"))
-        .current_dir(root())
-        .args(arguments)
-        .output()
-        .unwrap();
-    let errors = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{errors}");
-    serde_json::from_slice(&output.stdout).unwrap()
+    report(
+        &root(),
+        &["diagnose", AXIS, "bench", "--data", &data, "--out", out],
+    )
 }
 
 /// The records held out: mean square of innovations before and after.
@@ -55,8 +45,8 @@ fn held_out(report: &Value) -> (f64, f64) {
 /// How far the angle of the motor is from the record held out, rms, the loop closed.
 fn angle_error(model: &str, experiment: &str) -> f64 {
     let record = "file=examples/bench_axis/cogging/validate-strokes.csv";
-    let report = hyde(&["run", model, experiment, "--record", record, "--json"]);
-    let channels = report["channels"].as_array().unwrap();
+    let run = report(&root(), &["run", model, experiment, "--record", record]);
+    let channels = run["channels"].as_array().unwrap();
     let angle = channels.iter().find(|c| c["name"] == "phi_m").unwrap();
     angle["rms"].as_f64().unwrap()
 }
@@ -102,7 +92,7 @@ fn a_cogging_motor_is_found_and_its_model_says_what_the_axis_does() {
     let model = folder.path().join(format!("{name}.hyde"));
     let model = model.to_str().unwrap();
     let record = "file=examples/bench_axis/cogging/validate-strokes.csv";
-    let checked = hyde(&["check", model, "--record", record, "--json"]);
+    let checked = command::report(&root(), &["check", model, "--record", record]);
     assert_eq!(checked["ok"], true);
     let experiment = report["new_experiment"].as_str().unwrap();
     let (declared, found) = (angle_error(AXIS, "bench"), angle_error(model, experiment));

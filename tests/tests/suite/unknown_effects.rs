@@ -1,11 +1,11 @@
 //! Effects that no library has: planted on a small axis, found as laws of the model's own variables.
 
+use crate::command::{hyde, read, report, write};
 use crate::points::Random;
 use hyde_tests::root;
 use serde_json::Value;
 use std::fmt::Write as _;
 use std::path::Path;
-use std::process::Command;
 
 /// What is tried before: nothing that was planted.
 const DIAGNOSIS: &str = "
@@ -36,8 +36,7 @@ end made;
     );
     hyde(folder.path(), &["run", "made.hyde", "made", "--out", "out"]);
     record(folder.path());
-    let output = hyde(folder.path(), &["diagnose", "axis.hyde", "few", "--json"]);
-    serde_json::from_str(&output).unwrap()
+    report(folder.path(), &["diagnose", "axis.hyde", "few"])
 }
 
 /// The results as a record with the noise that the experiment declares.
@@ -71,27 +70,6 @@ fn record(folder: &Path) {
     }
     assert_eq!(rows, 3001);
     write(&folder.join("fit-1.csv"), &text);
-}
-
-fn hyde(folder: &Path, arguments: &[&str]) -> String {
-    let output = Command::new(env!("CARGO_BIN_EXE_hyde-tested"))
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap();
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    assert!(output.status.success(), "{errors}");
-    String::from_utf8(output.stdout).unwrap()
-}
-
-#[allow(clippy::disallowed_methods, reason = "a record is made in a folder")]
-fn read(path: &Path) -> String {
-    std::fs::read_to_string(path).unwrap()
-}
-
-#[allow(clippy::disallowed_methods, reason = "a record is made in a folder")]
-fn write(path: &Path, text: &str) {
-    std::fs::write(path, text).unwrap();
 }
 
 #[test]

@@ -57,7 +57,7 @@ pub(crate) fn contest(
     let taken = choice(&trials, gates);
     let accepted = taken.map(|(best, others)| {
         let own = &trials[best];
-        let gate = gates.gain(own.freedoms) * own.inflation;
+        let gate = own.gate(gates);
         let other = |other: usize| Alternative {
             hypothesis: trials[other].hypothesis,
             experiment: telling(ground.recordings, own, &trials[other], gate),
@@ -88,7 +88,7 @@ fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates)
     let mut plain: Option<[f64; 2]> = None;
     let mut passed: Option<f64> = None;
     for trial in trials {
-        let gate = gates.gain(trial.freedoms) * trial.inflation;
+        let gate = trial.gate(gates);
         let behind = passed.is_some_and(|best| trial.gain < best - gate);
         trial.rejected = trial
             .rejected
@@ -124,7 +124,7 @@ fn choice(trials: &[Trial], gates: Gates) -> Option<(usize, Vec<usize>)> {
         .iter()
         .copied()
         .max_by(|&a, &b| gained(a).total_cmp(&gained(b)))?;
-    let within = gates.gain(trials[best].freedoms) * trials[best].inflation;
+    let within = trials[best].gate(gates);
     let close = |&t: &usize| {
         gained(t) >= gained(best) - within && trials[t].gain >= trials[best].gain - within
     };

@@ -3,7 +3,7 @@
 use hyde_program::Program;
 
 /// Values are on a bound that are so near it, of the range.
-pub(crate) const NEAR: f64 = 1e-6;
+const NEAR: f64 = 1e-6;
 
 /// A size or a shape.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,10 +24,17 @@ impl Knob {
     /// Whether a value is on a bound of its range that is neither 0 nor what is declared, which are simpler laws.
     #[must_use]
     pub fn is_at_bound(&self, value: f64) -> bool {
-        let (low, high) = self.range;
-        let near = |a: f64, b: f64| (a - b).abs() <= NEAR * (high - low);
-        let simple = near(value, 0.0) || near(value, self.value);
-        (near(value, low) || near(value, high)) && !simple
+        let simple = self.near(value, 0.0) || self.near(value, self.value);
+        self.is_on_bound(value) && !simple
+    }
+
+    /// Whether a value is on a bound of its range.
+    pub(crate) fn is_on_bound(&self, value: f64) -> bool {
+        self.near(value, self.range.0) || self.near(value, self.range.1)
+    }
+
+    fn near(&self, a: f64, b: f64) -> bool {
+        (a - b).abs() <= NEAR * (self.range.1 - self.range.0)
     }
 }
 

@@ -7,8 +7,9 @@
 //! deviations of a weak direction from its bottom. A parabola through costs that are further apart finds it (Seber and
 //! Wild, Nonlinear Regression, 1989, section 5.4, on profiles).
 
-use crate::least_squares::{Problem, Solution};
+use crate::least_squares::Problem;
 use crate::plant::Unsupported;
+use crate::solution::Solution;
 use nalgebra::{DMatrix, DVector};
 
 /// Costs are compared this many standard deviations apart, and the bottom is looked for so far from them.
@@ -25,8 +26,7 @@ pub(crate) fn profiled(
     mut solution: Solution,
     numbers: impl Iterator<Item = usize>,
 ) -> Result<Solution, Unsupported> {
-    let (data, priors) = &solution.curvature;
-    let Some(covariance) = (data + priors * solution.weight).try_inverse() else {
+    let Some(covariance) = solution.inverse_curvature() else {
         return Ok(solution);
     };
     for number in numbers {

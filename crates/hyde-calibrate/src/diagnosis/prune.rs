@@ -6,7 +6,7 @@
 
 use super::hypothesis::{Build, Built};
 use super::search::Gates;
-use super::stage::{Ground, Stage};
+use super::stage::{Ground, Stage, below};
 use crate::fit::inflation;
 use crate::least_squares::{MAX_STEPS, Slopes};
 use crate::varied::Varied;
@@ -41,35 +41,25 @@ pub(crate) fn prune(
 
 /// The values of a stage once the sizes of an effect have gone to 0, by slopes: what had been led away by them comes back at
 /// once, where a fit from where it is may be stuck.
-fn answered(stage: &Stage, gone: &str) -> Vec<f64> {
+fn answered(ground: &Ground<'_>, stage: &Stage, gone: &str) -> Vec<f64> {
     let values = &stage.solution.values;
-    let scale = |number: usize| stage.varied[number].scale();
     let is_size = |number: &usize| {
         let name = &stage.varied[*number].name;
-        let below = name
-            .strip_prefix(gone)
-            .is_some_and(|rest| rest.starts_with('.'));
         let known = stage.program.parameter(name);
-        below && known.is_some_and(|(parameter, _)| parameter.is_size)
+        below(name, gone).is_some() && known.is_some_and(|(parameter, _)| parameter.is_size)
     };
     let sizes: Vec<usize> = (0..values.len()).filter(is_size).collect();
-    let (data, priors) = &stage.solution.curvature;
-    let move_by = (data + priors * stage.solution.weight)
-        .try_inverse()
-        .and_then(|covariance| {
-            let own = covariance.select_rows(&sizes).select_columns(&sizes);
-            let to_nought = sizes.iter().map(|&size| -values[size] / scale(size));
-            let to_nought = DVector::from_iterator(sizes.len(), to_nought);
-            Some(covariance.select_columns(&sizes) * own.try_inverse()? * to_nought)
-        });
-    let moved = |(number, value): (usize, &f64)| {
-        let step = move_by
-            .as_ref()
-            .map_or(0.0, |step| step[number] * scale(number));
-        let (low, high) = stage.varied[number].bounds;
-        (value + step).clamp(low, high)
+    let step = || {
+        let covariance = stage.solution.inverse_curvature()?;
+        let own = covariance.select_rows(&sizes).select_columns(&sizes);
+        let to_nought = sizes
+            .iter()
+            .map(|&size| -values[size] / stage.varied[size].scale());
+        let to_nought = DVector::from_iterator(sizes.len(), to_nought);
+        Some(covariance.select_columns(&sizes) * own.try_inverse()? * to_nought)
     };
-    values.iter().enumerate().map(moved).collect()
+    let problem = ground.problem(&stage.program, &stage.varied, &[], None);
+    step().map_or_else(|| values.clone(), |step| problem.moved(values, &step))
 }
 
 /// The stage fitted without one of its effects; `None` where it cannot be run.
@@ -85,15 +75,14 @@ pub(crate) fn without(
     let Built { program, paths } = build(&list)?;
     // The second of an effect at a site has another name where the first is gone.
     let renamed = |name: &str| -> Option<String> {
-        let below = |path: &str| name.strip_prefix(path)?.strip_prefix('.');
-        if below(&gone).is_some() {
+        if below(name, &gone).is_some() {
             return None;
         }
         let mut pairs = others.iter().zip(&paths);
-        let own = pairs.find_map(|((_, old), new)| Some(format!("{new}.{}", below(old)?)));
+        let own = pairs.find_map(|((_, old), new)| Some(format!("{new}.{}", below(name, old)?)));
         Some(own.unwrap_or_else(|| name.to_owned()))
     };
-    let answered = answered(stage, &gone);
+    let answered = answered(ground, stage, &gone);
     let (mut varied, mut start, mut follow) = (Vec::new(), Vec::new(), Vec::new());
     let values = stage.solution.values.iter().zip(&answered);
     for (known, (&value, &answered)) in stage.varied.iter().zip(values) {

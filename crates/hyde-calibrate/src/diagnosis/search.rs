@@ -17,9 +17,9 @@ use super::stage::{Ground, Stage};
 use super::trial::Trial;
 use crate::fit::{correlation, covariance, inflation, mean_square};
 use crate::gain::Observer;
-use crate::least_squares::Solution;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
+use crate::solution::Solution;
 use crate::varied::Varied;
 
 /// One of this many sets of records without an effect may pass a single gate by chance, and the margin above that.
@@ -201,30 +201,24 @@ pub fn diagnose(
         let survivors: Vec<&Score> = survivors.take(SURVIVORS).collect();
         let Contest { trials, accepted } =
             contest(&ground, &stage, hypotheses, survivors, build, gates);
-        match accepted {
-            None => {
-                rounds.push(Round {
-                    scores,
-                    trials,
-                    gates,
-                });
-                break;
+        let ended = accepted.is_none();
+        if let Some((best, alternatives)) = accepted {
+            stage = trials[best].stage.polished(&ground)?;
+            taken.push(Taken {
+                round: rounds.len(),
+                alternatives,
+            });
+            for number in prune(&ground, &mut stage, build, gates) {
+                taken.remove(number);
             }
-            Some((best, others)) => {
-                stage = trials[best].stage.polished(&ground)?;
-                taken.push(Taken {
-                    round: rounds.len(),
-                    alternatives: others,
-                });
-                for number in prune(&ground, &mut stage, build, gates) {
-                    taken.remove(number);
-                }
-                rounds.push(Round {
-                    scores,
-                    trials,
-                    gates,
-                });
-            }
+        }
+        rounds.push(Round {
+            scores,
+            trials,
+            gates,
+        });
+        if ended {
+            break;
         }
     }
     let search = Exchange {
@@ -353,7 +347,7 @@ pub(super) fn findings(
 
 /// The value that chi squared with so many degrees of freedom exceeds with a small probability; from three degrees on by
 /// Wilson and Hilferty's cube (Proc. Natl. Acad. Sci. 17, 1931, 684).
-fn chi_squared(freedoms: usize, probability: f64) -> f64 {
+pub(super) fn chi_squared(freedoms: usize, probability: f64) -> f64 {
     match freedoms {
         0 | 1 => normal_quantile(0.5 * probability).powi(2),
         2 => -2.0 * probability.ln(),

@@ -3,10 +3,11 @@
 use super::profile::profiled;
 use crate::blocks::Fold;
 use crate::gain::Observer;
-use crate::least_squares::{Linearised, MAX_STEPS, Problem, Slopes, Solution};
+use crate::least_squares::{Linearised, MAX_STEPS, Problem, Slopes};
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
+use crate::solution::Solution;
 use crate::varied::Varied;
 use hyde_program::Program;
 
@@ -97,11 +98,8 @@ impl Stage {
 
     /// Whether a parameter is one of an effect.
     fn is_of_effect(&self, name: &str) -> bool {
-        let mut paths = self.effects.iter().map(|(_, path)| path.as_str());
-        paths.any(|path| {
-            name.strip_prefix(path)
-                .is_some_and(|rest| rest.starts_with('.'))
-        })
+        let mut paths = self.effects.iter();
+        paths.any(|(_, path)| below(name, path).is_some())
     }
 
     /// The parameters of the stage in another program.
@@ -126,6 +124,11 @@ impl Stage {
         all.extend(self.kept.iter().cloned());
         all
     }
+}
+
+/// The rest of a name below a path: `dF` of `guide.stribeck.dF` below `guide.stribeck`.
+pub(crate) fn below<'n>(name: &'n str, path: &str) -> Option<&'n str> {
+    name.strip_prefix(path)?.strip_prefix('.')
 }
 
 /// Innovations of all records below each other.

@@ -1,13 +1,15 @@
 //! [`Trial`]: a hypothesis fitted together with all parameters, and judged on halves of the records that its fit has not
 //! seen.
 
-use super::hypothesis::{Build, Built, Hypothesis, Knob, NEAR};
+use super::hypothesis::{Build, Built, Hypothesis, Knob};
 use super::scan::{Node, Score};
+use super::search::{Gates, chi_squared};
 use super::stage::{Ground, Stage};
 use crate::blocks::Fold;
 use crate::fit::{covariance_of_first, inflation};
-use crate::least_squares::{LAST_STEPS, MAX_STEPS, Slopes, Solution};
+use crate::least_squares::{LAST_STEPS, MAX_STEPS, Slopes};
 use crate::observer::Innovations;
+use crate::solution::Solution;
 use crate::varied::Varied;
 use hyde_program::Program;
 use nalgebra::DVector;
@@ -23,8 +25,8 @@ const FOLD_STEPS: usize = 6;
 const TOO_GOOD: f64 = 3.0;
 const REMAINDER: f64 = 0.02;
 
-/// The 95 % quantile of chi squared for one size, and for a pair.
-const TOLD: [f64; 2] = [3.841, 5.991];
+/// Sizes are told from 0 where chance makes as much of none once in so many times.
+const NOT_TOLD: f64 = 0.05;
 
 /// A refit, what it varied, and the shapes it kept fixed.
 type Refit = (Solution, Vec<Varied>, Vec<(String, f64)>);
@@ -73,6 +75,11 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// What it has to gain.
+    pub(super) fn gate(&self, gates: Gates) -> f64 {
+        gates.gain(self.freedoms) * self.inflation
+    }
+
     /// Whether its sizes are told from 0 by the slopes too, its shapes held, where it is linear: a fit that was stuck before
     /// gains by every column that moves it on.
     pub(super) fn is_told(&self) -> bool {
@@ -89,7 +96,7 @@ impl Trial {
         let own = covariance.view((sizes.start, sizes.start), (count, count));
         let inverse = own.into_owned().try_inverse();
         inverse.is_some_and(|inverse| {
-            (values.transpose() * inverse * values)[0] >= TOLD[count.min(2) - 1]
+            (values.transpose() * inverse * values)[0] >= chi_squared(count, NOT_TOLD)
         })
     }
 
@@ -205,11 +212,9 @@ pub(crate) fn finish(
     }
     let own = stage.varied.len()..varied.len();
     let sizes = own.start..own.start + hypothesis.sizes.len().min(own.len());
-    let at_bound = sizes.clone().any(|number| {
-        let (value, (low, high)) = (solution.values[number], varied[number].bounds);
-        let near = NEAR * (high - low);
-        value <= low + near || value >= high - near
-    });
+    let found = solution.values[sizes.clone()].iter();
+    let mut pairs = hypothesis.sizes.iter().zip(found);
+    let at_bound = pairs.any(|(size, &value)| size.is_on_bound(value));
     let limited = (sizes.end..own.end).any(|number| {
         let mut shapes = hypothesis.shapes.iter();
         let name = &varied[number].name;

@@ -66,7 +66,16 @@ fn errors(calibration: &Calibration, found: &Fit) -> Result<Vec<RecordErrors>, U
     let mut calibrated = declared.clone();
     calibrated.extend(found.parameters.iter().map(|p| (p.name.clone(), p.value)));
     let closed = |set| before_after::closed(&calibration.project, &[], &[], &[], set);
-    let (old, new) = (closed(&declared), closed(&calibrated));
+    let old = closed(&declared);
+    // A time that is delayed by shapes the equations of the closed loop: it is compiled anew.
+    let shapes = |program: &hyde_program::Program| {
+        let each = found.parameters.iter();
+        let mut known = each.filter_map(|own| program.parameter(&own.name));
+        known.any(|(parameter, _)| parameter.structural)
+    };
+    let anew = old.as_ref().is_some_and(|(program, _)| shapes(program));
+    let shaped = if anew { closed(&calibrated) } else { None };
+    let new = if anew { &shaped } else { &old };
     let observed = &calibration.compiled.program;
     let before = Model {
         observed,

@@ -102,18 +102,13 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
     }
     for finding in &told.found.findings {
         let hypothesis = &told.hypotheses[finding.hypothesis];
-        for shape in &finding.shapes {
-            let mut known = hypothesis
-                .shapes
-                .iter()
-                .filter(|own| own.name == shape.name);
-            if known.any(|own| own.is_at_bound(shape.value)) {
-                doubts.push(format!(
-                    "{} of {} stands on its bound: something like it, but not this",
-                    shape.name,
-                    named(hypothesis)
-                ));
-            }
+        let shapes = finding.shapes.iter().zip(&hypothesis.shapes);
+        for (shape, _) in shapes.filter(|(shape, knob)| knob.is_at_bound(shape.value)) {
+            doubts.push(format!(
+                "{} of {} stands on its bound: something like it, but not this",
+                shape.name,
+                named(hypothesis)
+            ));
         }
     }
     if let Some(next) = next_best(told) {
