@@ -10,6 +10,8 @@
 //! contest        survivors beside each other: gates, and which of them is taken in        diagnosis/contest.rs
 //! profile        the last of a fit: numbers of effects at the bottom of their profiles    diagnosis/profile.rs
 //! search         forward, until nothing passes the gates                                  diagnosis/search.rs
+//! forward        its branches, two at most, and their rounds                              diagnosis/forward.rs
+//! pair           two effects that show only together                                      diagnosis/pair.rs
 //! exchange       earlier effects once more against their rivals                           diagnosis/exchange.rs
 //! apart          the experiment that would tell alternatives apart                        diagnosis/apart.rs
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
@@ -19,8 +21,10 @@
 mod apart;
 mod contest;
 mod exchange;
+mod forward;
 mod grid;
 mod hypothesis;
+mod pair;
 mod products;
 mod profile;
 mod projection;

@@ -361,7 +361,9 @@ impl Model<'_> {
                 &mut room.delta,
             );
             let slope = (room.probe_yp[place] - room.rate[state]) / change;
-            if slope * step_s < -FAST {
+            // What the linear part carries already, as the damping of a resonance, stays coupled to the other states.
+            let other = (slope - configuration.a[(state, state)]).abs() * step_s > FAST;
+            if other && slope * step_s < -FAST {
                 room.decays.push((state, slope));
             }
         }

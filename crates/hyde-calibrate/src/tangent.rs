@@ -326,7 +326,12 @@ impl Own {
     }
 
     /// What a unit of each size adds to what the channels show, where it does.
-    fn seen(&mut self, plant: &mut Plant<'_>, directions: &[Direction], out: &mut DMatrix<f64>) {
+    pub(crate) fn seen(
+        &mut self,
+        plant: &mut Plant<'_>,
+        directions: &[Direction],
+        out: &mut DMatrix<f64>,
+    ) {
         if !self.shown {
             return;
         }

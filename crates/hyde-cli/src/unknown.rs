@@ -114,7 +114,8 @@ pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
     }
     let _ = writeln!(
         out,
-        "\n  map of a force at {}: what any function of it gains, and by chance",
+        "\n  map of {} at {}: what any function of it gains, and by chance",
+        unknown.map.site.kind.words(),
         unknown.map.site.path
     );
     for panel in &unknown.map.panels {

@@ -179,11 +179,11 @@ impl DiagnosisReport {
             blocks.push(Block::Table(Table {
                 rows: self.unknown.iter().map(|row| row.to_vec()).collect(),
                 note: Some(
-                    "What is left by all effects known, as a force at a site: how much of the sum \
+                    "What is left by all effects known, as a force or a reading at a site: how much of the sum \
                      of squares any function of a variable would take away, and by chance."
                         .to_owned(),
                 ),
-                ..Table::with_columns(&["a force over", ">gain", ">by chance"])
+                ..Table::with_columns(&["a function of", ">gain", ">by chance"])
             }));
         }
         let note = |doubt: &String| Verdict {

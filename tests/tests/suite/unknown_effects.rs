@@ -10,7 +10,7 @@ use std::path::Path;
 /// What is tried before: nothing that was planted.
 const DIAGNOSIS: &str = "
 diagnose few of calibrate small
-  candidates Effects.Pull, Effects.Viscous, Effects.Stribeck, Effects.Cogging;
+  candidates Effects.Pull, Effects.Viscous, Effects.Stribeck, Effects.Cogging, Effects.Signals.ScaleError;
   max_effects 2;
 end few;
 ";
@@ -19,7 +19,11 @@ end few;
 fn diagnosed(effect: &str, with: &str) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let model = root().join("tests/models/small_axis.hyde");
-    let plain = read(&model);
+    // The saddle is read by a scale.
+    let plain = read(&model)
+        .replace("  Guide guide(", "  PositionSensor scale;\n  Guide guide(")
+        .replace("saddle.a, guide.a)", "saddle.a, guide.a, scale.a)")
+        .replace("saddle.s ~", "scale.s ~");
     let made = format!(
         "{plain}
 {effect}
@@ -49,7 +53,7 @@ fn record(folder: &Path) {
         ("T", 0.0),
         ("rotor.phi", 1e-4),
         ("rotor.w", 0.08),
-        ("saddle.s", 3e-7),
+        ("scale.s", 3e-7),
     ];
     let places = noise.map(|(name, sd)| {
         let named = |text: &&str| text.split(' ').next() == Some(name);
@@ -107,6 +111,26 @@ fn a_drag_that_waves_along_the_way_is_found_and_written() {
     let panel = &found["unknown"]["map"]["panels"][0];
     assert_eq!(panel["variable"], "speed times place");
     assert!(panel["gain"].as_f64().unwrap() > 2.0 * panel["band"].as_f64().unwrap());
+}
+
+#[test]
+fn an_error_of_the_scale_at_one_place_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Translational.PositionSensor
+           wrap s by s + 6 [um]*exp(-((a.s - 30 [mm])/(9 [mm]))^2);
+         end Odd;",
+        " with Odd on scale",
+    );
+    assert_eq!(found["verdict"], "unknown");
+    let [effect] = found["effects"].as_array().unwrap().as_slice() else {
+        panic!("{}", found["sentence"]);
+    };
+    assert_eq!(effect["site"], "scale", "{}", found["sentence"]);
+    let text = found["unknown"]["law"]["text"].as_str().unwrap();
+    assert!(text.contains("wrap s by s + e*exp("), "{text}");
+    let size = effect["size"].as_f64().unwrap();
+    assert!((size / 6e-6 - 1.0).abs() < 0.05, "{size}");
+    assert_eq!(found["unexplained"], false);
 }
 
 #[test]

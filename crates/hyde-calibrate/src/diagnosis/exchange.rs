@@ -19,6 +19,7 @@ const RIVAL: f64 = 0.8;
 const MOST: usize = 4;
 
 /// An effect that was taken in.
+#[derive(Clone)]
 pub(crate) struct Taken {
     /// The number of the round.
     pub(crate) round: usize,

@@ -24,18 +24,23 @@ impl Knob {
     /// Whether a value is on a bound of its range that is neither 0 nor what is declared, which are simpler laws.
     #[must_use]
     pub fn is_at_bound(&self, value: f64) -> bool {
-        let simple = self.near(value, 0.0) || self.near(value, self.value);
-        self.is_on_bound(value) && !simple
+        let near = NEAR * (self.range.1 - self.range.0);
+        let simple = value.abs() <= near || (value - self.value).abs() <= near;
+        is_on_bound(value, self.range) && !simple
     }
 
-    /// Whether a value is on a bound of its range.
-    pub(crate) fn is_on_bound(&self, value: f64) -> bool {
-        self.near(value, self.range.0) || self.near(value, self.range.1)
+    /// Whether a value lies outside of its range.
+    #[must_use]
+    pub fn is_beyond(&self, value: f64) -> bool {
+        let near = NEAR * (self.range.1 - self.range.0);
+        value < self.range.0 - near || value > self.range.1 + near
     }
+}
 
-    fn near(&self, a: f64, b: f64) -> bool {
-        (a - b).abs() <= NEAR * (self.range.1 - self.range.0)
-    }
+/// Whether a value is on a bound of a range.
+pub(crate) fn is_on_bound(value: f64, (low, high): (f64, f64)) -> bool {
+    let near = NEAR * (high - low);
+    (value - low).abs() <= near || (value - high).abs() <= near
 }
 
 /// An effect at a site.
@@ -66,6 +71,11 @@ impl Hypothesis {
         };
         let stem = |name: &str, ending: char| name.strip_suffix(ending).map(str::to_owned);
         a.unit == b.unit && stem(&a.name, 's').is_some() && stem(&a.name, 's') == stem(&b.name, 'c')
+    }
+
+    /// Whether it may be there twice: with another period, order or frequency. All else would be one that is larger.
+    pub(crate) fn repeats(&self) -> bool {
+        self.periodic.is_some() || self.resonant.is_some()
     }
 
     /// Full names of sizes and shapes for an instance at a path.

@@ -48,6 +48,41 @@ impl Answer {
     }
 }
 
+/// Products of columns: with the derivatives, with each other, with the innovations.
+#[derive(Clone)]
+pub(crate) struct Sums {
+    onto: DMatrix<f64>,
+    own: DMatrix<f64>,
+    with_innovations: DVector<f64>,
+}
+
+impl Sums {
+    /// Those of columns beside others; `common` are products of these columns, row by row, with the others.
+    pub(crate) fn beside(&self, others: &Self, common: &DMatrix<f64>) -> Self {
+        let (n, a, b) = (self.onto.nrows(), self.own.nrows(), others.own.nrows());
+        let mut own = DMatrix::zeros(a + b, a + b);
+        own.view_mut((0, 0), (a, a)).copy_from(&self.own);
+        own.view_mut((a, a), (b, b)).copy_from(&others.own);
+        own.view_mut((0, a), (a, b)).copy_from(common);
+        own.view_mut((a, 0), (b, a)).copy_from(&common.transpose());
+        let mut onto = DMatrix::zeros(n, a + b);
+        onto.columns_mut(0, a).copy_from(&self.onto);
+        onto.columns_mut(a, b).copy_from(&others.onto);
+        let mut with_innovations = DVector::zeros(a + b);
+        with_innovations
+            .rows_mut(0, a)
+            .copy_from(&self.with_innovations);
+        with_innovations
+            .rows_mut(a, b)
+            .copy_from(&others.with_innovations);
+        Self {
+            onto,
+            own,
+            with_innovations,
+        }
+    }
+}
+
 impl Projection {
     /// `None` if the parameters have no curvature at all.
     pub(crate) fn new(stage: &Stage, at: &Linearised) -> Option<Self> {
@@ -102,33 +137,48 @@ impl Projection {
 
     /// The sizes that gain most if the answer is linear: columns are the changes of innovations a unit.
     pub(crate) fn answer(&self, columns: &[Vec<f64>]) -> Answer {
-        let columns = matrix(columns);
-        self.answer_of(&columns, &self.innovations, &self.h)
+        self.answer_from(&self.sums(columns))
     }
 
-    /// What columns gain of innovations that have nothing to do with them.
-    pub(crate) fn by_chance(&self, columns: &[Vec<f64>], innovations: &[f64]) -> f64 {
-        let innovations = DVector::from_column_slice(innovations);
-        let h = self.derivatives.tr_mul(&innovations);
-        self.answer_of(&matrix(columns), &innovations, &h).gain
+    /// Products of columns with all there is.
+    pub(crate) fn sums(&self, columns: &[Vec<f64>]) -> Sums {
+        let columns = matrix(self.innovations.len(), columns);
+        Sums {
+            onto: self.derivatives.tr_mul(&columns),
+            own: columns.tr_mul(&columns),
+            with_innovations: columns.tr_mul(&self.innovations),
+        }
     }
 
-    fn answer_of(
-        &self,
-        columns: &DMatrix<f64>,
-        innovations: &DVector<f64>,
-        h: &DVector<f64>,
-    ) -> Answer {
-        let onto = self.derivatives.tr_mul(columns);
+    /// The sizes that gain most if the answer is linear, from products.
+    pub(crate) fn answer_from(&self, sums: &Sums) -> Answer {
         self.answer_to(
-            &onto,
-            columns.tr_mul(columns),
-            &columns.tr_mul(innovations),
-            h,
+            &sums.onto,
+            sums.own.clone(),
+            &sums.with_innovations,
+            &self.h,
         )
     }
 
-    /// The same from products: of derivatives, of columns, and of innovations with columns.
+    /// What columns gain of each of some innovations that have nothing to do with them.
+    pub(crate) fn by_chance(
+        &self,
+        columns: &[Vec<f64>],
+        others: impl Iterator<Item = Vec<f64>>,
+    ) -> Vec<f64> {
+        let sums = self.sums(columns);
+        let columns = matrix(self.innovations.len(), columns);
+        let gain = |innovations| {
+            let innovations = DVector::from_vec(innovations);
+            let h = self.derivatives.tr_mul(&innovations);
+            let with_innovations = columns.tr_mul(&innovations);
+            self.answer_to(&sums.onto, sums.own.clone(), &with_innovations, &h)
+                .gain
+        };
+        others.map(gain).collect()
+    }
+
+    /// The sizes that gain most if the answer is linear, from products: of derivatives, of columns, and of innovations with columns.
     fn answer_to(
         &self,
         onto: &DMatrix<f64>,
@@ -186,9 +236,15 @@ fn beside(derivatives: &DMatrix<f64>, innovations: &Innovations) -> DMatrix<f64>
     })
 }
 
-fn matrix(columns: &[Vec<f64>]) -> DMatrix<f64> {
-    let rows = columns.first().map_or(0, Vec::len);
+fn matrix(rows: usize, columns: &[Vec<f64>]) -> DMatrix<f64> {
     DMatrix::from_iterator(rows, columns.len(), columns.iter().flatten().copied())
+}
+
+/// Products of columns with others: a row a column, a column another.
+pub(crate) fn common(columns: &[Vec<f64>], others: &[Vec<f64>]) -> DMatrix<f64> {
+    DMatrix::from_fn(columns.len(), others.len(), |i, j| {
+        dot(&columns[i], &others[j])
+    })
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -11,7 +11,7 @@ use super::projection::Projection;
 use super::stage::{Ground, Stage, flat};
 use crate::observer::Innovations;
 use crate::recording::Recording;
-use crate::tangent::{Direction, along};
+use crate::tangent::{Direction, along, tangents};
 use hyde_program::Program;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -155,6 +155,9 @@ impl Scanner<'_> {
     fn promised(&self, number: usize) -> Option<Promised> {
         let hypothesis = &self.hypotheses[number];
         let known = self.stage.effects.iter().map(|(effect, _)| *effect);
+        if !hypothesis.repeats() && known.clone().any(|effect| effect == number) {
+            return None;
+        }
         let list: Vec<usize> = known.chain([number]).collect();
         let Built { program, paths } = (self.build)(&list)?;
         let before = &self.stage.program;
@@ -248,6 +251,23 @@ impl Scanner<'_> {
             seen,
             plain: plain?,
         })
+    }
+
+    /// How innovations change a unit of each size of a hypothesis, by tangents; `None` where it cannot be put on the model.
+    pub(crate) fn columns(&self, number: usize, shapes: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let hypothesis = &self.hypotheses[number];
+        let known = self.stage.effects.iter().map(|(effect, _)| *effect);
+        let list: Vec<usize> = known.chain([number]).collect();
+        let Built { program, paths } = (self.build)(&list)?;
+        let path = paths.last()?;
+        let runs = Runs {
+            ground: self.ground,
+            program: &program,
+            values: self.stage.values(),
+            sizes: Hypothesis::names(&hypothesis.sizes, path),
+            shapes: Hypothesis::names(&hypothesis.shapes, path),
+        };
+        runs.columns(hypothesis, shapes)
     }
 
     /// Tries sizes all over the range of what has modes of its own: tangents tell little of it.
@@ -357,22 +377,11 @@ impl Runs<'_> {
         shapes: &[Vec<f64>],
     ) -> Option<(Products, DVector<f64>)> {
         let count = hypothesis.sizes.len();
-        let zeros = vec![0.0; count];
-        let set = self.set(&zeros, shapes.first()?);
+        let set = self.set(&vec![0.0; count], shapes.first()?);
         let mut products = Products::new(projection.parameters(), shapes.len(), count);
         let mut innovations = Vec::new();
         for (recording, record) in self.ground.recordings.iter().zip(&projection.records) {
-            let mut directions = Vec::new();
-            for shape in shapes {
-                for which in 0..count {
-                    let mut sizes = zeros.clone();
-                    sizes[which] = SMALL * largest(&hypothesis.sizes[which]);
-                    directions.push(Direction {
-                        p: recording.parameters(self.program, &self.set(&sizes, shape)),
-                        step: sizes[which],
-                    });
-                }
-            }
+            let directions = self.directions(hypothesis, recording, shapes);
             let mut adding = products.adding(record, recording.channels.len(), recording.step_s);
             let observer = self.ground.observer;
             let each = |_, changes: &DMatrix<f64>| adding.row(changes);
@@ -381,6 +390,44 @@ impl Runs<'_> {
             adding.end();
         }
         Some((products, DVector::from_vec(flat(&innovations))))
+    }
+
+    /// The changes of innovations a unit of each size.
+    fn columns(&self, hypothesis: &Hypothesis, shapes: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let count = hypothesis.sizes.len();
+        let set = self.set(&vec![0.0; count], shapes);
+        let mut columns = vec![Vec::new(); count];
+        for recording in self.ground.recordings {
+            let directions = self.directions(hypothesis, recording, &[shapes.to_vec()]);
+            let observer = self.ground.observer;
+            let own = tangents(self.program, recording, observer, &set, &directions).ok()?;
+            for (column, change) in columns.iter_mut().zip(own.change.column_iter()) {
+                column.extend(change.iter());
+            }
+        }
+        Some(columns)
+    }
+
+    /// Every size of every shape, a little above 0.
+    fn directions(
+        &self,
+        hypothesis: &Hypothesis,
+        recording: &Recording,
+        shapes: &[Vec<f64>],
+    ) -> Vec<Direction> {
+        let count = hypothesis.sizes.len();
+        let of = |(shape, which): (&Vec<f64>, usize)| {
+            let mut sizes = vec![0.0; count];
+            sizes[which] = SMALL * largest(&hypothesis.sizes[which]);
+            Direction {
+                p: recording.parameters(self.program, &self.set(&sizes, shape)),
+                step: sizes[which],
+            }
+        };
+        let each = shapes.iter();
+        each.flat_map(|shape| (0..count).map(move |which| (shape, which)))
+            .map(of)
+            .collect()
     }
 
     fn set(&self, sizes: &[f64], shapes: &[f64]) -> Vec<(usize, f64)> {

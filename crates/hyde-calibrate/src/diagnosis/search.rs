@@ -1,5 +1,5 @@
 //! [`diagnose`]: takes in one effect after the other, as long as the best passes every gate, and drops what is not missed
-//! any more.
+//! any more ([`super::forward`]).
 //!
 //! The gate of a gain is twice what the best of all nodes tried would reach by chance in one of a hundred records without
 //! any effect: the quantile of chi squared for the effect's sizes and shapes, after Bonferroni. It grows with what
@@ -7,12 +7,10 @@
 //! number of innovations. Everything is chosen inside the records to fit.
 
 use super::apart::Alternative;
-use super::contest::{Contest, contest};
-use super::exchange::{Exchange, Taken};
+use super::exchange::Taken;
+use super::forward::{Branch, Forward};
 use super::hypothesis::{Build, Built, Hypothesis};
-use super::projection::Projection;
-use super::prune::prune;
-use super::scan::{Scanner, Score};
+use super::scan::Score;
 use super::stage::{Ground, Stage};
 use super::trial::Trial;
 use crate::fit::{correlation, covariance, inflation, mean_square};
@@ -27,13 +25,10 @@ const CHANCE: f64 = 0.01;
 const MARGIN: f64 = 2.0;
 /// The part of the number of innovations that a gain on what was not fitted is to reach.
 const MATERIAL: f64 = 0.002;
-/// Hypotheses fitted in a round at most, and the part of the best score that they must have.
-const SURVIVORS: usize = 6;
-const SURVIVING: f64 = 0.05;
-/// Rounds beside one an effect.
-const MORE_ROUNDS: usize = 2;
 /// Innovations that are explained: their mean square, and their correlation.
 const EXPLAINED: (f64, f64) = (1.05, 0.1);
+/// Where effects taken in explain a smaller part than this of what is more than noise, the answer is none of them.
+const MOSTLY: f64 = 0.5;
 
 /// What gains have to reach.
 #[derive(Clone, Copy, Debug)]
@@ -82,6 +77,8 @@ pub struct Finding {
     pub sizes: Vec<Quantity>,
     /// Its shapes; the phase of a pair behind them.
     pub shapes: Vec<Quantity>,
+    /// The number of the round that took it in.
+    pub round: usize,
     /// Other hypotheses that the records cannot tell from it.
     pub alternatives: Vec<Alternative>,
 }
@@ -105,7 +102,7 @@ pub enum Verdict {
     Effect,
     /// One of several that these records cannot tell apart.
     OneOf,
-    /// Something is missing, and no effect known is it.
+    /// Something is missing, and no effect known is it, or is most of it.
     Unknown,
 }
 
@@ -160,7 +157,7 @@ pub fn diagnose(
         .problem(&program, varied, &settings, None)
         .solve(&start)?;
     let before = solution.clone();
-    let mut stage = Stage {
+    let stage = Stage {
         program,
         effects: Vec::new(),
         varied: varied.to_vec(),
@@ -174,72 +171,25 @@ pub fn diagnose(
         .flat_map(|i| &i.channels)
         .map(Vec::len)
         .sum();
-    let mut gates = Gates {
-        tried: 1,
-        innovations,
-    };
-    let mut rounds = Vec::new();
-    let mut taken: Vec<Taken> = Vec::new();
-    // An effect that is dropped again makes room for another: so many rounds more at most.
-    while stage.effects.len() < max_effects && rounds.len() < max_effects + MORE_ROUNDS {
-        let at = stage.linearise(&ground)?;
-        let projection = Projection::new(&stage, &at).ok_or_else(singular)?;
-        let scanner = Scanner {
-            ground: &ground,
-            stage: &stage,
-            projection: &projection,
-            hypotheses,
-            build,
-            gate: gates.gain(1),
-        };
-        let scores = scanner.scores();
-        gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
-        let best = scores.first().map_or(0.0, Score::gain);
-        let survivors = scores
-            .iter()
-            .take_while(|score| score.gain() >= (SURVIVING * best).max(gates.gain(1)));
-        let survivors: Vec<&Score> = survivors.take(SURVIVORS).collect();
-        let Contest { trials, accepted } =
-            contest(&ground, &stage, hypotheses, survivors, build, gates);
-        let ended = accepted.is_none();
-        if let Some((best, alternatives)) = accepted {
-            stage = trials[best].stage.polished(&ground)?;
-            taken.push(Taken {
-                round: rounds.len(),
-                alternatives,
-            });
-            for number in prune(&ground, &mut stage, build, gates) {
-                taken.remove(number);
-            }
-        }
-        rounds.push(Round {
-            scores,
-            trials,
-            gates,
-        });
-        if ended {
-            break;
-        }
-    }
-    let search = Exchange {
+    let mut search = Forward {
         ground: &ground,
         hypotheses,
         build,
-        gates,
-        rounds: &rounds,
+        max_effects,
+        gates: Gates {
+            tried: 1,
+            innovations,
+        },
+        rounds: Vec::new(),
     };
-    if search.exchange(&mut stage, &mut taken)? {
-        for number in prune(&ground, &mut stage, build, gates) {
-            taken.remove(number);
-        }
-    }
-    let alternatives: Vec<Vec<Alternative>> =
-        taken.into_iter().map(|taken| taken.alternatives).collect();
-    let findings: Vec<Finding> = findings(&stage, hypotheses, &alternatives);
+    let Branch { stage, taken } = search.search(stage)?;
+    let rounds = search.rounds;
+    let findings = findings(&stage, hypotheses, taken);
     let unexplained = !explained(&stage.solution);
     let verdict = match findings.as_slice() {
         [] if unexplained => Verdict::Unknown,
         [] => Verdict::None,
+        _ if unexplained && share(&before, &stage.solution) < MOSTLY => Verdict::Unknown,
         list if list.iter().any(|finding| !finding.alternatives.is_empty()) => Verdict::OneOf,
         _ => Verdict::Effect,
     };
@@ -255,6 +205,16 @@ pub fn diagnose(
         unexplained,
         unknown: None,
     })
+}
+
+/// The part of what was more than noise that is explained.
+fn share(before: &Solution, after: &Solution) -> f64 {
+    let rest = |solution: &Solution| {
+        let channels = solution.innovations.iter().flat_map(|i| &i.channels);
+        let more = channels.map(|list| (mean_square(list) - 1.0).max(0.0) * list.len() as f64);
+        more.sum::<f64>()
+    };
+    1.0 - rest(after) / rest(before).max(1e-300)
 }
 
 /// Whether innovations are what the noise makes of them: no channel of a record is materially larger, or more like itself
@@ -274,7 +234,7 @@ pub(super) fn explained(solution: &Solution) -> bool {
 pub(super) fn findings(
     stage: &Stage,
     hypotheses: &[Hypothesis],
-    alternatives: &[Vec<Alternative>],
+    taken: Vec<Taken>,
 ) -> Vec<Finding> {
     let covariance = covariance(&stage.solution, inflation(&stage.solution.innovations));
     let values = stage.values();
@@ -295,8 +255,8 @@ pub(super) fn findings(
             unit: knob.unit.clone(),
         }
     };
-    let each = stage.effects.iter().zip(alternatives);
-    each.map(|((number, path), alternatives)| {
+    let each = stage.effects.iter().zip(taken);
+    each.map(|((number, path), taken)| {
         let hypothesis = &hypotheses[*number];
         let of = |knobs: &[super::Knob]| -> Vec<Quantity> {
             let names = Hypothesis::names(knobs, path);
@@ -339,7 +299,8 @@ pub(super) fn findings(
             size,
             sizes,
             shapes,
-            alternatives: alternatives.clone(),
+            round: taken.round,
+            alternatives: taken.alternatives,
         }
     })
     .collect()

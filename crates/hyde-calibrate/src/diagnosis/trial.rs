@@ -1,7 +1,7 @@
 //! [`Trial`]: a hypothesis fitted together with all parameters, and judged on halves of the records that its fit has not
 //! seen.
 
-use super::hypothesis::{Build, Built, Hypothesis, Knob};
+use super::hypothesis::{Build, Built, Hypothesis, Knob, is_on_bound};
 use super::scan::{Node, Score};
 use super::search::{Gates, chi_squared};
 use super::stage::{Ground, Stage};
@@ -25,6 +25,8 @@ const FOLD_STEPS: usize = 6;
 const TOO_GOOD: f64 = 3.0;
 const REMAINDER: f64 = 0.02;
 
+/// Sizes that end on a bound are fitted on up to so many times it.
+const ROOM: f64 = 10.0;
 /// Sizes are told from 0 where chance makes as much of none once in so many times.
 const NOT_TOLD: f64 = 0.05;
 
@@ -62,7 +64,8 @@ pub struct Trial {
     pub inflation: f64,
     /// Number of sizes and shapes fitted.
     pub freedoms: usize,
-    /// A shape stands on a bound that is neither its declared value nor 0: of its kind, the effect is not this one.
+    /// A shape stands on a bound that is neither its declared value nor 0: of its kind, the effect is not this one. Or a size
+    /// is larger than any that is usual.
     pub limited: bool,
     /// Why it was not taken in.
     pub rejected: Option<Rejection>,
@@ -163,7 +166,13 @@ pub(crate) fn begin<'s>(
         .iter()
         .filter(|node| node.gain >= 0.5 * score.gain());
     for node in nodes {
-        let (varied, start, kept) = unknowns(stage, &program, hypothesis, &own_path, node);
+        let mut unknowns = Unknowns::of(stage, &program);
+        unknowns.add(&program, hypothesis, &own_path, node);
+        let Unknowns {
+            varied,
+            start,
+            kept,
+        } = unknowns;
         let set = ground.set_in(&program, &kept);
         let problem = ground.problem(&program, &varied, &set, None);
         let Ok(solution) = problem.solve_in(&start, FIRST_STEPS, Slopes::Tangents) else {
@@ -186,6 +195,39 @@ pub(crate) fn begin<'s>(
     })
 }
 
+/// The stage with hypotheses fitted together, each from a node; `None` where they cannot be run.
+pub(crate) fn together(
+    ground: &Ground<'_>,
+    stage: &Stage,
+    hypotheses: &[Hypothesis],
+    nodes: &[(usize, Node)],
+    build: &Build<'_>,
+) -> Option<Stage> {
+    let known = stage.effects.iter().map(|(effect, _)| *effect);
+    let list: Vec<usize> = known.chain(nodes.iter().map(|(own, _)| *own)).collect();
+    let Built { program, paths } = build(&list)?;
+    let mut unknowns = Unknowns::of(stage, &program);
+    let own_paths = &paths[stage.effects.len()..];
+    for ((number, node), path) in nodes.iter().zip(own_paths) {
+        unknowns.add(&program, &hypotheses[*number], path, node);
+    }
+    let Unknowns {
+        varied,
+        start,
+        kept,
+    } = unknowns;
+    let set = ground.set_in(&program, &kept);
+    let problem = ground.problem(&program, &varied, &set, None);
+    let solution = problem.solve_in(&start, MAX_STEPS, Slopes::Tangents).ok()?;
+    Some(Stage {
+        effects: list.into_iter().zip(paths).collect(),
+        program,
+        varied,
+        kept,
+        solution,
+    })
+}
+
 /// Fits to the end what has begun, if it is worth it.
 pub(crate) fn finish(
     ground: &Ground<'_>,
@@ -198,29 +240,41 @@ pub(crate) fn finish(
         score,
         program,
         effects,
-        refit: (mut solution, varied, kept),
+        refit: (mut solution, mut varied, kept),
         ..
     } = begun;
     let hypothesis = &hypotheses[score.hypothesis];
     let own_path = effects.last()?.1.clone();
+    let set = ground.set_in(&program, &kept);
+    let fit = |from: &Solution, varied: &[Varied]| {
+        let problem = ground.problem(&program, varied, &set, None);
+        problem
+            .solve_in(&from.values, MAX_STEPS, Slopes::Tangents)
+            .ok()
+    };
     if worth && !solution.converged {
-        let set = ground.set_in(&program, &kept);
-        let problem = ground.problem(&program, &varied, &set, None);
-        solution = problem
-            .solve_in(&solution.values, MAX_STEPS, Slopes::Tangents)
-            .ok()?;
+        solution = fit(&solution, &varied)?;
     }
     let own = stage.varied.len()..varied.len();
     let sizes = own.start..own.start + hypothesis.sizes.len().min(own.len());
-    let found = solution.values[sizes.clone()].iter();
-    let mut pairs = hypothesis.sizes.iter().zip(found);
-    let at_bound = pairs.any(|(size, &value)| size.is_on_bound(value));
-    let limited = (sizes.end..own.end).any(|number| {
-        let mut shapes = hypothesis.shapes.iter();
-        let name = &varied[number].name;
-        let own = shapes.find(|shape| name.ends_with(&format!(".{}", shape.name)));
-        own.is_some_and(|shape| shape.is_at_bound(solution.values[number]))
-    });
+    // A size may be larger than any that is usual, and is found then, though not without doubt.
+    let large = worth && widen(&mut varied[sizes.clone()], &solution.values[sizes.clone()]);
+    if large {
+        solution = fit(&solution, &varied)?;
+    }
+    let found = varied[sizes.clone()]
+        .iter()
+        .zip(&solution.values[sizes.clone()]);
+    let at_bound = found
+        .into_iter()
+        .any(|(size, &value)| is_on_bound(value, size.bounds));
+    let limited = large
+        || (sizes.end..own.end).any(|number| {
+            let mut shapes = hypothesis.shapes.iter();
+            let name = &varied[number].name;
+            let own = shapes.find(|shape| name.ends_with(&format!(".{}", shape.name)));
+            own.is_some_and(|shape| shape.is_at_bound(solution.values[number]))
+        });
     let gain = solution.gain_over(&stage.solution);
     let innovations = solution.innovations.iter().flat_map(|i| &i.channels);
     let remainder = REMAINDER * innovations.map(Vec::len).sum::<usize>() as f64;
@@ -262,6 +316,22 @@ pub(crate) fn finish(
     })
 }
 
+/// Gives sizes that stand on a bound other than 0 more room beyond it; whether any does.
+fn widen(sizes: &mut [Varied], values: &[f64]) -> bool {
+    let mut any = false;
+    for (size, &value) in sizes.iter_mut().zip(values) {
+        if is_on_bound(value, size.bounds) && value != 0.0 {
+            let (low, high) = size.bounds;
+            size.bounds = match value > 0.0 {
+                true => (low, ROOM * high),
+                false => (ROOM * low, high),
+            };
+            any = true;
+        }
+    }
+    any
+}
+
 /// What a stage has for some names.
 fn values_of(names: &[String], stage: &Stage) -> Vec<f64> {
     let values = stage.values();
@@ -289,60 +359,61 @@ pub(crate) fn unseen(ground: &Ground<'_>, stage: &Stage) -> Option<[f64; 2]> {
     Some([even?, odd?])
 }
 
-/// What is varied in a fit: the parameters of the stage, the sizes, the shapes that are no whole numbers; with their start,
-/// and what stays.
-fn unknowns(
-    stage: &Stage,
-    program: &Program,
-    hypothesis: &Hypothesis,
-    path: &str,
-    node: &Node,
-) -> (Vec<Varied>, Vec<f64>, Vec<(String, f64)>) {
-    let mut varied = stage.varied_in(program);
-    let mut start = stage.solution.values.clone();
-    let mut kept = stage.kept.clone();
-    let place = |name: &str| {
-        program
-            .parameter(name)
-            .map(|(parameter, element)| parameter.place + element)
-    };
-    let mut vary = |name: String, knob: &Knob, value: f64, visible: f64| {
-        let Some(place) = place(&name) else { return };
-        varied.push(Varied {
+/// What is varied in a fit, with its start, and what stays.
+struct Unknowns {
+    varied: Vec<Varied>,
+    start: Vec<f64>,
+    kept: Vec<(String, f64)>,
+}
+
+impl Unknowns {
+    /// The parameters of a stage.
+    fn of(stage: &Stage, program: &Program) -> Self {
+        Self {
+            varied: stage.varied_in(program),
+            start: stage.solution.values.clone(),
+            kept: stage.kept.clone(),
+        }
+    }
+
+    /// Adds the sizes of an effect and its shapes, from a node; whole numbers stay.
+    fn add(&mut self, program: &Program, hypothesis: &Hypothesis, path: &str, node: &Node) {
+        let sizes = Hypothesis::names(&hypothesis.sizes, path)
+            .into_iter()
+            .zip(&hypothesis.sizes);
+        for ((name, knob), (&value, &visible)) in sizes.zip(node.sizes.iter().zip(&node.visible)) {
+            let visible = visible.abs().max(1e-6 * value.abs()).max(f64::MIN_POSITIVE);
+            self.vary(program, name, knob, value, visible);
+        }
+        let shapes = Hypothesis::names(&hypothesis.shapes, path)
+            .into_iter()
+            .zip(&hypothesis.shapes);
+        for ((name, knob), &value) in shapes.zip(&node.shapes) {
+            let structural = program
+                .parameter(&name)
+                .is_none_or(|(parameter, _)| parameter.structural);
+            if knob.integer || structural {
+                self.kept.push((name, value));
+            } else {
+                let range = knob.range.1 - knob.range.0;
+                let visible = VISIBLE_SHAPE * if value == 0.0 { range } else { value.abs() };
+                self.vary(program, name, knob, value, visible);
+            }
+        }
+    }
+
+    fn vary(&mut self, program: &Program, name: String, knob: &Knob, value: f64, visible: f64) {
+        let Some((parameter, element)) = program.parameter(&name) else {
+            return;
+        };
+        self.varied.push(Varied {
             name,
-            place,
+            place: parameter.place + element,
             nominal: value,
             prior: None,
             bounds: knob.range,
             visible: Some(visible),
         });
-        start.push(value);
-    };
-    let sizes = Hypothesis::names(&hypothesis.sizes, path)
-        .into_iter()
-        .zip(&hypothesis.sizes);
-    for ((name, knob), (&value, &visible)) in sizes.zip(node.sizes.iter().zip(&node.visible)) {
-        vary(
-            name,
-            knob,
-            value,
-            visible.abs().max(1e-6 * value.abs()).max(f64::MIN_POSITIVE),
-        );
+        self.start.push(value);
     }
-    let shapes = Hypothesis::names(&hypothesis.shapes, path)
-        .into_iter()
-        .zip(&hypothesis.shapes);
-    for ((name, knob), &value) in shapes.zip(&node.shapes) {
-        let structural = program
-            .parameter(&name)
-            .is_none_or(|(parameter, _)| parameter.structural);
-        if knob.integer || structural {
-            kept.push((name, value));
-        } else {
-            let range = knob.range.1 - knob.range.0;
-            let visible = VISIBLE_SHAPE * if value == 0.0 { range } else { value.abs() };
-            vary(name, knob, value, visible);
-        }
-    }
-    (varied, start, kept)
 }

@@ -28,7 +28,7 @@ pub use law::{Law, Summand};
 pub use map::{Map, Panel, Variable};
 pub use site::{Kind, Site, Written};
 
-use super::apart::Alternative;
+use super::exchange::Taken;
 use super::hypothesis::{Built, Hypothesis};
 use super::projection::{Projection, dot};
 use super::scan::{Node, Score};
@@ -129,38 +129,37 @@ pub fn propose(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis) -> Result<(), U
         .map(|r| r.channels.len() * (r.rows() - r.first_row))
         .sum();
     let gates = Gates { tried, innovations };
-    let mut answer = match diagnosis.unexplained {
-        true => law(inquiry, &ground, &last, gates)?,
-        false => None,
-    };
     // What was taken in before may have stood for the unknown effect: the law alone is the answer where it does as well
     // as both, and where it does significantly better than what was taken in, or as well with fewer constants.
+    let mut answer = None;
     if !last.effects.is_empty() {
-        let alone = law(inquiry, &ground, &base, gates)?;
-        fn trial(answer: Option<&Answer>) -> Option<(&Solution, usize)> {
-            let (trial, _) = answer?.found.as_ref()?;
-            Some((&trial.stage.solution, trial.freedoms))
-        }
         let gate = gates.gain(1) * inflation(&last.solution.innovations);
-        let known = (
-            &last.solution,
-            last.varied.len() + last.kept.len() - base.varied.len(),
-        );
-        let better = match (trial(alone.as_ref()), trial(answer.as_ref())) {
-            (Some(alone), Some(both)) => alone.0.gain_over(both.0) >= -gate,
-            (Some(alone), None) => {
-                let gain = alone.0.gain_over(known.0);
-                gain >= gate || (alone.1 < known.1 && gain >= 0.0)
-            }
-            (None, _) => false,
+        let constants = last.varied.len() + last.kept.len() - base.varied.len();
+        let better = |alone: &Answer| {
+            alone.solution().is_some_and(|(solution, freedoms)| {
+                let gain = solution.gain_over(&last.solution);
+                gain >= gate || (freedoms < constants && gain >= 0.0)
+            })
         };
-        if better {
-            answer = alone;
+        let explains = |alone: &Answer| alone.solution().is_some_and(|(own, _)| explained(own));
+        answer = law(inquiry, &ground, &base, gates)?.filter(better);
+        if answer.as_ref().is_some_and(explains) {
+            take_in(inquiry, diagnosis, answer);
+            return Ok(());
         }
     }
-    let Some(answer) = answer else {
-        return Ok(());
-    };
+    if diagnosis.unexplained {
+        let both = law(inquiry, &ground, &last, gates)?;
+        let as_good = |alone: &Answer| {
+            let both = both.as_ref().and_then(Answer::solution);
+            let alone = alone.solution();
+            let gate = gates.gain(1) * inflation(&last.solution.innovations);
+            alone
+                .zip(both)
+                .is_none_or(|(alone, both)| alone.0.gain_over(both.0) >= -gate)
+        };
+        answer = answer.filter(as_good).or(both);
+    }
     take_in(inquiry, diagnosis, answer);
     Ok(())
 }
@@ -175,10 +174,49 @@ fn is_chain(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> bool {
     sites.len() > 1 && sites.iter().all(|other| *other == sites[0])
 }
 
-/// A map with the law that was found.
+/// The site of the answer, the maps of the others, and the law that was found there.
 struct Answer {
-    unknown: Unknown,
-    found: Option<(Trial, Vec<Vec<Alternative>>)>,
+    place: Felt,
+    map: Map,
+    others: Vec<Map>,
+    projection: Projection,
+    found: Option<(FoundLaw, Trial)>,
+}
+
+impl Answer {
+    /// Where its law leads, with the number of its constants.
+    fn solution(&self) -> Option<(&Solution, usize)> {
+        let (_, trial) = self.found.as_ref()?;
+        Some((&trial.stage.solution, trial.freedoms))
+    }
+
+    /// With what a report needs beside it: the bands of the map, and the force that the balance would need.
+    fn told(self) -> (Unknown, Option<Trial>) {
+        let Self {
+            place,
+            mut map,
+            others,
+            projection,
+            found,
+        } = self;
+        map::add_bands(&mut map, &place, &projection);
+        let mut start = 0;
+        let latent = place.carriers.iter().filter_map(|carrier| {
+            let end = start + carrier.lengths().iter().sum::<usize>();
+            let own = &projection.innovations.as_slice()[start..end];
+            start = end;
+            latent::smoothed(carrier, own)
+        });
+        let latent = latent.collect();
+        let (found, trial) = found.unzip();
+        let unknown = Unknown {
+            map,
+            others,
+            latent,
+            found,
+        };
+        (unknown, trial)
+    }
 }
 
 /// The model without any effect, and with those of the diagnosis.
@@ -259,30 +297,15 @@ fn law(
         }
     }
     let at = best.as_ref().map_or(0, |(number, ..)| *number);
-    let (place, mut map) = places.swap_remove(at);
-    map::add_bands(&mut map, &place, &projection);
-    let mut start = 0;
-    let latent = place.carriers.iter().filter_map(|carrier| {
-        let end = start + carrier.lengths().iter().sum::<usize>();
-        let own = &projection.innovations.as_slice()[start..end];
-        start = end;
-        latent::smoothed(carrier, own)
-    });
-    let latent = latent.collect();
+    let (place, map) = places.swap_remove(at);
     let mut others: Vec<Map> = places.into_iter().map(|(_, map)| map).collect();
     others.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
-    let (found, trial) = best.map_or((None, None), |(_, found, trial)| (Some(found), Some(trial)));
     Ok(Some(Answer {
-        unknown: Unknown {
-            map,
-            others,
-            latent,
-            found,
-        },
-        found: trial.map(|trial| {
-            let alternatives = vec![Vec::new(); trial.stage.effects.len()];
-            (trial, alternatives)
-        }),
+        place,
+        map,
+        others,
+        projection,
+        found: best.map(|(_, found, trial)| (found, trial)),
     }))
 }
 
@@ -360,23 +383,29 @@ fn fitted(
 }
 
 /// Makes the answer that of the diagnosis.
-fn take_in(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis, answer: Answer) {
-    let Answer { unknown, found } = answer;
-    if let (Some((trial, alternatives)), Some(own)) = (found, &unknown.found) {
+fn take_in(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis, answer: Option<Answer>) {
+    let Some(answer) = answer else { return };
+    let (unknown, trial) = answer.told();
+    if let (Some(trial), Some(own)) = (trial, &unknown.found) {
         let stage = trial.stage;
         let mut hypotheses = inquiry.hypotheses.to_vec();
         hypotheses.push(own.hypothesis.clone());
         let known = std::mem::take(&mut diagnosis.findings);
-        let alternatives: Vec<Vec<Alternative>> = stage
-            .effects
-            .iter()
-            .zip(alternatives)
-            .map(|((number, _), none)| {
-                let same = known.iter().find(|finding| finding.hypothesis == *number);
-                same.map_or(none, |finding| finding.alternatives.clone())
-            })
-            .collect();
-        diagnosis.findings = findings(&stage, &hypotheses, &alternatives);
+        let round = diagnosis.rounds.len();
+        let taken = stage.effects.iter().map(|(number, _)| {
+            let same = known.iter().find(|finding| finding.hypothesis == *number);
+            same.map_or_else(
+                || Taken {
+                    round,
+                    alternatives: Vec::new(),
+                },
+                |finding| Taken {
+                    round: finding.round,
+                    alternatives: finding.alternatives.clone(),
+                },
+            )
+        });
+        diagnosis.findings = findings(&stage, &hypotheses, taken.collect());
         diagnosis.unexplained = !explained(&stage.solution);
         diagnosis.after = stage.solution;
         diagnosis.program = stage.program;

@@ -20,16 +20,17 @@ pub(super) fn sentence(told: &Told<'_>) -> String {
         }
         Verdict::Unknown => {
             let unknown = told.found.unknown.as_ref();
-            let written = unknown.and_then(|unknown| unknown.found.as_ref());
-            let own = match written {
-                Some(_) => ", an effect that no library has",
-                None => "",
-            };
-            let more = match told.found.unexplained || written.is_none() {
+            let names = names.join(", then ");
+            let more = match told.found.unexplained {
                 true => ", and something more",
                 false => "",
             };
-            format!("missing is {}{own}{more}", names.join(", then "))
+            match unknown.and_then(|unknown| unknown.found.as_ref()) {
+                Some(_) => format!("missing is {names}, an effect that no library has{more}"),
+                None => format!(
+                    "something is missing that no effect known is; a part of it looks like {names}"
+                ),
+            }
         }
         Verdict::Effect => format!("missing is {}", names.join(", then ")),
         Verdict::OneOf => format!(
@@ -110,6 +111,16 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
                 named(hypothesis)
             ));
         }
+        let sizes = finding.sizes.iter().zip(&hypothesis.sizes);
+        if sizes
+            .into_iter()
+            .any(|(size, knob)| knob.is_beyond(size.value))
+        {
+            doubts.push(format!(
+                "{} is larger than its library expects of any axis",
+                named(hypothesis)
+            ));
+        }
     }
     if let Some(next) = next_best(told) {
         doubts.push(next);
@@ -150,25 +161,22 @@ pub(super) fn alternative(told: &Told<'_>, other: &hyde_calibrate::Alternative) 
 /// Of the round that took in the last effect, the hypothesis that came nearest to it.
 fn next_best(told: &Told<'_>) -> Option<String> {
     let finding = told.found.findings.last()?;
-    let round = told
-        .found
-        .rounds
-        .get(told.found.findings.len() - 1)
-        .filter(|round| !round.trials.is_empty())?;
-    let own = round
-        .trials
-        .iter()
-        .find(|trial| trial.hypothesis == finding.hypothesis)?;
+    let round = told.found.rounds.get(finding.round)?;
+    let mut trials = round.trials.iter();
+    let own =
+        trials.find(|trial| trial.hypothesis == finding.hypothesis && trial.rejected.is_none())?;
+    let taken = |number: usize| {
+        let mut findings = told.found.findings.iter();
+        findings.any(|other| other.hypothesis == number)
+    };
+    let is_alternative = |number: usize| {
+        let mut alternatives = finding.alternatives.iter();
+        alternatives.any(|other| other.hypothesis == number)
+    };
     let next = round
         .trials
         .iter()
-        .filter(|trial| {
-            trial.hypothesis != finding.hypothesis
-                && !finding
-                    .alternatives
-                    .iter()
-                    .any(|other| other.hypothesis == trial.hypothesis)
-        })
+        .filter(|trial| !taken(trial.hypothesis) && !is_alternative(trial.hypothesis))
         .max_by(|a, b| a.gain.total_cmp(&b.gain))?;
     Some(format!(
         "the next best, {}, gains {} % of what it gains",

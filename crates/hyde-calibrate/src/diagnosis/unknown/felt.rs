@@ -5,7 +5,9 @@ use super::latent::Carrier;
 use super::law::Summand;
 use super::site::{Site, probe};
 use super::{Author, numbers};
+use crate::diagnosis::projection::dot;
 use crate::diagnosis::stage::{Ground, Stage};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 /// A site as the records show it.
@@ -57,6 +59,38 @@ impl Felt {
             }
         }
         lists
+    }
+
+    /// What a term's columns have in common with given changes: a row a size of the term. `forces` are those changes as
+    /// [`Self::common`] gives them.
+    pub(crate) fn common_with(&self, term: &Summand, forces: &[Vec<Vec<f64>>]) -> DMatrix<f64> {
+        let turns = self.site.kind.turns();
+        let count = forces.first().map_or(0, Vec::len);
+        let mut common = DMatrix::zeros(term.sizes.len(), count);
+        if count == 0 {
+            return common;
+        }
+        for (carrier, forces) in self.carriers.iter().zip(forces) {
+            let courses = term.along(carrier, turns, &self.scales);
+            for (i, course) in courses.iter().enumerate() {
+                for (j, force) in forces.iter().enumerate() {
+                    common[(i, j)] += dot(course, force);
+                }
+            }
+        }
+        common
+    }
+
+    /// What unit forces in each row of each record have in common with some changes of innovations.
+    pub(crate) fn common(&self, changes: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
+        let mut start = 0;
+        let each = self.carriers.iter().map(|carrier| {
+            let own = start..start + carrier.lengths().iter().sum::<usize>();
+            start = own.end;
+            let of = |change: &Vec<f64>| carrier.common(&change[own.clone()]);
+            changes.iter().map(of).collect()
+        });
+        each.collect()
     }
 
     /// The changes of innovations by forces given along every record: a function of the record's number.

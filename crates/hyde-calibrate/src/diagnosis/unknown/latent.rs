@@ -1,12 +1,15 @@
 //! [`Carrier`]: how a force at a site, whatever its course over time, shows in the innovations.
 //!
 //! ```text
-//! error of the states    eps+ = exp(A T) (I - K C) eps + b0 f(k) + b1 (f(k+1) - f(k))        change    -C eps
+//! error of the states    eps+ = exp(A T) (I - K C) eps + b0 f(k) + b1 (f(k+1) - f(k))        change    -(C eps + d f(k))
 //! ```
+//! A force acts by b0 and b1; a sensor's error shows by d, and moves the states by what the observer makes of it, `-exp(A T) K d`.
 //! One run of the observer with a probe on the site ([`super::site::probe`]) gives what a unit of force adds to the
-//! equations in every row, and where the site is and how fast. Any course costs a product a row then, and no kernel. Guards
-//! are taken to act when they do without it.
+//! equations in every row, and where the site is and how fast. Any course costs a product a row then, and no kernel; and so
+//! does what any change has in common with every course, which is the same rows backwards. Guards are taken to act when they
+//! do without the force.
 
+use crate::dense::{add_product, set_product};
 use crate::diagnosis::projection::dot;
 use crate::gain::Observer;
 use crate::plant::Plant;
@@ -14,6 +17,7 @@ use crate::recording::Recording;
 use crate::tangent::{Direction, Modes, Own, modes};
 use hyde_program::Program;
 use nalgebra::{Cholesky, DMatrix, DVector};
+use std::collections::BTreeMap;
 
 /// What the probe met, row by row.
 #[derive(Clone, Debug, Default)]
@@ -31,18 +35,43 @@ pub(crate) struct Carrier {
     rows: Vec<Row>,
     /// Two vectors a row: what the force at its start, and its growth over the row, do to the states.
     entries: Vec<f64>,
-    known: Vec<Modes>,
-    gain: DMatrix<f64>,
-    deviations: Vec<f64>,
+    /// A value a row and channel: how a unit shows in whitened innovations at once.
+    shown: Vec<f64>,
+    passages: Vec<Passage>,
+    channels: usize,
     first_row: usize,
     states: usize,
 }
 
-/// Which modes a row is corrected in, which it is stepped in, and the states that are fixed then.
+/// How a row is passed, by the number of its matrices, and the states that are fixed in it.
 struct Row {
-    corrected: usize,
-    stepped: usize,
+    passage: usize,
     fixed: Vec<usize>,
+}
+
+/// What a row makes of an error of the states: how whitened innovations change, and below them the error at the next row.
+struct Passage {
+    matrix: DMatrix<f64>,
+    transposed: DMatrix<f64>,
+}
+
+impl Passage {
+    fn new(corrected: &Modes, stepped: &Modes, observer: &Observer) -> Self {
+        let (channels, states) = corrected.outputs.shape();
+        let mut matrix = DMatrix::zeros(channels + states, states);
+        for (channel, deviation) in observer.deviations.iter().enumerate() {
+            let own = corrected.outputs.row(channel) / -deviation;
+            matrix.row_mut(channel).copy_from(&own);
+        }
+        let kept = DMatrix::identity(states, states) - &observer.gain * &corrected.outputs;
+        matrix
+            .rows_mut(channels, states)
+            .copy_from(&(&stepped.exp * kept));
+        Self {
+            transposed: matrix.transpose(),
+            matrix,
+        }
+    }
 }
 
 /// The probe's sizes: force, by place, by speed.
@@ -77,15 +106,17 @@ impl Carrier {
             course: Course::default(),
             rows: Vec::new(),
             entries: Vec::new(),
-            known: Vec::new(),
-            gain: observer.gain.clone(),
-            deviations: observer.deviations.clone(),
+            shown: Vec::new(),
+            passages: Vec::new(),
+            channels: recording.channels.len(),
             first_row: recording.first_row,
             states,
         };
         let mut own = Own::new(program, &plant.p, &directions);
         let mut forces = DMatrix::zeros(own.touched.len(), directions.len());
-        let mut numbers = Vec::new();
+        let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
+        let (mut known, mut numbers) = (Vec::new(), Vec::new());
+        let mut passages = BTreeMap::new();
         let mut error = vec![0.0; recording.channels.len()];
         let mut increment = vec![0.0; states];
         let (mut place, mut speed) = (0.0, 0.0);
@@ -99,35 +130,46 @@ impl Carrier {
                     0.0
                 };
             }
-            let corrected = modes(&mut plant, &mut found.known, &mut numbers, &own.touched);
-            crate::dense::set_product(&observer.gain, &error, &mut increment);
+            own.seen(&mut plant, &directions, &mut by_output);
+            let corrected = modes(&mut plant, &mut known, &mut numbers, &own.touched);
+            set_product(&observer.gain, &error, &mut increment);
             plant.begin_row(&increment);
-            let stepped = modes(&mut plant, &mut found.known, &mut numbers, &own.touched);
+            let stepped = modes(&mut plant, &mut known, &mut numbers, &own.touched);
             own.forces(&mut plant, &directions, &mut forces);
-            let unit = forces.column(0);
-            let largest = (0..unit.len()).max_by(|&a, &b| unit[a].abs().total_cmp(&unit[b].abs()));
-            let largest = largest.filter(|&equation| unit[equation] != 0.0);
-            if let Some(equation) = largest {
-                place = forces[(equation, 1)] / unit[equation];
-                speed = forces[(equation, 2)] / unit[equation];
-            }
+            let at = place_and_speed(&forces).or_else(|| place_and_speed(&by_output));
+            (place, speed) = at.unwrap_or((place, speed));
             found.course.time.push(plant.time());
             found.course.place.push(place);
             found.course.speed.push(speed);
-            found.course.acts.push(largest.is_some());
-            let of = &found.known[stepped];
-            for matrix in [&of.first, &of.second] {
+            found.course.acts.push(at.is_some());
+            let unit = forces.column(0);
+            let shown: Vec<f64> = by_output.column(0).iter().map(|value| -value).collect();
+            for matrix in [&known[stepped].first, &known[stepped].second] {
                 let start = found.entries.len();
                 found.entries.resize(start + states, 0.0);
-                crate::dense::add_product(matrix, unit.as_slice(), &mut found.entries[start..]);
+                add_product(matrix, unit.as_slice(), &mut found.entries[start..]);
             }
+            if shown.iter().any(|value| *value != 0.0) {
+                set_product(&observer.gain, &shown, &mut increment);
+                let first = found.entries.len() - 2 * states;
+                let first = &mut found.entries[first..][..states];
+                add_product(&known[stepped].exp, &increment, first);
+            }
+            let whitened = shown.iter().zip(&observer.deviations);
+            found
+                .shown
+                .extend(whitened.map(|(value, deviation)| value / deviation));
+            let passage = *passages.entry((corrected, stepped)).or_insert_with(|| {
+                let made = Passage::new(&known[corrected], &known[stepped], &observer);
+                found.passages.push(made);
+                found.passages.len() - 1
+            });
             let fixed = plant.pinned.iter().filter_map(|(position, _)| {
                 let states = plant.places.states.iter();
                 states.into_iter().position(|state| state == position)
             });
             found.rows.push(Row {
-                corrected,
-                stepped,
+                passage,
                 fixed: fixed.collect(),
             });
             if row + 1 < recording.rows() {
@@ -139,43 +181,71 @@ impl Carrier {
 
     /// The lengths of the channels that count.
     pub(crate) fn lengths(&self) -> Vec<usize> {
-        vec![self.rows.len() - self.first_row; self.deviations.len()]
+        vec![self.rows.len() - self.first_row; self.channels]
     }
 
     /// The change of whitened innovations by a course of the force (one value a row), channels one behind the other.
     pub(crate) fn change(&self, force: &[f64]) -> Vec<f64> {
-        let channels = self.deviations.len();
         let counted = self.rows.len() - self.first_row;
-        let mut change = vec![0.0; channels * counted];
+        let mut change = vec![0.0; self.channels * counted];
         let mut error = vec![0.0; self.states];
-        let mut room = vec![0.0; self.states];
-        let mut answer = vec![0.0; channels];
-        let mut entries = self.entries.chunks_exact(self.states.max(1));
-        for (number, row) in self.rows.iter().enumerate() {
-            let (Some(first), Some(second)) = (entries.next(), entries.next()) else {
-                break;
-            };
-            let (corrected, stepped) = (&self.known[row.corrected], &self.known[row.stepped]);
-            crate::dense::set_product(&corrected.outputs, &error, &mut answer);
-            for (channel, value) in answer.iter_mut().enumerate() {
-                *value = -*value;
-                if number >= self.first_row {
-                    change[channel * counted + number - self.first_row] =
-                        *value / self.deviations[channel];
+        let mut room = vec![0.0; self.channels + self.states];
+        let entries = self.entries.chunks_exact(2 * self.states.max(1));
+        for (number, (row, entry)) in self.rows.iter().zip(entries).enumerate() {
+            set_product(&self.passages[row.passage].matrix, &error, &mut room);
+            let (answer, next) = room.split_at(self.channels);
+            let now = force[number];
+            if let Some(at) = number.checked_sub(self.first_row) {
+                let shown = &self.shown[number * self.channels..];
+                for (channel, (value, shown)) in answer.iter().zip(shown).enumerate() {
+                    change[channel * counted + at] = value + shown * now;
                 }
             }
-            crate::dense::add_product(&self.gain, &answer, &mut error);
-            crate::dense::set_product(&stepped.exp, &error, &mut room);
-            let now = force[number];
             let growth = force.get(number + 1).map_or(0.0, |then| then - now);
-            for ((value, first), second) in room.iter_mut().zip(first).zip(second) {
-                *value += first * now + second * growth;
+            let (first, second) = entry.split_at(self.states);
+            for (state, value) in error.iter_mut().enumerate() {
+                *value = next[state] + first[state] * now + second[state] * growth;
             }
-            row.fixed.iter().for_each(|&state| room[state] = 0.0);
-            std::mem::swap(&mut error, &mut room);
+            row.fixed.iter().for_each(|&state| error[state] = 0.0);
         }
         change
     }
+
+    /// What the changes by unit forces in each row have in common with a given change: the transpose of [`Self::change`].
+    pub(crate) fn common(&self, change: &[f64]) -> Vec<f64> {
+        let counted = self.rows.len() - self.first_row;
+        let mut force = vec![0.0; self.rows.len()];
+        // How much the change to come has in common with an error of the states behind a row.
+        let mut later = vec![0.0; self.states];
+        let mut room = vec![0.0; self.channels + self.states];
+        for (number, row) in self.rows.iter().enumerate().rev() {
+            row.fixed.iter().for_each(|&state| later[state] = 0.0);
+            let (first, second) = self.entries[2 * self.states * number..].split_at(self.states);
+            let growth = dot(&second[..self.states], &later);
+            // The last force does not grow any more.
+            if let Some(then) = force.get_mut(number + 1) {
+                *then += growth;
+                force[number] -= growth;
+            }
+            force[number] += dot(first, &later);
+            for channel in 0..self.channels {
+                let at = number.checked_sub(self.first_row);
+                room[channel] = at.map_or(0.0, |at| change[channel * counted + at]);
+                force[number] += self.shown[number * self.channels + channel] * room[channel];
+            }
+            room[self.channels..].copy_from_slice(&later);
+            set_product(&self.passages[row.passage].transposed, &room, &mut later);
+        }
+        force
+    }
+}
+
+/// Where a site is and how fast, from what its probe adds to some equations: by force, by place, by speed.
+fn place_and_speed(added: &DMatrix<f64>) -> Option<(f64, f64)> {
+    let unit = added.column(0);
+    let largest = (0..unit.len()).max_by(|&a, &b| unit[a].abs().total_cmp(&unit[b].abs()));
+    let at = largest.filter(|&at| unit[at] != 0.0)?;
+    Some((added[(at, 1)] / unit[at], added[(at, 2)] / unit[at]))
 }
 
 /// Knots of a smoothed force in a record at most.

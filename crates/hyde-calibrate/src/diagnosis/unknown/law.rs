@@ -116,7 +116,7 @@ impl Law {
         let mut signature: Vec<String> = Vec::new();
         let mut stems: Vec<&'static str> = Vec::new();
         let single = self.terms.len() == 1;
-        let size_stem = if kind.turns() { "T" } else { "F" };
+        let size_stem = kind.stem();
         for (number, term) in self.terms.iter().enumerate() {
             let mut products = vec![String::new()];
             for factor in &term.factors {

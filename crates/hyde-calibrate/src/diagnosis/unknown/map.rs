@@ -108,10 +108,9 @@ pub(crate) fn add_bands(map: &mut Map, felt: &Felt, projection: &Projection) {
         .collect();
     for panel in &mut map.panels {
         let (_, columns) = columns(felt, panel.variable);
-        let gains = (1..=SHIFTS).map(|shift| {
-            let shifted = shifted(projection.innovations.as_slice(), &lengths, shift);
-            projection.by_chance(&columns, &shifted)
-        });
+        let innovations = projection.innovations.as_slice();
+        let shifts = (1..=SHIFTS).map(|shift| shifted(innovations, &lengths, shift));
+        let gains = projection.by_chance(&columns, shifts).into_iter();
         panel.band = gains.fold(0.0, f64::max);
     }
 }

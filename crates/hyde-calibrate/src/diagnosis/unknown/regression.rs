@@ -4,15 +4,16 @@
 use super::factor::{Factor, Seen};
 use super::felt::Felt;
 use super::law::{Law, Summand};
-use crate::diagnosis::projection::Projection;
+use crate::diagnosis::projection::{Projection, Sums};
 use rayon::prelude::*;
 
 /// Terms of a law at most.
 const MOST_TERMS: usize = 3;
 /// A further term is to gain this part of the first.
 const LEAST_PART: f64 = 0.01;
-/// Terms whose constants are refined in a round.
+/// Terms whose constants are refined in a round, and the part of the best one's gain that they must have before.
 const REFINED: usize = 8;
+const PROMISING: f64 = 0.4;
 /// Wave numbers tried of a wave alone, and of one times another shape.
 const WAVES: usize = 240;
 const MIXED_WAVES: usize = 120;
@@ -32,28 +33,39 @@ pub(crate) struct Selected {
 /// Selects terms until the next one gains too little.
 pub(crate) fn select(felt: &Felt, projection: &Projection, gate: f64) -> Option<Selected> {
     let dictionary = dictionary(felt);
+    let alone = |term: &Summand| projection.sums(&felt.columns(term));
+    let each: Vec<Sums> = dictionary.par_iter().map(alone).collect();
     let mut terms: Vec<Summand> = Vec::new();
     let mut gains: Vec<f64> = Vec::new();
     let mut others = Vec::new();
     let mut tried = 0;
     while terms.len() < MOST_TERMS {
+        // What a term gains beside those that are known: of its columns only products are needed.
         let known: Vec<Vec<f64>> = terms.iter().flat_map(|term| felt.columns(term)).collect();
-        let gain_of = |term: &Summand| {
-            let mut columns = known.clone();
-            columns.extend(felt.columns(term));
-            projection.answer(&columns).gain
+        let (of_known, common) = (projection.sums(&known), felt.common(&known));
+        let gain_beside = |term: &Summand, sums: &Sums| {
+            let common = felt.common_with(term, &common);
+            projection
+                .answer_from(&sums.beside(&of_known, &common))
+                .gain
         };
+        let gain_of = |term: &Summand| gain_beside(term, &alone(term));
         let mut scored: Vec<(Summand, f64)> = dictionary
             .par_iter()
-            .map(|term| (term.clone(), gain_of(term)))
+            .zip(&each)
+            .map(|(term, sums)| (term.clone(), gain_beside(term, sums)))
             .filter(|(_, gain)| gain.is_finite())
             .collect();
         tried += scored.len();
         scored.sort_by(|a, b| b.1.total_cmp(&a.1));
         // The best of each form.
+        let most = scored.first().map_or(0.0, |(_, gain)| *gain);
+        let before = gains.last().copied().unwrap_or(0.0);
         let mut forms: Vec<(Summand, f64)> = Vec::new();
         for (term, gain) in scored {
-            if forms.len() < REFINED && !forms.iter().any(|(known, _)| same_form(known, &term)) {
+            let worth = gain - before >= PROMISING * (most - before);
+            let new = !forms.iter().any(|(known, _)| same_form(known, &term));
+            if worth && new && forms.len() < REFINED {
                 forms.push((term, gain));
             }
         }
@@ -63,7 +75,6 @@ pub(crate) fn select(felt: &Felt, projection: &Projection, gate: f64) -> Option<
         let mut refined: Vec<(Summand, f64)> = refined.collect();
         refined.sort_by(|a, b| b.1.total_cmp(&a.1));
         let best = refined.first()?.1;
-        let before = gains.last().copied().unwrap_or(0.0);
         let least = gains
             .first()
             .map_or(gate, |first: &f64| gate.max(LEAST_PART * first));

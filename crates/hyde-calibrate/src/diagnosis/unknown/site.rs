@@ -1,6 +1,6 @@
 //! [`Site`]: a place where an unwritten law may act, and the words that the language has for it there.
 
-/// A kind of place: a force or torque on a connector, or the grip of a friction that sticks.
+/// A kind of place: a force or torque on a connector, the grip of a friction that sticks, or what a sensor reads.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A force on what slides.
@@ -11,6 +11,10 @@ pub enum Kind {
     Guide,
     /// The Coulomb torque of a bearing.
     Bearing,
+    /// What a position sensor reads.
+    Scale,
+    /// What an angle sensor reads.
+    Encoder,
 }
 
 /// A place where a law may act.
@@ -33,6 +37,8 @@ impl Kind {
             ("Rotational", "Flange") => Some(Self::Flange),
             ("Translational", "Guide") => Some(Self::Guide),
             ("Rotational", "Friction") => Some(Self::Bearing),
+            ("Translational", "PositionSensor") => Some(Self::Scale),
+            ("Rotational", "AngleSensor") => Some(Self::Encoder),
             _ => None,
         }
     }
@@ -46,7 +52,7 @@ impl Kind {
     /// Whether it turns.
     #[must_use]
     pub fn turns(self) -> bool {
-        matches!(self, Self::Flange | Self::Bearing)
+        matches!(self, Self::Flange | Self::Bearing | Self::Encoder)
     }
 
     pub(crate) fn host(self) -> &'static str {
@@ -55,12 +61,38 @@ impl Kind {
             Self::Flange => "Rotational.Flange",
             Self::Guide => "Translational.Guide",
             Self::Bearing => "Rotational.Friction",
+            Self::Scale => "Translational.PositionSensor",
+            Self::Encoder => "Rotational.AngleSensor",
         }
     }
 
     /// The unit of the law's value.
     pub(crate) fn unit(self) -> &'static str {
-        if self.turns() { "N.m" } else { "N" }
+        match self {
+            Self::Rail | Self::Guide => "N",
+            Self::Flange | Self::Bearing => "N.m",
+            Self::Scale => "m",
+            Self::Encoder => "rad",
+        }
+    }
+
+    /// What a size of the law is called.
+    pub(crate) fn stem(self) -> &'static str {
+        match self {
+            Self::Rail | Self::Guide => "F",
+            Self::Flange | Self::Bearing => "T",
+            Self::Scale | Self::Encoder => "e",
+        }
+    }
+
+    /// What the law is, in words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Rail | Self::Guide => "a force",
+            Self::Flange | Self::Bearing => "a torque",
+            Self::Scale | Self::Encoder => "an error",
+        }
     }
 
     /// The units of place and speed at the site, as they are written, and how many of them an SI unit is.
@@ -87,8 +119,8 @@ impl Kind {
 
     pub(crate) fn speed(self) -> &'static str {
         match self {
-            Self::Rail | Self::Guide => "v",
-            Self::Flange | Self::Bearing => "w",
+            Self::Rail | Self::Guide | Self::Scale => "v",
+            Self::Flange | Self::Bearing | Self::Encoder => "w",
         }
     }
 
@@ -99,6 +131,8 @@ impl Kind {
             Self::Flange => format!("  add a.tau = -({law});\n  Real w = der(a.phi);\n"),
             Self::Guide => format!("  wrap grip by grip + {law};\n  wrap hold by hold + {law};\n"),
             Self::Bearing => format!("  wrap grip by grip + {law};\n"),
+            Self::Scale => format!("  wrap s by s + {law};\n  Real v = der(a.s);\n"),
+            Self::Encoder => format!("  wrap phi by phi + {law};\n  Real w = der(a.phi);\n"),
         }
     }
 }
@@ -114,20 +148,21 @@ pub struct Written {
     pub site: String,
 }
 
-/// An effect by which a force at a site is felt: its sizes are the force, and forces proportional to place and to speed.
+/// An effect by which a force at a site is felt, or a sensor's error: its sizes are the force, and forces proportional to
+/// place and to speed.
 pub(crate) fn probe(site: &Site, name: &str) -> Written {
     let kind = site.kind;
     let (place, speed) = (kind.place(), kind.speed());
     let unit = kind.unit();
-    let (per_place, per_speed) = if kind.turns() {
-        ("N.m/rad", "N.m.s/rad")
-    } else {
-        ("N/m", "N.s/m")
+    let (per_place, per_speed) = match kind {
+        Kind::Rail | Kind::Guide => ("[N/m]", "[N.s/m]"),
+        Kind::Flange | Kind::Bearing => ("[N.m/rad]", "[N.m.s/rad]"),
+        Kind::Scale | Kind::Encoder => ("", "[s]"),
     };
     let law = format!("(force + by_place*{place} + by_speed*{speed})");
     let text = format!(
-        "effect {name} on {}\n  size Real force = 0 [{unit}] in -1 .. 1 [{unit}], by_place = 0 [{per_place}] in -1 .. 1 \
-         [{per_place}], by_speed = 0 [{per_speed}] in -1 .. 1 [{per_speed}];\n{}end {name};\n",
+        "effect {name} on {}\n  size Real force = 0 [{unit}] in -1 .. 1 [{unit}], by_place = 0 {per_place} in -1 .. 1 \
+         {per_place}, by_speed = 0 {per_speed} in -1 .. 1 {per_speed};\n{}end {name};\n",
         kind.host(),
         kind.clauses(&law)
     );

@@ -1,0 +1,192 @@
+//! [`Forward`]: from a stage on takes in one effect after the other, drops what is not missed any more, and tries earlier
+//! ones against their rivals. Where nothing gains alone and something is left, two are tried together ([`super::pair`]).
+//!
+//! Effects mask each other, so the best of the first round may be one that stands for several. Where its branch ends with
+//! something left, that of the runner-up is followed too: a beam of two, which costs nothing where the first one explains
+//! all there is.
+
+use super::apart::Alternative;
+use super::contest::{Contest, contest};
+use super::exchange::{Exchange, Taken};
+use super::hypothesis::{Build, Hypothesis};
+use super::pair::pair;
+use super::projection::Projection;
+use super::prune::prune;
+use super::scan::{Scanner, Score};
+use super::search::{Gates, Round, explained};
+use super::stage::{Ground, Stage};
+use super::trial::{Rejection, Trial};
+use crate::fit::inflation;
+use crate::plant::Unsupported;
+
+/// Hypotheses fitted in a round at most, and the part of the best score that they must have.
+const SURVIVORS: usize = 6;
+const SURVIVING: f64 = 0.05;
+/// Rounds beside one an effect.
+const MORE_ROUNDS: usize = 2;
+/// A runner-up has gained this part of what the best did.
+const RUNNER_UP: f64 = 0.8;
+
+/// How far a branch of the search has come.
+#[derive(Clone)]
+pub(crate) struct Branch {
+    pub(crate) stage: Stage,
+    /// What is known of its effects, in their order.
+    pub(crate) taken: Vec<Taken>,
+}
+
+/// The search, and what it has met so far.
+pub(crate) struct Forward<'s> {
+    pub(crate) ground: &'s Ground<'s>,
+    pub(crate) hypotheses: &'s [Hypothesis],
+    pub(crate) build: &'s Build<'s>,
+    pub(crate) max_effects: usize,
+    pub(crate) gates: Gates,
+    pub(crate) rounds: Vec<Round>,
+}
+
+impl Forward<'_> {
+    /// The end of the better of two branches.
+    pub(crate) fn search(&mut self, stage: Stage) -> Result<Branch, Unsupported> {
+        let taken = Vec::new();
+        let first = self.follow(Branch { stage, taken })?;
+        if explained(&first.stage.solution) {
+            return Ok(first);
+        }
+        let Some(second) = self.runner_up(&first)? else {
+            return Ok(first);
+        };
+        let second = self.follow(second)?;
+        let (a, b) = (&first.stage, &second.stage);
+        let gate = self.gates.gain(1) * inflation(&a.solution.innovations);
+        let gain = b.solution.gain_over(&a.solution);
+        let simpler = b.varied.len() < a.varied.len();
+        Ok(if gain >= gate || (gain >= -gate && simpler) {
+            second
+        } else {
+            first
+        })
+    }
+
+    /// The branch of the hypothesis that came next to the first one taken in, if it is not on that branch as well.
+    fn runner_up(&self, first: &Branch) -> Result<Option<Branch>, Unsupported> {
+        let has = |trial: &Trial| {
+            let mut effects = first.stage.effects.iter();
+            effects.any(|(effect, _)| *effect == trial.hypothesis)
+        };
+        let Some(taken) = first.taken.first() else {
+            return Ok(None);
+        };
+        let trials = &self.rounds[taken.round].trials;
+        let best = trials.iter().filter(|trial| has(trial));
+        let best = best.map(|trial| trial.gain).fold(0.0, f64::max);
+        let fine = |trial: &&Trial| {
+            matches!(trial.rejected, None | Some(Rejection::Behind))
+                && trial.gain >= RUNNER_UP * best
+                && !has(trial)
+        };
+        let next = trials.iter().filter(fine);
+        let Some(next) = next.max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
+            return Ok(None);
+        };
+        Ok(Some(Branch {
+            stage: next.stage.polished(self.ground)?,
+            taken: vec![Taken {
+                round: taken.round,
+                alternatives: Vec::new(),
+            }],
+        }))
+    }
+
+    /// Follows a branch to its end.
+    fn follow(&mut self, branch: Branch) -> Result<Branch, Unsupported> {
+        let Branch {
+            mut stage,
+            mut taken,
+        } = branch;
+        // An effect that is dropped again makes room for another: so many rounds more at most.
+        let most = self.rounds.len() + self.max_effects + MORE_ROUNDS;
+        while stage.effects.len() < self.max_effects && self.rounds.len() < most {
+            let round = self.rounds.len();
+            let Some((next, alternatives)) = self.round(&stage)? else {
+                break;
+            };
+            stage = next;
+            taken.extend(alternatives.into_iter().map(|alternatives| Taken {
+                round,
+                alternatives,
+            }));
+            for number in prune(self.ground, &mut stage, self.build, self.gates) {
+                taken.remove(number);
+            }
+        }
+        let exchange = Exchange {
+            ground: self.ground,
+            hypotheses: self.hypotheses,
+            build: self.build,
+            gates: self.gates,
+            rounds: &self.rounds,
+        };
+        if exchange.exchange(&mut stage, &mut taken)? {
+            for number in prune(self.ground, &mut stage, self.build, self.gates) {
+                taken.remove(number);
+            }
+        }
+        Ok(Branch { stage, taken })
+    }
+
+    /// A round on a stage: the stage with what it takes in, and what the records cannot tell from each of that.
+    #[allow(
+        clippy::type_complexity,
+        reason = "a stage, and a list for each effect"
+    )]
+    fn round(
+        &mut self,
+        stage: &Stage,
+    ) -> Result<Option<(Stage, Vec<Vec<Alternative>>)>, Unsupported> {
+        let at = stage.linearise(self.ground)?;
+        let Some(projection) = Projection::new(stage, &at) else {
+            return Ok(None);
+        };
+        let scanner = Scanner {
+            ground: self.ground,
+            stage,
+            projection: &projection,
+            hypotheses: self.hypotheses,
+            build: self.build,
+            gate: self.gates.gain(1),
+        };
+        let scores = scanner.scores();
+        self.gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
+        let gates = self.gates;
+        let best = scores.first().map_or(0.0, Score::gain);
+        let survivors = scores
+            .iter()
+            .take_while(|score| score.gain() >= (SURVIVING * best).max(gates.gain(1)));
+        let survivors: Vec<&Score> = survivors.take(SURVIVORS).collect();
+        let Contest { trials, accepted } = contest(
+            self.ground,
+            stage,
+            self.hypotheses,
+            survivors,
+            self.build,
+            gates,
+        );
+        let next = match accepted {
+            Some((best, alternatives)) => {
+                let next = trials[best].stage.polished(self.ground)?;
+                Some((next, vec![alternatives]))
+            }
+            None if !explained(&stage.solution) && stage.effects.len() + 2 <= self.max_effects => {
+                pair(&scanner, &scores, gates).map(|next| (next, vec![Vec::new(); 2]))
+            }
+            None => None,
+        };
+        self.rounds.push(Round {
+            scores,
+            trials,
+            gates,
+        });
+        Ok(next)
+    }
+}
