@@ -236,6 +236,20 @@ pub(crate) fn inflation(innovations: &[Innovations]) -> f64 {
     (sum / f64::max(count, 1.0)).max(1.0)
 }
 
+/// By how much a sum of squares overstates what is known of some parameters: the scatter of gradients from second to second,
+/// which knows how they go with what is not explained (White, Econometrica 50, 1982, 1); at most [`inflation`], which takes
+/// them to change as slowly as they can.
+pub(crate) fn inflation_of(solution: &Solution, own: impl IntoIterator<Item = usize>) -> f64 {
+    let most = inflation(&solution.innovations);
+    let Some(bread) = solution.inverse_curvature() else {
+        return most;
+    };
+    let (scatter, blocks) = &solution.scatter;
+    let scattered = &bread * (scatter * few(*blocks)) * &bread;
+    let each = own.into_iter().map(|i| scattered[(i, i)] / bread[(i, i)]);
+    each.fold(1.0, f64::max).min(most)
+}
+
 /// The covariance of the parameters, in units of their scales: that of independent innovations, less what they tell less than
 /// such, and no deviation smaller than the scatter of gradients from second to second says. What a model lacks is not
 /// independent from row to row, and shows there (White, Econometrica 50, 1982, 1). The scatter of few blocks is itself uncertain:
@@ -260,13 +274,17 @@ pub(crate) fn covariance_of_first(solution: &Solution, inflation: f64, n: usize)
     let weighed = solution.weight * priors;
     let bread = inverse(data + &weighed + floor);
     let (scatter, blocks) = (first(&solution.scatter.0), &solution.scatter.1);
-    let blocks = blocks.max(&2);
-    let few = *blocks as f64 / (blocks - 1) as f64 * student(blocks - 1).powi(2);
-    let scattered = &bread * (scatter * few + weighed) * &bread;
+    let scattered = &bread * (scatter * few(*blocks) + weighed) * &bread;
     let wider = DVector::from_fn(n, |i, _| {
         (scattered[(i, i)] / independent[(i, i)]).max(1.0).sqrt()
     });
     DMatrix::from_fn(n, n, |i, j| independent[(i, j)] * wider[i] * wider[j])
+}
+
+/// By how much the scatter of so many blocks is to be taken for more than it is.
+fn few(blocks: usize) -> f64 {
+    let blocks = blocks.max(2);
+    blocks as f64 / (blocks - 1) as f64 * student(blocks - 1).powi(2)
 }
 
 /// Student's 97.5 % quantile over the normal one (Abramowitz and Stegun 26.7.5).

@@ -7,7 +7,7 @@
 use super::hypothesis::{Build, Built};
 use super::search::Gates;
 use super::stage::{Ground, Stage, below};
-use crate::fit::inflation;
+use crate::fit::inflation_of;
 use crate::least_squares::{MAX_STEPS, Slopes};
 use crate::varied::Varied;
 use nalgebra::DVector;
@@ -29,7 +29,8 @@ pub(crate) fn prune(
             .min_by(|a, b| a.1.solution.cost().total_cmp(&b.1.solution.cost()));
         let Some((number, less)) = least else { break };
         let freedoms = stage.varied.len() - less.varied.len();
-        let gate = gates.gain(freedoms) * inflation(&stage.solution.innovations);
+        let own = stage.sizes_of(&stage.effects[number].1);
+        let gate = gates.gain(freedoms) * inflation_of(&stage.solution, own);
         if stage.solution.gain_over(&less.solution) >= gate.max(gates.material()) {
             break;
         }
@@ -43,12 +44,7 @@ pub(crate) fn prune(
 /// once, where a fit from where it is may be stuck.
 fn answered(ground: &Ground<'_>, stage: &Stage, gone: &str) -> Vec<f64> {
     let values = &stage.solution.values;
-    let is_size = |number: &usize| {
-        let name = &stage.varied[*number].name;
-        let known = stage.program.parameter(name);
-        below(name, gone).is_some() && known.is_some_and(|(parameter, _)| parameter.is_size)
-    };
-    let sizes: Vec<usize> = (0..values.len()).filter(is_size).collect();
+    let sizes = stage.sizes_of(gone);
     let step = || {
         let covariance = stage.solution.inverse_curvature()?;
         let own = covariance.select_rows(&sizes).select_columns(&sizes);

@@ -96,6 +96,16 @@ impl Stage {
         })
     }
 
+    /// Numbers of the sizes of an effect among what is varied, by the path of its instance.
+    pub(crate) fn sizes_of(&self, path: &str) -> Vec<usize> {
+        let is_size = |number: &usize| {
+            let name = &self.varied[*number].name;
+            let known = self.program.parameter(name);
+            below(name, path).is_some() && known.is_some_and(|(parameter, _)| parameter.is_size)
+        };
+        (0..self.varied.len()).filter(is_size).collect()
+    }
+
     /// Whether a parameter is one of an effect.
     fn is_of_effect(&self, name: &str) -> bool {
         let mut paths = self.effects.iter();

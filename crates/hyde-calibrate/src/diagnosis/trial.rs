@@ -6,13 +6,14 @@ use super::scan::{Node, Score};
 use super::search::{Gates, chi_squared};
 use super::stage::{Ground, Stage};
 use crate::blocks::Fold;
-use crate::fit::{covariance_of_first, inflation};
+use crate::fit::{covariance_of_first, inflation_of};
 use crate::least_squares::{LAST_STEPS, MAX_STEPS, Slopes};
 use crate::observer::Innovations;
 use crate::solution::Solution;
 use crate::varied::Varied;
 use hyde_program::Program;
 use nalgebra::DVector;
+use std::ops::Range;
 
 /// A shape is visibly another by this part of its value or its range.
 const VISIBLE_SHAPE: f64 = 0.03;
@@ -60,7 +61,7 @@ pub struct Trial {
     pub gain: f64,
     /// What was gained on the halves of the records that fits had not seen.
     pub fold_gain: Option<f64>,
-    /// By how much innovations tell less than independent ones, after it.
+    /// By how much innovations tell less of its sizes than independent ones, after it.
     pub inflation: f64,
     /// Number of sizes and shapes fitted.
     pub freedoms: usize,
@@ -72,8 +73,9 @@ pub struct Trial {
     /// Sizes, then shapes, SI.
     pub values: Vec<f64>,
     names: Vec<String>,
-    /// Numbers of the sizes among what its stage varies, if it is linear in them.
-    linear: Option<std::ops::Range<usize>>,
+    /// Numbers of the sizes among what its stage varies, and whether it is linear in them.
+    own: Range<usize>,
+    linear: bool,
     pub(crate) stage: Stage,
 }
 
@@ -86,9 +88,10 @@ impl Trial {
     /// Whether its sizes are told from 0 by the slopes too, its shapes held, where it is linear: a fit that was stuck before
     /// gains by every column that moves it on.
     pub(super) fn is_told(&self) -> bool {
-        let Some(sizes) = self.linear.clone() else {
+        if !self.linear {
             return true;
-        };
+        }
+        let sizes = self.own.clone();
         let solution = &self.stage.solution;
         let covariance = covariance_of_first(solution, self.inflation, sizes.end);
         let varied = &self.stage.varied[sizes.clone()];
@@ -118,7 +121,7 @@ impl Trial {
     /// Ends at a solution.
     pub(super) fn settle(&mut self, solution: Solution, stage: &Stage) {
         self.gain = solution.gain_over(&stage.solution);
-        self.inflation = inflation(&solution.innovations);
+        self.inflation = inflation_of(&solution, self.own.clone());
         self.stage.solution = solution;
         self.values = values_of(&self.names, &self.stage);
     }
@@ -287,7 +290,7 @@ pub(crate) fn finish(
     } else {
         None
     };
-    let inflation = inflation(&solution.innovations);
+    let inflation = inflation_of(&solution, sizes.clone());
     let new = Stage {
         program,
         effects,
@@ -308,7 +311,8 @@ pub(crate) fn finish(
         inflation,
         freedoms: own.len(),
         limited,
-        linear: score.linear.then_some(sizes),
+        own: sizes,
+        linear: score.linear,
         rejected,
         values: values_of(&names, &new),
         names,
