@@ -286,6 +286,15 @@ fn line(name: &str, change: Change, dimension: Dimension) -> String {
     )
 }
 
+/// Half an interval as a part of the value, or as it is where it is wider than the value.
+pub(crate) fn spread(half: f64, value: f64, number: impl Fn(f64) -> String) -> String {
+    if half < value.abs() {
+        format!("{} %", significant(100.0 * half / value.abs(), 2))
+    } else {
+        number(half)
+    }
+}
+
 /// A name with its middle left out where it is too long.
 pub(crate) fn shortened(name: &str, width: usize) -> String {
     let letters: Vec<char> = name.chars().collect();

@@ -171,21 +171,12 @@ pub(crate) fn begin<'s>(
     for node in nodes {
         let mut unknowns = Unknowns::of(stage, &program);
         unknowns.add(&program, hypothesis, &own_path, node);
-        let Unknowns {
-            varied,
-            start,
-            kept,
-        } = unknowns;
-        let set = ground.set_in(&program, &kept);
-        let problem = ground.problem(&program, &varied, &set, None);
-        let Ok(solution) = problem.solve_in(&start, FIRST_STEPS, Slopes::Tangents) else {
+        let Some(refit) = unknowns.fitted(ground, &program, FIRST_STEPS) else {
             continue;
         };
-        if best
-            .as_ref()
-            .is_none_or(|(known, ..)| solution.gain_over(known) > 0.0)
-        {
-            best = Some((solution, varied, kept));
+        let better = |(known, ..): &Refit| refit.0.gain_over(known) > 0.0;
+        if best.as_ref().is_none_or(better) {
+            best = Some(refit);
         }
     }
     let refit = best?;
@@ -214,14 +205,7 @@ pub(crate) fn together(
     for ((number, node), path) in nodes.iter().zip(own_paths) {
         unknowns.add(&program, &hypotheses[*number], path, node);
     }
-    let Unknowns {
-        varied,
-        start,
-        kept,
-    } = unknowns;
-    let set = ground.set_in(&program, &kept);
-    let problem = ground.problem(&program, &varied, &set, None);
-    let solution = problem.solve_in(&start, MAX_STEPS, Slopes::Tangents).ok()?;
+    let (solution, varied, kept) = unknowns.fitted(ground, &program, MAX_STEPS)?;
     Some(Stage {
         effects: list.into_iter().zip(paths).collect(),
         program,
@@ -404,6 +388,16 @@ impl Unknowns {
                 self.vary(program, name, knob, value, visible);
             }
         }
+    }
+
+    /// Fits them in so many steps at most; `None` where the model cannot be run.
+    fn fitted(self, ground: &Ground<'_>, program: &Program, steps: usize) -> Option<Refit> {
+        let set = ground.set_in(program, &self.kept);
+        let problem = ground.problem(program, &self.varied, &set, None);
+        let solution = problem
+            .solve_in(&self.start, steps, Slopes::Tangents)
+            .ok()?;
+        Some((solution, self.varied, self.kept))
     }
 
     fn vary(&mut self, program: &Program, name: String, knob: &Knob, value: f64, visible: f64) {

@@ -131,16 +131,12 @@ fn text(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> String
         let number =
             |value: f64| dimension.map_or_else(|| significant(value, 5), |d| engineering(value, d));
         let half = (parameter.interval.1 - parameter.interval.0) / 2.0;
-        let percent = format!(
-            "{} %",
-            significant(100.0 * (half / parameter.value).abs(), 2)
-        );
         let line = format!(
             "  {:<24} {:>13} {:>13} {:>7}  {}",
             parameter.name,
             number(parameter.nominal),
             number(parameter.value),
-            percent,
+            before_after::spread(half, parameter.value, number),
             suspicion(parameter)
         );
         let _ = writeln!(out, "{}", line.trim_end());

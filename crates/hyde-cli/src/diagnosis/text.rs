@@ -86,14 +86,13 @@ fn parameters(out: &mut String, told: &Told<'_>) {
         let unit = known.map_or_else(String::new, |(p, _)| p.dimension.usual_unit());
         let unit = if unit == "1" { String::new() } else { unit };
         let half = (new.interval.1 - new.interval.0) / 2.0;
-        let part = significant(100.0 * (half / new.value).abs(), 2);
         let line = format!(
             "  {:<18} {:>10} {:>10} {:>10} {:>8} {unit}",
             before_after::shortened(&new.name, 18),
             significant(new.nominal, 4),
             significant(old.value, 4),
             significant(new.value, 4),
-            format!("{part} %"),
+            before_after::spread(half, new.value, |half| significant(half, 2)),
         );
         let _ = writeln!(out, "{}", line.trim_end());
         if !suspicion(new).is_empty() {
