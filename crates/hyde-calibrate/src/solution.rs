@@ -16,7 +16,7 @@ pub struct Solution {
     pub weight: f64,
     /// Innovations of each record.
     pub innovations: Vec<Innovations>,
-    /// Half the second derivatives of the cost, in units of [`Varied`]'s scale: of the innovations and of the priors.
+    /// Half the second derivatives of the cost, in units of [`crate::Varied`]'s scale: of the innovations and of the priors.
     pub curvature: (DMatrix<f64>, DMatrix<f64>),
     /// How much the gradients of blocks of a second scatter: the sum of their squares, in the same units, and how many they
     /// are.
