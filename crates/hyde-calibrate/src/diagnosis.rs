@@ -9,7 +9,7 @@
 //! trial          a survivor fitted together with all parameters, and judged on folds      diagnosis/trial.rs
 //! contest        survivors beside each other: gates, and which of them is taken in        diagnosis/contest.rs
 //! profile        the last of a fit: numbers of effects at the bottom of their profiles    diagnosis/profile.rs
-//! search         forward, until nothing passes the gates                                  diagnosis/search.rs
+//! search         what is missing: the verdict and its findings                            diagnosis/search.rs
 //! forward        its branches, two at most, and their rounds                              diagnosis/forward.rs
 //! pair           two effects that show only together                                      diagnosis/pair.rs
 //! exchange       earlier effects once more against their rivals                           diagnosis/exchange.rs

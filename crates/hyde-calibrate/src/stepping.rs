@@ -2,7 +2,8 @@
 //!
 //! The linear part of the flow is that of the point where a combination of modes was first met. Bristles of friction decay
 //! the faster the faster they slide, by more than any such number: states that an effect brings along get their own slope
-//! at every step, and are carried by it alone (Hochbruck and Ostermann 2010, section 2.4, with a diagonal for the Jacobian).
+//! at every step where the linear part has another, and are carried by it alone (Hochbruck and Ostermann 2010, section 2.4,
+//! with a diagonal for the Jacobian).
 
 use crate::configuration::{Configuration, Places};
 use crate::dense::{add_product, set_product};

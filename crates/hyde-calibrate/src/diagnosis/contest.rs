@@ -85,7 +85,7 @@ fn refine(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial]) {
 /// best that passes.
 fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates) {
     trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    let mut plain: Option<[f64; 2]> = None;
+    let mut plain: Option<f64> = None;
     let mut passed: Option<f64> = None;
     for trial in trials {
         let gate = trial.gate(gates);
@@ -103,7 +103,7 @@ fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates)
             trial.rejected = Some(Rejection::Folds);
             continue;
         };
-        let gained = before[0] + before[1] - after[0] - after[1];
+        let gained = before - after;
         trial.fold_gain = Some(gained);
         if gained < gate.max(gates.material()) {
             trial.rejected = Some(Rejection::Folds);

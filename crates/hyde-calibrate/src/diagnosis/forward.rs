@@ -7,13 +7,12 @@
 
 use super::apart::Alternative;
 use super::contest::{Contest, contest};
-use super::exchange::{Exchange, Taken};
 use super::hypothesis::{Build, Hypothesis};
 use super::pair::pair;
 use super::projection::Projection;
 use super::prune::prune;
 use super::scan::{Scanner, Score};
-use super::search::{Gates, Round, explained};
+use super::search::{Gates, Round, explained, singular};
 use super::stage::{Ground, Stage};
 use super::trial::{Rejection, Trial};
 use crate::fit::inflation;
@@ -27,8 +26,15 @@ const MORE_ROUNDS: usize = 2;
 /// A runner-up has gained this part of what the best did.
 const RUNNER_UP: f64 = 0.8;
 
+/// An effect that was taken in.
+pub(crate) struct Taken {
+    /// The number of the round.
+    pub(crate) round: usize,
+    /// What the records cannot tell from it.
+    pub(crate) alternatives: Vec<Alternative>,
+}
+
 /// How far a branch of the search has come.
-#[derive(Clone)]
 pub(crate) struct Branch {
     pub(crate) stage: Stage,
     /// What is known of its effects, in their order.
@@ -70,10 +76,7 @@ impl Forward<'_> {
 
     /// The branch of the hypothesis that came next to the first one taken in, if it is not on that branch as well.
     fn runner_up(&self, first: &Branch) -> Result<Option<Branch>, Unsupported> {
-        let has = |trial: &Trial| {
-            let mut effects = first.stage.effects.iter();
-            effects.any(|(effect, _)| *effect == trial.hypothesis)
-        };
+        let has = |trial: &Trial| first.stage.has(trial.hypothesis);
         let Some(taken) = first.taken.first() else {
             return Ok(None);
         };
@@ -99,55 +102,33 @@ impl Forward<'_> {
     }
 
     /// Follows a branch to its end.
-    fn follow(&mut self, branch: Branch) -> Result<Branch, Unsupported> {
-        let Branch {
-            mut stage,
-            mut taken,
-        } = branch;
+    fn follow(&mut self, mut branch: Branch) -> Result<Branch, Unsupported> {
         // An effect that is dropped again makes room for another: so many rounds more at most.
         let most = self.rounds.len() + self.max_effects + MORE_ROUNDS;
-        while stage.effects.len() < self.max_effects && self.rounds.len() < most {
-            let round = self.rounds.len();
-            let Some((next, alternatives)) = self.round(&stage)? else {
+        while branch.stage.effects.len() < self.max_effects && self.rounds.len() < most {
+            if !self.round(&mut branch)? {
                 break;
-            };
-            stage = next;
-            taken.extend(alternatives.into_iter().map(|alternatives| Taken {
-                round,
-                alternatives,
-            }));
-            for number in prune(self.ground, &mut stage, self.build, self.gates) {
-                taken.remove(number);
             }
+            self.prune(&mut branch);
         }
-        let exchange = Exchange {
-            ground: self.ground,
-            hypotheses: self.hypotheses,
-            build: self.build,
-            gates: self.gates,
-            rounds: &self.rounds,
-        };
-        if exchange.exchange(&mut stage, &mut taken)? {
-            for number in prune(self.ground, &mut stage, self.build, self.gates) {
-                taken.remove(number);
-            }
+        if self.exchange(&mut branch)? {
+            self.prune(&mut branch);
         }
-        Ok(Branch { stage, taken })
+        Ok(branch)
     }
 
-    /// A round on a stage: the stage with what it takes in, and what the records cannot tell from each of that.
-    #[allow(
-        clippy::type_complexity,
-        reason = "a stage, and a list for each effect"
-    )]
-    fn round(
-        &mut self,
-        stage: &Stage,
-    ) -> Result<Option<(Stage, Vec<Vec<Alternative>>)>, Unsupported> {
+    /// Drops effects of a branch that are not missed any more.
+    fn prune(&self, branch: &mut Branch) {
+        for number in prune(self.ground, &mut branch.stage, self.build, self.gates) {
+            branch.taken.remove(number);
+        }
+    }
+
+    /// A round on a branch; whether it takes in anything.
+    fn round(&mut self, branch: &mut Branch) -> Result<bool, Unsupported> {
+        let stage = &branch.stage;
         let at = stage.linearise(self.ground)?;
-        let Some(projection) = Projection::new(stage, &at) else {
-            return Ok(None);
-        };
+        let projection = Projection::new(stage, &at).ok_or_else(singular)?;
         let scanner = Scanner {
             ground: self.ground,
             stage,
@@ -172,6 +153,7 @@ impl Forward<'_> {
             self.build,
             gates,
         );
+        // The stage with what is taken in, and what the records cannot tell from each of that.
         let next = match accepted {
             Some((best, alternatives)) => {
                 let next = trials[best].stage.polished(self.ground)?;
@@ -182,11 +164,22 @@ impl Forward<'_> {
             }
             None => None,
         };
+        let round = self.rounds.len();
         self.rounds.push(Round {
             scores,
             trials,
             gates,
         });
-        Ok(next)
+        let Some((next, each)) = next else {
+            return Ok(false);
+        };
+        branch.stage = next;
+        branch
+            .taken
+            .extend(each.into_iter().map(|alternatives| Taken {
+                round,
+                alternatives,
+            }));
+        Ok(true)
     }
 }

@@ -7,7 +7,7 @@
 //! fit        the few that promise most, on the model itself, as one effect with the freedoms of both
 //! ```
 
-use super::projection::Sums;
+use super::projection::{Sums, common};
 use super::scan::{Node, Scanner, Score};
 use super::search::Gates;
 use super::stage::Stage;
@@ -72,8 +72,7 @@ pub(crate) fn pair(scanner: &Scanner<'_>, scores: &[Score], gates: Gates) -> Opt
         let fitted = together(ground, stage, scanner.hypotheses, &nodes, scanner.build)?;
         let freedoms = fitted.varied.len() - stage.varied.len();
         let gate = gates.gain(freedoms) * inflation;
-        let seen = unseen(ground, &fitted)?;
-        let unseen = plain[0] + plain[1] - seen[0] - seen[1];
+        let unseen = plain - unseen(ground, &fitted)?;
         let gain = fitted.solution.gain_over(&stage.solution);
         let passes = gain >= gate && unseen >= gate.max(gates.material());
         passes.then_some((unseen, fitted))
@@ -98,7 +97,7 @@ fn half<'s>(scanner: &Scanner<'_>, score: &'s Score) -> Option<Half<'s>> {
 
 /// What two promise together, their sizes within their ranges.
 fn promise<'s>(scanner: &Scanner<'_>, a: &'s Half<'s>, b: &'s Half<'s>) -> Option<Promise<'s>> {
-    let common = super::projection::common(&a.columns, &b.columns);
+    let common = common(&a.columns, &b.columns);
     let answer = scanner
         .projection
         .answer_from(&a.sums.beside(&b.sums, &common));

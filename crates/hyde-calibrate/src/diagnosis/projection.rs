@@ -49,7 +49,6 @@ impl Answer {
 }
 
 /// Products of columns: with the derivatives, with each other, with the innovations.
-#[derive(Clone)]
 pub(crate) struct Sums {
     onto: DMatrix<f64>,
     own: DMatrix<f64>,
@@ -142,10 +141,13 @@ impl Projection {
 
     /// Products of columns with all there is.
     pub(crate) fn sums(&self, columns: &[Vec<f64>]) -> Sums {
-        let columns = matrix(self.innovations.len(), columns);
+        self.sums_of(&matrix(self.innovations.len(), columns))
+    }
+
+    fn sums_of(&self, columns: &DMatrix<f64>) -> Sums {
         Sums {
-            onto: self.derivatives.tr_mul(&columns),
-            own: columns.tr_mul(&columns),
+            onto: self.derivatives.tr_mul(columns),
+            own: columns.tr_mul(columns),
             with_innovations: columns.tr_mul(&self.innovations),
         }
     }
@@ -166,8 +168,8 @@ impl Projection {
         columns: &[Vec<f64>],
         others: impl Iterator<Item = Vec<f64>>,
     ) -> Vec<f64> {
-        let sums = self.sums(columns);
         let columns = matrix(self.innovations.len(), columns);
+        let sums = self.sums_of(&columns);
         let gain = |innovations| {
             let innovations = DVector::from_vec(innovations);
             let h = self.derivatives.tr_mul(&innovations);
@@ -178,7 +180,7 @@ impl Projection {
         others.map(gain).collect()
     }
 
-    /// The sizes that gain most if the answer is linear, from products: of derivatives, of columns, and of innovations with columns.
+    /// The same from products apart: of derivatives, of columns, and of innovations with columns.
     fn answer_to(
         &self,
         onto: &DMatrix<f64>,

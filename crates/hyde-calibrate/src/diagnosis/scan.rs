@@ -154,12 +154,10 @@ impl Scanner<'_> {
     /// What tangents promise of a hypothesis, over the grid of its shapes; `None` where it cannot be put on the model.
     fn promised(&self, number: usize) -> Option<Promised> {
         let hypothesis = &self.hypotheses[number];
-        let known = self.stage.effects.iter().map(|(effect, _)| *effect);
-        if !hypothesis.repeats() && known.clone().any(|effect| effect == number) {
+        if !hypothesis.repeats() && self.stage.has(number) {
             return None;
         }
-        let list: Vec<usize> = known.chain([number]).collect();
-        let Built { program, paths } = (self.build)(&list)?;
+        let Built { program, paths } = (self.build)(&self.stage.numbers_with(&[number]))?;
         let before = &self.stage.program;
         let path = paths.last()?.clone();
         let sizes = Hypothesis::names(&hypothesis.sizes, &path);
@@ -255,19 +253,9 @@ impl Scanner<'_> {
 
     /// How innovations change a unit of each size of a hypothesis, by tangents; `None` where it cannot be put on the model.
     pub(crate) fn columns(&self, number: usize, shapes: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let hypothesis = &self.hypotheses[number];
-        let known = self.stage.effects.iter().map(|(effect, _)| *effect);
-        let list: Vec<usize> = known.chain([number]).collect();
-        let Built { program, paths } = (self.build)(&list)?;
-        let path = paths.last()?;
-        let runs = Runs {
-            ground: self.ground,
-            program: &program,
-            values: self.stage.values(),
-            sizes: Hypothesis::names(&hypothesis.sizes, path),
-            shapes: Hypothesis::names(&hypothesis.shapes, path),
-        };
-        runs.columns(hypothesis, shapes)
+        let Built { program, paths } = (self.build)(&self.stage.numbers_with(&[number]))?;
+        let runs = self.runs_of(number, &program, paths.last()?);
+        runs.columns(&self.hypotheses[number], shapes)
     }
 
     /// Tries sizes all over the range of what has modes of its own: tangents tell little of it.
@@ -335,13 +323,18 @@ impl Scanner<'_> {
     }
 
     fn runs<'r>(&'r self, promised: &'r Promised) -> Runs<'r> {
-        let hypothesis = &self.hypotheses[promised.number];
+        self.runs_of(promised.number, &promised.program, &promised.path)
+    }
+
+    /// Runs of a hypothesis whose instance in a program has a path.
+    fn runs_of<'r>(&'r self, number: usize, program: &'r Program, path: &str) -> Runs<'r> {
+        let hypothesis = &self.hypotheses[number];
         Runs {
             ground: self.ground,
-            program: &promised.program,
+            program,
             values: self.stage.values(),
-            sizes: Hypothesis::names(&hypothesis.sizes, &promised.path),
-            shapes: Hypothesis::names(&hypothesis.shapes, &promised.path),
+            sizes: Hypothesis::names(&hypothesis.sizes, path),
+            shapes: Hypothesis::names(&hypothesis.shapes, path),
         }
     }
 }

@@ -7,8 +7,7 @@
 //! number of innovations. Everything is chosen inside the records to fit.
 
 use super::apart::Alternative;
-use super::exchange::Taken;
-use super::forward::{Branch, Forward};
+use super::forward::{Branch, Forward, Taken};
 use super::hypothesis::{Build, Built, Hypothesis};
 use super::scan::Score;
 use super::stage::{Ground, Stage};
@@ -149,7 +148,6 @@ pub fn diagnose(
         observer,
         set,
     };
-    let singular = || Unsupported::Start("the equations are singular".to_owned());
     let Built { program, .. } = build(&[]).ok_or_else(singular)?;
     let settings = ground.set_in(&program, &[]);
     let start: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
@@ -205,6 +203,11 @@ pub fn diagnose(
         unexplained,
         unknown: None,
     })
+}
+
+/// The equations do not say what the model does.
+pub(super) fn singular() -> Unsupported {
+    Unsupported::Start("the equations are singular".to_owned())
 }
 
 /// The part of what was more than noise that is explained.

@@ -96,6 +96,21 @@ impl Stage {
         })
     }
 
+    /// The numbers of the hypotheses taken in.
+    pub(crate) fn numbers(&self) -> Vec<usize> {
+        self.effects.iter().map(|(number, _)| *number).collect()
+    }
+
+    /// The same, and others behind them.
+    pub(crate) fn numbers_with(&self, others: &[usize]) -> Vec<usize> {
+        [self.numbers().as_slice(), others].concat()
+    }
+
+    /// Whether a hypothesis is among those taken in.
+    pub(crate) fn has(&self, hypothesis: usize) -> bool {
+        self.effects.iter().any(|(number, _)| *number == hypothesis)
+    }
+
     /// Numbers of the sizes of an effect among what is varied, by the path of its instance.
     pub(crate) fn sizes_of(&self, path: &str) -> Vec<usize> {
         let is_size = |number: &usize| {

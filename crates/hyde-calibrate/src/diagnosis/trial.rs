@@ -158,8 +158,7 @@ pub(crate) fn begin<'s>(
     build: &Build<'_>,
 ) -> Option<Begun<'s>> {
     let hypothesis = &hypotheses[score.hypothesis];
-    let mut list: Vec<usize> = stage.effects.iter().map(|(effect, _)| *effect).collect();
-    list.push(score.hypothesis);
+    let list = stage.numbers_with(&[score.hypothesis]);
     let Built { program, paths } = build(&list)?;
     let own_path = paths.last()?.clone();
     // A few steps from every node, the rest from the best of them.
@@ -197,8 +196,8 @@ pub(crate) fn together(
     nodes: &[(usize, Node)],
     build: &Build<'_>,
 ) -> Option<Stage> {
-    let known = stage.effects.iter().map(|(effect, _)| *effect);
-    let list: Vec<usize> = known.chain(nodes.iter().map(|(own, _)| *own)).collect();
+    let own: Vec<usize> = nodes.iter().map(|(own, _)| *own).collect();
+    let list = stage.numbers_with(&own);
     let Built { program, paths } = build(&list)?;
     let mut unknowns = Unknowns::of(stage, &program);
     let own_paths = &paths[stage.effects.len()..];
@@ -249,12 +248,9 @@ pub(crate) fn finish(
     if large {
         solution = fit(&solution, &varied)?;
     }
-    let found = varied[sizes.clone()]
-        .iter()
-        .zip(&solution.values[sizes.clone()]);
-    let at_bound = found
-        .into_iter()
-        .any(|(size, &value)| is_on_bound(value, size.bounds));
+    let at_bound = sizes
+        .clone()
+        .any(|size| is_on_bound(solution.values[size], varied[size].bounds));
     let limited = large
         || (sizes.end..own.end).any(|number| {
             let mut shapes = hypothesis.shapes.iter();
@@ -330,10 +326,10 @@ fn values_of(names: &[String], stage: &Stage) -> Vec<f64> {
     names.iter().map(value).collect()
 }
 
-/// Costs on each half of the records after a fit to the other.
-pub(crate) fn unseen(ground: &Ground<'_>, stage: &Stage) -> Option<[f64; 2]> {
+/// The costs on each half of the records after a fit to the other, together.
+pub(crate) fn unseen(ground: &Ground<'_>, stage: &Stage) -> Option<f64> {
     let set = ground.set_in(&stage.program, &stage.kept);
-    let half = |odd: bool| {
+    let half = |odd: bool| -> Option<f64> {
         let fold = Fold { odd };
         let seen = ground.problem(&stage.program, &stage.varied, &set, Some(fold));
         let solution = seen
@@ -344,7 +340,7 @@ pub(crate) fn unseen(ground: &Ground<'_>, stage: &Stage) -> Option<[f64; 2]> {
         Some(innovations.iter().map(Innovations::sum_of_squares).sum())
     };
     let (even, odd) = rayon::join(|| half(false), || half(true));
-    Some([even?, odd?])
+    Some(even? + odd?)
 }
 
 /// What is varied in a fit, with its start, and what stays.

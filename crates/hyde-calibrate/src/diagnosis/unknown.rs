@@ -28,11 +28,11 @@ pub use law::{Law, Summand};
 pub use map::{Map, Panel, Variable};
 pub use site::{Kind, Site, Written};
 
-use super::exchange::Taken;
+use super::forward::Taken;
 use super::hypothesis::{Built, Hypothesis};
 use super::projection::{Projection, dot};
 use super::scan::{Node, Score};
-use super::search::{Diagnosis, Gates, Verdict, explained, findings};
+use super::search::{Diagnosis, Gates, Verdict, explained, findings, singular};
 use super::stage::{Ground, Stage};
 use super::trial::{Trial, trial, unseen};
 use crate::fit::inflation;
@@ -131,9 +131,9 @@ pub fn propose(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis) -> Result<(), U
     let gates = Gates { tried, innovations };
     // What was taken in before may have stood for the unknown effect: the law alone is the answer where it does as well
     // as both, and where it does significantly better than what was taken in, or as well with fewer constants.
+    let gate = gates.gain(1) * inflation(&last.solution.innovations);
     let mut answer = None;
     if !last.effects.is_empty() {
-        let gate = gates.gain(1) * inflation(&last.solution.innovations);
         let constants = last.varied.len() + last.kept.len() - base.varied.len();
         let better = |alone: &Answer| {
             alone.solution().is_some_and(|(solution, freedoms)| {
@@ -153,7 +153,6 @@ pub fn propose(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis) -> Result<(), U
         let as_good = |alone: &Answer| {
             let both = both.as_ref().and_then(Answer::solution);
             let alone = alone.solution();
-            let gate = gates.gain(1) * inflation(&last.solution.innovations);
             alone
                 .zip(both)
                 .is_none_or(|(alone, both)| alone.0.gain_over(both.0) >= -gate)
@@ -200,13 +199,10 @@ impl Answer {
             found,
         } = self;
         map::add_bands(&mut map, &place, &projection);
-        let mut start = 0;
-        let latent = place.carriers.iter().filter_map(|carrier| {
-            let end = start + carrier.lengths().iter().sum::<usize>();
-            let own = &projection.innovations.as_slice()[start..end];
-            start = end;
-            latent::smoothed(carrier, own)
-        });
+        let innovations = projection.innovations.as_slice();
+        let latent = place.parts();
+        let latent =
+            latent.filter_map(|(carrier, own)| latent::smoothed(carrier, &innovations[own]));
         let latent = latent.collect();
         let (found, trial) = found.unzip();
         let unknown = Unknown {
@@ -221,7 +217,6 @@ impl Answer {
 
 /// The model without any effect, and with those of the diagnosis.
 fn stages(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> Result<(Stage, Stage), Unsupported> {
-    let singular = || Unsupported::Start("the equations are singular".to_owned());
     let list: Vec<usize> = diagnosis.findings.iter().map(|f| f.hypothesis).collect();
     let paths = (inquiry.author)(&list, &[]).ok_or_else(singular)?.paths;
     let last = Stage {
@@ -354,8 +349,7 @@ fn fitted(
     if trial.rejected.is_some() || trial.gain < gate {
         return None;
     }
-    let (before, after) = (unseen(ground, stage)?, unseen(ground, &trial.stage)?);
-    let fold_gain = before[0] + before[1] - after[0] - after[1];
+    let fold_gain = unseen(ground, stage)? - unseen(ground, &trial.stage)?;
     if fold_gain < gate.max(gates.material()) {
         return None;
     }
@@ -414,9 +408,4 @@ fn take_in(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis, answer: Option<Answ
         diagnosis.verdict = Verdict::Unknown;
     }
     diagnosis.unknown = Some(unknown);
-}
-
-/// The hypotheses that a stage has taken in.
-fn numbers(stage: &Stage) -> Vec<usize> {
-    stage.effects.iter().map(|(number, _)| *number).collect()
 }

@@ -21,12 +21,14 @@ pub(super) fn sentence(told: &Told<'_>) -> String {
         Verdict::Unknown => {
             let unknown = told.found.unknown.as_ref();
             let names = names.join(", then ");
-            let more = match told.found.unexplained {
-                true => ", and something more",
-                false => "",
-            };
             match unknown.and_then(|unknown| unknown.found.as_ref()) {
-                Some(_) => format!("missing is {names}, an effect that no library has{more}"),
+                Some(_) => {
+                    let more = match told.found.unexplained {
+                        true => ", and something more",
+                        false => "",
+                    };
+                    format!("missing is {names}, an effect that no library has{more}")
+                }
                 None => format!(
                     "something is missing that no effect known is; a part of it looks like {names}"
                 ),
@@ -111,11 +113,8 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
                 named(hypothesis)
             ));
         }
-        let sizes = finding.sizes.iter().zip(&hypothesis.sizes);
-        if sizes
-            .into_iter()
-            .any(|(size, knob)| knob.is_beyond(size.value))
-        {
+        let mut sizes = finding.sizes.iter().zip(&hypothesis.sizes);
+        if sizes.any(|(size, knob)| knob.is_beyond(size.value)) {
             doubts.push(format!(
                 "{} is larger than its library expects of any axis",
                 named(hypothesis)

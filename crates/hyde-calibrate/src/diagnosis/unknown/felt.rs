@@ -1,14 +1,15 @@
 //! [`Felt`]: a site with a probe run along every record.
 
+use super::Author;
 use super::factor::{Scales, Seen};
 use super::latent::Carrier;
 use super::law::Summand;
 use super::site::{Site, probe};
-use super::{Author, numbers};
 use crate::diagnosis::projection::dot;
 use crate::diagnosis::stage::{Ground, Stage};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// A site as the records show it.
 pub(crate) struct Felt {
@@ -29,7 +30,7 @@ impl Felt {
         site: &Site,
         author: &Author<'_>,
     ) -> Option<Self> {
-        let built = author(&numbers(stage), &[probe(site, PROBE)])?;
+        let built = author(&stage.numbers(), &[probe(site, PROBE)])?;
         let path = built.paths.last()?;
         let set = ground.set_in(&built.program, &stage.values());
         let carriers: Option<Vec<Carrier>> = ground
@@ -83,14 +84,21 @@ impl Felt {
 
     /// What unit forces in each row of each record have in common with some changes of innovations.
     pub(crate) fn common(&self, changes: &[Vec<f64>]) -> Vec<Vec<Vec<f64>>> {
-        let mut start = 0;
-        let each = self.carriers.iter().map(|carrier| {
-            let own = start..start + carrier.lengths().iter().sum::<usize>();
-            start = own.end;
+        let each = self.parts().map(|(carrier, own)| {
             let of = |change: &Vec<f64>| carrier.common(&change[own.clone()]);
             changes.iter().map(of).collect()
         });
         each.collect()
+    }
+
+    /// Each record with the place of its innovations among those of all.
+    pub(crate) fn parts(&self) -> impl Iterator<Item = (&Carrier, Range<usize>)> {
+        let mut end = 0;
+        self.carriers.iter().map(move |carrier| {
+            let start = end;
+            end += carrier.lengths().iter().sum::<usize>();
+            (carrier, start..end)
+        })
     }
 
     /// The changes of innovations by forces given along every record: a function of the record's number.
