@@ -32,6 +32,7 @@ mod mode_fit;
 mod models;
 mod multirate;
 mod observer;
+mod orders;
 mod pairs;
 mod paper;
 mod points;

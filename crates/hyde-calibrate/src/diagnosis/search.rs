@@ -12,6 +12,7 @@ use super::hypothesis::{Build, Built, Hypothesis};
 use super::scan::Score;
 use super::stage::{Ground, Stage};
 use super::trial::Trial;
+use super::whole::whole;
 use crate::fit::{correlation, covariance, inflation, mean_square};
 use crate::gain::Observer;
 use crate::plant::Unsupported;
@@ -182,6 +183,7 @@ pub fn diagnose(
     };
     let Branch { stage, taken } = search.search(stage)?;
     let rounds = search.rounds;
+    let stage = whole(&ground, hypotheses, stage)?;
     let findings = findings(&stage, hypotheses, taken);
     let unexplained = !explained(&stage.solution);
     let verdict = match findings.as_slice() {
