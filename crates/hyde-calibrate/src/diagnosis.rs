@@ -15,7 +15,7 @@
 //! exchange       earlier effects once more against their rivals                           diagnosis/exchange.rs
 //! apart          the experiment that would tell alternatives apart                        diagnosis/apart.rs
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
-//! whole          orders of angles that may be whole numbers are                           diagnosis/whole.rs
+//! whole          orders of angles that are likelier whole numbers                         diagnosis/whole.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 

@@ -182,8 +182,8 @@ pub fn diagnose(
         rounds: Vec::new(),
     };
     let Branch { stage, taken } = search.search(stage)?;
-    let rounds = search.rounds;
     let stage = whole(&ground, hypotheses, stage)?;
+    let rounds = search.rounds;
     let findings = findings(&stage, hypotheses, taken);
     let unexplained = !explained(&stage.solution);
     let verdict = match findings.as_slice() {

@@ -1,44 +1,46 @@
-//! [`whole`]: an order that may be a whole number is one.
+//! [`whole`]: an order that is likelier a whole number is one.
 //!
 //! ```text
 //! order = 0.9998 ± 0.0003    ->    order = 1 ± 0.0003, everything else fitted with that
 //! ```
 //! What is fixed to a shaft comes back with each of its turns, so the orders of wobble, eccentricity and magnets are whole
-//! numbers; those of balls and cages are not, and are told apart where the data say so. An order that is a little off runs
-//! out of step over many turns, which shows where a model is used beyond what it was fitted to.
+//! numbers; those of balls and cages are not. Beforehand an order is as likely a whole number as any other, and there is one
+//! of them to a unit: it is one where the density of what the records tell of it exceeds 1 there (the Bayes factor of a point
+//! against an even spread; Jeffreys, Theory of Probability, 3rd ed. 1961, chapter 5). An order that is a little off runs out of
+//! step over many turns, which shows where a model is used beyond what it was fitted to.
 
 use super::hypothesis::Hypothesis;
-use super::search::chi_squared;
 use super::stage::{Ground, Stage};
 use crate::fit::{covariance, inflation};
 use crate::plant::Unsupported;
 
-/// Half the width of a 95 % interval, in standard deviations.
-const TWO_SIDED: f64 = 1.96;
-/// The fit with the whole number may be worse by what chance makes of it in one of so many records.
-const CHANCE: f64 = 0.01;
+/// A whole number further off than this many standard deviations is not tried.
+const FURTHEST: f64 = 6.0;
 
-/// The stage with every order at a whole number whose interval holds one, where that fits as well.
+/// The stage with every order at the whole number beside it where that is likelier.
 pub(crate) fn whole(
     ground: &Ground<'_>,
     hypotheses: &[Hypothesis],
     mut stage: Stage,
 ) -> Result<Stage, Unsupported> {
-    let inflation = inflation(&stage.solution.innovations);
     for name in orders(hypotheses, &stage) {
-        let Some(number) = stage.varied.iter().position(|varied| varied.name == name) else {
+        let place = stage.varied.iter().position(|varied| varied.name == name);
+        let Some((number, (deviation, overstated))) =
+            place.and_then(|number| Some((number, told(&stage, number)?)))
+        else {
             continue;
         };
-        let variance = covariance(&stage.solution, inflation)[(number, number)];
-        let half = TWO_SIDED * variance.max(0.0).sqrt() * stage.varied[number].scale();
-        let Some(order) = whole_within(stage.solution.values[number], half) else {
+        let value = stage.solution.values[number];
+        let order = value.round().max(1.0);
+        let apart = (value - order).abs() / deviation;
+        if apart > FURTHEST || !likelier(apart * apart, deviation) {
             continue;
-        };
+        }
         let mut fixed = stage.clone();
         fixed.varied[number].bounds = (order, order);
         let fixed = fixed.polished(ground)?;
         let loss = -fixed.solution.gain_over(&stage.solution);
-        if loss <= inflation * chi_squared(1, CHANCE) {
+        if likelier(loss / overstated, deviation) {
             stage = fixed;
         }
     }
@@ -56,10 +58,18 @@ fn orders(hypotheses: &[Hypothesis], stage: &Stage) -> Vec<String> {
     each.collect()
 }
 
-/// The whole number from 1 on that is so near, if there is one alone.
-fn whole_within(value: f64, half: f64) -> Option<f64> {
-    let order = value.round();
-    (order >= 1.0 && half < 0.5 && (value - order).abs() <= half).then_some(order)
+/// The standard deviation of a number, and by how much sums of squares overstate what is known of it.
+fn told(stage: &Stage, number: usize) -> Option<(f64, f64)> {
+    let independent = stage.solution.inverse_curvature()?[(number, number)];
+    let inflation = inflation(&stage.solution.innovations);
+    let variance = covariance(&stage.solution, inflation)[(number, number)];
+    let deviation = variance.sqrt() * stage.varied[number].scale();
+    (deviation > 0.0 && independent > 0.0).then(|| (deviation, variance / independent))
+}
+
+/// Whether a point is likelier than an even spread of one to a unit: its squared distance in deviations, and the deviation.
+fn likelier(squared: f64, deviation: f64) -> bool {
+    (-0.5 * squared).exp() > std::f64::consts::TAU.sqrt() * deviation
 }
 
 #[cfg(test)]
@@ -67,11 +77,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_whole_number_alone_is_within() {
-        assert_eq!(whole_within(0.9998, 0.0003), Some(1.0));
-        assert_eq!(whole_within(0.9998, 0.0001), None);
-        assert_eq!(whole_within(7.4, 0.6), None);
-        assert_eq!(whole_within(0.1, 0.2), None);
-        assert_eq!(whole_within(4.0, f64::NAN), None);
+    fn a_point_is_likelier_the_better_it_is_known() {
+        // exp(-z^2/2) = sqrt(2 pi) s at z = 3.99 for s = 1.4e-4, at z = 2.04 for s = 0.05; never where s > 0.4.
+        assert!(likelier(3.9_f64.powi(2), 1.4e-4) && !likelier(4.1_f64.powi(2), 1.4e-4));
+        assert!(likelier(2.0_f64.powi(2), 0.05) && !likelier(2.1_f64.powi(2), 0.05));
+        assert!(!likelier(0.0, 0.4));
     }
 }
