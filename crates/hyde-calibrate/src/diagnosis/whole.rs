@@ -13,6 +13,7 @@ use super::hypothesis::Hypothesis;
 use super::stage::{Ground, Stage};
 use crate::fit::{covariance, inflation};
 use crate::plant::Unsupported;
+use crate::solution::Solution;
 
 /// A whole number further off than this many standard deviations is not tried.
 const FURTHEST: f64 = 6.0;
@@ -36,15 +37,34 @@ pub(crate) fn whole(
         if apart > FURTHEST || !likelier(apart * apart, deviation) {
             continue;
         }
-        let mut fixed = stage.clone();
-        fixed.varied[number].bounds = (order, order);
-        let fixed = fixed.polished(ground)?;
+        let fixed = fixed(ground, &stage, number, order)?;
         let loss = -fixed.solution.gain_over(&stage.solution);
         if likelier(loss / overstated, deviation) {
             stage = fixed;
         }
     }
     Ok(stage)
+}
+
+/// The stage with a number at a value, fitted from where the others follow it.
+fn fixed(
+    ground: &Ground<'_>,
+    stage: &Stage,
+    number: usize,
+    value: f64,
+) -> Result<Stage, Unsupported> {
+    let Solution { values, .. } = &stage.solution;
+    let mut fixed = stage.clone();
+    fixed.varied[number].bounds = (value, value);
+    let set = ground.set_in(&fixed.program, &fixed.kept);
+    let problem = ground.problem(&fixed.program, &fixed.varied, &set, None);
+    let step = stage.solution.inverse_curvature().map(|inverse| {
+        let way = (value - values[number]) / stage.varied[number].scale();
+        inverse.column(number) * (way / inverse[(number, number)])
+    });
+    let start = step.map_or_else(|| values.clone(), |step| problem.moved(values, &step));
+    fixed.solution = problem.solve(&start)?;
+    Ok(fixed)
 }
 
 /// Full names of the orders of an angle among the shapes of what was taken in; periods in space have a unit.
