@@ -73,6 +73,14 @@ impl Hypothesis {
         a.unit == b.unit && stem(&a.name, 's').is_some() && stem(&a.name, 's') == stem(&b.name, 'c')
     }
 
+    /// How many of its sizes make it what it is: the first, and those of its unit behind that. A spring with a pull beside its
+    /// stiffness is a constant force where it has none.
+    pub(crate) fn essential(&self) -> usize {
+        let unit = self.sizes.first().map(|first| &first.unit);
+        let alike = |size: &&Knob| Some(&size.unit) == unit;
+        self.sizes.iter().take_while(alike).count()
+    }
+
     /// Whether it may be there twice: with another period, order or frequency. All else would be one that is larger.
     pub(crate) fn repeats(&self) -> bool {
         self.periodic.is_some() || self.resonant.is_some()

@@ -75,6 +75,8 @@ pub struct Trial {
     names: Vec<String>,
     /// Numbers of the sizes among what its stage varies, and whether it is linear in them.
     own: Range<usize>,
+    /// How many of them make it what it is ([`Hypothesis::essential`]).
+    essential: usize,
     linear: bool,
     pub(crate) stage: Stage,
 }
@@ -86,7 +88,7 @@ impl Trial {
     }
 
     /// Whether its sizes are told from 0 by the slopes too, its shapes held, where it is linear: a fit that was stuck before
-    /// gains by every column that moves it on.
+    /// gains by every column that moves it on. Only what makes it what it is counts.
     pub(super) fn is_told(&self) -> bool {
         if !self.linear {
             return true;
@@ -94,11 +96,12 @@ impl Trial {
         let sizes = self.own.clone();
         let solution = &self.stage.solution;
         let covariance = covariance_of_first(solution, self.inflation, sizes.end);
-        let varied = &self.stage.varied[sizes.clone()];
-        let pairs = varied.iter().zip(&solution.values[sizes.clone()]);
+        let count = self.essential.min(sizes.len());
+        let essential = sizes.start..sizes.start + count;
+        let varied = &self.stage.varied[essential.clone()];
+        let pairs = varied.iter().zip(&solution.values[essential]);
         let values: Vec<f64> = pairs.map(|(own, value)| value / own.scale()).collect();
         let values = DVector::from_vec(values);
-        let count = sizes.len();
         let own = covariance.view((sizes.start, sizes.start), (count, count));
         let inverse = own.into_owned().try_inverse();
         inverse.is_some_and(|inverse| {
@@ -292,6 +295,7 @@ pub(crate) fn finish(
         freedoms: own.len(),
         limited,
         own: sizes,
+        essential: hypothesis.essential(),
         linear: score.linear,
         rejected,
         values: values_of(&names, &new),
