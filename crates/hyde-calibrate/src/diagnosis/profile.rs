@@ -56,7 +56,7 @@ pub(crate) fn profiled(
 }
 
 /// How everything follows one number, by a standard deviation of it.
-fn direction(covariance: &DMatrix<f64>, number: usize) -> Option<DVector<f64>> {
+pub(super) fn direction(covariance: &DMatrix<f64>, number: usize) -> Option<DVector<f64>> {
     let variance = covariance[(number, number)];
     (variance > 0.0).then(|| covariance.column(number) / variance.sqrt())
 }

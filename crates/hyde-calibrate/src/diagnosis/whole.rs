@@ -10,6 +10,7 @@
 //! step over many turns, which shows where a model is used beyond what it was fitted to.
 
 use super::hypothesis::Hypothesis;
+use super::profile::direction;
 use super::stage::{Ground, Stage};
 use crate::fit::{covariance, inflation};
 use crate::plant::Unsupported;
@@ -58,11 +59,13 @@ fn fixed(
     fixed.varied[number].bounds = (value, value);
     let set = ground.set_in(&fixed.program, &fixed.kept);
     let problem = ground.problem(&fixed.program, &fixed.varied, &set, None);
-    let step = stage.solution.inverse_curvature().map(|inverse| {
-        let way = (value - values[number]) / stage.varied[number].scale();
-        inverse.column(number) * (way / inverse[(number, number)])
-    });
-    let start = step.map_or_else(|| values.clone(), |step| problem.moved(values, &step));
+    let inverse = stage.solution.inverse_curvature();
+    let direction = inverse.and_then(|inverse| direction(&inverse, number));
+    let way = (value - values[number]) / stage.varied[number].scale();
+    let start = direction.map_or_else(
+        || values.clone(),
+        |direction| problem.moved(values, &(way / direction[number] * &direction)),
+    );
     fixed.solution = problem.solve(&start)?;
     Ok(fixed)
 }
