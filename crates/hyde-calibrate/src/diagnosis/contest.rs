@@ -21,12 +21,13 @@ pub(crate) struct Contest {
     pub(crate) accepted: Option<(usize, Vec<Alternative>)>,
 }
 
-/// Fits some hypotheses on a stage, from the nodes of their scores.
+/// Fits some hypotheses on a stage, from the nodes of their scores, beside those of an earlier contest on it.
 pub(crate) fn contest(
     ground: &Ground<'_>,
     stage: &Stage,
     hypotheses: &[Hypothesis],
     scores: Vec<&Score>,
+    earlier: Vec<Trial>,
     build: &Build<'_>,
     gates: Gates,
 ) -> Contest {
@@ -34,14 +35,14 @@ pub(crate) fn contest(
         .into_par_iter()
         .filter_map(|score| begin(ground, stage, hypotheses, score, build))
         .collect();
-    let ahead = begun.iter().map(|begun| begun.gain).fold(0.0, f64::max);
-    let mut trials: Vec<Trial> = begun
-        .into_par_iter()
-        .filter_map(|begun| {
-            let worth = begun.gain >= WORTH * ahead;
-            finish(ground, stage, hypotheses, begun, worth)
-        })
-        .collect();
+    let gains = begun.iter().map(|begun| begun.gain);
+    let gains = gains.chain(earlier.iter().map(|trial| trial.gain));
+    let ahead = gains.fold(0.0, f64::max);
+    let mut trials = earlier;
+    trials.par_extend(begun.into_par_iter().filter_map(|begun| {
+        let worth = begun.gain >= WORTH * ahead;
+        finish(ground, stage, hypotheses, begun, worth)
+    }));
     refine(ground, stage, &mut trials);
     judge(ground, stage, &mut trials, gates);
     let rank = |trial: &Trial| {
@@ -96,6 +97,10 @@ fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates)
             .or((trial.gain < gate || !trial.is_told()).then_some(Rejection::Gain))
             .or(behind.then_some(Rejection::Behind));
         if trial.rejected.is_some() {
+            continue;
+        }
+        if trial.fold_gain.is_some() {
+            passed = Some(passed.unwrap_or(trial.gain));
             continue;
         }
         plain = plain.or_else(|| unseen(ground, stage));

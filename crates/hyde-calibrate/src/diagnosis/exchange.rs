@@ -38,6 +38,7 @@ impl Forward<'_> {
                 &less,
                 self.hypotheses,
                 rivals,
+                Vec::new(),
                 self.build,
                 self.gates,
             );

@@ -18,9 +18,11 @@ use super::trial::{Rejection, Trial};
 use crate::fit::inflation;
 use crate::plant::Unsupported;
 
-/// Hypotheses fitted in a round at most, and the part of the best score that they must have.
+/// Hypotheses fitted in a round at first, and the part of the best score that they must have.
 const SURVIVORS: usize = 6;
 const SURVIVING: f64 = 0.05;
+/// Of as many more, those that have this part of it, where something is left beside the best.
+const NEARLY: f64 = 0.5;
 /// Rounds beside one an effect.
 const MORE_ROUNDS: usize = 2;
 /// A runner-up has gained this part of what the best did.
@@ -124,6 +126,37 @@ impl Forward<'_> {
         }
     }
 
+    /// Fits what scores best on a stage. Effects that are alike where each is large score alike, whichever is there: where
+    /// the best leaves something, as many more that score nearly as much are fitted beside it.
+    fn fitted(&self, stage: &Stage, scores: &[Score]) -> Contest {
+        let best = scores.first().map_or(0.0, Score::gain);
+        let with = |part: f64| {
+            let least = (part * best).max(self.gates.gain(1));
+            scores.iter().take_while(move |score| score.gain() >= least)
+        };
+        let fit = |scores: Vec<&Score>, earlier: Vec<Trial>| {
+            contest(
+                self.ground,
+                stage,
+                self.hypotheses,
+                scores,
+                earlier,
+                self.build,
+                self.gates,
+            )
+        };
+        let first = fit(with(SURVIVING).take(SURVIVORS).collect(), Vec::new());
+        let solution = |best: usize| &first.trials[best].stage.solution;
+        let accepted = first.accepted.as_ref();
+        let left = accepted.is_some_and(|(best, _)| !explained(solution(*best)));
+        let more: Vec<&Score> = with(NEARLY).skip(SURVIVORS).take(SURVIVORS).collect();
+        if left && !more.is_empty() {
+            fit(more, first.trials)
+        } else {
+            first
+        }
+    }
+
     /// A round on a branch; whether it takes in anything.
     fn round(&mut self, branch: &mut Branch) -> Result<bool, Unsupported> {
         let stage = &branch.stage;
@@ -140,19 +173,7 @@ impl Forward<'_> {
         let scores = scanner.scores();
         self.gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
         let gates = self.gates;
-        let best = scores.first().map_or(0.0, Score::gain);
-        let survivors = scores
-            .iter()
-            .take_while(|score| score.gain() >= (SURVIVING * best).max(gates.gain(1)));
-        let survivors: Vec<&Score> = survivors.take(SURVIVORS).collect();
-        let Contest { trials, accepted } = contest(
-            self.ground,
-            stage,
-            self.hypotheses,
-            survivors,
-            self.build,
-            gates,
-        );
+        let Contest { trials, accepted } = self.fitted(stage, &scores);
         // The stage with what is taken in, and what the records cannot tell from each of that.
         let next = match accepted {
             Some((best, alternatives)) => {

@@ -62,6 +62,25 @@ fn planted_effects_are_found_and_nothing_where_nothing_is() {
 }
 
 #[test]
+fn an_effect_among_many_that_are_alike_is_fitted_as_well() {
+    // Most of what pushes the saddle or turns the screw gains nearly all of what the planted one does, and more of them
+    // than a round fits at first.
+    let wanted = [
+        "--only",
+        "planted",
+        "--sizes",
+        "0.05",
+        "--json",
+        "--effects",
+        "Counterbalance",
+    ];
+    let output = hyde(&[&["selftest", AXIS, "moves"], &wanted[..]].concat());
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    let report = json(&text(&output));
+    assert_eq!(report["planted"][0]["right"], 1, "{report:#}");
+}
+
+#[test]
 fn a_report_is_the_same_from_any_number_of_threads_and_however_often_it_began_anew() {
     let kinds = ["--only", "empty", "--seed", "7", "--json", "--empties"];
     let folder = Folder::new();
