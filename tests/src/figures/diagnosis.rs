@@ -36,7 +36,7 @@ pub(super) const WINDOWS: Figure = Figure {
 
 pub(super) const FREE_RUN: Figure = Figure {
     name: "bench_free_run_over_truth_max",
-    unit: "on records held out, floors beside",
+    unit: "on records held out",
     promise: Promise::AtMost(1.05),
     measure: |session| of_sets(session, |sets| most(sets, |set| set.free_run_over_truth)),
 };
@@ -141,8 +141,8 @@ fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
     Ok(SetResult {
         right: right(&report, answer),
         above_truth: chi(&report) - chi(&fitted),
-        windows_over_truth: over(&report, &fitted, "windows", Floor::Within),
-        free_run_over_truth: over(&report, &fitted, "free_run", Floor::Beside),
+        windows_over_truth: over(&report, &fitted, "windows"),
+        free_run_over_truth: over(&report, &fitted, "free_run"),
         minutes,
     })
 }
@@ -193,28 +193,13 @@ fn held_out(report: &Value) -> impl Iterator<Item = &Value> {
     records.iter().filter(|record| record["holdout"] == true)
 }
 
-/// Whether the floor of a measure is a part of its error, or beside it.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Floor {
-    Within,
-    /// Free runs are as uncertain as the place where an encoder's counts begin, which each record has drawn once: the error
-    /// of a model with exact parameters lies at a third of the floor, and that of bench-2 grows by a fifth where 0.02 of
-    /// its 12 um of play are added. So the floor is added to both, in squares.
-    Beside,
-}
-
 /// An error over all records held out of one model over that of another, in the channel where that is largest.
-fn over(one: &Value, other: &Value, measure: &str, floor: Floor) -> f64 {
+fn over(one: &Value, other: &Value, measure: &str) -> f64 {
     let channels = |record: &Value| record["channels"].as_array().map_or(0, Vec::len);
     let count = held_out(one).map(channels).max().unwrap_or(0);
-    let keys: &[&str] = match floor {
-        Floor::Within => &["after"],
-        Floor::Beside => &["after", "floor"],
-    };
     let total = |report: &Value, channel: usize| -> f64 {
-        let each = held_out(report).map(|record| &record["channels"][channel][measure]);
-        let each = each.flat_map(|own| keys.iter().filter_map(|key| own[*key].as_f64()));
-        each.map(|rms| rms * rms).sum()
+        let each = held_out(report).map(|record| &record["channels"][channel][measure]["after"]);
+        each.filter_map(Value::as_f64).map(|rms| rms * rms).sum()
     };
     let of = |channel| (total(one, channel) / total(other, channel)).sqrt();
     (0..count).map(of).fold(f64::NAN, f64::max)
