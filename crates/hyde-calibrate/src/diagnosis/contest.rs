@@ -1,7 +1,7 @@
-//! [`contest`]: hypotheses fitted beside each other, judged, and the one that is taken in.
+//! [`Forward::contest`]: hypotheses fitted beside each other, judged, and the one that is taken in.
 
 use super::apart::{Alternative, telling};
-use super::hypothesis::{Build, Hypothesis};
+use super::forward::Forward;
 use super::scan::Score;
 use super::search::Gates;
 use super::stage::{Ground, Stage};
@@ -21,51 +21,57 @@ pub(crate) struct Contest {
     pub(crate) accepted: Option<(usize, Vec<Alternative>)>,
 }
 
-/// Fits some hypotheses on a stage, from the nodes of their scores, beside those of an earlier contest on it.
-pub(crate) fn contest(
-    ground: &Ground<'_>,
-    stage: &Stage,
-    hypotheses: &[Hypothesis],
-    scores: Vec<&Score>,
-    earlier: Vec<Trial>,
-    build: &Build<'_>,
-    gates: Gates,
-) -> Contest {
-    let begun: Vec<Begun<'_>> = scores
-        .into_par_iter()
-        .filter_map(|score| begin(ground, stage, hypotheses, score, build))
-        .collect();
-    let gains = begun.iter().map(|begun| begun.gain);
-    let gains = gains.chain(earlier.iter().map(|trial| trial.gain));
-    let ahead = gains.fold(0.0, f64::max);
-    let mut trials = earlier;
-    trials.par_extend(begun.into_par_iter().filter_map(|begun| {
-        let worth = begun.gain >= WORTH * ahead;
-        finish(ground, stage, hypotheses, begun, worth)
-    }));
-    refine(ground, stage, &mut trials);
-    judge(ground, stage, &mut trials, gates);
-    let rank = |trial: &Trial| {
-        (
-            trial.rejected.is_none(),
-            trial.fold_gain.unwrap_or(trial.gain),
-        )
-    };
-    trials.sort_by(|a, b| {
-        let (a, b) = (rank(a), rank(b));
-        b.0.cmp(&a.0).then(b.1.total_cmp(&a.1))
-    });
-    let taken = choice(&trials, gates);
-    let accepted = taken.map(|(best, others)| {
-        let own = &trials[best];
-        let gate = own.gate(gates);
-        let other = |other: usize| Alternative {
-            hypothesis: trials[other].hypothesis,
-            experiment: telling(ground.recordings, own, &trials[other], gate),
+impl Forward<'_> {
+    /// Fits some hypotheses on a stage, from the nodes of their scores, beside those of an earlier contest on it.
+    pub(super) fn contest(
+        &self,
+        stage: &Stage,
+        scores: Vec<&Score>,
+        earlier: Vec<Trial>,
+    ) -> Contest {
+        let Self {
+            ground,
+            hypotheses,
+            build,
+            gates,
+            ..
+        } = *self;
+        let begun: Vec<Begun<'_>> = scores
+            .into_par_iter()
+            .filter_map(|score| begin(ground, stage, hypotheses, score, build))
+            .collect();
+        let gains = begun.iter().map(|begun| begun.gain);
+        let gains = gains.chain(earlier.iter().map(|trial| trial.gain));
+        let ahead = gains.fold(0.0, f64::max);
+        let mut trials = earlier;
+        trials.par_extend(begun.into_par_iter().filter_map(|begun| {
+            let worth = begun.gain >= WORTH * ahead;
+            finish(ground, stage, hypotheses, begun, worth)
+        }));
+        refine(ground, stage, &mut trials);
+        judge(ground, stage, &mut trials, gates);
+        let rank = |trial: &Trial| {
+            (
+                trial.rejected.is_none(),
+                trial.fold_gain.unwrap_or(trial.gain),
+            )
         };
-        (best, others.into_iter().map(other).collect())
-    });
-    Contest { trials, accepted }
+        trials.sort_by(|a, b| {
+            let (a, b) = (rank(a), rank(b));
+            b.0.cmp(&a.0).then(b.1.total_cmp(&a.1))
+        });
+        let taken = choice(&trials, gates);
+        let accepted = taken.map(|(best, others)| {
+            let own = &trials[best];
+            let gate = own.gate(gates);
+            let other = |other: usize| Alternative {
+                hypothesis: trials[other].hypothesis,
+                experiment: telling(ground.recordings, own, &trials[other], gate),
+            };
+            (best, others.into_iter().map(other).collect())
+        });
+        Contest { trials, accepted }
+    }
 }
 
 /// Fits to the end those that gain nearly as much as the best, if it is not alone: the same effect one shaft further gains

@@ -4,7 +4,7 @@
 //! later, and a rival that had been behind may be the right one (exchange after forward selection; Miller, Subset
 //! Selection in Regression, 2nd ed. 2002, section 3.6).
 
-use super::contest::{Contest, contest};
+use super::contest::Contest;
 use super::forward::{Branch, Forward, Taken};
 use super::prune::without;
 use super::scan::Score;
@@ -33,15 +33,7 @@ impl Forward<'_> {
             let Some(less) = without(self.ground, stage, number, self.build) else {
                 continue;
             };
-            let Contest { trials, accepted } = contest(
-                self.ground,
-                &less,
-                self.hypotheses,
-                rivals,
-                Vec::new(),
-                self.build,
-                self.gates,
-            );
+            let Contest { trials, accepted } = self.contest(&less, rivals, Vec::new());
             let fine = |own: usize| trials.iter().any(|trial| trial.hypothesis == own);
             let Some((best, alternatives)) = accepted.filter(|_| fine(effect)) else {
                 continue;

@@ -6,7 +6,7 @@
 //! all there is.
 
 use super::apart::Alternative;
-use super::contest::{Contest, contest};
+use super::contest::Contest;
 use super::hypothesis::{Build, Hypothesis};
 use super::pair::pair;
 use super::projection::Projection;
@@ -134,24 +134,14 @@ impl Forward<'_> {
             let least = (part * best).max(self.gates.gain(1));
             scores.iter().take_while(move |score| score.gain() >= least)
         };
-        let fit = |scores: Vec<&Score>, earlier: Vec<Trial>| {
-            contest(
-                self.ground,
-                stage,
-                self.hypotheses,
-                scores,
-                earlier,
-                self.build,
-                self.gates,
-            )
-        };
-        let first = fit(with(SURVIVING).take(SURVIVORS).collect(), Vec::new());
+        let survivors = with(SURVIVING).take(SURVIVORS).collect();
+        let first = self.contest(stage, survivors, Vec::new());
         let solution = |best: usize| &first.trials[best].stage.solution;
         let accepted = first.accepted.as_ref();
         let left = accepted.is_some_and(|(best, _)| !explained(solution(*best)));
         let more: Vec<&Score> = with(NEARLY).skip(SURVIVORS).take(SURVIVORS).collect();
         if left && !more.is_empty() {
-            fit(more, first.trials)
+            self.contest(stage, more, first.trials)
         } else {
             first
         }

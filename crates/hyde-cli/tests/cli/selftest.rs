@@ -7,7 +7,11 @@ use serde_json::Value;
 const AXIS: &str = "tests/models/small_axis/axis.hyde";
 
 fn tested(arguments: &[&str]) -> String {
-    let output = hyde(&[&["selftest", AXIS, "quick"], arguments].concat());
+    tested_by("quick", arguments)
+}
+
+fn tested_by(diagnosis: &str, arguments: &[&str]) -> String {
+    let output = hyde(&[&["selftest", AXIS, diagnosis], arguments].concat());
     assert_eq!(status(&output), 0, "{}", errors(&output));
     text(&output)
 }
@@ -74,9 +78,7 @@ fn an_effect_among_many_that_are_alike_is_fitted_as_well() {
         "--effects",
         "Counterbalance",
     ];
-    let output = hyde(&[&["selftest", AXIS, "moves"], &wanted[..]].concat());
-    assert_eq!(status(&output), 0, "{}", errors(&output));
-    let report = json(&text(&output));
+    let report = json(&tested_by("moves", &wanted));
     assert_eq!(report["planted"][0]["right"], 1, "{report:#}");
 }
 
