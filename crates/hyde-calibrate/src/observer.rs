@@ -3,7 +3,7 @@
 use crate::gain::Observer;
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
-use hyde_program::{Function, Program};
+use hyde_program::{Function, Program, SomeRows};
 use std::ops::ControlFlow;
 
 /// Whitened innovations of a record: each channel's, row by row, in standard deviations.
@@ -93,6 +93,13 @@ pub(crate) fn whitened(error: f64, deviation: f64) -> f64 {
     }
 }
 
+/// What the channels show, alone of all outputs.
+pub(crate) fn measured(program: &Program) -> Box<dyn SomeRows + '_> {
+    let measured = program.experiment.measured.iter();
+    let outputs: Vec<usize> = measured.map(|measured| measured.output).collect();
+    program.kernels.some_rows(Function::Outputs, &outputs)
+}
+
 /// Runs the observer over the record. At each row, before it is corrected, `visit` gets the plant, the row's number and the
 /// innovations in SI.
 pub(crate) fn run(
@@ -114,16 +121,15 @@ fn run_while(
 ) -> ControlFlow<()> {
     let recording = plant.recording;
     let program = plant.program;
-    let mut outputs = vec![0.0; program.outputs.len()];
+    let shown = measured(program);
+    let mut outputs = vec![0.0; recording.channels.len()];
     let mut error = vec![0.0; recording.channels.len()];
     let mut increment = vec![0.0; plant.places.states.len()];
     for row in 0..recording.rows() {
         let (at, workspace) = plant.point();
-        program
-            .kernels
-            .evaluate(Function::Outputs, at, workspace, &mut outputs);
-        for (channel, measured) in program.experiment.measured.iter().enumerate() {
-            error[channel] = recording.channels[channel][row] - outputs[measured.output];
+        shown.evaluate(at, workspace, &mut outputs);
+        for (channel, output) in outputs.iter().enumerate() {
+            error[channel] = recording.channels[channel][row] - output;
         }
         visit(plant, row, &error)?;
         // A value that is missing corrects nothing.

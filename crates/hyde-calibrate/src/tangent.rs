@@ -10,13 +10,13 @@
 //! begin within a row act from there on.
 
 use crate::configuration::{Configuration, Places};
-use crate::exponential::Step;
+use crate::dense::set_product;
 use crate::gain::{Observer, output_matrix};
-use crate::observer::{Innovations, whitened};
+use crate::observer::{Innovations, measured, whitened};
 use crate::plant::{Leg, Plant, Unsupported};
 use crate::recording::Recording;
-use hyde_program::{Function, Point, Program, Workspace, Wrt};
-use nalgebra::DMatrix;
+use hyde_program::{Function, Point, Program, SomeRows, Workspace, Wrt};
+use nalgebra::{DMatrix, DMatrixView};
 use std::collections::BTreeMap;
 
 /// A parameter by whose small change innovations are differentiated.
@@ -41,13 +41,10 @@ pub(crate) struct Modes {
     pub(crate) first: DMatrix<f64>,
     pub(crate) second: DMatrix<f64>,
     pub(crate) outputs: DMatrix<f64>,
-    /// The outputs with rows of zeros below them, and exp, first and second beside each other: for products of matrices.
-    padded: DMatrix<f64>,
-    whole: DMatrix<f64>,
 }
 
-/// Products of matrices are fast from this many rows and columns on.
-const LEAST_WIDTH: usize = 8;
+/// A product of matrices is faster than one a column from this many columns on.
+const MANY: usize = 8;
 
 /// Runs the observer over a record, parameters `set`, and differentiates what it finds.
 pub(crate) fn tangents(
@@ -60,7 +57,7 @@ pub(crate) fn tangents(
     let channels = recording.channels.len();
     let rows = recording.rows() - recording.first_row;
     let mut change = DMatrix::zeros(rows * channels, directions.len());
-    let keep = |row: usize, changes: &DMatrix<f64>| {
+    let keep = |row: usize, changes: DMatrixView<'_, f64>| {
         for number in 0..directions.len() {
             for channel in 0..channels {
                 change[(channel * rows + row, number)] = changes[(channel, number)];
@@ -82,7 +79,7 @@ pub(crate) fn along(
     observer: &Observer,
     set: &[(usize, f64)],
     directions: &[Direction],
-    mut each: impl FnMut(usize, &DMatrix<f64>),
+    mut each: impl FnMut(usize, DMatrixView<'_, f64>),
 ) -> Result<Innovations, Unsupported> {
     let mut plant = Plant::new(program, recording, set)?;
     let observer = observer.of(&plant);
@@ -95,35 +92,30 @@ pub(crate) fn along(
     let mut found = Innovations {
         channels: vec![Vec::with_capacity(rows); channels],
     };
-    let mut changes = DMatrix::<f64>::zeros(channels, count);
     let mut own = Own::new(program, &plant.p, directions);
     let mut known: Vec<Modes> = Vec::new();
     let mut number_of: Vec<Option<usize>> = Vec::new();
     let touched = own.touched.len();
-    let padded = channels.max(LEAST_WIDTH);
-    let mut gain = DMatrix::<f64>::zeros(states, padded);
-    gain.columns_mut(0, channels).copy_from(&observer.gain);
-    // Errors of the states, forces at the start of a row, their growth over it.
-    let mut before = DMatrix::<f64>::zeros(states + 2 * touched, count);
-    let mut errors = DMatrix::<f64>::zeros(states, count);
-    let mut answers = DMatrix::<f64>::zeros(padded, count);
+    // A column a direction: errors of the states, forces at the start of a row and at its end, what channels show of it.
+    let mut before = DMatrix::<f64>::zeros(states + 2 * touched + channels, count);
+    let mut after = DMatrix::<f64>::zeros(states + channels, count);
     let mut now = DMatrix::<f64>::zeros(touched, count);
     let mut then = now.clone();
-    let mut growth = now.clone();
     let mut by_output = DMatrix::<f64>::zeros(channels, count);
+    let mut corrected = Corrected::default();
     let mut legs = Legs::default();
     let mut error = vec![0.0; channels];
     let mut increment = vec![0.0; states];
-    let mut at = 0;
+    let mut at = None;
     for row in 0..recording.rows() {
         own.outputs(&mut plant);
-        for (channel, measured) in program.experiment.measured.iter().enumerate() {
-            let difference = recording.channels[channel][row] - own.values[measured.output];
+        for (channel, (error, shown)) in error.iter_mut().zip(&own.values).enumerate() {
+            let difference = recording.channels[channel][row] - shown;
             if row >= recording.first_row {
                 let value = whitened(difference, observer.deviations[channel]);
                 found.channels[channel].push(value);
             }
-            error[channel] = if difference.is_finite() {
+            *error = if difference.is_finite() {
                 difference
             } else {
                 0.0
@@ -132,60 +124,124 @@ pub(crate) fn along(
         let seen = modes(&mut plant, &mut known, &mut number_of, &own.touched);
         own.seen(&mut plant, directions, &mut by_output);
         let last = plant.current;
-        crate::dense::set_product(&observer.gain, &error, &mut increment);
+        set_product(&observer.gain, &error, &mut increment);
         plant.begin_row(&increment);
         own.forces(&mut plant, directions, &mut then);
-        if row > 0 {
-            // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
-            let end = if plant.current == last { &then } else { &now };
-            let within = plant.legs.iter().any(|leg| leg.fixed.is_some());
-            before.rows_mut(states, touched).copy_from(&now);
-            if within {
-                // Modes that begin within the row act from there on: the axis may ring several times in a row's time.
-                // So do forces, which may be others from one mode to the next.
-                before.rows_mut(states + touched, touched).fill(0.0);
-                for leg in &plant.legs {
-                    before.rows_mut(0, states).copy_from(&errors);
-                    let step = legs.of(&plant, leg, &own.touched);
-                    errors.gemm(1.0, step, &before, 0.0);
-                    if let Some(fixed) = &leg.fixed {
-                        fix(&plant, fixed.iter(), &mut errors);
-                        before.rows_mut(states, touched).copy_from(end);
-                    }
+        // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
+        let end = if plant.current == last { &then } else { &now };
+        let within = plant.legs.iter().any(|leg| leg.fixed.is_some());
+        if at.is_some() && within {
+            // Modes that begin within the row act from there on: the axis may ring several times in a row's time.
+            // So do forces, which may be others from one mode to the next.
+            let mut start = &now;
+            for leg in &plant.legs {
+                put(&mut before, states, start);
+                let step = legs.of(&plant, leg, &own.touched);
+                let errors = step * before.rows(0, states + touched);
+                put(&mut before, 0, &errors);
+                if let Some(fixed) = &leg.fixed {
+                    fix(&plant, fixed.iter(), &mut before);
+                    start = end;
                 }
-            } else {
-                before.rows_mut(0, states).copy_from(&errors);
-                end.sub_to(&now, &mut growth);
-                before
-                    .rows_mut(states + touched, touched)
-                    .copy_from(&growth);
-                errors.gemm(1.0, &known[at].whole, &before, 0.0);
             }
+        } else {
+            put(&mut before, states, &now);
+            put(&mut before, states + touched, end);
         }
-        answers.gemm(-1.0, &known[seen].padded, &errors, 0.0);
-        for number in 0..count {
-            for channel in 0..channels {
-                answers[(channel, number)] -= by_output[(channel, number)];
-                changes[(channel, number)] =
-                    answers[(channel, number)] / observer.deviations[channel];
+        put(&mut before, states + 2 * touched, &by_output);
+        let stepped = at.filter(|_| !within);
+        let matrix = corrected.of(&known, stepped, seen, &observer);
+        if count < MANY {
+            for (after, before) in after.column_iter_mut().zip(before.column_iter()) {
+                set_product(matrix, before.as_slice(), { after }.as_mut_slice());
             }
+        } else {
+            after.gemm(1.0, matrix, &before, 0.0);
         }
         if let Some(row) = row.checked_sub(recording.first_row) {
-            each(row, &changes);
+            each(row, after.rows(states, channels));
         }
-        errors.gemm(1.0, &gain, &answers, 1.0);
-        fix(
-            &plant,
-            plant.pinned.iter().map(|(position, _)| position),
-            &mut errors,
-        );
+        let pinned = plant.pinned.iter().map(|(position, _)| position);
+        fix(&plant, pinned, &mut after);
+        put(&mut before, 0, &after);
         std::mem::swap(&mut now, &mut then);
-        at = modes(&mut plant, &mut known, &mut number_of, &own.touched);
+        at = Some(modes(&mut plant, &mut known, &mut number_of, &own.touched));
         if row + 1 < recording.rows() {
             plant.advance();
         }
     }
     Ok(found)
+}
+
+/// Copies rows to where one begins, as many as there is room for.
+fn put(into: &mut DMatrix<f64>, row: usize, rows: &DMatrix<f64>) {
+    let (height, own) = (into.nrows(), rows.nrows());
+    let copied = own.min(height - row);
+    if copied > 0 {
+        let columns = into.as_mut_slice().chunks_exact_mut(height);
+        for (into, column) in columns.zip(rows.as_slice().chunks_exact(own)) {
+            into[row..row + copied].copy_from_slice(&column[..copied]);
+        }
+    }
+}
+
+/// What a row's time and the correction at its end make of errors, forces at both ends and what channels show: corrected
+/// errors, and the whitened change of innovations.
+#[derive(Default)]
+struct Corrected {
+    /// By the modes of the row, if it is one step or none, and those at its end.
+    known: BTreeMap<(Option<usize>, usize), DMatrix<f64>>,
+}
+
+impl Corrected {
+    fn of(
+        &mut self,
+        known: &[Modes],
+        stepped: Option<usize>,
+        seen: usize,
+        observer: &Observer,
+    ) -> &DMatrix<f64> {
+        let make = || {
+            let outputs = &known[seen].outputs;
+            let ((channels, states), touched) = (outputs.shape(), known[seen].first.ncols());
+            // Errors before the correction, of errors and forces.
+            let mut errors = DMatrix::zeros(states, states + 2 * touched);
+            match stepped.map(|at| &known[at]) {
+                Some(Modes {
+                    exp, first, second, ..
+                }) => {
+                    errors.columns_mut(0, states).copy_from(exp);
+                    // The second integral is that of a growth over the row.
+                    errors
+                        .columns_mut(states, touched)
+                        .copy_from(&(first - second));
+                    errors
+                        .columns_mut(states + touched, touched)
+                        .copy_from(second);
+                }
+                None => errors.fill_with_identity(),
+            }
+            let inner = states + 2 * touched;
+            let mut answers = DMatrix::zeros(channels, inner + channels);
+            answers
+                .columns_mut(0, inner)
+                .copy_from(&(outputs * -1.0 * &errors));
+            answers
+                .columns_mut(inner, channels)
+                .copy_from(&-DMatrix::identity(channels, channels));
+            let mut matrix = DMatrix::zeros(states + channels, inner + channels);
+            let mut kept = matrix.rows_mut(0, states);
+            kept.copy_from(&(&observer.gain * &answers));
+            let mut own = kept.columns_mut(0, inner);
+            own += errors;
+            for (channel, deviation) in observer.deviations.iter().enumerate() {
+                let whitened = answers.row(channel) / *deviation;
+                matrix.row_mut(states + channel).copy_from(&whitened);
+            }
+            matrix
+        };
+        self.known.entry((stepped, seen)).or_insert_with(make)
+    }
 }
 
 /// What steps within a row make of errors and forces.
@@ -195,11 +251,19 @@ struct Legs {
 }
 
 impl Legs {
+    /// Times errors, and forces below them, this is errors at the end of the step.
     fn of(&mut self, plant: &Plant<'_>, leg: &Leg, touched: &[usize]) -> &DMatrix<f64> {
         let make = || {
             let configuration = &plant.configurations[leg.configuration].1;
             let rates = rates_by_forces(configuration, &plant.places, touched);
-            beside(&configuration.steps[leg.level], &rates)
+            let step = &configuration.steps[leg.level];
+            let n = step.exp.nrows();
+            let mut matrix = DMatrix::zeros(n, n + rates.ncols());
+            matrix.columns_mut(0, n).copy_from(&step.exp);
+            matrix
+                .columns_mut(n, rates.ncols())
+                .copy_from(&(&step.first * rates));
+            matrix
         };
         self.known
             .entry((leg.configuration, leg.level))
@@ -217,20 +281,7 @@ fn rates_by_forces(
     of_states.select_columns(touched)
 }
 
-/// What a step makes of errors and forces: exp, and the integrals for forces at its start and for their growth.
-fn beside(step: &Step, rates: &DMatrix<f64>) -> DMatrix<f64> {
-    let (n, r) = (step.exp.nrows(), rates.ncols());
-    let mut whole = DMatrix::zeros(n, n + 2 * r);
-    whole.columns_mut(0, n).copy_from(&step.exp);
-    whole.columns_mut(n, r).copy_from(&(&step.first * rates));
-    // phi2 is that of a growth over the whole step.
-    whole
-        .columns_mut(n + r, r)
-        .copy_from(&(&step.second * rates));
-    whole
-}
-
-/// States that modes fix have no error: what the observer corrects them by is lost.
+/// States that modes fix have no error, a row a state: what the observer corrects them by is lost.
 fn fix<'a>(
     plant: &Plant<'_>,
     positions: impl Iterator<Item = &'a usize>,
@@ -260,37 +311,37 @@ pub(crate) fn modes(
     let configuration = plant.configuration();
     let step = &configuration.steps[0];
     let rates = rates_by_forces(configuration, &plant.places, touched);
-    let whole = beside(step, &rates);
-    let (n, r) = (step.exp.nrows(), touched.len());
-    let mut padded = DMatrix::zeros(outputs.nrows().max(LEAST_WIDTH), n);
-    padded.rows_mut(0, outputs.nrows()).copy_from(&outputs);
     known.push(Modes {
         exp: step.exp.clone(),
-        first: whole.columns(n, r).into_owned(),
-        second: whole.columns(n + r, r).into_owned(),
+        first: &step.first * &rates,
+        // phi2 is that of a growth over the whole step.
+        second: &step.second * &rates,
         outputs,
-        padded,
-        whole,
     });
     number_of[at] = Some(known.len() - 1);
     known.len() - 1
 }
 
 /// Evaluations of the model with other parameters where the plant is.
-pub(crate) struct Own {
+pub(crate) struct Own<'p> {
     /// The equations that some direction changes.
     pub(crate) touched: Vec<usize>,
+    /// Their residuals.
+    residual: Box<dyn SomeRows + 'p>,
+    /// What the channels show.
+    measured: Box<dyn SomeRows + 'p>,
     /// Whether some direction changes what is measured.
     shown: bool,
     workspace: Workspace,
+    /// What the channels show without a change.
     pub(crate) values: Vec<f64>,
     others: Vec<f64>,
     force: Vec<f64>,
     plain: Vec<f64>,
 }
 
-impl Own {
-    pub(crate) fn new(program: &Program, p: &[f64], directions: &[Direction]) -> Self {
+impl<'p> Own<'p> {
+    pub(crate) fn new(program: &'p Program, p: &[f64], directions: &[Direction]) -> Self {
         let moved = |place: usize| {
             directions
                 .iter()
@@ -306,26 +357,27 @@ impl Own {
         let mut touched = rows(Function::Residual);
         touched.sort_unstable();
         touched.dedup();
+        let channels = program.experiment.measured.len();
         Self {
+            residual: program.kernels.some_rows(Function::Residual, &touched),
+            measured: measured(program),
             shown: !rows(Function::Outputs).is_empty(),
-            touched,
             workspace: Workspace::new(program.n_work),
-            values: vec![0.0; program.outputs.len()],
-            others: vec![0.0; program.outputs.len()],
-            force: vec![0.0; program.n_unknowns],
-            plain: vec![0.0; program.n_unknowns],
+            values: vec![0.0; channels],
+            others: vec![0.0; channels],
+            force: vec![0.0; touched.len()],
+            plain: vec![0.0; touched.len()],
+            touched,
         }
     }
 
     pub(crate) fn outputs(&mut self, plant: &mut Plant<'_>) {
-        let program = plant.program;
         let (at, _) = plant.point();
-        program
-            .kernels
-            .evaluate(Function::Outputs, at, &mut self.workspace, &mut self.values);
+        self.measured
+            .evaluate(at, &mut self.workspace, &mut self.values);
     }
 
-    /// What a unit of each size adds to what the channels show, where it does.
+    /// What a unit of each size adds to what the channels show, where it does: a column a direction.
     pub(crate) fn seen(
         &mut self,
         plant: &mut Plant<'_>,
@@ -335,52 +387,39 @@ impl Own {
         if !self.shown {
             return;
         }
-        let program = plant.program;
         let (at, _) = plant.point();
-        let kernels = &program.kernels;
         for (number, direction) in directions.iter().enumerate() {
             let with = Point {
                 p: &direction.p,
                 ..at
             };
-            kernels.evaluate(
-                Function::Outputs,
-                with,
-                &mut self.workspace,
-                &mut self.others,
-            );
-            for (channel, measured) in program.experiment.measured.iter().enumerate() {
-                let change = self.others[measured.output] - self.values[measured.output];
-                out[(channel, number)] = change / direction.step;
+            self.measured
+                .evaluate(with, &mut self.workspace, &mut self.others);
+            for (channel, (with, plain)) in self.others.iter().zip(&self.values).enumerate() {
+                out[(channel, number)] = (with - plain) / direction.step;
             }
         }
     }
 
-    /// What a unit of each size adds to the residual of the equations that are touched.
+    /// What a unit of each size adds to the residual of the equations that are touched: a column a direction.
     pub(crate) fn forces(
         &mut self,
         plant: &mut Plant<'_>,
         directions: &[Direction],
         out: &mut DMatrix<f64>,
     ) {
-        let program = plant.program;
         let (at, _) = plant.point();
-        let kernels = &program.kernels;
-        kernels.evaluate(Function::Residual, at, &mut self.workspace, &mut self.plain);
+        self.residual
+            .evaluate(at, &mut self.workspace, &mut self.plain);
         for (number, direction) in directions.iter().enumerate() {
             let with = Point {
                 p: &direction.p,
                 ..at
             };
-            kernels.evaluate(
-                Function::Residual,
-                with,
-                &mut self.workspace,
-                &mut self.force,
-            );
-            for (row, &equation) in self.touched.iter().enumerate() {
-                let plain = self.plain[equation];
-                let change = self.force[equation] - plain;
+            self.residual
+                .evaluate(with, &mut self.workspace, &mut self.force);
+            for (row, (with, plain)) in self.force.iter().zip(&self.plain).enumerate() {
+                let change = with - plain;
                 // Below the rounding of the residual there is nothing.
                 out[(row, number)] = if change.abs() <= 1e-13 * plain.abs() {
                     0.0

@@ -6,9 +6,10 @@
 
 use crate::dense::set_product;
 use crate::gain::Observer;
+use crate::observer::measured;
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
-use hyde_program::{Function, Program};
+use hyde_program::Program;
 use nalgebra::{DMatrix, DVector};
 
 /// Length of a window in s.
@@ -136,17 +137,16 @@ impl Start {
         self.restore(plant);
         let (program, recording) = (plant.program, plant.recording);
         let still = vec![0.0; increment.len()];
-        let mut outputs = vec![0.0; program.outputs.len()];
+        let shown = measured(program);
+        let mut outputs = vec![0.0; recording.channels.len()];
         let mut errors = vec![Vec::with_capacity(length); recording.channels.len()];
         plant.begin_row(increment);
         for row in self.row + 1..=self.row + length {
             plant.advance();
             let (at, workspace) = plant.point();
-            program
-                .kernels
-                .evaluate(Function::Outputs, at, workspace, &mut outputs);
-            for (channel, measured) in program.experiment.measured.iter().enumerate() {
-                errors[channel].push(recording.channels[channel][row] - outputs[measured.output]);
+            shown.evaluate(at, workspace, &mut outputs);
+            for (channel, output) in outputs.iter().enumerate() {
+                errors[channel].push(recording.channels[channel][row] - output);
             }
             plant.begin_row(&still);
         }

@@ -3,10 +3,13 @@
 use crate::interpret::{Frame, Interpreter};
 use crate::native::Native;
 use crate::routine::{self, Leaf, Routine, Slot, Step};
+use crate::some_rows::{Chosen, Known};
 use crate::still::Still;
 use hyde_ir::dae::{self, Dae, Space};
 use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, Range, VariableKind};
-use hyde_program::{Constant, Function, Kernels, PartialEntry, Point, TickWrt, Workspace, Wrt};
+use hyde_program::{
+    Constant, Function, Kernels, PartialEntry, Point, SomeRows, TickWrt, Workspace, Wrt,
+};
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
 
@@ -32,6 +35,9 @@ pub(crate) struct Compiled {
     parameters: Vec<(ParamId, Interpreter)>,
     start: Interpreter,
     still: OnceLock<Still>,
+    some_rows: Known,
+    /// The length of the vector of inputs, delayed values included.
+    n_inputs: usize,
 }
 
 /// A kernel, made at its first use.
@@ -98,6 +104,7 @@ impl Compiled {
             .map(|&param| (param, parameter_code(&dae, param)))
             .collect();
         let start = Interpreter::new(&dae, &start_routine(&dae));
+        let n_inputs = 2 * dae.columns.len() + dae.n_delayed();
         Self {
             dae,
             backend,
@@ -108,6 +115,8 @@ impl Compiled {
             parameters,
             start,
             still: OnceLock::new(),
+            some_rows: Known::default(),
+            n_inputs,
         }
     }
 
@@ -120,12 +129,12 @@ impl Compiled {
     }
 
     /// Machine code does not check bounds: the lengths are checked here, at every call.
-    fn check(&self, at: Point<'_>, workspace: &Workspace) {
+    pub(crate) fn check(&self, at: Point<'_>, workspace: &Workspace) {
         let dae = &self.dae;
         let enough = at.y.len() >= dae.n_unknowns
             && at.yp.len() >= dae.n_unknowns
             && at.z.len() >= dae.n_memory
-            && at.u.len() >= 2 * dae.columns.len() + dae.n_delayed()
+            && at.u.len() >= self.n_inputs
             && at.p.len() >= dae.n_parameters.1
             && workspace.work.len() >= dae.n_work;
         assert!(
@@ -174,6 +183,15 @@ impl Kernels for Compiled {
         let function = in_dae(function);
         assert!(out.len() >= self.dae.rows(function), "room for every value");
         self.run(&self.values[&function], at, workspace, out);
+    }
+
+    fn some_rows(&self, function: Function, rows: &[usize]) -> Box<dyn SomeRows + '_> {
+        let function = in_dae(function);
+        Box::new(Chosen {
+            compiled: self,
+            code: self.some_rows.code(&self.dae, function, rows, self.backend),
+            count: rows.len(),
+        })
     }
 
     fn entries(&self, function: Function) -> Vec<PartialEntry> {

@@ -17,6 +17,7 @@ mod ledger;
 mod lower;
 mod native;
 mod routine;
+mod some_rows;
 mod still;
 mod tables;
 mod vector;

@@ -92,6 +92,27 @@ impl Routine {
         Self::with_definitions(dae, name(function).to_owned(), rows.collect(), None)
     }
 
+    /// The values of some rows of a function, in their order.
+    pub(crate) fn some_rows(dae: &Dae, function: Function, chosen: &[usize]) -> Self {
+        let mut steps = Vec::new();
+        for (range, index, value) in hyde_analysis::rows(dae, function) {
+            for counter in range.iter() {
+                let row = usize::try_from(index.at(counter)).ok();
+                let places = (0..).zip(chosen).filter(|(_, own)| Some(**own) == row);
+                steps.extend(places.map(|(place, _)| Step {
+                    range: Range {
+                        first: counter,
+                        last: counter,
+                    },
+                    slot: Slot::Out,
+                    target: Index::fixed(place),
+                    value,
+                }));
+            }
+        }
+        Self::with_definitions(dae, format!("some_{}", name(function)), steps, None)
+    }
+
     /// Derivatives, one block of values a [`Partial`].
     pub(crate) fn partials(dae: &Dae, name: String, partials: &[Partial]) -> Self {
         let mut next = 0;

@@ -130,6 +130,12 @@ pub enum Constant {
     ShownTo(usize),
 }
 
+/// Some values of a function, alone: see [`Kernels::some_rows`].
+pub trait SomeRows: Send + Sync {
+    /// The values where the model is, in the order in which their rows were asked for.
+    fn evaluate(&self, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]);
+}
+
 /// The numbers of a program.
 ///
 /// `out` is always completely written. Explicit variables lie in the workspace during a call.
@@ -152,6 +158,10 @@ pub trait Kernels: Send + Sync {
         workspace: &mut Workspace,
         out: &mut [f64],
     );
+
+    /// Some rows of a function as a kernel of their own, which computes nothing but what they read: for what is evaluated
+    /// very often. They are bitwise what [`Kernels::evaluate`] writes there.
+    fn some_rows(&self, function: Function, rows: &[usize]) -> Box<dyn SomeRows + '_>;
 
     /// The places of a function's derivatives, in the order in which [`Kernels::partials`] writes them.
     fn entries(&self, function: Function) -> Vec<PartialEntry>;

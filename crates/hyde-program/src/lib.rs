@@ -32,7 +32,7 @@ pub use experiment::{
     Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped, Stop,
 };
 pub use jacobian::{Jacobian, JacobianEntry};
-pub use kernels::{Constant, Function, Kernels, Point, TickWrt, Workspace};
+pub use kernels::{Constant, Function, Kernels, Point, SomeRows, TickWrt, Workspace};
 pub use ledger::{Account, AccountKind, Ledger, Port, PortKind};
 pub use program::{
     Column, Derivatives, Output, Parameter, PartialEntry, Prior, Program, RecordValue,

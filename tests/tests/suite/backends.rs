@@ -26,6 +26,32 @@ fn every_kernel_agrees_to_the_last_bit() {
 }
 
 #[test]
+fn some_rows_are_those_of_the_whole() {
+    for case in examples::all() {
+        for program in both(&case) {
+            let p = parameters(&program, &[]);
+            let values = Values::of(&program, &mut Random(3));
+            let at = values.point(&p);
+            let mut work = Workspace::new(program.n_work);
+            for function in Function::ALL {
+                let mut whole = vec![f64::NAN; program.rows(function)];
+                program
+                    .kernels
+                    .evaluate(function, at, &mut work, &mut whole);
+                // Every third from the end, and the last of these twice.
+                let mut rows: Vec<usize> = (0..whole.len()).rev().step_by(3).collect();
+                rows.extend(rows.last().copied());
+                let some = program.kernels.some_rows(function, &rows);
+                let mut own = vec![f64::NAN; rows.len()];
+                some.evaluate(at, &mut Workspace::new(program.n_work), &mut own);
+                let known: Vec<f64> = rows.iter().map(|&row| whole[row]).collect();
+                same(&case, &format!("rows of {function:?}"), &own, &known);
+            }
+        }
+    }
+}
+
+#[test]
 fn derivatives_by_parameters_agree_to_the_last_bit() {
     for case in examples::all() {
         let [native, oracle] = both(&case);

@@ -2,7 +2,7 @@
 //! summed row by row: all that a score needs of them. The changes themselves are not kept.
 
 use super::projection::dot;
-use nalgebra::{Cholesky, DMatrix, DVector};
+use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector};
 
 /// Rows summed at once.
 const BLOCK: usize = 32;
@@ -103,11 +103,15 @@ pub(crate) struct Adding<'p> {
 }
 
 impl Adding<'_> {
-    /// Adds a row: the changes of each channel, a column a direction.
-    pub(crate) fn row(&mut self, changes: &DMatrix<f64>) {
-        self.block
-            .rows_mut(self.filled, self.channels)
-            .copy_from(changes);
+    /// Adds a row of the record: the changes of each channel, a column a direction.
+    pub(crate) fn row(&mut self, changes: DMatrixView<'_, f64>) {
+        let columns = self
+            .block
+            .as_mut_slice()
+            .chunks_exact_mut(BLOCK * self.channels);
+        for (into, changes) in columns.zip(changes.column_iter()) {
+            into[self.filled..self.filled + self.channels].copy_from_slice(changes.as_slice());
+        }
         self.filled += self.channels;
         if self.filled == self.block.nrows() {
             self.sum();

@@ -13,7 +13,7 @@ use crate::observer::Innovations;
 use crate::recording::Recording;
 use crate::tangent::{Direction, along, tangents};
 use hyde_program::Program;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrixView, DVector};
 use rayon::prelude::*;
 
 /// A visible change of innovations: the sum of its squares.
@@ -377,7 +377,7 @@ impl Runs<'_> {
             let directions = self.directions(hypothesis, recording, shapes);
             let mut adding = products.adding(record, recording.channels.len(), recording.step_s);
             let observer = self.ground.observer;
-            let each = |_, changes: &DMatrix<f64>| adding.row(changes);
+            let each = |_, changes: DMatrixView<'_, f64>| adding.row(changes);
             let own = along(self.program, recording, observer, &set, &directions, each);
             innovations.push(own.ok()?);
             adding.end();

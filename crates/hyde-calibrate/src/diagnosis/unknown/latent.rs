@@ -122,8 +122,8 @@ impl Carrier {
         let (mut place, mut speed) = (0.0, 0.0);
         for row in 0..recording.rows() {
             own.outputs(&mut plant);
-            for (channel, measured) in program.experiment.measured.iter().enumerate() {
-                let difference = recording.channels[channel][row] - own.values[measured.output];
+            for (channel, shown) in own.values.iter().enumerate() {
+                let difference = recording.channels[channel][row] - shown;
                 error[channel] = if difference.is_finite() {
                     difference
                 } else {
