@@ -159,6 +159,7 @@ impl Forward<'_> {
             hypotheses: self.hypotheses,
             build: self.build,
             gate: self.gates.gain(1),
+            fitted: 2 * SURVIVORS,
         };
         let scores = scanner.scores();
         self.gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();

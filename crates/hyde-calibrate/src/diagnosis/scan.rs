@@ -83,6 +83,8 @@ pub(crate) struct Scanner<'s> {
     pub(crate) build: &'s Build<'s>,
     /// What a gain has to reach at least.
     pub(crate) gate: f64,
+    /// So many are fitted at most.
+    pub(crate) fitted: usize,
 }
 
 /// A hypothesis with what tangents promise of it.
@@ -125,23 +127,25 @@ impl Promised {
 }
 
 impl Scanner<'_> {
-    /// The scores of all hypotheses that can be put on the model, the best first. What promises too little beside the best is
-    /// not tried by runs of its own: its score is what tangents promise.
+    /// The scores of all hypotheses that can be put on the model, the best first. What promises too little beside the best, or
+    /// less than as many as are fitted have gained, is not tried by runs of its own: its score is what tangents promise.
     pub(crate) fn scores(&self) -> Vec<Score> {
         let all = (0..self.hypotheses.len()).into_par_iter();
         let mut promised: Vec<Promised> = all.filter_map(|number| self.promised(number)).collect();
         promised.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
         let mut rest = promised.into_iter().peekable();
         let mut scores: Vec<Score> = Vec::new();
-        let mut best = 0.0;
         while let Some(next) = rest.peek() {
-            if next.gain() < (WORTHWHILE * best).max(PASSABLE * self.gate) {
+            let best = scores.first().map_or(0.0, Score::gain);
+            let last = self.fitted.checked_sub(1).and_then(|last| scores.get(last));
+            let enough = last.is_some_and(|last| last.gain() > next.gain());
+            if enough || next.gain() < (WORTHWHILE * best).max(PASSABLE * self.gate) {
                 break;
             }
             let few: Vec<Promised> = rest.by_ref().take(AT_A_TIME).collect();
             let tried = few.into_par_iter().map(|promised| self.tried(promised));
             scores.extend(tried.collect::<Vec<Score>>());
-            best = scores.iter().map(Score::gain).fold(best, f64::max);
+            scores.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
         }
         scores.extend(rest.map(|promised| {
             let linear = !promised.own_modes;

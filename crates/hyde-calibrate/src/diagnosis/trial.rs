@@ -78,6 +78,8 @@ pub struct Trial {
     /// How many of them make it what it is ([`Hypothesis::essential`]).
     essential: usize,
     linear: bool,
+    /// Whether it was fitted on by differences.
+    refined: bool,
     pub(crate) stage: Stage,
 }
 
@@ -109,8 +111,11 @@ impl Trial {
         })
     }
 
-    /// Fits on by differences of runs, as long as that gains.
+    /// Fits on by differences of runs, as long as that gains; once.
     pub(super) fn refine(&mut self, ground: &Ground<'_>, stage: &Stage) {
+        if std::mem::replace(&mut self.refined, true) {
+            return;
+        }
         let own = &self.stage;
         let set = ground.set_in(&own.program, &own.kept);
         let problem = ground.problem(&own.program, &own.varied, &set, None);
@@ -297,6 +302,7 @@ pub(crate) fn finish(
         own: sizes,
         essential: hypothesis.essential(),
         linear: score.linear,
+        refined: false,
         rejected,
         values: values_of(&names, &new),
         names,
