@@ -74,6 +74,8 @@ fn top1(session: &Session) -> Result<Measured, String> {
     reason = "a result is recorded in the project"
 )]
 pub fn record(session: &Session) -> Result<PathBuf, String> {
+    // Named before hours pass in which they may change.
+    let sources = sources();
     let table = output(session, &WHOLE)?;
     let folder = root().join("tests/selftest");
     let path = folder.join(format!("seed-{}.txt", session.seed));
@@ -82,7 +84,7 @@ pub fn record(session: &Session) -> Result<PathBuf, String> {
          # Hyde {}, crates {}.\n\n{}",
         session.seed,
         env!("CARGO_PKG_VERSION"),
-        sources(),
+        sources,
         String::from_utf8_lossy(&table)
     );
     let written = std::fs::create_dir_all(&folder).and_then(|()| std::fs::write(&path, text));
