@@ -152,8 +152,8 @@ pub(crate) fn along(
         let stepped = at.filter(|_| !within);
         let matrix = corrected.of(&known, stepped, seen, &observer);
         if count < MANY {
-            for (after, before) in after.column_iter_mut().zip(before.column_iter()) {
-                set_product(matrix, before.as_slice(), { after }.as_mut_slice());
+            for (mut after, before) in after.column_iter_mut().zip(before.column_iter()) {
+                set_product(matrix, before.as_slice(), after.as_mut_slice());
             }
         } else {
             after.gemm(1.0, matrix, &before, 0.0);
@@ -163,6 +163,7 @@ pub(crate) fn along(
         }
         let pinned = plant.pinned.iter().map(|(position, _)| position);
         fix(&plant, pinned, &mut after);
+        // The answers come to lie where forces are put in the next row.
         put(&mut before, 0, &after);
         std::mem::swap(&mut now, &mut then);
         at = Some(modes(&mut plant, &mut known, &mut number_of, &own.touched));
@@ -173,14 +174,14 @@ pub(crate) fn along(
     Ok(found)
 }
 
-/// Copies rows to where one begins, as many as there is room for.
+/// Copies rows to where one begins.
 fn put(into: &mut DMatrix<f64>, row: usize, rows: &DMatrix<f64>) {
     let (height, own) = (into.nrows(), rows.nrows());
-    let copied = own.min(height - row);
-    if copied > 0 {
+    if own > 0 {
+        // By slices: views of matrices are copied number by number.
         let columns = into.as_mut_slice().chunks_exact_mut(height);
         for (into, column) in columns.zip(rows.as_slice().chunks_exact(own)) {
-            into[row..row + copied].copy_from_slice(&column[..copied]);
+            into[row..row + own].copy_from_slice(column);
         }
     }
 }
@@ -225,7 +226,7 @@ impl Corrected {
             let mut answers = DMatrix::zeros(channels, inner + channels);
             answers
                 .columns_mut(0, inner)
-                .copy_from(&(outputs * -1.0 * &errors));
+                .copy_from(&-(outputs * &errors));
             answers
                 .columns_mut(inner, channels)
                 .copy_from(&-DMatrix::identity(channels, channels));

@@ -135,17 +135,17 @@ impl Scanner<'_> {
         promised.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
         let mut rest = promised.into_iter().peekable();
         let mut scores: Vec<Score> = Vec::new();
+        let mut best = 0.0;
         while let Some(next) = rest.peek() {
-            let best = scores.first().map_or(0.0, Score::gain);
-            let last = self.fitted.checked_sub(1).and_then(|last| scores.get(last));
-            let enough = last.is_some_and(|last| last.gain() > next.gain());
+            let ahead = scores.iter().filter(|score| score.gain() > next.gain());
+            let enough = ahead.count() >= self.fitted;
             if enough || next.gain() < (WORTHWHILE * best).max(PASSABLE * self.gate) {
                 break;
             }
             let few: Vec<Promised> = rest.by_ref().take(AT_A_TIME).collect();
             let tried = few.into_par_iter().map(|promised| self.tried(promised));
             scores.extend(tried.collect::<Vec<Score>>());
-            scores.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
+            best = scores.iter().map(Score::gain).fold(best, f64::max);
         }
         scores.extend(rest.map(|promised| {
             let linear = !promised.own_modes;
