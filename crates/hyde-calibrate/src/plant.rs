@@ -15,6 +15,9 @@ use hyde_program::{Function, Point, Program, Workspace};
 /// Steps of a row's time: the longest is its half, the shortest a 64th of that.
 const LONGEST: usize = 1;
 pub(crate) const LEVELS: usize = 8;
+/// A step as short as this, and still too long, asks for another linear part; so many there are of a combination of modes.
+const SHORT: usize = 3;
+const LINEAR_PARTS: usize = 8;
 
 /// How exact a step is before an observer says what is worth it, SI.
 const DEFAULT_TOLERANCE: f64 = 1e-7;
@@ -40,7 +43,7 @@ pub(crate) struct Plant<'a> {
     pub(crate) p: Vec<f64>,
     /// How exact a step is to be, one number a state, SI.
     pub(crate) tolerances: Vec<f64>,
-    /// Combinations of modes met so far, by the numbers that tell them apart.
+    /// Combinations of modes met so far, by the numbers that tell them apart; several of one are linear at several points.
     pub(crate) configurations: Vec<(Vec<u64>, Configuration)>,
     pub(crate) current: usize,
     /// Places of the memory that tell combinations of modes apart.
@@ -50,6 +53,10 @@ pub(crate) struct Plant<'a> {
     pub(crate) index: usize,
     /// How short the next step is.
     pub(crate) level: usize,
+    /// The last rows in which no linear part would do for a step of each level.
+    none_did: [Option<usize>; LEVELS],
+    /// Where the last of them was made: row and index.
+    made: Option<(usize, usize)>,
     pub(crate) y: Vec<f64>,
     pub(crate) yp: Vec<f64>,
     pub(crate) z: Vec<f64>,
@@ -127,6 +134,8 @@ impl<'a> Plant<'a> {
             row: 0,
             index: 0,
             level: LONGEST,
+            none_did: [None; LEVELS],
+            made: None,
             y: start.y,
             yp: start.yp,
             z: start.z,
@@ -197,6 +206,8 @@ impl<'a> Plant<'a> {
     /// On to the next row, up to what drives the axis there.
     pub(crate) fn advance(&mut self) {
         self.legs.clear();
+        // Linear parts that would not do for the next step: their configurations, and the errors.
+        let mut tried = Vec::new();
         while self.index < shortest_steps() {
             while !self.index.is_multiple_of(size_of(self.level)) {
                 self.level += 1;
@@ -218,7 +229,8 @@ impl<'a> Plant<'a> {
                         self.level -= 1;
                     }
                 }
-                Outcome::TooLong => self.level += 1,
+                Outcome::Bent(error) if self.other_linear_part(error, &mut tried) => continue,
+                Outcome::Bent(_) | Outcome::TooLong => self.level += 1,
                 Outcome::Event => {
                     self.index += size_of(level);
                     self.settle();
@@ -230,9 +242,45 @@ impl<'a> Plant<'a> {
                     });
                 }
             }
+            tried.clear();
         }
         self.row += 1;
         self.index = 0;
+    }
+
+    /// After a step with too large an error: goes over to another linear part of the same modes, one met before, else that of
+    /// this very point. Where all have been tried for this step, to the best of them, and the step must be shorter: false.
+    ///
+    /// A drag with a power of the speed below 1 is met where the axis begins to slide, and is steeper there by orders of
+    /// magnitude than ever after.
+    fn other_linear_part(&mut self, error: f64, tried: &mut Vec<(usize, f64)>) -> bool {
+        if self.level < SHORT || self.none_did[self.level] == Some(self.row) {
+            return false;
+        }
+        tried.push((self.current, error));
+        let (key, _) = &self.configurations[self.current];
+        let all = self.configurations.iter().enumerate();
+        let alike = all.filter(|(_, (other, _))| other == key);
+        let alike: Vec<usize> = alike.map(|(number, _)| number).collect();
+        let is_new = |number: &&usize| tried.iter().all(|(other, _)| other != *number);
+        if let Some(&next) = alike.iter().find(is_new) {
+            self.current = next;
+            return true;
+        }
+        let here = Some((self.row, self.index));
+        if alike.len() < LINEAR_PARTS && self.made != here {
+            let key = key.clone();
+            self.made = here;
+            if let Some(made) = self.linearised() {
+                self.configurations.push((key, made));
+                self.current = self.configurations.len() - 1;
+                return true;
+            }
+        }
+        self.none_did[self.level] = Some(self.row);
+        let best = tried.iter().min_by(|a, b| a.1.total_cmp(&b.1));
+        self.current = best.map_or(self.current, |(best, _)| *best);
+        false
     }
 
     /// Whether the truth of a watched relation is another than the memory says.
@@ -272,25 +320,8 @@ impl<'a> Plant<'a> {
         {
             self.current = known;
         } else {
-            let (t, step_s) = (self.time(), self.recording.step_s);
-            let at = Point {
-                t,
-                y: &self.y,
-                yp: &self.yp,
-                z: &self.z,
-                u: &self.u,
-                p: &self.p,
-            };
-            let made = Configuration::new(
-                self.program,
-                &self.places,
-                at,
-                &mut self.workspace,
-                step_s,
-                LEVELS,
-            );
             // Modes in which nothing follows: stay with the last ones' linear part.
-            let Some(made) = made else {
+            let Some(made) = self.linearised() else {
                 return Err(Unsupported::Start("the equations are singular".to_owned()));
             };
             self.configurations.push((key, made));
@@ -299,6 +330,27 @@ impl<'a> Plant<'a> {
         self.watched = crate::events::watched(self.program, &self.z);
         self.make_consistent();
         Ok(())
+    }
+
+    /// The model in the modes the plant is in, linearised where it is.
+    fn linearised(&mut self) -> Option<Configuration> {
+        let (t, step_s) = (self.time(), self.recording.step_s);
+        let at = Point {
+            t,
+            y: &self.y,
+            yp: &self.yp,
+            z: &self.z,
+            u: &self.u,
+            p: &self.p,
+        };
+        Configuration::new(
+            self.program,
+            &self.places,
+            at,
+            &mut self.workspace,
+            step_s,
+            LEVELS,
+        )
     }
 
     pub(crate) fn apply_pins(&mut self) {

@@ -1,9 +1,9 @@
 //! A step of the fixed-step form: where the model is affine one product, else two stages.
 //!
-//! The linear part of the flow is that of the point where a combination of modes was first met. Bristles of friction decay
-//! the faster the faster they slide, by more than any such number: states that an effect brings along get their own slope
-//! at every step where the linear part has another, and are carried by it alone (Hochbruck and Ostermann 2010, section 2.4,
-//! with a diagonal for the Jacobian).
+//! The linear part of the flow is that of the point where a combination of modes was first met, or of a point where steps
+//! with that one had become short ([`Plant::advance`]). Bristles of friction decay the faster the faster they slide, by more
+//! than any such number: states that an effect brings along get their own slope at every step where the linear part has
+//! another, and are carried by it alone (Hochbruck and Ostermann 2010, section 2.4, with a diagonal for the Jacobian).
 
 use crate::configuration::{Configuration, Places};
 use crate::dense::{add_product, set_product};
@@ -61,13 +61,14 @@ impl Room {
 }
 
 /// What became of a step.
-#[derive(PartialEq, Eq)]
 pub(crate) enum Outcome {
     Taken,
     /// Taken, and a guard is true at its end.
     Event,
-    /// It must be shorter.
+    /// It must be shorter: a guard becomes true.
     TooLong,
+    /// It must be shorter, or of another linear part: its error, in tolerances.
+    Bent(f64),
 }
 
 impl Plant<'_> {
@@ -238,10 +239,11 @@ impl Plant<'_> {
                 }
                 add_product(&configuration.a, &room.x, &mut room.rest);
                 set_product(&step.second, &room.rest, &mut room.correction);
-                let fits = |(value, tolerance): (&f64, &f64)| value.abs() <= *tolerance;
-                let exact = room.correction.iter().zip(tolerances.iter()).all(fits);
+                let errors = room.correction.iter().zip(tolerances.iter());
+                let errors = errors.map(|(value, tolerance)| value.abs() / tolerance);
+                let exact = errors.clone().all(|error| error <= 1.0);
                 if !exact && level + 1 < LEVELS {
-                    return Outcome::TooLong;
+                    return Outcome::Bent(errors.fold(0.0, f64::max));
                 }
             }
         }

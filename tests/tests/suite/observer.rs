@@ -96,6 +96,29 @@ fn fixed_steps_follow_the_exact_run_through_stick_and_slip() {
     }
 }
 
+/// Where the axis begins to slide, this drag is steeper than at the speed v1 by a factor of 27 000.
+#[test]
+fn fixed_steps_follow_the_exact_run_with_a_drag_that_is_steepest_at_rest() {
+    let truth = "model Truth = Axis with Effects.PowerDrag(k = 100 [N], p = 0.34) on guide;\n\nexperiment bench";
+    let example = Example::load("examples/bench_axis/axis.hyde", Some("bench")).unwrap();
+    let example = example
+        .rewritten("experiment bench", truth)
+        .rewritten(") of Axis \"a record", ") of Truth \"a record")
+        .rewritten("calibrate bench of Axis", "calibrate bench of Truth")
+        .observed();
+    let loaded = example.parse().unwrap();
+    let compiled = loaded.compile(&example, Backend::Native).unwrap();
+    let program = &compiled.program;
+    let real = Recording::new("strokes", program, loaded.tables.clone()).unwrap();
+    let observer = Observer::new(program, std::slice::from_ref(&real), &[]).unwrap();
+    let exact = Recording::new("exact", program, made(&example, &loaded, &[], 0.0)).unwrap();
+    let innovations = Innovations::of(program, &exact, &observer, &[]).unwrap();
+    for (channel, list) in innovations.channels.iter().enumerate() {
+        let rms = mean_square(list).sqrt();
+        assert!(rms < 3e-2, "channel {channel}: {rms}");
+    }
+}
+
 #[test]
 fn calibration_finds_the_parameters_that_a_record_was_made_with() {
     let (example, loaded, compiled) = bench();

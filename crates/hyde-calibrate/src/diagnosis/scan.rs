@@ -362,7 +362,7 @@ impl Runs<'_> {
             let observer = self.ground.observer;
             Innovations::within(self.program, recording, observer, &set, limit).ok()?
         };
-        let each: Option<Vec<Innovations>> = self.ground.recordings.iter().map(run).collect();
+        let each: Option<Vec<Innovations>> = self.ground.recordings.par_iter().map(run).collect();
         Some(DVector::from_vec(flat(&each?)) - plain)
     }
 
