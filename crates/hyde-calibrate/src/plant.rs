@@ -57,6 +57,8 @@ pub(crate) struct Plant<'a> {
     none_did: [Option<usize>; LEVELS],
     /// Where the last of them was made: row and index.
     made: Option<(usize, usize)>,
+    /// Up to which row, and in steps of which level, rates were last seen to change evenly.
+    pub(crate) even: Option<(usize, usize)>,
     pub(crate) y: Vec<f64>,
     pub(crate) yp: Vec<f64>,
     pub(crate) z: Vec<f64>,
@@ -136,6 +138,7 @@ impl<'a> Plant<'a> {
             level: LONGEST,
             none_did: [None; LEVELS],
             made: None,
+            even: None,
             y: start.y,
             yp: start.yp,
             z: start.z,
@@ -178,6 +181,11 @@ impl<'a> Plant<'a> {
 
     /// The model where the plant is.
     pub(crate) fn point(&mut self) -> (Point<'_>, &mut Workspace) {
+        let (at, _, workspace) = self.point_and_places();
+        (at, workspace)
+    }
+
+    fn point_and_places(&mut self) -> (Point<'_>, &Places, &mut Workspace) {
         let t = self.time();
         let at = Point {
             t,
@@ -187,7 +195,7 @@ impl<'a> Plant<'a> {
             u: &self.u,
             p: &self.p,
         };
-        (at, &mut self.workspace)
+        (at, &self.places, &mut self.workspace)
     }
 
     /// Begins a row: what drives the axis jumps, the states change by an increment, those that modes fix apart.
@@ -271,9 +279,7 @@ impl<'a> Plant<'a> {
         if alike.len() < LINEAR_PARTS && self.made != here {
             let key = key.clone();
             self.made = here;
-            if let Some(made) = self.linearised() {
-                self.configurations.push((key, made));
-                self.current = self.configurations.len() - 1;
+            if self.linearise(key) {
                 return true;
             }
         }
@@ -319,38 +325,33 @@ impl<'a> Plant<'a> {
             .position(|(other, _)| *other == key)
         {
             self.current = known;
-        } else {
+        } else if !self.linearise(key) {
             // Modes in which nothing follows: stay with the last ones' linear part.
-            let Some(made) = self.linearised() else {
-                return Err(Unsupported::Start("the equations are singular".to_owned()));
-            };
-            self.configurations.push((key, made));
-            self.current = self.configurations.len() - 1;
+            return Err(Unsupported::Start("the equations are singular".to_owned()));
         }
+        self.even = None;
         self.watched = crate::events::watched(self.program, &self.z);
         self.make_consistent();
         Ok(())
     }
 
-    /// The model in the modes the plant is in, linearised where it is.
-    fn linearised(&mut self) -> Option<Configuration> {
-        let (t, step_s) = (self.time(), self.recording.step_s);
-        let at = Point {
-            t,
-            y: &self.y,
-            yp: &self.yp,
-            z: &self.z,
-            u: &self.u,
-            p: &self.p,
-        };
-        Configuration::new(
-            self.program,
-            &self.places,
-            at,
-            &mut self.workspace,
-            step_s,
-            LEVELS,
-        )
+    /// Linearises the model where the plant is, and goes over to that; false where nothing follows from its equations.
+    fn linearise(&mut self, key: Vec<u64>) -> bool {
+        let (program, step_s) = (self.program, self.recording.step_s);
+        let (at, places, workspace) = self.point_and_places();
+        let made = Configuration::new(program, places, at, workspace, step_s, LEVELS);
+        let is_made = made.is_some();
+        if let Some(made) = made {
+            self.current = self.configurations.len();
+            self.configurations.push((key, made));
+        }
+        is_made
+    }
+
+    /// Whether rates need no look within a step of a level.
+    pub(crate) fn is_even(&self, level: usize) -> bool {
+        let known = self.even;
+        known.is_some_and(|(until, known)| self.row < until && level >= known)
     }
 
     pub(crate) fn apply_pins(&mut self) {
@@ -375,6 +376,17 @@ impl<'a> Plant<'a> {
     pub(crate) fn read_inputs_at_end(&mut self, index: usize) {
         interpolate(self.program, self.recording, self.row, index, &mut self.u);
         self.u[2 * self.program.columns.len()..].copy_from_slice(&self.late.1);
+    }
+
+    /// What drives the axis within a step: `index` shortest steps into the row, a part of the step on.
+    pub(crate) fn read_inputs_within(&mut self, index: usize, part: f64) {
+        let u = &mut self.room.u_within;
+        interpolate(self.program, self.recording, self.row, index, u);
+        let (begin, end) = &self.late;
+        let delayed = u[2 * self.program.columns.len()..].iter_mut();
+        for ((delayed, begin), end) in delayed.zip(begin).zip(end) {
+            *delayed = begin + part * (end - begin);
+        }
     }
 
     /// Delayed values of the next step, the rates following where they jump; false where it is too long for what arrives within.

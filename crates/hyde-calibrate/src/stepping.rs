@@ -1,4 +1,5 @@
-//! A step of the fixed-step form: where the model is affine one product, else two stages.
+//! A step of the fixed-step form: where the model is affine one product, else two stages, and a look at the rates within it:
+//! a torque that turns with the angle may turn several times in a step, and be the same at both its ends.
 //!
 //! The linear part of the flow is that of the point where a combination of modes was first met, or of a point where steps
 //! with that one had become short ([`Plant::advance`]). Bristles of friction decay the faster the faster they slide, by more
@@ -14,6 +15,15 @@ use hyde_program::{Function, Point, Program, Workspace};
 const PROBE: f64 = 1e-5;
 /// A state decays fast in a step by this many time constants.
 const FAST: f64 = 0.05;
+/// Rates are looked at within steps of so many shortest ones or more, this part of them on: no half or third, for what turns
+/// several times in a step would be alike there too.
+const LOOKED_INTO: usize = 8;
+const WITHIN: f64 = 0.375;
+/// What is seen there corrects the step up to so many tolerances; above, it must be shorter.
+const BENT: f64 = 10.0;
+/// Below so many, steps as long are not looked into for so many rows.
+const EVEN: f64 = 0.1;
+const EVEN_ROWS: usize = 8;
 
 /// Vectors that steps work in.
 pub(crate) struct Room {
@@ -30,6 +40,8 @@ pub(crate) struct Room {
     stacked: Vec<f64>,
     probe_y: Vec<f64>,
     probe_yp: Vec<f64>,
+    /// What drives the axis within the step.
+    pub(crate) u_within: Vec<f64>,
     /// Numbers of states that decay fast where the plant is, and how fast.
     decays: Vec<(usize, f64)>,
     pub(crate) roots: Vec<f64>,
@@ -54,6 +66,7 @@ impl Room {
             stacked: vec![0.0; 2 * n_states + places.algebraics.len()],
             probe_y: vector(),
             probe_yp: vector(),
+            u_within: vec![0.0; 2 * program.columns.len() + program.delays.len()],
             decays: Vec::new(),
             roots: vec![0.0; program.relations.len()],
         }
@@ -117,6 +130,12 @@ impl Plant<'_> {
                 * (self.row as f64
                     + (self.index + size_of(level)) as f64 / shortest_steps() as f64);
         let t = self.time();
+        let size = size_of(level);
+        let looks_within =
+            size >= LOOKED_INTO && !self.configuration().affine && !self.is_even(level);
+        if looks_within {
+            self.read_inputs_within(self.index + (WITHIN * size as f64) as usize, WITHIN);
+        }
         self.read_inputs_at_end(self.index + size_of(level));
         let Self {
             program,
@@ -134,6 +153,8 @@ impl Plant<'_> {
             watched,
             pinned,
             room,
+            row,
+            even,
             ..
         } = self;
         let configuration = &configurations[*current].1;
@@ -214,6 +235,26 @@ impl Plant<'_> {
                     - room.rate[state]
                     - slope * (room.new_x[state] - room.x[state]);
                 room.correction[state] = step_s * second * rest;
+            }
+            if looks_within {
+                let within = t + WITHIN * (end - t);
+                model.bend(configuration, within, (y, yp), workspace, room);
+                set_product(&step.first, &room.rest, &mut room.x);
+                room.decays
+                    .iter()
+                    .for_each(|&(state, _)| room.x[state] = 0.0);
+                let changes = room.x.iter().zip(tolerances.iter());
+                let changes = changes.map(|(value, tolerance)| value.abs() / tolerance);
+                let most = changes.fold(0.0, f64::max);
+                if most > BENT {
+                    return Outcome::TooLong;
+                }
+                if most < EVEN {
+                    *even = Some((*row + EVEN_ROWS, level));
+                }
+                for (sum, change) in room.correction.iter_mut().zip(&room.x) {
+                    *sum += change;
+                }
             }
             let small = |(value, tolerance): (&f64, &f64)| value.abs() <= 0.1 * tolerance;
             if !room.correction.iter().zip(tolerances.iter()).all(small) {
@@ -331,6 +372,46 @@ impl Model<'_> {
             }
         }
         self.apply_pins(y, yp);
+    }
+
+    /// What two stages do not see of the rates, as a mean over the step: rates at a point within it, less those between its
+    /// ends. Of what bends evenly, ends are off by `(f'' h^2)/12`, and a point at a part p of it by `p (1 - p) (f'' h^2)/2`.
+    fn bend(
+        &self,
+        configuration: &Configuration,
+        t: f64,
+        (y, yp): (&[f64], &[f64]),
+        workspace: &mut Workspace,
+        room: &mut Room,
+    ) {
+        let between = |begin: &[f64], end: &[f64], out: &mut [f64]| {
+            for ((out, begin), end) in out.iter_mut().zip(begin).zip(end) {
+                *out = begin + WITHIN * (end - begin);
+            }
+        };
+        between(y, &room.y, &mut room.probe_y);
+        between(yp, &room.yp, &mut room.probe_yp);
+        gather(&room.probe_yp, &self.places.states, &mut room.rest);
+        let within = Model {
+            program: self.program,
+            places: self.places,
+            p: self.p,
+            z: self.z,
+            u: &room.u_within,
+            pinned: self.pinned,
+        };
+        within.rates(
+            configuration,
+            t,
+            &mut room.probe_y,
+            &mut room.probe_yp,
+            workspace,
+            &mut room.residual,
+            &mut room.delta,
+        );
+        for (rest, &place) in room.rest.iter_mut().zip(&self.places.states) {
+            *rest = (room.probe_yp[place] - *rest) / (6.0 * WITHIN * (1.0 - WITHIN));
+        }
     }
 
     /// States that the observer does not know, as bristles, may decay faster than a step: their own slopes where they do.

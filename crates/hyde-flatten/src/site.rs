@@ -101,16 +101,20 @@ impl Model<'_, '_> {
             return;
         }
         let own = &self.instances[host].class.name.text;
+        let site_name = written(site);
+        let parts = self.parts_that_fit(host, file, effect);
+        let fits = match parts.as_slice() {
+            [] => "`hyde effects FILE` tells where each effect fits".to_owned(),
+            [part] => format!("`{site_name}.{part}` is one"),
+            [part, other, ..] => format!("`{site_name}.{part}` and `{site_name}.{other}` are such"),
+        };
         self.report(
             Diagnostic::error(
                 Code::WrongType,
-                format!("`{name}` does not fit on `{}`", written(site)),
+                format!("`{name}` does not fit on `{site_name}`"),
             )
             .label(site.span, format!("this is a `{own}`"))
-            .help(format!(
-                "`{name}` is for a `{}`; `hyde effects FILE` tells where each effect fits",
-                wanted.dotted()
-            )),
+            .help(format!("`{name}` is for a `{}`; {fits}", wanted.dotted())),
         );
     }
 

@@ -277,6 +277,44 @@ impl<'a> Model<'a, '_> {
         self.is_a((instance.file, instance.class), wanted.1, 0)
     }
 
+    /// The names of what a host declares on which an effect could act.
+    pub(crate) fn parts_that_fit(
+        &self,
+        host: InstanceId,
+        file: FileIndex,
+        effect: &Class,
+    ) -> Vec<&'a str> {
+        let Some(wanted) = host_of(effect).and_then(|host| self.names.class(file, host)) else {
+            return Vec::new();
+        };
+        let instance = &self.instances[host];
+        let mut classes = vec![(instance.file, instance.class)];
+        let mut found = Vec::new();
+        // The host has no members yet: its class and the bases of that are read, of one that extends itself not for ever.
+        for _ in 0..40 {
+            let Some((file, class)) = classes.pop() else {
+                break;
+            };
+            match &class.body {
+                ClassBody::Short { base, .. } => classes.extend(self.names.class(file, base)),
+                ClassBody::Long { elements, .. } => {
+                    for element in elements {
+                        if let Element::Extends(base, _) = element {
+                            classes.extend(self.names.class(file, base));
+                        } else if let Element::Declaration(declaration) = element
+                            && let Some(own) = self.names.class(file, &declaration.type_name)
+                            && self.is_a(own, wanted.1, 0)
+                        {
+                            let names = declaration.declarators.iter();
+                            found.extend(names.map(|own| own.name.text.as_str()));
+                        }
+                    }
+                }
+            }
+        }
+        found
+    }
+
     /// Whether a class is another one or extends it.
     fn is_a(&self, own: (FileIndex, &'a Class), other: &'a Class, depth: usize) -> bool {
         let (file, class) = own;
