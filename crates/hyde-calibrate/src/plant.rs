@@ -339,13 +339,12 @@ impl<'a> Plant<'a> {
     fn linearise(&mut self, key: Vec<u64>) -> bool {
         let (program, step_s) = (self.program, self.recording.step_s);
         let (at, places, workspace) = self.point_and_places();
-        let made = Configuration::new(program, places, at, workspace, step_s, LEVELS);
-        let is_made = made.is_some();
-        if let Some(made) = made {
-            self.current = self.configurations.len();
-            self.configurations.push((key, made));
-        }
-        is_made
+        let Some(made) = Configuration::new(program, places, at, workspace, step_s, LEVELS) else {
+            return false;
+        };
+        self.current = self.configurations.len();
+        self.configurations.push((key, made));
+        true
     }
 
     /// Whether rates need no look within a step of a level.

@@ -29,8 +29,7 @@ const EVEN_ROWS: usize = 8;
 pub(crate) struct Room {
     y: Vec<f64>,
     yp: Vec<f64>,
-    residual: Vec<f64>,
-    delta: Vec<f64>,
+    solving: Solving,
     x: Vec<f64>,
     rate: Vec<f64>,
     new_x: Vec<f64>,
@@ -47,6 +46,12 @@ pub(crate) struct Room {
     pub(crate) roots: Vec<f64>,
 }
 
+/// Vectors that rates are solved in.
+struct Solving {
+    residual: Vec<f64>,
+    delta: Vec<f64>,
+}
+
 impl Room {
     pub(crate) fn new(program: &Program, places: &Places) -> Self {
         let n_states = places.states.len();
@@ -55,8 +60,10 @@ impl Room {
         Self {
             y: vector(),
             yp: vector(),
-            residual: vector(),
-            delta: vector(),
+            solving: Solving {
+                residual: vector(),
+                delta: vector(),
+            },
             x: of_states(),
             rate: of_states(),
             new_x: of_states(),
@@ -112,31 +119,22 @@ impl Plant<'_> {
             pinned,
         };
         let configuration = &configurations[*current].1;
-        model.rates(
-            configuration,
-            t,
-            y,
-            yp,
-            workspace,
-            &mut room.residual,
-            &mut room.delta,
-        );
+        model.rates(configuration, t, y, yp, workspace, &mut room.solving);
     }
 
     /// One step of a row's time over 2^level.
     pub(crate) fn step(&mut self, level: usize) -> Outcome {
+        let size = size_of(level);
         let end = self.recording.start_s
             + self.recording.step_s
-                * (self.row as f64
-                    + (self.index + size_of(level)) as f64 / shortest_steps() as f64);
+                * (self.row as f64 + (self.index + size) as f64 / shortest_steps() as f64);
         let t = self.time();
-        let size = size_of(level);
         let looks_within =
             size >= LOOKED_INTO && !self.configuration().affine && !self.is_even(level);
         if looks_within {
             self.read_inputs_within(self.index + (WITHIN * size as f64) as usize, WITHIN);
         }
-        self.read_inputs_at_end(self.index + size_of(level));
+        self.read_inputs_at_end(self.index + size);
         let Self {
             program,
             recording,
@@ -159,7 +157,7 @@ impl Plant<'_> {
         } = self;
         let configuration = &configurations[*current].1;
         let step = &configuration.steps[level];
-        let step_s = recording.step_s * size_of(level) as f64 / shortest_steps() as f64;
+        let step_s = recording.step_s * size as f64 / shortest_steps() as f64;
         gather(yp, &places.states, &mut room.rate);
         room.y.copy_from_slice(y);
         room.yp.copy_from_slice(yp);
@@ -211,8 +209,7 @@ impl Plant<'_> {
                 &mut room.y,
                 &mut room.yp,
                 workspace,
-                &mut room.residual,
-                &mut room.delta,
+                &mut room.solving,
             );
             gather(&room.yp, &places.states, &mut room.new_rate);
             // What the rates changed by beyond the linear part.
@@ -269,8 +266,7 @@ impl Plant<'_> {
                     &mut room.y,
                     &mut room.yp,
                     workspace,
-                    &mut room.residual,
-                    &mut room.delta,
+                    &mut room.solving,
                 );
                 // What the second stage would change again is the error that is left.
                 gather(&room.yp, &places.states, &mut room.rate);
@@ -330,10 +326,6 @@ struct Model<'s> {
 
 impl Model<'_> {
     /// Rates and algebraic variables for the states in y, from a guess of them.
-    #[allow(
-        clippy::too_many_arguments,
-        reason = "room is lent by the plant, for nothing is allocated in a step"
-    )]
     fn rates(
         &self,
         configuration: &Configuration,
@@ -341,8 +333,7 @@ impl Model<'_> {
         y: &mut [f64],
         yp: &mut [f64],
         workspace: &mut Workspace,
-        residual: &mut [f64],
-        delta: &mut [f64],
+        Solving { residual, delta }: &mut Solving,
     ) {
         let rounds = if configuration.constant { 1 } else { 8 };
         for _ in 0..rounds {
@@ -406,8 +397,7 @@ impl Model<'_> {
             &mut room.probe_y,
             &mut room.probe_yp,
             workspace,
-            &mut room.residual,
-            &mut room.delta,
+            &mut room.solving,
         );
         for (rest, &place) in room.rest.iter_mut().zip(&self.places.states) {
             *rest = (room.probe_yp[place] - *rest) / (6.0 * WITHIN * (1.0 - WITHIN));
@@ -441,8 +431,7 @@ impl Model<'_> {
                 &mut room.probe_y,
                 &mut room.probe_yp,
                 workspace,
-                &mut room.residual,
-                &mut room.delta,
+                &mut room.solving,
             );
             let slope = (room.probe_yp[place] - room.rate[state]) / change;
             // What the linear part carries already, as the damping of a resonance, stays coupled to the other states.

@@ -95,14 +95,14 @@ impl Model<'_, '_> {
             );
             return;
         };
-        if self.names.class(file, wanted).is_none() {
+        let Some((_, class)) = self.names.class(file, wanted) else {
             let diagnostic = self.names.unknown(file, wanted);
             self.report(diagnostic);
             return;
-        }
+        };
         let own = &self.instances[host].class.name.text;
         let site_name = written(site);
-        let parts = self.parts_that_fit(host, file, effect);
+        let parts = self.parts_that_are(host, class);
         let fits = match parts.as_slice() {
             [] => "`hyde effects FILE` tells where each effect fits".to_owned(),
             [part] => format!("`{site_name}.{part}` is one"),

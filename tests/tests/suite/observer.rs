@@ -9,13 +9,18 @@ use hyde_signal::{Column, Table};
 use hyde_tests::{Example, Loaded};
 use std::collections::BTreeMap;
 
-/// The bench axis as an observer runs it, with few cells: above half the sampling rate a record says nothing.
+/// The bench axis as an observer runs it.
 fn bench() -> (Example, Loaded, Compiled) {
-    let example = Example::load("examples/bench_axis/axis.hyde", Some("bench")).unwrap();
-    compiled(example.observed().set("screw.n", 6.0))
+    observed(axis())
 }
 
-fn compiled(example: Example) -> (Example, Loaded, Compiled) {
+fn axis() -> Example {
+    Example::load("examples/bench_axis/axis.hyde", Some("bench")).unwrap()
+}
+
+/// With few cells: above half the sampling rate a record says nothing.
+fn observed(example: Example) -> (Example, Loaded, Compiled) {
+    let example = example.observed().set("screw.n", 6.0);
     let loaded = example.parse().unwrap();
     let compiled = loaded.compile(&example, Backend::Native).unwrap();
     (example, loaded, compiled)
@@ -103,12 +108,11 @@ fn follow_the_exact_run((example, loaded, compiled): &(Example, Loaded, Compiled
 /// The bench axis with an effect.
 fn with(effect: &str) -> (Example, Loaded, Compiled) {
     let truth = format!("model Truth = Axis with Effects.{effect};\n\nexperiment bench");
-    let example = Example::load("examples/bench_axis/axis.hyde", Some("bench")).unwrap();
-    let example = example
+    let example = axis()
         .rewritten("experiment bench", &truth)
         .rewritten(") of Axis \"a record", ") of Truth \"a record")
         .rewritten("calibrate bench of Axis", "calibrate bench of Truth");
-    compiled(example.observed().set("screw.n", 6.0))
+    observed(example)
 }
 
 /// Friction acts some 100 times in the record.

@@ -277,38 +277,26 @@ impl<'a> Model<'a, '_> {
         self.is_a((instance.file, instance.class), wanted.1, 0)
     }
 
-    /// The names of what a host declares on which an effect could act.
-    pub(crate) fn parts_that_fit(
-        &self,
-        host: InstanceId,
-        file: FileIndex,
-        effect: &Class,
-    ) -> Vec<&'a str> {
-        let Some(wanted) = host_of(effect).and_then(|host| self.names.class(file, host)) else {
-            return Vec::new();
-        };
-        let instance = &self.instances[host];
-        let mut classes = vec![(instance.file, instance.class)];
-        let mut found = Vec::new();
+    /// The names of what a host declares that is of a class or extends it.
+    pub(crate) fn parts_that_are(&self, host: InstanceId, wanted: &'a Class) -> Vec<&'a str> {
         // The host has no members yet: its class and the bases of that are read, of one that extends itself not for ever.
+        let mut classes = vec![(self.instances[host].file, self.instances[host].class)];
+        let mut found = Vec::new();
         for _ in 0..40 {
             let Some((file, class)) = classes.pop() else {
                 break;
             };
-            match &class.body {
-                ClassBody::Short { base, .. } => classes.extend(self.names.class(file, base)),
-                ClassBody::Long { elements, .. } => {
-                    for element in elements {
-                        if let Element::Extends(base, _) = element {
-                            classes.extend(self.names.class(file, base));
-                        } else if let Element::Declaration(declaration) = element
-                            && let Some(own) = self.names.class(file, &declaration.type_name)
-                            && self.is_a(own, wanted.1, 0)
-                        {
-                            let names = declaration.declarators.iter();
-                            found.extend(names.map(|own| own.name.text.as_str()));
-                        }
-                    }
+            classes.extend(self.bases(file, class));
+            let ClassBody::Long { elements, .. } = &class.body else {
+                continue;
+            };
+            for element in elements {
+                if let Element::Declaration(declaration) = element
+                    && let Some(own) = self.names.class(file, &declaration.type_name)
+                    && self.is_a(own, wanted, 0)
+                {
+                    let names = declaration.declarators.iter();
+                    found.extend(names.map(|own| own.name.text.as_str()));
                 }
             }
         }
@@ -321,24 +309,29 @@ impl<'a> Model<'a, '_> {
         if std::ptr::eq(class, other) {
             return true;
         }
-        let bases: Vec<&Reference> = match &class.body {
-            ClassBody::Short { base, .. } => vec![base],
-            ClassBody::Long { elements, .. } => elements
-                .iter()
-                .filter_map(|element| {
+        depth < 40
+            && self
+                .bases(file, class)
+                .into_iter()
+                .any(|base| self.is_a(base, other, depth + 1))
+    }
+
+    /// The classes that a class extends, as far as they are known.
+    fn bases(&self, file: FileIndex, class: &'a Class) -> Vec<(FileIndex, &'a Class)> {
+        let known = |base| self.names.class(file, base);
+        match &class.body {
+            ClassBody::Short { base, .. } => known(base).into_iter().collect(),
+            ClassBody::Long { elements, .. } => {
+                let extended = elements.iter().filter_map(|element| {
                     if let Element::Extends(base, _) = element {
-                        Some(base)
+                        known(base)
                     } else {
                         None
                     }
-                })
-                .collect(),
-        };
-        depth < 40
-            && bases
-                .into_iter()
-                .filter_map(|base| self.names.class(file, base))
-                .any(|base| self.is_a(base, other, depth + 1))
+                });
+                extended.collect()
+            }
+        }
     }
 
     /// Whether every size of an effect is exactly zero. Sizes that are not stay plain parameters.
