@@ -3,10 +3,12 @@
 //! With the states x and v = (rates of the states, algebraic variables) the model is F(t, x, v) = 0. The inverse of dF/dv
 //! makes v from x by one product where F is linear in v, and dx'/dx = A is the linear part of the flow, which steps carry
 //! exactly ([`crate::exponential`]). What is not linear is added step by step, so a configuration is exact for no model
-//! but a linear one, and needs to be near enough for every other.
+//! but a linear one, and needs to be near enough for every other. Most equations of a drive are linear: what follows from
+//! them is carried along, and only the others are evaluated in a step ([`Bending`]).
 
+use crate::dense::set_product;
 use crate::exponential::{Step, steps};
-use hyde_program::{Function, Kernels, Point, Program, Workspace, Wrt};
+use hyde_program::{Function, Kernels, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::DMatrix;
 
 /// How far from each other derivatives may be that are the same number.
@@ -17,25 +19,73 @@ pub(crate) struct Places {
     pub(crate) differential: Vec<bool>,
     pub(crate) states: Vec<usize>,
     pub(crate) algebraics: Vec<usize>,
+    /// The equations that bend ([`Kernels::bending_rows`]).
+    bending: Vec<usize>,
 }
 
 /// The model in one combination of modes.
-pub(crate) struct Configuration {
+pub(crate) struct Configuration<'p> {
     /// The inverse of dF/dv.
     pub(crate) inverse: DMatrix<f64>,
     /// dF/dv is the same everywhere: v comes from one product.
     pub(crate) constant: bool,
     /// F is linear in everything and does not depend on time: a step needs no kernel.
     pub(crate) affine: bool,
-    /// Derivatives of the states' rates by the states.
-    pub(crate) a: DMatrix<f64>,
-    /// Derivatives of the algebraic variables by the states.
-    pub(crate) algebraic: DMatrix<f64>,
+    /// Derivatives by the states: of their rates, and below them of the algebraic variables.
+    pub(crate) by_states: DMatrix<f64>,
     /// Steps of a row's time over 1, 2, 4, … .
     pub(crate) steps: Vec<Step>,
-    /// The same steps where the model is affine: from the rates, how the states change, the rates after it, and how the
+    /// What the same steps make of the rates where all is linear: how the states change, the rates after it, and how the
     /// algebraic variables change, one below the other.
-    pub(crate) affine_steps: Vec<DMatrix<f64>>,
+    pub(crate) flows: Vec<DMatrix<f64>>,
+    /// What is not linear.
+    pub(crate) bending: Bending<'p>,
+    /// Where it was made.
+    pub(crate) made: Made,
+}
+
+/// The point at which a configuration is linear.
+pub(crate) struct Made {
+    t: f64,
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    z: Vec<f64>,
+    u: Vec<f64>,
+}
+
+impl Made {
+    fn at(at: Point<'_>) -> Self {
+        Self {
+            t: at.t,
+            y: at.y.to_vec(),
+            yp: at.yp.to_vec(),
+            z: at.z.to_vec(),
+            u: at.u.to_vec(),
+        }
+    }
+
+    /// The point, with some parameters.
+    pub(crate) fn point<'a>(&'a self, p: &'a [f64]) -> Point<'a> {
+        Point {
+            t: self.t,
+            y: &self.y,
+            yp: &self.yp,
+            z: &self.z,
+            u: &self.u,
+            p,
+        }
+    }
+}
+
+/// The equations that are not linear, or read what is outside: in a step, only these are evaluated.
+pub(crate) struct Bending<'p> {
+    residual: Box<dyn SomeRows + 'p>,
+    pub(crate) count: usize,
+    /// What a unit of their residuals changes: rates of the states, and below them the algebraic variables.
+    by_residual: DMatrix<f64>,
+    /// What it does to the states over a step of each length: as it is, and growing evenly from nothing.
+    pub(crate) first: Vec<DMatrix<f64>>,
+    pub(crate) second: Vec<DMatrix<f64>>,
 }
 
 impl Places {
@@ -49,15 +99,30 @@ impl Places {
         Self {
             states: chosen(true),
             algebraics: chosen(false),
+            bending: program.kernels.bending_rows(),
             differential,
         }
     }
 }
 
-impl Configuration {
+impl Bending<'_> {
+    /// The residuals of these equations, and what rates and algebraic variables change by to answer them.
+    pub(crate) fn evaluate(
+        &self,
+        at: Point<'_>,
+        workspace: &mut Workspace,
+        residual: &mut [f64],
+        change: &mut [f64],
+    ) {
+        self.residual.evaluate(at, workspace, residual);
+        set_product(&self.by_residual, &residual[..self.count], change);
+    }
+}
+
+impl<'p> Configuration<'p> {
     /// Linearises at a point; `None` where the equations do not determine v there.
     pub(crate) fn new(
-        program: &Program,
+        program: &'p Program,
         places: &Places,
         at: Point<'_>,
         workspace: &mut Workspace,
@@ -78,30 +143,61 @@ impl Configuration {
                 by_state[(entry.row, column_of[column])] += value;
             }
         }
-        let v_by_state = -(&inverse * by_state);
-        let a = v_by_state.select_rows(&places.states);
-        let algebraic = v_by_state.select_rows(&places.algebraics);
+        let (n, m) = (places.states.len(), places.algebraics.len());
+        let ordered = [places.states.as_slice(), &places.algebraics].concat();
+        let by_states = -(&inverse * by_state).select_rows(&ordered);
+        let a = by_states.rows(0, n).into_owned();
+        let algebraic = by_states.rows(n, m);
         let (constant, affine) = linearity(program, places, at, workspace, &here);
         let steps = steps(&a, step_s, levels);
-        let stacked = |step: &Step| {
-            let (n, m) = (a.nrows(), algebraic.nrows());
+        let flow = |step: &Step| {
             let mut all = DMatrix::zeros(2 * n + m, n);
             all.rows_mut(0, n).copy_from(&step.first);
             all.rows_mut(n, n).copy_from(&step.exp);
-            all.rows_mut(2 * n, m)
-                .copy_from(&(&algebraic * &step.first));
+            all.rows_mut(2 * n, m).copy_from(&(algebraic * &step.first));
             all
         };
+        let flows = steps.iter().map(flow).collect();
+        let by_residual = -inverse
+            .select_columns(&places.bending)
+            .select_rows(&ordered);
+        let rates = by_residual.rows(0, n);
+        let kernels = &program.kernels;
+        let bending = Bending {
+            residual: kernels.some_rows(Function::Residual, &places.bending),
+            count: places.bending.len(),
+            first: steps.iter().map(|step| &step.first * rates).collect(),
+            second: steps.iter().map(|step| &step.second * rates).collect(),
+            by_residual,
+        };
         Some(Self {
-            affine_steps: steps.iter().filter(|_| affine).map(stacked).collect(),
+            flows,
             steps,
             inverse,
             constant,
             affine,
-            a,
-            algebraic,
+            by_states,
+            bending,
+            made: Made::at(at),
         })
     }
+
+    /// What rates and algebraic variables change by with a unit of a state.
+    pub(crate) fn by_state(&self, state: usize) -> &[f64] {
+        let rows = self.by_states.nrows();
+        &self.by_states.as_slice()[state * rows..][..rows]
+    }
+}
+
+/// The inverse of dF/dv at a point; `None` where the equations do not determine v.
+pub(crate) fn inverse(
+    program: &Program,
+    places: &Places,
+    at: Point<'_>,
+    workspace: &mut Workspace,
+) -> Option<DMatrix<f64>> {
+    let here = partials(program, at, workspace);
+    consistent(program, places, &here).try_inverse()
 }
 
 /// The derivatives of the residual at a point.

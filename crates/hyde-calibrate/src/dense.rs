@@ -10,6 +10,7 @@ static ARCH: LazyLock<Arch> = LazyLock::new(Arch::new);
 
 /// Adds the product of a matrix and a vector to another vector.
 pub(crate) fn add_product(matrix: &DMatrix<f64>, vector: &[f64], sum: &mut [f64]) {
+    assert_eq!(matrix.ncols(), vector.len(), "a factor a column");
     let rows = matrix.nrows();
     if rows > 0 {
         ARCH.dispatch(AddProduct {

@@ -5,6 +5,7 @@
 //! projection     what a change of innovations gains once parameters have answered it      diagnosis/projection.rs
 //! grid           the values of its shapes that are tried                                   diagnosis/grid.rs
 //! products       sums over rows that scores are made of                                   diagnosis/products.rs
+//! runs           innovations of the model with an effect put on, and their tangents       diagnosis/runs.rs
 //! scan           scores of an effect over its shapes and sizes                            diagnosis/scan.rs
 //! trial          a survivor fitted together with all parameters, and judged on folds      diagnosis/trial.rs
 //! contest        survivors beside each other: gates, and which of them is taken in        diagnosis/contest.rs
@@ -30,6 +31,7 @@ mod products;
 mod profile;
 mod projection;
 mod prune;
+mod runs;
 mod scan;
 mod search;
 mod stage;

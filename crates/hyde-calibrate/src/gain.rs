@@ -10,10 +10,10 @@
 //!
 //! The gain is made once from the nominal model and never again within a study: innovations stay comparable.
 
-use crate::configuration::Configuration;
+use crate::configuration::{Configuration, Places};
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
-use hyde_program::{Constant, Function, Program, Wrt};
+use hyde_program::{Constant, Function, Point, Program, Workspace, Wrt};
 use nalgebra::{DMatrix, DVector};
 
 /// The part of its usual rate that a balance is not known to.
@@ -51,9 +51,10 @@ impl Observer {
             return Err(Unsupported::Start("there is no record".to_owned()));
         };
         let p = first.parameters(program, set);
-        let mut plant = Plant::at(program, first, p.clone(), &[])?;
-        let c = output_matrix(&mut plant);
-        let configuration = plant.configuration();
+        let plant = Plant::at(program, first, p.clone(), &[])?;
+        let mut workspace = Workspace::new(program.n_work);
+        let (places, configuration) = (&plant.places, plant.configuration());
+        let c = output_matrix(program, places, configuration, plant.here(), &mut workspace);
         let exp = configuration.steps[0].exp.clone();
         let noise: Vec<f64> = (0..c.nrows())
             .map(|channel| deviation(program, channel, &p))
@@ -153,17 +154,20 @@ fn deviation(program: &Program, channel: usize, p: &[f64]) -> f64 {
     }
 }
 
-/// Derivatives of the measured channels by the states.
-pub(crate) fn output_matrix(plant: &mut Plant<'_>) -> DMatrix<f64> {
-    let program = plant.program;
+/// Derivatives of the measured channels by the states, at a point of a configuration.
+pub(crate) fn output_matrix(
+    program: &Program,
+    places: &Places,
+    configuration: &Configuration<'_>,
+    at: Point<'_>,
+    workspace: &mut Workspace,
+) -> DMatrix<f64> {
     let channels = program.experiment.measured.len();
     let entries = program.partials(Function::Outputs);
     let mut values = vec![0.0; entries.len()];
-    let (at, workspace) = plant.point();
     program
         .kernels
         .partials(Function::Outputs, at, workspace, &mut values);
-    let (places, configuration) = (&plant.places, plant.configuration());
     let number_in =
         |list: &[usize], position: usize| list.iter().position(|&known| known == position);
     let mut c = DMatrix::zeros(channels, places.states.len());
@@ -179,10 +183,10 @@ pub(crate) fn output_matrix(plant: &mut Plant<'_>) -> DMatrix<f64> {
                     None
                 }
                 None => number_in(&places.algebraics, position)
-                    .map(|row| configuration.algebraic.row(row)),
+                    .map(|row| configuration.by_states.row(places.states.len() + row)),
             },
             Wrt::Derivative(position) => {
-                number_in(&places.states, position).map(|row| configuration.a.row(row))
+                number_in(&places.states, position).map(|row| configuration.by_states.row(row))
             }
             Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => None,
         };
@@ -199,14 +203,14 @@ pub(crate) fn output_matrix(plant: &mut Plant<'_>) -> DMatrix<f64> {
     clippy::float_cmp,
     reason = "a rate that is another state is so exactly"
 )]
-fn balances(configuration: &Configuration) -> Vec<bool> {
+fn balances(configuration: &Configuration<'_>) -> Vec<bool> {
     let row = |index: usize| {
-        let row = configuration.a.row(index);
+        let row = configuration.by_states.row(index);
         let others = row.iter().filter(|&&entry| entry != 0.0).count();
         let ones = row.iter().filter(|&&entry| entry == 1.0).count();
         !(others == 1 && ones == 1)
     };
-    (0..configuration.a.nrows()).map(row).collect()
+    (0..configuration.by_states.ncols()).map(row).collect()
 }
 
 /// Root mean square of each state's rate over the records.

@@ -2,9 +2,10 @@
 //!
 //! ```text
 //! recording      a record, evenly sampled                                         recording.rs
-//! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, stepping.rs, configuration.rs, events.rs, past.rs
+//! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, stepping.rs, model.rs, configuration.rs, events.rs, past.rs
 //! observer       a fixed Kalman gain; whitened innovations                        gain.rs, observer.rs
-//! tangent        how innovations change with parameters, along one run                tangent.rs
+//! track          where an observer takes the plant along a record                      track.rs
+//! tangent        how innovations change with parameters, along one track              tangent.rs
 //! plan           what a `calibrate` block asks for                                 plan.rs
 //! calibration    bounded least squares on innovations and priors                  least_squares.rs, solution.rs, blocks.rs, varied.rs
 //! its worth      errors before and after, intervals, groups                       fit.rs
@@ -25,6 +26,7 @@ mod free_run;
 mod gain;
 mod least_squares;
 mod measures;
+mod model;
 mod observer;
 mod past;
 mod plan;
@@ -35,6 +37,7 @@ mod selftest;
 mod solution;
 mod stepping;
 mod tangent;
+mod track;
 mod varied;
 mod whiteness;
 mod windows;

@@ -44,7 +44,7 @@ pub(crate) struct Plant<'a> {
     /// How exact a step is to be, one number a state, SI.
     pub(crate) tolerances: Vec<f64>,
     /// Combinations of modes met so far, by the numbers that tell them apart; several of one are linear at several points.
-    pub(crate) configurations: Vec<(Vec<u64>, Configuration)>,
+    pub(crate) configurations: Vec<(Vec<u64>, Configuration<'a>)>,
     pub(crate) current: usize,
     /// Places of the memory that tell combinations of modes apart.
     key_places: Vec<usize>,
@@ -164,7 +164,7 @@ impl<'a> Plant<'a> {
     }
 
     /// The combination of modes it is in.
-    pub(crate) fn configuration(&self) -> &Configuration {
+    pub(crate) fn configuration(&self) -> &Configuration<'a> {
         &self.configurations[self.current].1
     }
 
@@ -177,6 +177,18 @@ impl<'a> Plant<'a> {
     pub(crate) fn time(&self) -> f64 {
         let part = self.index as f64 / shortest_steps() as f64;
         self.recording.start_s + self.recording.step_s * (self.row as f64 + part)
+    }
+
+    /// Where the plant is.
+    pub(crate) fn here(&self) -> Point<'_> {
+        Point {
+            t: self.time(),
+            y: &self.y,
+            yp: &self.yp,
+            z: &self.z,
+            u: &self.u,
+            p: &self.p,
+        }
     }
 
     /// The model where the plant is.
@@ -369,6 +381,18 @@ impl<'a> Plant<'a> {
             self.past.over(at, at, begin, end);
             self.u[2 * self.program.columns.len()..].copy_from_slice(begin);
         }
+    }
+
+    /// What drives the axis where a step begins.
+    pub(crate) fn read_inputs_at_start(&mut self) {
+        interpolate(
+            self.program,
+            self.recording,
+            self.row,
+            self.index,
+            &mut self.u,
+        );
+        self.u[2 * self.program.columns.len()..].copy_from_slice(&self.late.0);
     }
 
     /// What drives the axis where a step ends.

@@ -6,10 +6,11 @@
 //! than any such number: states that an effect brings along get their own slope at every step where the linear part has
 //! another, and are carried by it alone (Hochbruck and Ostermann 2010, section 2.4, with a diagonal for the Jacobian).
 
-use crate::configuration::{Configuration, Places};
-use crate::dense::{add_product, set_product};
+use crate::configuration::Places;
+use crate::dense::set_product;
+use crate::model::{Model, Solving};
 use crate::plant::{LEVELS, Plant, shortest_steps, size_of, truth};
-use hyde_program::{Function, Point, Program, Workspace};
+use hyde_program::{Function, Point, Program};
 
 /// A change of a state by which its slope is found.
 const PROBE: f64 = 1e-5;
@@ -24,19 +25,19 @@ const BENT: f64 = 10.0;
 /// Below so many, steps as long are not looked into for so many rows.
 const EVEN: f64 = 0.1;
 const EVEN_ROWS: usize = 8;
+/// A correction of so many tolerances is not made.
+const SMALL: f64 = 0.1;
 
 /// Vectors that steps work in.
 pub(crate) struct Room {
     y: Vec<f64>,
     yp: Vec<f64>,
     solving: Solving,
-    x: Vec<f64>,
     rate: Vec<f64>,
-    new_x: Vec<f64>,
-    new_rate: Vec<f64>,
-    rest: Vec<f64>,
+    /// What the linear part makes of a step: see [`crate::configuration::Configuration::flows`].
+    flow: Vec<f64>,
     correction: Vec<f64>,
-    stacked: Vec<f64>,
+    bend: Vec<f64>,
     probe_y: Vec<f64>,
     probe_yp: Vec<f64>,
     /// What drives the axis within the step.
@@ -44,12 +45,6 @@ pub(crate) struct Room {
     /// Numbers of states that decay fast where the plant is, and how fast.
     decays: Vec<(usize, f64)>,
     pub(crate) roots: Vec<f64>,
-}
-
-/// Vectors that rates are solved in.
-struct Solving {
-    residual: Vec<f64>,
-    delta: Vec<f64>,
 }
 
 impl Room {
@@ -60,17 +55,11 @@ impl Room {
         Self {
             y: vector(),
             yp: vector(),
-            solving: Solving {
-                residual: vector(),
-                delta: vector(),
-            },
-            x: of_states(),
+            solving: Solving::new(program.n_unknowns),
             rate: of_states(),
-            new_x: of_states(),
-            new_rate: of_states(),
-            rest: of_states(),
+            flow: vec![0.0; 2 * n_states + places.algebraics.len()],
             correction: of_states(),
-            stacked: vec![0.0; 2 * n_states + places.algebraics.len()],
+            bend: of_states(),
             probe_y: vector(),
             probe_yp: vector(),
             u_within: vec![0.0; 2 * program.columns.len() + program.delays.len()],
@@ -122,6 +111,73 @@ impl Plant<'_> {
         model.rates(configuration, t, y, yp, workspace, &mut room.solving);
     }
 
+    /// States that the observer does not know, as bristles, may decay faster than a step: their own slopes where they do.
+    fn find_decays(&mut self, level: usize) {
+        self.room.decays.clear();
+        if self.configuration().affine || !self.tolerances.iter().any(|t| t.is_infinite()) {
+            return;
+        }
+        self.read_inputs_at_start();
+        let t = self.time();
+        let step_s = self.recording.step_s * size_of(level) as f64 / shortest_steps() as f64;
+        let Self {
+            program,
+            places,
+            p,
+            tolerances,
+            configurations,
+            current,
+            y,
+            yp,
+            z,
+            u,
+            workspace,
+            pinned,
+            room,
+            ..
+        } = self;
+        let configuration = &configurations[*current].1;
+        let model = Model {
+            program,
+            places,
+            p,
+            z,
+            u,
+            pinned,
+        };
+        for (state, &place) in places.states.iter().enumerate() {
+            if tolerances[state].is_finite() {
+                continue;
+            }
+            let (probe_y, probe_yp) = (&mut room.probe_y, &mut room.probe_yp);
+            probe_y.copy_from_slice(y);
+            probe_yp.copy_from_slice(yp);
+            let change = PROBE * (1.0 + y[place].abs());
+            probe_y[place] += change;
+            room.solving.delta.fill(0.0);
+            add_multiple(
+                configuration.by_state(state),
+                change,
+                &mut room.solving.delta,
+            );
+            model.follow(&room.solving.delta, probe_y, probe_yp);
+            model.answer(
+                configuration,
+                t,
+                probe_y,
+                probe_yp,
+                workspace,
+                &mut room.solving,
+            );
+            let slope = (probe_yp[place] - yp[place]) / change;
+            // What the linear part carries already, as the damping of a resonance, stays coupled to the other states.
+            let other = (slope - configuration.by_state(state)[state]).abs() * step_s > FAST;
+            if other && slope * step_s < -FAST {
+                room.decays.push((state, slope));
+            }
+        }
+    }
+
     /// One step of a row's time over 2^level.
     pub(crate) fn step(&mut self, level: usize) -> Outcome {
         let size = size_of(level);
@@ -129,6 +185,7 @@ impl Plant<'_> {
             + self.recording.step_s
                 * (self.row as f64 + (self.index + size) as f64 / shortest_steps() as f64);
         let t = self.time();
+        self.find_decays(level);
         let looks_within =
             size >= LOOKED_INTO && !self.configuration().affine && !self.is_even(level);
         if looks_within {
@@ -156,11 +213,7 @@ impl Plant<'_> {
             ..
         } = self;
         let configuration = &configurations[*current].1;
-        let step = &configuration.steps[level];
         let step_s = recording.step_s * size as f64 / shortest_steps() as f64;
-        gather(yp, &places.states, &mut room.rate);
-        room.y.copy_from_slice(y);
-        room.yp.copy_from_slice(yp);
         let model = Model {
             program,
             places,
@@ -169,118 +222,85 @@ impl Plant<'_> {
             u,
             pinned,
         };
-        if configuration.affine {
+        let (n, bending) = (places.states.len(), &configuration.bending);
+        gather(yp, &places.states, &mut room.rate);
+        room.y.copy_from_slice(y);
+        room.yp.copy_from_slice(yp);
+        set_product(&configuration.flows[level], &room.rate, &mut room.flow);
+        for &(state, slope) in &room.decays {
+            let (first, _) = integrals(slope * step_s);
+            let change = step_s * first * room.rate[state];
+            let other = change - std::mem::replace(&mut room.flow[state], change);
+            add_multiple(configuration.by_state(state), other, &mut room.flow[n..]);
+        }
+        model.carry(&room.flow, &mut room.y, &mut room.yp);
+        if !configuration.affine {
+            // What the rates change by beyond the linear part grows over the step.
+            let (y, yp) = ((&*y, &mut room.y), (&*yp, &mut room.yp));
+            model.answer(configuration, end, y.1, yp.1, workspace, &mut room.solving);
             set_product(
-                &configuration.affine_steps[level],
-                &room.rate,
-                &mut room.stacked,
+                &bending.second[level],
+                &room.solving.sum,
+                &mut room.correction,
             );
-            let (change, rest) = room.stacked.split_at(room.x.len());
-            let (rate, algebraic) = rest.split_at(room.x.len());
-            for ((&position, change), rate) in places.states.iter().zip(change).zip(rate) {
-                room.y[position] += change;
-                room.yp[position] = *rate;
-            }
-            for (&position, change) in places.algebraics.iter().zip(algebraic) {
-                room.y[position] += change;
-            }
-            model.apply_pins(&mut room.y, &mut room.yp);
-        } else {
-            gather(y, &places.states, &mut room.x);
-            room.new_x.copy_from_slice(&room.x);
-            add_product(&step.first, &room.rate, &mut room.new_x);
-            model.find_decays(
-                configuration,
-                (t, step_s),
-                (y, yp),
-                tolerances,
-                workspace,
-                room,
-            );
-            for &(state, slope) in &room.decays {
-                let (first, _) = integrals(slope * step_s);
-                room.new_x[state] = room.x[state] + step_s * first * room.rate[state];
-            }
-            scatter(&room.new_x, &places.states, &mut room.y);
-            model.apply_pins(&mut room.y, &mut room.yp);
-            model.rates(
-                configuration,
-                end,
-                &mut room.y,
-                &mut room.yp,
-                workspace,
-                &mut room.solving,
-            );
-            gather(&room.yp, &places.states, &mut room.new_rate);
-            // What the rates changed by beyond the linear part.
-            for index in 0..room.rest.len() {
-                room.rest[index] = room.x[index] - room.new_x[index];
-            }
-            room.correction.copy_from_slice(&room.new_rate);
-            add_product(&configuration.a, &room.rest, &mut room.correction);
-            for (rest, (new, old)) in room
-                .rest
-                .iter_mut()
-                .zip(room.correction.iter().zip(&room.rate))
-            {
-                *rest = new - old;
-            }
-            set_product(&step.second, &room.rest, &mut room.correction);
             for &(state, slope) in &room.decays {
                 let (_, second) = integrals(slope * step_s);
-                let rest = room.new_rate[state]
-                    - room.rate[state]
-                    - slope * (room.new_x[state] - room.x[state]);
+                let rest = yp.1[places.states[state]] - room.rate[state] - slope * room.flow[state];
                 room.correction[state] = step_s * second * rest;
             }
             if looks_within {
-                let within = t + WITHIN * (end - t);
-                model.bend(configuration, within, (y, yp), workspace, room);
-                set_product(&step.first, &room.rest, &mut room.x);
-                room.decays
-                    .iter()
-                    .for_each(|&(state, _)| room.x[state] = 0.0);
-                let changes = room.x.iter().zip(tolerances.iter());
-                let changes = changes.map(|(value, tolerance)| value.abs() / tolerance);
-                let most = changes.fold(0.0, f64::max);
+                between(y.0, y.1, &mut room.probe_y);
+                between(yp.0, yp.1, &mut room.probe_yp);
+                let within = Model {
+                    u: &room.u_within,
+                    ..model
+                };
+                let (probe_y, probe_yp) = (&mut room.probe_y, &mut room.probe_yp);
+                let time = t + WITHIN * (end - t);
+                within.answer(
+                    configuration,
+                    time,
+                    probe_y,
+                    probe_yp,
+                    workspace,
+                    &mut room.solving,
+                );
+                // Of what bends evenly, ends are off by (f'' h^2)/12, and a point at a part p of it by p (1 - p) (f'' h^2)/2.
+                set_product(&bending.first[level], &room.solving.sum, &mut room.bend);
+                for bend in &mut room.bend {
+                    *bend /= 6.0 * WITHIN * (1.0 - WITHIN);
+                }
+                for &(state, _) in &room.decays {
+                    room.bend[state] = 0.0;
+                }
+                let most = largest(&room.bend, tolerances);
                 if most > BENT {
                     return Outcome::TooLong;
                 }
                 if most < EVEN {
                     *even = Some((*row + EVEN_ROWS, level));
                 }
-                for (sum, change) in room.correction.iter_mut().zip(&room.x) {
+                for (sum, change) in room.correction.iter_mut().zip(&room.bend) {
                     *sum += change;
                 }
             }
-            let small = |(value, tolerance): (&f64, &f64)| value.abs() <= 0.1 * tolerance;
-            if !room.correction.iter().zip(tolerances.iter()).all(small) {
-                for (x, change) in room.new_x.iter_mut().zip(&room.correction) {
-                    *x += change;
+            if largest(&room.correction, tolerances) > SMALL {
+                let follows = &mut room.solving.delta;
+                set_product(&configuration.by_states, &room.correction, follows);
+                for (&place, change) in places.states.iter().zip(&room.correction) {
+                    y.1[place] += change;
                 }
-                scatter(&room.new_x, &places.states, &mut room.y);
-                model.apply_pins(&mut room.y, &mut room.yp);
-                model.rates(
-                    configuration,
-                    end,
-                    &mut room.y,
-                    &mut room.yp,
-                    workspace,
-                    &mut room.solving,
+                model.follow(follows, y.1, yp.1);
+                model.answer(configuration, end, y.1, yp.1, workspace, &mut room.solving);
+                // What a third stage would change again is the error that is left.
+                set_product(
+                    &bending.second[level],
+                    &room.solving.sum,
+                    &mut room.correction,
                 );
-                // What the second stage would change again is the error that is left.
-                gather(&room.yp, &places.states, &mut room.rate);
-                for index in 0..room.rest.len() {
-                    room.rest[index] = room.rate[index] - room.new_rate[index];
-                    room.x[index] = -room.correction[index];
-                }
-                add_product(&configuration.a, &room.x, &mut room.rest);
-                set_product(&step.second, &room.rest, &mut room.correction);
-                let errors = room.correction.iter().zip(tolerances.iter());
-                let errors = errors.map(|(value, tolerance)| value.abs() / tolerance);
-                let exact = errors.clone().all(|error| error <= 1.0);
-                if !exact && level + 1 < LEVELS {
-                    return Outcome::Bent(errors.fold(0.0, f64::max));
+                let error = largest(&room.correction, tolerances);
+                if error > 1.0 && level + 1 < LEVELS {
+                    return Outcome::Bent(error);
                 }
             }
         }
@@ -314,140 +334,28 @@ impl Plant<'_> {
     }
 }
 
-/// What rates are made of.
-struct Model<'s> {
-    program: &'s Program,
-    places: &'s Places,
-    p: &'s [f64],
-    z: &'s [f64],
-    u: &'s [f64],
-    pinned: &'s [(usize, f64)],
+/// Adds a multiple.
+fn add_multiple(values: &[f64], by: f64, sum: &mut [f64]) {
+    for (sum, value) in sum.iter_mut().zip(values) {
+        *sum += by * value;
+    }
 }
 
-impl Model<'_> {
-    /// Rates and algebraic variables for the states in y, from a guess of them.
-    fn rates(
-        &self,
-        configuration: &Configuration,
-        t: f64,
-        y: &mut [f64],
-        yp: &mut [f64],
-        workspace: &mut Workspace,
-        Solving { residual, delta }: &mut Solving,
-    ) {
-        let rounds = if configuration.constant { 1 } else { 8 };
-        for _ in 0..rounds {
-            let at = Point {
-                t,
-                y,
-                yp,
-                z: self.z,
-                u: self.u,
-                p: self.p,
-            };
-            self.program
-                .kernels
-                .evaluate(Function::Residual, at, workspace, residual);
-            set_product(&configuration.inverse, residual, delta);
-            let mut settled = true;
-            for (index, &change) in delta.iter().enumerate() {
-                let value = match self.places.differential[index] {
-                    true => &mut yp[index],
-                    false => &mut y[index],
-                };
-                *value -= change;
-                settled &= change.abs() <= 1e-10 * value.abs() + 1e-13;
-            }
-            if settled {
-                break;
-            }
-        }
-        self.apply_pins(y, yp);
+/// Values at a part of the way from those at the begin of a step to those at its end.
+fn between(begin: &[f64], end: &[f64], out: &mut [f64]) {
+    for ((out, begin), end) in out.iter_mut().zip(begin).zip(end) {
+        *out = begin + WITHIN * (end - begin);
     }
+}
 
-    /// What two stages do not see of the rates, as a mean over the step: rates at a point within it, less those between its
-    /// ends. Of what bends evenly, ends are off by `(f'' h^2)/12`, and a point at a part p of it by `p (1 - p) (f'' h^2)/2`.
-    fn bend(
-        &self,
-        configuration: &Configuration,
-        t: f64,
-        (y, yp): (&[f64], &[f64]),
-        workspace: &mut Workspace,
-        room: &mut Room,
-    ) {
-        let between = |begin: &[f64], end: &[f64], out: &mut [f64]| {
-            for ((out, begin), end) in out.iter_mut().zip(begin).zip(end) {
-                *out = begin + WITHIN * (end - begin);
-            }
-        };
-        between(y, &room.y, &mut room.probe_y);
-        between(yp, &room.yp, &mut room.probe_yp);
-        gather(&room.probe_yp, &self.places.states, &mut room.rest);
-        let within = Model {
-            program: self.program,
-            places: self.places,
-            p: self.p,
-            z: self.z,
-            u: &room.u_within,
-            pinned: self.pinned,
-        };
-        within.rates(
-            configuration,
-            t,
-            &mut room.probe_y,
-            &mut room.probe_yp,
-            workspace,
-            &mut room.solving,
-        );
-        for (rest, &place) in room.rest.iter_mut().zip(&self.places.states) {
-            *rest = (room.probe_yp[place] - *rest) / (6.0 * WITHIN * (1.0 - WITHIN));
-        }
-    }
-
-    /// States that the observer does not know, as bristles, may decay faster than a step: their own slopes where they do.
-    fn find_decays(
-        &self,
-        configuration: &Configuration,
-        (t, step_s): (f64, f64),
-        (y, yp): (&[f64], &[f64]),
-        tolerances: &[f64],
-        workspace: &mut Workspace,
-        room: &mut Room,
-    ) {
-        room.decays.clear();
-        for (state, _) in tolerances
-            .iter()
-            .enumerate()
-            .filter(|(_, t)| t.is_infinite())
-        {
-            let place = self.places.states[state];
-            room.probe_y.copy_from_slice(y);
-            room.probe_yp.copy_from_slice(yp);
-            let change = PROBE * (1.0 + y[place].abs());
-            room.probe_y[place] += change;
-            self.rates(
-                configuration,
-                t,
-                &mut room.probe_y,
-                &mut room.probe_yp,
-                workspace,
-                &mut room.solving,
-            );
-            let slope = (room.probe_yp[place] - room.rate[state]) / change;
-            // What the linear part carries already, as the damping of a resonance, stays coupled to the other states.
-            let other = (slope - configuration.a[(state, state)]).abs() * step_s > FAST;
-            if other && slope * step_s < -FAST {
-                room.decays.push((state, slope));
-            }
-        }
-    }
-
-    fn apply_pins(&self, y: &mut [f64], yp: &mut [f64]) {
-        for &(position, value) in self.pinned {
-            y[position] = value;
-            yp[position] = 0.0;
-        }
-    }
+/// The largest of some changes of the states, in tolerances.
+fn largest(changes: &[f64], tolerances: &[f64]) -> f64 {
+    let pairs = changes.iter().zip(tolerances);
+    let in_tolerances = pairs.map(|(change, tolerance)| match change.is_nan() {
+        true => f64::INFINITY,
+        false => change.abs() / tolerance,
+    });
+    in_tolerances.fold(0.0, f64::max)
 }
 
 /// (exp(z) - 1)/z and (exp(z) - 1 - z)/z^2, of a z well below 0.
@@ -460,11 +368,5 @@ fn integrals(z: f64) -> (f64, f64) {
 pub(crate) fn gather(from: &[f64], places: &[usize], to: &mut [f64]) {
     for (value, &place) in to.iter_mut().zip(places) {
         *value = from[place];
-    }
-}
-
-fn scatter(from: &[f64], places: &[usize], to: &mut [f64]) {
-    for (&value, &place) in from.iter().zip(places) {
-        to[place] = value;
     }
 }

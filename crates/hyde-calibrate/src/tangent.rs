@@ -9,12 +9,13 @@
 //! right to first order, for its force does not jump where it begins and ends to stick; of contacts it is a part. Modes that
 //! begin within a row act from there on.
 
-use crate::configuration::{Configuration, Places};
+use crate::configuration::Places;
 use crate::dense::set_product;
 use crate::gain::{Observer, output_matrix};
-use crate::observer::{Innovations, measured, whitened};
-use crate::plant::{Leg, Plant, Unsupported};
+use crate::observer::{Innovations, measured};
+use crate::plant::{Leg, Unsupported};
 use crate::recording::Recording;
+use crate::track::{Track, When};
 use hyde_program::{Function, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::{DMatrix, DMatrixView};
 use std::collections::BTreeMap;
@@ -54,6 +55,23 @@ pub(crate) fn tangents(
     set: &[(usize, f64)],
     directions: &[Direction],
 ) -> Result<Tangents, Unsupported> {
+    let track = Track::new(program, recording, observer, set)?;
+    let p = recording.parameters(program, set);
+    let change = changes(&track, program, recording, &p, directions)?;
+    Ok(Tangents {
+        innovations: track.innovations,
+        change,
+    })
+}
+
+/// How whitened innovations change along a track, a column a direction, channels below each other.
+pub(crate) fn changes(
+    track: &Track<'_>,
+    program: &Program,
+    recording: &Recording,
+    p: &[f64],
+    directions: &[Direction],
+) -> Result<DMatrix<f64>, Unsupported> {
     let channels = recording.channels.len();
     let rows = recording.rows() - recording.first_row;
     let mut change = DMatrix::zeros(rows * channels, directions.len());
@@ -64,83 +82,59 @@ pub(crate) fn tangents(
             }
         }
     };
-    let innovations = along(program, recording, observer, set, directions, keep)?;
-    Ok(Tangents {
-        innovations,
-        change,
-    })
+    along(track, program, recording, p, directions, keep)?;
+    Ok(change)
 }
 
 /// The same, row by row: `each` gets the number of a row that counts, and how its whitened innovations change, a row a
-/// channel, a column a direction.
+/// channel, a column a direction. The program is that of the track or one that it serves, `p` its parameters there.
 pub(crate) fn along(
+    track: &Track<'_>,
     program: &Program,
     recording: &Recording,
-    observer: &Observer,
-    set: &[(usize, f64)],
+    p: &[f64],
     directions: &[Direction],
     mut each: impl FnMut(usize, DMatrixView<'_, f64>),
-) -> Result<Innovations, Unsupported> {
-    let mut plant = Plant::new(program, recording, set)?;
-    let observer = observer.of(&plant);
-    if let Some(tolerances) = observer.tolerances() {
-        plant.tolerances = tolerances;
-    }
-    let (states, channels) = (plant.places.states.len(), recording.channels.len());
+) -> Result<(), Unsupported> {
+    let observer = &track.observer;
+    let (states, channels) = (track.places.states.len(), recording.channels.len());
     let count = directions.len();
-    let rows = recording.rows() - recording.first_row;
-    let mut found = Innovations {
-        channels: vec![Vec::with_capacity(rows); channels],
-    };
-    let mut own = Own::new(program, &plant.p, directions);
-    let mut known: Vec<Modes> = Vec::new();
-    let mut number_of: Vec<Option<usize>> = Vec::new();
+    let mut own = Own::new(program, p, directions);
+    let mut known = Known::new(track, program, p, &own.touched);
     let touched = own.touched.len();
     // A column a direction: errors of the states, forces at the start of a row and at its end, what channels show of it.
     let mut before = DMatrix::<f64>::zeros(states + 2 * touched + channels, count);
-    let mut after = DMatrix::<f64>::zeros(states + channels, count);
+    // Errors after it and the answers below them; forces are put over these in the next row.
+    let mut after = before.clone();
     let mut now = DMatrix::<f64>::zeros(touched, count);
     let mut then = now.clone();
     let mut by_output = DMatrix::<f64>::zeros(channels, count);
     let mut corrected = Corrected::default();
-    let mut legs = Legs::default();
-    let mut error = vec![0.0; channels];
-    let mut increment = vec![0.0; states];
     let mut at = None;
-    for row in 0..recording.rows() {
-        own.outputs(&mut plant);
-        for (channel, (error, shown)) in error.iter_mut().zip(&own.values).enumerate() {
-            let difference = recording.channels[channel][row] - shown;
-            if row >= recording.first_row {
-                let value = whitened(difference, observer.deviations[channel]);
-                found.channels[channel].push(value);
-            }
-            *error = if difference.is_finite() {
-                difference
-            } else {
-                0.0
-            };
-        }
-        let seen = modes(&mut plant, &mut known, &mut number_of, &own.touched);
-        own.seen(&mut plant, directions, &mut by_output);
-        let last = plant.current;
-        set_product(&observer.gain, &error, &mut increment);
-        plant.begin_row(&increment);
-        own.forces(&mut plant, directions, &mut then);
+    for (row, passed) in track.rows.iter().enumerate() {
+        let [mode, next] = passed.modes;
+        let seen = known.modes(row, When::Before, mode)?;
+        own.seen(
+            track.point(row, When::Before, p),
+            directions,
+            &mut by_output,
+        );
+        own.forces(track.point(row, When::After, p), directions, &mut then);
         // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
-        let end = if plant.current == last { &then } else { &now };
-        let within = plant.legs.iter().any(|leg| leg.fixed.is_some());
+        let end = if next == mode { &then } else { &now };
+        let legs = track.legs(row);
+        let within = legs.iter().any(|leg| leg.fixed.is_some());
         if at.is_some() && within {
             // Modes that begin within the row act from there on: the axis may ring several times in a row's time.
             // So do forces, which may be others from one mode to the next.
             let mut start = &now;
-            for leg in &plant.legs {
+            for leg in legs {
                 put(&mut before, states, start);
-                let step = legs.of(&plant, leg, &own.touched);
+                let step = known.leg(leg)?;
                 let errors = step * before.rows(0, states + touched);
                 put(&mut before, 0, &errors);
                 if let Some(fixed) = &leg.fixed {
-                    fix(&plant, fixed.iter(), &mut before);
+                    fix(&track.places, fixed, &mut before);
                     start = end;
                 }
             }
@@ -150,28 +144,25 @@ pub(crate) fn along(
         }
         put(&mut before, states + 2 * touched, &by_output);
         let stepped = at.filter(|_| !within);
-        let matrix = corrected.of(&known, stepped, seen, &observer);
+        let matrix = corrected.of(&known.modes, stepped, seen, observer);
         if count < MANY {
             for (mut after, before) in after.column_iter_mut().zip(before.column_iter()) {
-                set_product(matrix, before.as_slice(), after.as_mut_slice());
+                let after = &mut after.as_mut_slice()[..states + channels];
+                set_product(matrix, before.as_slice(), after);
             }
         } else {
+            let mut after = after.rows_mut(0, states + channels);
             after.gemm(1.0, matrix, &before, 0.0);
         }
         if let Some(row) = row.checked_sub(recording.first_row) {
             each(row, after.rows(states, channels));
         }
-        let pinned = plant.pinned.iter().map(|(position, _)| position);
-        fix(&plant, pinned, &mut after);
-        // The answers come to lie where forces are put in the next row.
-        put(&mut before, 0, &after);
+        fix(&track.places, &passed.pinned, &mut after);
+        std::mem::swap(&mut before, &mut after);
         std::mem::swap(&mut now, &mut then);
-        at = Some(modes(&mut plant, &mut known, &mut number_of, &own.touched));
-        if row + 1 < recording.rows() {
-            plant.advance();
-        }
+        at = Some(known.modes(row, When::After, next)?);
     }
-    Ok(found)
+    Ok(())
 }
 
 /// Copies rows to where one begins.
@@ -245,82 +236,111 @@ impl Corrected {
     }
 }
 
-/// What steps within a row make of errors and forces.
-#[derive(Default)]
-struct Legs {
-    known: BTreeMap<(usize, usize), DMatrix<f64>>,
+/// What combinations of modes, and steps in them, make of errors and forces: made where they are new.
+pub(crate) struct Known<'t> {
+    track: &'t Track<'t>,
+    program: &'t Program,
+    p: &'t [f64],
+    touched: Vec<usize>,
+    workspace: Workspace,
+    pub(crate) modes: Vec<Modes>,
+    /// By the numbers of the track.
+    number_of: Vec<Option<usize>>,
+    rates: Vec<Option<DMatrix<f64>>>,
+    legs: BTreeMap<(usize, usize), DMatrix<f64>>,
 }
 
-impl Legs {
-    /// Times errors, and forces below them, this is errors at the end of the step.
-    fn of(&mut self, plant: &Plant<'_>, leg: &Leg, touched: &[usize]) -> &DMatrix<f64> {
-        let make = || {
-            let configuration = &plant.configurations[leg.configuration].1;
-            let rates = rates_by_forces(configuration, &plant.places, touched);
-            let step = &configuration.steps[leg.level];
+impl<'t> Known<'t> {
+    pub(crate) fn new(
+        track: &'t Track<'t>,
+        program: &'t Program,
+        p: &'t [f64],
+        touched: &[usize],
+    ) -> Self {
+        let count = track.configurations.len();
+        Self {
+            track,
+            program,
+            p,
+            touched: touched.to_vec(),
+            workspace: Workspace::new(program.n_work),
+            modes: Vec::new(),
+            number_of: vec![None; count],
+            rates: vec![None; count],
+            legs: BTreeMap::new(),
+        }
+    }
+
+    /// The number of the matrices of a combination of modes, in which a row is.
+    pub(crate) fn modes(
+        &mut self,
+        row: usize,
+        when: When,
+        configuration: usize,
+    ) -> Result<usize, Unsupported> {
+        if let Some(number) = self.number_of[configuration] {
+            return Ok(number);
+        }
+        let track = self.track;
+        let own = &track.configurations[configuration];
+        let at = track.point(row, when, self.p);
+        let outputs = output_matrix(self.program, &track.places, own, at, &mut self.workspace);
+        let step = &own.steps[0];
+        let rates = self.rates(configuration)?;
+        let made = Modes {
+            exp: step.exp.clone(),
+            first: &step.first * rates,
+            // phi2 is that of a growth over the whole step.
+            second: &step.second * rates,
+            outputs,
+        };
+        self.modes.push(made);
+        self.number_of[configuration] = Some(self.modes.len() - 1);
+        Ok(self.modes.len() - 1)
+    }
+
+    /// Times errors, and forces below them, this is errors at the end of a step.
+    fn leg(&mut self, leg: &Leg) -> Result<&DMatrix<f64>, Unsupported> {
+        let key = (leg.configuration, leg.level);
+        if !self.legs.contains_key(&key) {
+            let step = &self.track.configurations[leg.configuration].steps[leg.level];
+            let rates = self.rates(leg.configuration)?;
             let n = step.exp.nrows();
             let mut matrix = DMatrix::zeros(n, n + rates.ncols());
             matrix.columns_mut(0, n).copy_from(&step.exp);
             matrix
                 .columns_mut(n, rates.ncols())
                 .copy_from(&(&step.first * rates));
-            matrix
-        };
-        self.known
-            .entry((leg.configuration, leg.level))
-            .or_insert_with(make)
+            self.legs.insert(key, matrix);
+        }
+        Ok(&self.legs[&key])
+    }
+
+    /// The rates of the states that forces in the equations that are touched make.
+    fn rates(&mut self, configuration: usize) -> Result<&DMatrix<f64>, Unsupported> {
+        if self.rates[configuration].is_none() {
+            let track = self.track;
+            let inverse = track
+                .inverse(self.program, configuration, self.p, &mut self.workspace)
+                .ok_or_else(singular)?;
+            let of_states = -inverse.select_rows(&track.places.states);
+            self.rates[configuration] = Some(of_states.select_columns(&self.touched));
+        }
+        self.rates[configuration].as_ref().ok_or_else(singular)
     }
 }
 
-/// The rates of the states that forces in some equations make.
-fn rates_by_forces(
-    configuration: &Configuration,
-    places: &Places,
-    touched: &[usize],
-) -> DMatrix<f64> {
-    let of_states = -configuration.inverse.select_rows(&places.states);
-    of_states.select_columns(touched)
+fn singular() -> Unsupported {
+    Unsupported::Start("the equations are singular".to_owned())
 }
 
 /// States that modes fix have no error, a row a state: what the observer corrects them by is lost.
-fn fix<'a>(
-    plant: &Plant<'_>,
-    positions: impl Iterator<Item = &'a usize>,
-    errors: &mut DMatrix<f64>,
-) {
+fn fix(places: &Places, positions: &[usize], errors: &mut DMatrix<f64>) {
     for position in positions {
-        let mut states = plant.places.states.iter();
-        if let Some(state) = states.position(|state| state == position) {
+        if let Some(state) = places.states.iter().position(|state| state == position) {
             errors.row_mut(state).fill(0.0);
         }
     }
-}
-
-/// The number of the matrices of the modes the plant is in, made where they are new.
-pub(crate) fn modes(
-    plant: &mut Plant<'_>,
-    known: &mut Vec<Modes>,
-    number_of: &mut Vec<Option<usize>>,
-    touched: &[usize],
-) -> usize {
-    let at = plant.current;
-    number_of.resize(number_of.len().max(at + 1), None);
-    if let Some(number) = number_of[at] {
-        return number;
-    }
-    let outputs = output_matrix(plant);
-    let configuration = plant.configuration();
-    let step = &configuration.steps[0];
-    let rates = rates_by_forces(configuration, &plant.places, touched);
-    known.push(Modes {
-        exp: step.exp.clone(),
-        first: &step.first * &rates,
-        // phi2 is that of a growth over the whole step.
-        second: &step.second * &rates,
-        outputs,
-    });
-    number_of[at] = Some(known.len() - 1);
-    known.len() - 1
 }
 
 /// Evaluations of the model with other parameters where the plant is.
@@ -335,7 +355,7 @@ pub(crate) struct Own<'p> {
     shown: bool,
     workspace: Workspace,
     /// What the channels show without a change.
-    pub(crate) values: Vec<f64>,
+    values: Vec<f64>,
     others: Vec<f64>,
     force: Vec<f64>,
     plain: Vec<f64>,
@@ -372,23 +392,13 @@ impl<'p> Own<'p> {
         }
     }
 
-    pub(crate) fn outputs(&mut self, plant: &mut Plant<'_>) {
-        let (at, _) = plant.point();
-        self.measured
-            .evaluate(at, &mut self.workspace, &mut self.values);
-    }
-
     /// What a unit of each size adds to what the channels show, where it does: a column a direction.
-    pub(crate) fn seen(
-        &mut self,
-        plant: &mut Plant<'_>,
-        directions: &[Direction],
-        out: &mut DMatrix<f64>,
-    ) {
+    pub(crate) fn seen(&mut self, at: Point<'_>, directions: &[Direction], out: &mut DMatrix<f64>) {
         if !self.shown {
             return;
         }
-        let (at, _) = plant.point();
+        self.measured
+            .evaluate(at, &mut self.workspace, &mut self.values);
         for (number, direction) in directions.iter().enumerate() {
             let with = Point {
                 p: &direction.p,
@@ -405,11 +415,10 @@ impl<'p> Own<'p> {
     /// What a unit of each size adds to the residual of the equations that are touched: a column a direction.
     pub(crate) fn forces(
         &mut self,
-        plant: &mut Plant<'_>,
+        at: Point<'_>,
         directions: &[Direction],
         out: &mut DMatrix<f64>,
     ) {
-        let (at, _) = plant.point();
         self.residual
             .evaluate(at, &mut self.workspace, &mut self.plain);
         for (number, direction) in directions.iter().enumerate() {

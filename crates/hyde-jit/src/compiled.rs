@@ -194,6 +194,10 @@ impl Kernels for Compiled {
         })
     }
 
+    fn bending_rows(&self) -> Vec<usize> {
+        crate::bending::bending_rows(&self.dae)
+    }
+
     fn entries(&self, function: Function) -> Vec<PartialEntry> {
         entries(self.dae.partials(in_dae(function)))
     }

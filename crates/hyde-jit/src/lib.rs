@@ -8,6 +8,7 @@
 //!
 //! Machine code is made at the first use of a kernel and freed with the last program that holds it.
 
+mod bending;
 mod compiled;
 mod emit;
 mod figures;

@@ -51,6 +51,46 @@ fn some_rows_are_those_of_the_whole() {
     }
 }
 
+/// What the fixed steps of a calibration stand on: they evaluate what bends and no more.
+#[test]
+fn rows_that_do_not_bend_have_the_same_derivatives_everywhere() {
+    let (mut straight, mut bent) = (0, 0);
+    for case in examples::all() {
+        let [program, _] = both(&case);
+        let bending = program.kernels.bending_rows();
+        assert!(bending.is_sorted());
+        let p = parameters(&program, &[]);
+        let mut random = Random(4);
+        let start = Values::of(&program, &mut random);
+        let derivatives = |at: Point<'_>| {
+            let mut values = vec![f64::NAN; program.partials(Function::Residual).len()];
+            let mut work = Workspace::new(program.n_work);
+            let kernels = &program.kernels;
+            kernels.partials(Function::Residual, at, &mut work, &mut values);
+            values
+        };
+        let here = derivatives(start.point(&p));
+        for _ in 0..4 {
+            let other = Values::of(&program, &mut random);
+            // Modes and relations stay.
+            let at = Point {
+                z: start.point(&p).z,
+                ..other.point(&p)
+            };
+            let there = derivatives(at);
+            let entries = program.partials(Function::Residual);
+            for ((entry, a), b) in entries.iter().zip(&here).zip(&there) {
+                let bends = bending.binary_search(&entry.row).is_ok();
+                let same = a.to_bits() == b.to_bits();
+                assert!(bends || same, "{}: row {}", case.name, entry.row);
+                straight += usize::from(!bends);
+                bent += usize::from(!same);
+            }
+        }
+    }
+    assert!(straight > 1000 && bent > 0, "{straight} {bent}");
+}
+
 #[test]
 fn derivatives_by_parameters_agree_to_the_last_bit() {
     for case in examples::all() {

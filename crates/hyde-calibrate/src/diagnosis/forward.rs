@@ -152,9 +152,11 @@ impl Forward<'_> {
         let stage = &branch.stage;
         let at = stage.linearise(self.ground)?;
         let projection = Projection::new(stage, &at).ok_or_else(singular)?;
+        let tracks = stage.tracks(self.ground)?;
         let scanner = Scanner {
             ground: self.ground,
             stage,
+            tracks: &tracks,
             projection: &projection,
             hypotheses: self.hypotheses,
             build: self.build,
@@ -176,6 +178,7 @@ impl Forward<'_> {
             }
             None => None,
         };
+        drop(tracks);
         let round = self.rounds.len();
         self.rounds.push(Round {
             scores,

@@ -6,22 +6,16 @@
 
 use super::grid::Grid;
 use super::hypothesis::{Build, Built, Hypothesis, Knob};
-use super::products::Products;
 use super::projection::Projection;
-use super::stage::{Ground, Stage, flat};
-use crate::observer::Innovations;
-use crate::recording::Recording;
-use crate::tangent::{Direction, along, tangents};
+use super::runs::{Runs, largest};
+use super::stage::{Ground, Stage};
+use crate::track::Track;
 use hyde_program::Program;
-use nalgebra::{DMatrixView, DVector};
+use nalgebra::DVector;
 use rayon::prelude::*;
 
 /// A visible change of innovations: the sum of its squares.
 const VISIBLE: f64 = 100.0;
-/// The part of its range that a size is given to differentiate by it.
-const SMALL: f64 = 1e-4;
-/// Innovations whose sum of squares is so many times what it is without the effect are not looked at to their end.
-const HOPELESS: f64 = 100.0;
 /// A gain is looked at from this part of the gate on, and where it promises this part of the best.
 const PASSABLE: f64 = 0.25;
 const WORTHWHILE: f64 = 0.01;
@@ -81,6 +75,8 @@ pub(crate) struct Scanner<'s> {
     pub(crate) projection: &'s Projection,
     pub(crate) hypotheses: &'s [Hypothesis],
     pub(crate) build: &'s Build<'s>,
+    /// Where the stage takes the observer, record by record.
+    pub(crate) tracks: &'s [Track<'s>],
     /// What a gain has to reach at least.
     pub(crate) gate: f64,
     /// So many are fitted at most.
@@ -336,103 +332,11 @@ impl Scanner<'_> {
         Runs {
             ground: self.ground,
             program,
+            tracks: Some(self.tracks).filter(|list| list.iter().all(|own| own.serves(program))),
             values: self.stage.values(),
             sizes: Hypothesis::names(&hypothesis.sizes, path),
             shapes: Hypothesis::names(&hypothesis.shapes, path),
         }
-    }
-}
-
-/// Innovations of a model with the effect at some sizes.
-struct Runs<'s> {
-    ground: &'s Ground<'s>,
-    program: &'s Program,
-    values: Vec<(String, f64)>,
-    sizes: Vec<String>,
-    shapes: Vec<String>,
-}
-
-impl Runs<'_> {
-    /// How innovations change from what they are without the effect; `None` where it cannot be run, or where they become so
-    /// large that no parameter could answer it.
-    fn change(&self, sizes: &[f64], shapes: &[f64], plain: &DVector<f64>) -> Option<DVector<f64>> {
-        let set = self.set(sizes, shapes);
-        let limit = HOPELESS * plain.norm_squared();
-        let run = |recording: &Recording| {
-            let observer = self.ground.observer;
-            Innovations::within(self.program, recording, observer, &set, limit).ok()?
-        };
-        let each: Option<Vec<Innovations>> = self.ground.recordings.par_iter().map(run).collect();
-        Some(DVector::from_vec(flat(&each?)) - plain)
-    }
-
-    /// Products of the changes of innovations a unit of each size, for some shapes; and the innovations.
-    fn products(
-        &self,
-        hypothesis: &Hypothesis,
-        projection: &Projection,
-        shapes: &[Vec<f64>],
-    ) -> Option<(Products, DVector<f64>)> {
-        let count = hypothesis.sizes.len();
-        let set = self.set(&vec![0.0; count], shapes.first()?);
-        let mut products = Products::new(projection.parameters(), shapes.len(), count);
-        let mut innovations = Vec::new();
-        for (recording, record) in self.ground.recordings.iter().zip(&projection.records) {
-            let directions = self.directions(hypothesis, recording, shapes);
-            let mut adding = products.adding(record, recording.channels.len(), recording.step_s);
-            let observer = self.ground.observer;
-            let each = |_, changes: DMatrixView<'_, f64>| adding.row(changes);
-            let own = along(self.program, recording, observer, &set, &directions, each);
-            innovations.push(own.ok()?);
-            adding.end();
-        }
-        Some((products, DVector::from_vec(flat(&innovations))))
-    }
-
-    /// The changes of innovations a unit of each size.
-    fn columns(&self, hypothesis: &Hypothesis, shapes: &[f64]) -> Option<Vec<Vec<f64>>> {
-        let count = hypothesis.sizes.len();
-        let set = self.set(&vec![0.0; count], shapes);
-        let mut columns = vec![Vec::new(); count];
-        for recording in self.ground.recordings {
-            let directions = self.directions(hypothesis, recording, &[shapes.to_vec()]);
-            let observer = self.ground.observer;
-            let own = tangents(self.program, recording, observer, &set, &directions).ok()?;
-            for (column, change) in columns.iter_mut().zip(own.change.column_iter()) {
-                column.extend(change.iter());
-            }
-        }
-        Some(columns)
-    }
-
-    /// Every size of every shape, a little above 0.
-    fn directions(
-        &self,
-        hypothesis: &Hypothesis,
-        recording: &Recording,
-        shapes: &[Vec<f64>],
-    ) -> Vec<Direction> {
-        let count = hypothesis.sizes.len();
-        let of = |(shape, which): (&Vec<f64>, usize)| {
-            let mut sizes = vec![0.0; count];
-            sizes[which] = SMALL * largest(&hypothesis.sizes[which]);
-            Direction {
-                p: recording.parameters(self.program, &self.set(&sizes, shape)),
-                step: sizes[which],
-            }
-        };
-        let each = shapes.iter();
-        each.flat_map(|shape| (0..count).map(move |which| (shape, which)))
-            .map(of)
-            .collect()
-    }
-
-    fn set(&self, sizes: &[f64], shapes: &[f64]) -> Vec<(usize, f64)> {
-        let mut values = self.values.clone();
-        let own = self.sizes.iter().zip(sizes);
-        let own = own.chain(self.shapes.iter().zip(shapes));
-        values.extend(own.map(|(name, &value)| (name.clone(), value)));
-        self.ground.set_in(self.program, &values)
     }
 }
 
@@ -464,13 +368,4 @@ fn peaks(grid: &Grid<'_>, mut nodes: Vec<Node>) -> Vec<Node> {
         }
     }
     kept
-}
-
-fn largest(size: &Knob) -> f64 {
-    // The positive side, where there is one: many sizes cannot be negative.
-    if size.range.1 > 0.0 {
-        size.range.1
-    } else {
-        size.range.0
-    }
 }

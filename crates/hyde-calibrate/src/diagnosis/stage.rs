@@ -8,8 +8,10 @@ use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
 use crate::solution::Solution;
+use crate::track::Track;
 use crate::varied::Varied;
 use hyde_program::Program;
+use rayon::prelude::*;
 
 /// What never changes in a diagnosis.
 #[derive(Clone, Copy)]
@@ -68,6 +70,14 @@ impl Stage {
         ground
             .problem(&self.program, &self.varied, &set, None)
             .linearise(&self.solution.values, Slopes::Tangents)
+    }
+
+    /// Where it takes the observer, record by record.
+    pub(crate) fn tracks<'s>(&'s self, ground: &Ground<'s>) -> Result<Vec<Track<'s>>, Unsupported> {
+        let set = ground.set_in(&self.program, &self.values());
+        let each = ground.recordings.par_iter();
+        each.map(|recording| Track::new(&self.program, recording, ground.observer, &set))
+            .collect()
     }
 
     /// The stage fitted to the end, once from where it is and once from what was declared: without the effect the

@@ -228,6 +228,10 @@ impl<E: Equations> Kernels for ByHand<E> {
         panic!("no problem here is asked for rows {rows:?} of {function:?} alone")
     }
 
+    fn bending_rows(&self) -> Vec<usize> {
+        panic!("no problem here is asked what bends")
+    }
+
     fn entries(&self, function: Function) -> Vec<PartialEntry> {
         let partials = self.somewhere(|at| self.equations.partials(function, at));
         let places = partials.into_iter().map(|(row, wrt, _)| (row, wrt));

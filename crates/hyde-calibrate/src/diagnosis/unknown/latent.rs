@@ -12,9 +12,9 @@
 use crate::dense::{add_product, set_product};
 use crate::diagnosis::projection::dot;
 use crate::gain::Observer;
-use crate::plant::Plant;
 use crate::recording::Recording;
-use crate::tangent::{Direction, Modes, Own, modes};
+use crate::tangent::{Direction, Known, Modes, Own};
+use crate::track::{Track, When};
 use hyde_program::Program;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -96,12 +96,8 @@ impl Carrier {
                 step: 1.0,
             });
         }
-        let mut plant = Plant::new(program, recording, set).ok()?;
-        let observer = observer.of(&plant);
-        if let Some(tolerances) = observer.tolerances() {
-            plant.tolerances = tolerances;
-        }
-        let states = plant.places.states.len();
+        let track = Track::new(program, recording, observer, set).ok()?;
+        let (observer, states) = (&track.observer, track.places.states.len());
         let mut found = Self {
             course: Course::default(),
             rows: Vec::new(),
@@ -112,39 +108,35 @@ impl Carrier {
             first_row: recording.first_row,
             states,
         };
-        let mut own = Own::new(program, &plant.p, &directions);
+        let p = recording.parameters(program, set);
+        let mut own = Own::new(program, &p, &directions);
+        let mut known = Known::new(&track, program, &p, &own.touched);
         let mut forces = DMatrix::zeros(own.touched.len(), directions.len());
         let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
-        let (mut known, mut numbers) = (Vec::new(), Vec::new());
         let mut passages = BTreeMap::new();
-        let mut error = vec![0.0; recording.channels.len()];
         let mut increment = vec![0.0; states];
         let (mut place, mut speed) = (0.0, 0.0);
-        for row in 0..recording.rows() {
-            own.outputs(&mut plant);
-            for (channel, shown) in own.values.iter().enumerate() {
-                let difference = recording.channels[channel][row] - shown;
-                error[channel] = if difference.is_finite() {
-                    difference
-                } else {
-                    0.0
-                };
-            }
-            own.seen(&mut plant, &directions, &mut by_output);
-            let corrected = modes(&mut plant, &mut known, &mut numbers, &own.touched);
-            set_product(&observer.gain, &error, &mut increment);
-            plant.begin_row(&increment);
-            let stepped = modes(&mut plant, &mut known, &mut numbers, &own.touched);
-            own.forces(&mut plant, &directions, &mut forces);
+        for (row, passed) in track.rows.iter().enumerate() {
+            let [before, after] = passed.modes;
+            own.seen(
+                track.point(row, When::Before, &p),
+                &directions,
+                &mut by_output,
+            );
+            let corrected = known.modes(row, When::Before, before).ok()?;
+            let stepped = known.modes(row, When::After, after).ok()?;
+            let at = track.point(row, When::After, &p);
+            own.forces(at, &directions, &mut forces);
+            found.course.time.push(at.t);
             let at = place_and_speed(&forces).or_else(|| place_and_speed(&by_output));
             (place, speed) = at.unwrap_or((place, speed));
-            found.course.time.push(plant.time());
             found.course.place.push(place);
             found.course.speed.push(speed);
             found.course.acts.push(at.is_some());
+            let [corrected_by, stepped_by] = [&known.modes[corrected], &known.modes[stepped]];
             let unit = forces.column(0);
             let shown: Vec<f64> = by_output.column(0).iter().map(|value| -value).collect();
-            for matrix in [&known[stepped].first, &known[stepped].second] {
+            for matrix in [&stepped_by.first, &stepped_by.second] {
                 let start = found.entries.len();
                 found.entries.resize(start + states, 0.0);
                 add_product(matrix, unit.as_slice(), &mut found.entries[start..]);
@@ -153,28 +145,25 @@ impl Carrier {
                 set_product(&observer.gain, &shown, &mut increment);
                 let first = found.entries.len() - 2 * states;
                 let first = &mut found.entries[first..][..states];
-                add_product(&known[stepped].exp, &increment, first);
+                add_product(&stepped_by.exp, &increment, first);
             }
             let whitened = shown.iter().zip(&observer.deviations);
             found
                 .shown
                 .extend(whitened.map(|(value, deviation)| value / deviation));
             let passage = *passages.entry((corrected, stepped)).or_insert_with(|| {
-                let made = Passage::new(&known[corrected], &known[stepped], &observer);
+                let made = Passage::new(corrected_by, stepped_by, observer);
                 found.passages.push(made);
                 found.passages.len() - 1
             });
-            let fixed = plant.pinned.iter().filter_map(|(position, _)| {
-                let states = plant.places.states.iter();
-                states.into_iter().position(|state| state == position)
+            let fixed = passed.pinned.iter().filter_map(|position| {
+                let mut states = track.places.states.iter();
+                states.position(|state| state == position)
             });
             found.rows.push(Row {
                 passage,
                 fixed: fixed.collect(),
             });
-            if row + 1 < recording.rows() {
-                plant.advance();
-            }
         }
         Some(found)
     }

@@ -1,0 +1,150 @@
+//! [`Runs`]: innovations of the stage's model with an effect put on: how they change with a small size, along the track of the
+//! stage where that serves, and what they are at any size.
+
+use super::hypothesis::{Hypothesis, Knob};
+use super::products::Products;
+use super::projection::Projection;
+use super::stage::{Ground, flat};
+use crate::observer::Innovations;
+use crate::recording::Recording;
+use crate::tangent::{Direction, along, changes};
+use crate::track::Track;
+use hyde_program::Program;
+use nalgebra::{DMatrixView, DVector};
+use rayon::prelude::*;
+
+/// The part of its range that a size is given to differentiate by it.
+const SMALL: f64 = 1e-4;
+/// Innovations whose sum of squares is so many times what it is without the effect are not looked at to their end.
+const HOPELESS: f64 = 100.0;
+
+/// Innovations of a model with the effect at some sizes.
+pub(crate) struct Runs<'s> {
+    pub(crate) ground: &'s Ground<'s>,
+    pub(crate) program: &'s Program,
+    /// Where the stage takes the observer, if so it does with the effect at size 0.
+    pub(crate) tracks: Option<&'s [Track<'s>]>,
+    pub(crate) values: Vec<(String, f64)>,
+    pub(crate) sizes: Vec<String>,
+    pub(crate) shapes: Vec<String>,
+}
+
+impl Runs<'_> {
+    /// How innovations change from what they are without the effect; `None` where it cannot be run, or where they become so
+    /// large that no parameter could answer it.
+    pub(crate) fn change(
+        &self,
+        sizes: &[f64],
+        shapes: &[f64],
+        plain: &DVector<f64>,
+    ) -> Option<DVector<f64>> {
+        let set = self.set(sizes, shapes);
+        let limit = HOPELESS * plain.norm_squared();
+        let run = |recording: &Recording| {
+            let observer = self.ground.observer;
+            Innovations::within(self.program, recording, observer, &set, limit).ok()?
+        };
+        let each: Option<Vec<Innovations>> = self.ground.recordings.par_iter().map(run).collect();
+        Some(DVector::from_vec(flat(&each?)) - plain)
+    }
+
+    /// Products of the changes of innovations a unit of each size, for some shapes; and the innovations.
+    pub(crate) fn products(
+        &self,
+        hypothesis: &Hypothesis,
+        projection: &Projection,
+        shapes: &[Vec<f64>],
+    ) -> Option<(Products, DVector<f64>)> {
+        let count = hypothesis.sizes.len();
+        let set = self.set(&vec![0.0; count], shapes.first()?);
+        let mut products = Products::new(projection.parameters(), shapes.len(), count);
+        let mut innovations = Vec::new();
+        for (number, record) in projection.records.iter().enumerate() {
+            let recording = &self.ground.recordings[number];
+            let directions = self.directions(hypothesis, recording, shapes);
+            let mut adding = products.adding(record, recording.channels.len(), recording.step_s);
+            let each = |_, changes: DMatrixView<'_, f64>| adding.row(changes);
+            let p = recording.parameters(self.program, &set);
+            let own = self.on_track(number, &set, |track| {
+                along(track, self.program, recording, &p, &directions, each).ok()?;
+                Some(track.innovations.clone())
+            });
+            innovations.push(own?);
+            adding.end();
+        }
+        Some((products, DVector::from_vec(flat(&innovations))))
+    }
+
+    /// The changes of innovations a unit of each size.
+    pub(crate) fn columns(&self, hypothesis: &Hypothesis, shapes: &[f64]) -> Option<Vec<Vec<f64>>> {
+        let count = hypothesis.sizes.len();
+        let set = self.set(&vec![0.0; count], shapes);
+        let mut columns = vec![Vec::new(); count];
+        for (number, recording) in self.ground.recordings.iter().enumerate() {
+            let directions = self.directions(hypothesis, recording, &[shapes.to_vec()]);
+            let p = recording.parameters(self.program, &set);
+            let own = self.on_track(number, &set, |track| {
+                changes(track, self.program, recording, &p, &directions).ok()
+            });
+            for (column, change) in columns.iter_mut().zip(own?.column_iter()) {
+                column.extend(change.iter());
+            }
+        }
+        Some(columns)
+    }
+
+    /// What something makes of the track of a record: the stage's, or one of its own.
+    fn on_track<T>(
+        &self,
+        number: usize,
+        set: &[(usize, f64)],
+        make: impl FnOnce(&Track<'_>) -> Option<T>,
+    ) -> Option<T> {
+        if let Some(tracks) = self.tracks {
+            return make(&tracks[number]);
+        }
+        let recording = &self.ground.recordings[number];
+        let own = Track::new(self.program, recording, self.ground.observer, set);
+        make(&own.ok()?)
+    }
+
+    /// Every size of every shape, a little above 0.
+    fn directions(
+        &self,
+        hypothesis: &Hypothesis,
+        recording: &Recording,
+        shapes: &[Vec<f64>],
+    ) -> Vec<Direction> {
+        let count = hypothesis.sizes.len();
+        let of = |(shape, which): (&Vec<f64>, usize)| {
+            let mut sizes = vec![0.0; count];
+            sizes[which] = SMALL * largest(&hypothesis.sizes[which]);
+            Direction {
+                p: recording.parameters(self.program, &self.set(&sizes, shape)),
+                step: sizes[which],
+            }
+        };
+        let each = shapes.iter();
+        each.flat_map(|shape| (0..count).map(move |which| (shape, which)))
+            .map(of)
+            .collect()
+    }
+
+    fn set(&self, sizes: &[f64], shapes: &[f64]) -> Vec<(usize, f64)> {
+        let mut values = self.values.clone();
+        let own = self.sizes.iter().zip(sizes);
+        let own = own.chain(self.shapes.iter().zip(shapes));
+        values.extend(own.map(|(name, &value)| (name.clone(), value)));
+        self.ground.set_in(self.program, &values)
+    }
+}
+
+/// The largest value of a size.
+pub(crate) fn largest(size: &Knob) -> f64 {
+    // The positive side, where there is one: many sizes cannot be negative.
+    if size.range.1 > 0.0 {
+        size.range.1
+    } else {
+        size.range.0
+    }
+}
