@@ -19,8 +19,6 @@ pub(crate) struct Places {
     pub(crate) differential: Vec<bool>,
     pub(crate) states: Vec<usize>,
     pub(crate) algebraics: Vec<usize>,
-    /// The equations that bend ([`Kernels::bending_rows`]).
-    bending: Vec<usize>,
 }
 
 /// The model in one combination of modes.
@@ -77,7 +75,7 @@ impl Made {
     }
 }
 
-/// The equations that are not linear, or read what is outside: in a step, only these are evaluated.
+/// The equations that are not linear, or read what is outside ([`Kernels::bending_rows`]): in a step, only these are evaluated.
 pub(crate) struct Bending<'p> {
     residual: Box<dyn SomeRows + 'p>,
     pub(crate) count: usize,
@@ -99,7 +97,6 @@ impl Places {
         Self {
             states: chosen(true),
             algebraics: chosen(false),
-            bending: program.kernels.bending_rows(),
             differential,
         }
     }
@@ -158,14 +155,12 @@ impl<'p> Configuration<'p> {
             all
         };
         let flows = steps.iter().map(flow).collect();
-        let by_residual = -inverse
-            .select_columns(&places.bending)
-            .select_rows(&ordered);
+        let bending = program.kernels.bending_rows();
+        let by_residual = -inverse.select_columns(bending).select_rows(&ordered);
         let rates = by_residual.rows(0, n);
-        let kernels = &program.kernels;
         let bending = Bending {
-            residual: kernels.some_rows(Function::Residual, &places.bending),
-            count: places.bending.len(),
+            residual: program.kernels.some_rows(Function::Residual, bending),
+            count: bending.len(),
             first: steps.iter().map(|step| &step.first * rates).collect(),
             second: steps.iter().map(|step| &step.second * rates).collect(),
             by_residual,

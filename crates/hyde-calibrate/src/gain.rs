@@ -97,7 +97,7 @@ impl Observer {
     }
 
     /// The observer of another model of the same axis: states keep their gain, states that are new have none.
-    pub(crate) fn of(&self, plant: &Plant<'_>) -> Self {
+    fn of(&self, plant: &Plant<'_>) -> Self {
         let names = state_names(plant);
         if names == self.states {
             return self.clone();
@@ -118,8 +118,23 @@ impl Observer {
         }
     }
 
+    /// A plant at the first row of a record, its steps as exact as its observer is; and that.
+    pub(crate) fn on<'a>(
+        &self,
+        program: &'a Program,
+        recording: &'a Recording,
+        set: &[(usize, f64)],
+    ) -> Result<(Plant<'a>, Self), Unsupported> {
+        let mut plant = Plant::new(program, recording, set)?;
+        let own = self.of(&plant);
+        if let Some(tolerances) = own.tolerances() {
+            plant.tolerances = tolerances;
+        }
+        Ok((plant, own))
+    }
+
     /// How exact a step is to be, one number a state, SI.
-    pub(crate) fn tolerances(&self) -> Option<Vec<f64>> {
+    fn tolerances(&self) -> Option<Vec<f64>> {
         let known = !self.spread.iter().any(|spread| spread.is_nan());
         known.then(|| {
             self.spread
@@ -222,13 +237,10 @@ fn usual_rates(
 ) -> Result<Vec<f64>, Unsupported> {
     let (mut sums, mut count) = (Vec::new(), 0.0);
     for recording in recordings {
-        let mut plant = Plant::new(program, recording, set)?;
-        if let Some(tolerances) = observer.tolerances() {
-            plant.tolerances = tolerances;
-        }
+        let (mut plant, observer) = observer.on(program, recording, set)?;
         let mut rates = vec![0.0; plant.places.states.len()];
         sums.resize(rates.len(), 0.0);
-        crate::observer::run(&mut plant, observer, |plant, _, _| {
+        crate::observer::run(&mut plant, &observer, |plant, _, _| {
             plant.rates(&mut rates);
             for (sum, rate) in sums.iter_mut().zip(&rates) {
                 *sum += rate * rate;

@@ -15,7 +15,8 @@ use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
 use crate::solution::Solution;
-use crate::tangent::{Direction, Tangents, tangents};
+use crate::tangent::{Direction, changes};
+use crate::track::Track;
 use crate::varied::Varied;
 use hyde_program::Program;
 use nalgebra::{DMatrix, DVector};
@@ -238,12 +239,21 @@ impl Problem<'_> {
         slopes: Slopes,
     ) -> Result<Linearised, Unsupported> {
         match slopes {
-            Slopes::Tangents if !self.varied.is_empty() => self.by_tangents(values),
+            Slopes::Tangents if !self.varied.is_empty() => {
+                let set = self.settings(values);
+                let tracks = Track::all(self.program, self.recordings, self.observer, &set)?;
+                self.linearise_on(&tracks, values)
+            }
             Slopes::Tangents | Slopes::Differences => self.by_differences(values),
         }
     }
 
-    fn by_tangents(&self, values: &[f64]) -> Result<Linearised, Unsupported> {
+    /// The same by tangents, where the tracks of the records with these values are known.
+    pub(crate) fn linearise_on(
+        &self,
+        tracks: &[Track<'_>],
+        values: &[f64],
+    ) -> Result<Linearised, Unsupported> {
         let set = self.settings(values);
         let direction = |recording: &Recording, number: usize| {
             let varied = &self.varied[number];
@@ -268,18 +278,22 @@ impl Problem<'_> {
         if along.is_empty() {
             return self.by_differences(values);
         }
-        let parts = along.chunks(AT_ONCE).count();
-        let runs: Vec<(&Recording, &[usize])> = self
+        let p: Vec<Vec<f64>> = self
             .recordings
             .iter()
-            .flat_map(|recording| along.chunks(AT_ONCE).map(move |part| (recording, part)))
+            .map(|recording| recording.parameters(self.program, &set))
+            .collect();
+        let parts: Vec<&[usize]> = along.chunks(AT_ONCE).collect();
+        let looks: Vec<(usize, &[usize])> = (0..self.recordings.len())
+            .flat_map(|record| parts.iter().map(move |part| (record, *part)))
             .collect();
         let (found, late_columns) = rayon::join(
-            || -> Result<Vec<Tangents>, Unsupported> {
-                let each = runs.into_par_iter().map(|(recording, part)| {
+            || -> Result<Vec<DMatrix<f64>>, Unsupported> {
+                let each = looks.into_par_iter().map(|(record, part)| {
+                    let recording = &self.recordings[record];
                     let own = part.iter().map(|&number| direction(recording, number));
                     let own: Vec<Direction> = own.collect();
-                    tangents(self.program, recording, self.observer, &set, &own)
+                    changes(&tracks[record], self.program, recording, &p[record], &own)
                 });
                 each.collect()
             },
@@ -287,20 +301,17 @@ impl Problem<'_> {
         );
         let (late_columns, mut found) = (late_columns?, found?.into_iter());
         let (mut innovations, mut derivatives) = (Vec::new(), Vec::new());
-        for (recording, moved) in self.recordings.iter().zip(late_columns) {
-            let mut matrix = DMatrix::zeros(0, 0);
-            let mut own = None;
+        let records = self.recordings.iter().zip(tracks).zip(late_columns);
+        for ((recording, track), moved) in records {
+            let mut own = track.innovations.clone();
+            let rows = own.channels.iter().map(Vec::len).sum();
+            let mut matrix = DMatrix::zeros(rows, self.varied.len());
             let mut numbers = along.iter();
-            for part in found.by_ref().take(parts) {
-                if own.is_none() {
-                    matrix = DMatrix::zeros(part.change.nrows(), self.varied.len());
-                }
-                for (column, &number) in part.change.column_iter().zip(numbers.by_ref()) {
+            for part in found.by_ref().take(parts.len()) {
+                for (column, &number) in part.column_iter().zip(numbers.by_ref()) {
                     matrix.set_column(number, &column);
                 }
-                own = own.or(Some(part.innovations));
             }
-            let Some(mut own) = own else { continue };
             if let Some(fold) = self.fold {
                 fold.keep(&mut own, recording);
                 fold.keep_rows(&mut matrix, recording);

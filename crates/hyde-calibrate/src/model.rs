@@ -34,6 +34,17 @@ pub(crate) struct Model<'s> {
 }
 
 impl Model<'_> {
+    fn point<'a>(&'a self, t: f64, y: &'a [f64], yp: &'a [f64]) -> Point<'a> {
+        Point {
+            t,
+            y,
+            yp,
+            z: self.z,
+            u: self.u,
+            p: self.p,
+        }
+    }
+
     /// Rates and algebraic variables for the states in y, from a guess of them.
     pub(crate) fn rates(
         &self,
@@ -47,14 +58,7 @@ impl Model<'_> {
         }: &mut Solving,
     ) {
         for _ in 0..rounds(configuration) {
-            let at = Point {
-                t,
-                y,
-                yp,
-                z: self.z,
-                u: self.u,
-                p: self.p,
-            };
+            let at = self.point(t, y, yp);
             self.program
                 .kernels
                 .evaluate(Function::Residual, at, workspace, residual);
@@ -120,14 +124,7 @@ impl Model<'_> {
         sum.clear();
         sum.resize(bending.count, 0.0);
         for _ in 0..rounds(configuration) {
-            let at = Point {
-                t,
-                y,
-                yp,
-                z: self.z,
-                u: self.u,
-                p: self.p,
-            };
+            let at = self.point(t, y, yp);
             bending.evaluate(at, workspace, residual, delta);
             for (sum, residual) in sum.iter_mut().zip(&*residual) {
                 *sum += residual;

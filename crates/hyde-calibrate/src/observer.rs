@@ -42,23 +42,12 @@ impl Innovations {
         set: &[(usize, f64)],
         limit: f64,
     ) -> Result<Option<Self>, Unsupported> {
-        let mut plant = Plant::new(program, recording, set)?;
-        let observer = observer.of(&plant);
-        if let Some(tolerances) = observer.tolerances() {
-            plant.tolerances = tolerances;
-        }
-        let rows = recording.rows() - recording.first_row;
-        let mut channels = vec![Vec::with_capacity(rows); recording.channels.len()];
+        let (mut plant, observer) = observer.on(program, recording, set)?;
+        let mut found = Self::empty(recording);
         let mut sum = 0.0;
-        let end = run_while(&mut plant, &observer, |_, row, error| {
-            if row >= recording.first_row {
-                for ((list, error), deviation) in
-                    channels.iter_mut().zip(error).zip(&observer.deviations)
-                {
-                    let value = whitened(*error, *deviation);
-                    sum += value * value;
-                    list.push(value);
-                }
+        let end = run_while(&mut plant, &observer, |_, row, when, error| {
+            if matches!(when, When::Before) && row >= recording.first_row {
+                sum += found.add(error, &observer);
             }
             if sum <= limit {
                 ControlFlow::Continue(())
@@ -66,7 +55,27 @@ impl Innovations {
                 ControlFlow::Break(())
             }
         });
-        Ok(end.is_continue().then_some(Self { channels }))
+        Ok(end.is_continue().then_some(found))
+    }
+
+    /// None yet, with room for all rows of a record.
+    pub(crate) fn empty(recording: &Recording) -> Self {
+        let rows = recording.rows() - recording.first_row;
+        Self {
+            channels: vec![Vec::with_capacity(rows); recording.channels.len()],
+        }
+    }
+
+    /// Adds those of a row, given in SI; the sum of their squares.
+    pub(crate) fn add(&mut self, error: &[f64], observer: &Observer) -> f64 {
+        let mut sum = 0.0;
+        let deviations = &observer.deviations;
+        for ((list, error), deviation) in self.channels.iter_mut().zip(error).zip(deviations) {
+            let value = whitened(*error, *deviation);
+            sum += value * value;
+            list.push(value);
+        }
+        sum
     }
 
     /// Their mean square, over all channels.
@@ -84,7 +93,7 @@ impl Innovations {
 }
 
 /// An innovation in standard deviations; what diverged is far off, and no more than that.
-pub(crate) fn whitened(error: f64, deviation: f64) -> f64 {
+fn whitened(error: f64, deviation: f64) -> f64 {
     let value = error / deviation;
     if value.is_finite() {
         value.clamp(-1e6, 1e6)
@@ -100,6 +109,19 @@ pub(crate) fn measured(program: &Program) -> Box<dyn SomeRows + '_> {
     program.kernels.some_rows(Function::Outputs, &outputs)
 }
 
+/// A value that is missing corrects nothing.
+pub(crate) fn forget_missing(error: &mut [f64]) {
+    let missing = error.iter_mut().filter(|e| !e.is_finite());
+    missing.for_each(|e| *e = 0.0);
+}
+
+/// Before the correction of a row, or after it.
+#[derive(Clone, Copy)]
+pub(crate) enum When {
+    Before,
+    After,
+}
+
 /// Runs the observer over the record. At each row, before it is corrected, `visit` gets the plant, the row's number and the
 /// innovations in SI.
 pub(crate) fn run(
@@ -107,17 +129,19 @@ pub(crate) fn run(
     observer: &Observer,
     mut visit: impl FnMut(&Plant<'_>, usize, &[f64]),
 ) {
-    let _end = run_while(plant, observer, |plant, row, error| {
-        visit(plant, row, error);
+    let _end = run_while(plant, observer, |plant, row, when, error| {
+        if matches!(when, When::Before) {
+            visit(plant, row, error);
+        }
         ControlFlow::Continue(())
     });
 }
 
-/// The same, as long as `visit` says so.
-fn run_while(
+/// The same before the correction and after it, where what is missing counts as 0; as long as `visit` says so.
+pub(crate) fn run_while(
     plant: &mut Plant<'_>,
     observer: &Observer,
-    mut visit: impl FnMut(&Plant<'_>, usize, &[f64]) -> ControlFlow<()>,
+    mut visit: impl FnMut(&mut Plant<'_>, usize, When, &[f64]) -> ControlFlow<()>,
 ) -> ControlFlow<()> {
     let recording = plant.recording;
     let program = plant.program;
@@ -131,14 +155,11 @@ fn run_while(
         for (channel, output) in outputs.iter().enumerate() {
             error[channel] = recording.channels[channel][row] - output;
         }
-        visit(plant, row, &error)?;
-        // A value that is missing corrects nothing.
-        error
-            .iter_mut()
-            .filter(|e| !e.is_finite())
-            .for_each(|e| *e = 0.0);
+        visit(plant, row, When::Before, &error)?;
+        forget_missing(&mut error);
         crate::dense::set_product(&observer.gain, &error, &mut increment);
         plant.begin_row(&increment);
+        visit(plant, row, When::After, &error)?;
         if row + 1 < recording.rows() {
             plant.advance();
         }

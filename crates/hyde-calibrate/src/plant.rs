@@ -35,6 +35,13 @@ pub enum Unsupported {
     Start(String),
 }
 
+impl Unsupported {
+    /// The equations do not say what the model does.
+    pub(crate) fn singular() -> Self {
+        Self::Start("the equations are singular".to_owned())
+    }
+}
+
 /// A program with its parameters and a record, at an instant.
 pub(crate) struct Plant<'a> {
     pub(crate) program: &'a Program,
@@ -339,7 +346,7 @@ impl<'a> Plant<'a> {
             self.current = known;
         } else if !self.linearise(key) {
             // Modes in which nothing follows: stay with the last ones' linear part.
-            return Err(Unsupported::Start("the equations are singular".to_owned()));
+            return Err(Unsupported::singular());
         }
         self.even = None;
         self.watched = crate::events::watched(self.program, &self.z);
@@ -374,13 +381,12 @@ impl<'a> Plant<'a> {
 
     /// What drives the axis where a row begins.
     fn read_inputs(&mut self) {
-        interpolate(self.program, self.recording, self.row, 0, &mut self.u);
         if !self.past.is_empty() {
             let at = self.row as f64;
             let (begin, end) = &mut self.late;
             self.past.over(at, at, begin, end);
-            self.u[2 * self.program.columns.len()..].copy_from_slice(begin);
         }
+        self.read_inputs_at_start();
     }
 
     /// What drives the axis where a step begins.
@@ -422,16 +428,8 @@ impl<'a> Plant<'a> {
         }
         let (begin, end) = &mut self.late;
         self.past.over(from, to, begin, end);
-        let known = &mut self.u[2 * self.program.columns.len()..];
-        if known != begin.as_slice() {
-            known.copy_from_slice(begin);
-            interpolate(
-                self.program,
-                self.recording,
-                self.row,
-                self.index,
-                &mut self.u,
-            );
+        if self.u[2 * self.program.columns.len()..] != *begin {
+            self.read_inputs_at_start();
             self.make_consistent();
         }
         true

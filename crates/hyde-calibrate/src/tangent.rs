@@ -12,10 +12,10 @@
 use crate::configuration::Places;
 use crate::dense::set_product;
 use crate::gain::{Observer, output_matrix};
-use crate::observer::{Innovations, measured};
+use crate::observer::{When, measured};
 use crate::plant::{Leg, Unsupported};
 use crate::recording::Recording;
-use crate::track::{Track, When};
+use crate::track::Track;
 use hyde_program::{Function, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::{DMatrix, DMatrixView};
 use std::collections::BTreeMap;
@@ -26,13 +26,6 @@ pub(crate) struct Direction {
     pub(crate) p: Vec<f64>,
     /// By how much.
     pub(crate) step: f64,
-}
-
-/// Innovations of a record and how they change.
-pub(crate) struct Tangents {
-    pub(crate) innovations: Innovations,
-    /// The change of whitened innovations a unit of each parameter, a column a direction, channels below each other.
-    pub(crate) change: DMatrix<f64>,
 }
 
 /// What a combination of modes makes of errors and forces in a row.
@@ -46,23 +39,6 @@ pub(crate) struct Modes {
 
 /// A product of matrices is faster than one a column from this many columns on.
 const MANY: usize = 8;
-
-/// Runs the observer over a record, parameters `set`, and differentiates what it finds.
-pub(crate) fn tangents(
-    program: &Program,
-    recording: &Recording,
-    observer: &Observer,
-    set: &[(usize, f64)],
-    directions: &[Direction],
-) -> Result<Tangents, Unsupported> {
-    let track = Track::new(program, recording, observer, set)?;
-    let p = recording.parameters(program, set);
-    let change = changes(&track, program, recording, &p, directions)?;
-    Ok(Tangents {
-        innovations: track.innovations,
-        change,
-    })
-}
 
 /// How whitened innovations change along a track, a column a direction, channels below each other.
 pub(crate) fn changes(
@@ -322,16 +298,14 @@ impl<'t> Known<'t> {
             let track = self.track;
             let inverse = track
                 .inverse(self.program, configuration, self.p, &mut self.workspace)
-                .ok_or_else(singular)?;
+                .ok_or_else(Unsupported::singular)?;
             let of_states = -inverse.select_rows(&track.places.states);
             self.rates[configuration] = Some(of_states.select_columns(&self.touched));
         }
-        self.rates[configuration].as_ref().ok_or_else(singular)
+        self.rates[configuration]
+            .as_ref()
+            .ok_or_else(Unsupported::singular)
     }
-}
-
-fn singular() -> Unsupported {
-    Unsupported::Start("the equations are singular".to_owned())
 }
 
 /// States that modes fix have no error, a row a state: what the observer corrects them by is lost.

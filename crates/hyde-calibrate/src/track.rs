@@ -4,14 +4,14 @@
 //! own ([`Track::serves`]): its equations are evaluated where the model without it has been.
 
 use crate::configuration::{Configuration, Places, inverse};
-use crate::dense::set_product;
 use crate::gain::Observer;
-use crate::observer::{Innovations, measured, whitened};
+use crate::observer::{Innovations, When, run_while};
 use crate::plant::{Leg, Plant, Unsupported};
 use crate::recording::Recording;
 use hyde_program::{Point, Program, Workspace};
 use nalgebra::DMatrix;
-use std::ops::Range;
+use rayon::prelude::*;
+use std::ops::{ControlFlow, Range};
 
 /// A run of an observer over a record.
 pub(crate) struct Track<'p> {
@@ -41,13 +41,6 @@ pub(crate) struct Passed {
     pub(crate) pinned: Vec<usize>,
 }
 
-/// Before the correction of a row, and after it.
-#[derive(Clone, Copy)]
-pub(crate) enum When {
-    Before,
-    After,
-}
-
 impl<'p> Track<'p> {
     /// Runs the observer over a record, parameters `set`.
     pub(crate) fn new(
@@ -56,61 +49,40 @@ impl<'p> Track<'p> {
         observer: &Observer,
         set: &[(usize, f64)],
     ) -> Result<Self, Unsupported> {
-        let mut plant = Plant::new(program, recording, set)?;
-        let observer = observer.of(&plant);
-        if let Some(tolerances) = observer.tolerances() {
-            plant.tolerances = tolerances;
-        }
-        let channels = recording.channels.len();
-        let counted = recording.rows() - recording.first_row;
+        let (mut plant, observer) = observer.on(program, recording, set)?;
         let width = 2 * (2 * plant.y.len() + plant.u.len());
-        let mut found = Innovations {
-            channels: vec![Vec::with_capacity(counted); channels],
-        };
-        let mut rows = Vec::with_capacity(recording.rows());
         let mut values = Vec::with_capacity(width * recording.rows());
+        let mut innovations = Innovations::empty(recording);
+        let mut rows = Vec::with_capacity(recording.rows());
         let (mut legs, mut memories) = (Vec::new(), Vec::new());
-        let shown = measured(program);
-        let (mut outputs, mut error) = (vec![0.0; channels], vec![0.0; channels]);
-        let mut increment = vec![0.0; plant.places.states.len()];
-        for row in 0..recording.rows() {
-            let first_leg = legs.len();
-            legs.append(&mut plant.legs);
-            let before = keep(&plant, &mut values, &mut memories);
-            let (at, workspace) = plant.point();
-            let t = at.t;
-            shown.evaluate(at, workspace, &mut outputs);
-            for (channel, (error, shown)) in error.iter_mut().zip(&outputs).enumerate() {
-                let difference = recording.channels[channel][row] - shown;
-                if row >= recording.first_row {
-                    let value = whitened(difference, observer.deviations[channel]);
-                    found.channels[channel].push(value);
+        let mut before = (0, 0);
+        let _end = run_while(&mut plant, &observer, |plant, row, when, error| {
+            let here = keep(plant, &mut values, &mut memories);
+            match when {
+                When::Before => {
+                    before = here;
+                    if row >= recording.first_row {
+                        innovations.add(error, &observer);
+                    }
                 }
-                // A value that is missing corrects nothing.
-                *error = if difference.is_finite() {
-                    difference
-                } else {
-                    0.0
-                };
+                When::After => {
+                    let first_leg = legs.len();
+                    legs.append(&mut plant.legs);
+                    rows.push(Passed {
+                        t: plant.time(),
+                        modes: [before.0, here.0],
+                        memory: [before.1, here.1],
+                        legs: first_leg..legs.len(),
+                        pinned: plant.pinned.iter().map(|(place, _)| *place).collect(),
+                    });
+                }
             }
-            set_product(&observer.gain, &error, &mut increment);
-            plant.begin_row(&increment);
-            let after = keep(&plant, &mut values, &mut memories);
-            rows.push(Passed {
-                t,
-                modes: [before.0, after.0],
-                memory: [before.1, after.1],
-                legs: first_leg..legs.len(),
-                pinned: plant.pinned.iter().map(|(place, _)| *place).collect(),
-            });
-            if row + 1 < recording.rows() {
-                plant.advance();
-            }
-        }
+            ControlFlow::Continue(())
+        });
         let configurations = std::mem::take(&mut plant.configurations);
         Ok(Self {
             program,
-            innovations: found,
+            innovations,
             observer,
             places: plant.places,
             configurations: configurations.into_iter().map(|(_, own)| own).collect(),
@@ -121,23 +93,34 @@ impl<'p> Track<'p> {
         })
     }
 
+    /// Those of all records.
+    pub(crate) fn all(
+        program: &'p Program,
+        recordings: &'p [Recording],
+        observer: &Observer,
+        set: &[(usize, f64)],
+    ) -> Result<Vec<Self>, Unsupported> {
+        let each = recordings.par_iter();
+        each.map(|recording| Self::new(program, recording, observer, set))
+            .collect()
+    }
+
     /// Whether another program has the same unknowns, modes and memory, so that it can be evaluated here.
     pub(crate) fn serves(&self, other: &Program) -> bool {
         let own = self.program;
-        let same = own.n_unknowns == other.n_unknowns
-            && own.n_memory == other.n_memory
+        let names = |program: &Program| -> Vec<String> {
+            let each = 0..program.n_unknowns;
+            each.map(|number| program.unknown_name(number)).collect()
+        };
+        let places = |program: &Program| -> Vec<usize> {
+            program.automata.iter().map(|own| own.place).collect()
+        };
+        own.n_memory == other.n_memory
             && own.relations.len() == other.relations.len()
             && own.delays.len() == other.delays.len()
-            && own.columns.len() == other.columns.len()
-            && own.automata.len() == other.automata.len();
-        same && (0..own.n_unknowns)
-            .all(|number| own.unknown_name(number) == other.unknown_name(number))
-            && own
-                .automata
-                .iter()
-                .zip(&other.automata)
-                .all(|(a, b)| a.place == b.place)
-            && own.columns.iter().zip(&other.columns).all(|(a, b)| a == b)
+            && own.columns == other.columns
+            && places(own) == places(other)
+            && names(own) == names(other)
     }
 
     /// Where a row was, with some parameters.

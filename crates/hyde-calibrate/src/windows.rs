@@ -6,7 +6,7 @@
 
 use crate::dense::set_product;
 use crate::gain::Observer;
-use crate::observer::measured;
+use crate::observer::{forget_missing, measured};
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
 use hyde_program::Program;
@@ -33,11 +33,7 @@ pub(crate) fn windows(
     observer: &Observer,
     set: &[(usize, f64)],
 ) -> Result<Windows, Unsupported> {
-    let mut plant = Plant::new(program, recording, set)?;
-    let observer = observer.of(&plant);
-    if let Some(tolerances) = observer.tolerances() {
-        plant.tolerances = tolerances;
-    }
+    let (mut plant, observer) = observer.on(program, recording, set)?;
     let length = ((WINDOW_S / recording.step_s).round() as usize).max(1);
     let mut starts: Vec<(Start, Vec<f64>)> = Vec::new();
     crate::observer::run(&mut plant, &observer, |plant, row, error| {
@@ -45,10 +41,7 @@ pub(crate) fn windows(
         let whole = row + length < recording.rows();
         if whole && counted.is_some_and(|rows| rows.is_multiple_of(length)) {
             let mut known = error.to_vec();
-            known
-                .iter_mut()
-                .filter(|e| !e.is_finite())
-                .for_each(|e| *e = 0.0);
+            forget_missing(&mut known);
             let mut increment = vec![0.0; plant.places.states.len()];
             set_product(&observer.gain, &known, &mut increment);
             starts.push((Start::of(plant), increment));

@@ -1,7 +1,8 @@
 //! Which equations bend: all others are linear as long as modes and relations stay, so they hold all along a linear flow.
 
-use hyde_ir::dae::{Dae, Function, Space, Wrt};
-use hyde_ir::{Expr, ExprId, Index, Range};
+use crate::routine::{Leaf, Routine, Slot};
+use hyde_ir::dae::{Dae, Function, Wrt};
+use hyde_ir::{Expr, Index, Range};
 use std::collections::BTreeSet;
 
 /// Rows of the residual that bend, rising: a derivative by an unknown or its rate is another elsewhere, or with another value
@@ -12,48 +13,34 @@ pub(crate) fn bending_rows(dae: &Dae) -> Vec<usize> {
         let rows = range.iter().map(|counter| usize::try_from(row.at(counter)));
         found.extend(rows.filter_map(Result::ok));
     };
+    let outside = [Slot::Input];
+    let anything = [Slot::Input, Slot::Unknown, Slot::Derivative, Slot::Memory];
     for partial in dae.partials(Function::Residual) {
-        let outside = matches!(partial.wrt, Wrt::Time | Wrt::Delayed(_));
-        if outside || reads(dae, partial.value, |space| space != Space::Parameter) {
+        let by_outside = matches!(partial.wrt, Wrt::Time | Wrt::Delayed(_));
+        let own = Routine::alone(dae, partial.range, partial.value);
+        if by_outside || reads(dae, &own, &anything) {
             add(partial.range, partial.row);
         }
     }
     for (range, row, value) in hyde_analysis::rows(dae, Function::Residual) {
-        if reads(dae, value, |space| space == Space::Input) {
+        if reads(dae, &Routine::alone(dae, range, value), &outside) {
             add(range, row);
         }
     }
     found.into_iter().collect()
 }
 
-/// Whether an expression reads time, or a variable of some spaces, through explicit variables too.
-fn reads(dae: &Dae, root: ExprId, wanted: impl Fn(Space) -> bool) -> bool {
-    let (mut pending, mut known) = (vec![root], BTreeSet::new());
-    while let Some(root) = pending.pop() {
-        for id in dae.exprs.below(&[root]) {
-            let var = match dae.exprs[id] {
-                Expr::Time => return true,
-                Expr::Var(var, _) | Expr::Der(var, _) | Expr::Pre(var, _) => var,
-                Expr::Const(_)
-                | Expr::Counter
-                | Expr::Param(..)
-                | Expr::Relation(_)
-                | Expr::InMode(..)
-                | Expr::Unary(..)
-                | Expr::Binary(..)
-                | Expr::If(..)
-                | Expr::NoEvent(_) => continue,
-            };
-            match dae.place(var).map(|place| place.space) {
-                Some(Space::Work) if known.insert(var) => {
-                    let own = dae.definitions.iter().filter(|d| d.var == var);
-                    pending.extend(own.map(|definition| definition.value));
-                }
-                Some(Space::Work) => {}
-                Some(space) if wanted(space) => return true,
-                Some(_) | None => {}
+/// Whether a routine reads time, or what lies in some slots; modes and truths of relations are no values of the memory.
+fn reads(dae: &Dae, routine: &Routine, slots: &[Slot]) -> bool {
+    let roots: Vec<_> = routine.steps.iter().map(|step| step.value).collect();
+    dae.exprs.below(&roots).into_iter().any(|id| {
+        let expr = dae.exprs[id];
+        match routine.leaf(dae, expr) {
+            Some(Leaf::Time) => true,
+            Some(Leaf::Load(slot, _)) => {
+                !matches!(expr, Expr::Relation(_)) && slots.contains(&slot)
             }
+            Some(Leaf::Number(_) | Leaf::Counter | Leaf::IsMode(..)) | None => false,
         }
-    }
-    false
+    })
 }

@@ -36,6 +36,7 @@ pub(crate) struct Compiled {
     start: Interpreter,
     still: OnceLock<Still>,
     some_rows: Known,
+    bending: OnceLock<Vec<usize>>,
     /// The length of the vector of inputs, delayed values included.
     n_inputs: usize,
 }
@@ -85,12 +86,7 @@ impl Compiled {
             .collect();
         let partials = dae::Function::ALL
             .into_iter()
-            .map(|f| {
-                (
-                    f,
-                    kernel(Routine::partials(&dae, partials_of(f), dae.partials(f))),
-                )
-            })
+            .map(|f| (f, kernel(partials_of(&dae, f))))
             .collect();
         let ticks = dae
             .ticks
@@ -116,6 +112,7 @@ impl Compiled {
             start,
             still: OnceLock::new(),
             some_rows: Known::default(),
+            bending: OnceLock::new(),
             n_inputs,
         }
     }
@@ -194,8 +191,9 @@ impl Kernels for Compiled {
         })
     }
 
-    fn bending_rows(&self) -> Vec<usize> {
-        crate::bending::bending_rows(&self.dae)
+    fn bending_rows(&self) -> &[usize] {
+        self.bending
+            .get_or_init(|| crate::bending::bending_rows(&self.dae))
     }
 
     fn entries(&self, function: Function) -> Vec<PartialEntry> {
@@ -385,11 +383,7 @@ pub(crate) fn routines(dae: &Dae) -> Vec<Routine> {
     let mut list = Vec::new();
     for function in dae::Function::ALL {
         list.push(Routine::values(dae, function));
-        list.push(Routine::partials(
-            dae,
-            partials_of(function),
-            dae.partials(function),
-        ));
+        list.push(partials_of(dae, function));
     }
     list.push(Routine::conditions(dae));
     list.extend(dae.ticks.ids().map(|clock| Routine::tick(dae, clock)));
@@ -420,9 +414,10 @@ pub(crate) fn entries(partials: &[dae::Partial]) -> Vec<PartialEntry> {
     found
 }
 
-/// The name of a function's derivatives in printed code.
-fn partials_of(function: dae::Function) -> String {
-    format!("{}_partials", routine::name(function))
+/// The routine of a function's derivatives.
+fn partials_of(dae: &Dae, function: dae::Function) -> Routine {
+    let name = format!("{}_partials", routine::name(function));
+    Routine::partials(dae, name, dae.partials(function))
 }
 
 pub(crate) fn in_dae(function: Function) -> dae::Function {

@@ -113,6 +113,17 @@ impl Routine {
         Self::with_definitions(dae, format!("some_{}", name(function)), steps, None)
     }
 
+    /// An expression over a range, with the definitions that it reads.
+    pub(crate) fn alone(dae: &Dae, range: Range, value: ExprId) -> Self {
+        let step = Step {
+            range,
+            slot: Slot::Out,
+            target: Index::fixed(0),
+            value,
+        };
+        Self::with_definitions(dae, "alone".to_owned(), vec![step], None)
+    }
+
     /// Derivatives, one block of values a [`Partial`].
     pub(crate) fn partials(dae: &Dae, name: String, partials: &[Partial]) -> Self {
         let mut next = 0;

@@ -165,7 +165,7 @@ pub trait Kernels: Send + Sync {
 
     /// The rows of the residual that bend, rising. All others are linear in the unknowns and their rates, with coefficients
     /// that nothing but modes and relations changes, and read no time, record column or delayed value.
-    fn bending_rows(&self) -> Vec<usize>;
+    fn bending_rows(&self) -> &[usize];
 
     /// The places of a function's derivatives, in the order in which [`Kernels::partials`] writes them.
     fn entries(&self, function: Function) -> Vec<PartialEntry>;

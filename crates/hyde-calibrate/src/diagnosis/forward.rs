@@ -12,7 +12,7 @@ use super::pair::pair;
 use super::projection::Projection;
 use super::prune::prune;
 use super::scan::{Scanner, Score};
-use super::search::{Gates, Round, explained, singular};
+use super::search::{Gates, Round, explained};
 use super::stage::{Ground, Stage};
 use super::trial::{Rejection, Trial};
 use crate::fit::inflation;
@@ -150,9 +150,9 @@ impl Forward<'_> {
     /// A round on a branch; whether it takes in anything.
     fn round(&mut self, branch: &mut Branch) -> Result<bool, Unsupported> {
         let stage = &branch.stage;
-        let at = stage.linearise(self.ground)?;
-        let projection = Projection::new(stage, &at).ok_or_else(singular)?;
         let tracks = stage.tracks(self.ground)?;
+        let at = stage.linearise_on(&tracks, self.ground)?;
+        let projection = Projection::new(stage, &at).ok_or_else(Unsupported::singular)?;
         let scanner = Scanner {
             ground: self.ground,
             stage,
@@ -178,6 +178,7 @@ impl Forward<'_> {
             }
             None => None,
         };
+        // They borrow the stage, which the next one replaces.
         drop(tracks);
         let round = self.rounds.len();
         self.rounds.push(Round {

@@ -332,7 +332,8 @@ impl Scanner<'_> {
         Runs {
             ground: self.ground,
             program,
-            tracks: Some(self.tracks).filter(|list| list.iter().all(|own| own.serves(program))),
+            tracks: Some(self.tracks)
+                .filter(|all| all.first().is_some_and(|own| own.serves(program))),
             values: self.stage.values(),
             sizes: Hypothesis::names(&hypothesis.sizes, path),
             shapes: Hypothesis::names(&hypothesis.shapes, path),

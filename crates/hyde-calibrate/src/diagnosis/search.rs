@@ -149,7 +149,7 @@ pub fn diagnose(
         observer,
         set,
     };
-    let Built { program, .. } = build(&[]).ok_or_else(singular)?;
+    let Built { program, .. } = build(&[]).ok_or_else(Unsupported::singular)?;
     let settings = ground.set_in(&program, &[]);
     let start: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
     let solution = ground
@@ -205,11 +205,6 @@ pub fn diagnose(
         unexplained,
         unknown: None,
     })
-}
-
-/// The equations do not say what the model does.
-pub(super) fn singular() -> Unsupported {
-    Unsupported::Start("the equations are singular".to_owned())
 }
 
 /// The part of what was more than noise that is explained.

@@ -11,7 +11,6 @@ use crate::solution::Solution;
 use crate::track::Track;
 use crate::varied::Varied;
 use hyde_program::Program;
-use rayon::prelude::*;
 
 /// What never changes in a diagnosis.
 #[derive(Clone, Copy)]
@@ -66,18 +65,25 @@ impl Ground<'_> {
 impl Stage {
     /// Innovations with their derivatives where the stage is.
     pub(crate) fn linearise(&self, ground: &Ground<'_>) -> Result<Linearised, Unsupported> {
+        self.linearise_on(&self.tracks(ground)?, ground)
+    }
+
+    /// The same, its tracks being known.
+    pub(crate) fn linearise_on(
+        &self,
+        tracks: &[Track<'_>],
+        ground: &Ground<'_>,
+    ) -> Result<Linearised, Unsupported> {
         let set = ground.set_in(&self.program, &self.kept);
         ground
             .problem(&self.program, &self.varied, &set, None)
-            .linearise(&self.solution.values, Slopes::Tangents)
+            .linearise_on(tracks, &self.solution.values)
     }
 
     /// Where it takes the observer, record by record.
     pub(crate) fn tracks<'s>(&'s self, ground: &Ground<'s>) -> Result<Vec<Track<'s>>, Unsupported> {
         let set = ground.set_in(&self.program, &self.values());
-        let each = ground.recordings.par_iter();
-        each.map(|recording| Track::new(&self.program, recording, ground.observer, &set))
-            .collect()
+        Track::all(&self.program, ground.recordings, ground.observer, &set)
     }
 
     /// The stage fitted to the end, once from where it is and once from what was declared: without the effect the

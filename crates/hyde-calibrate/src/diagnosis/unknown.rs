@@ -32,7 +32,7 @@ use super::forward::Taken;
 use super::hypothesis::{Built, Hypothesis};
 use super::projection::{Projection, dot};
 use super::scan::{Node, Score};
-use super::search::{Diagnosis, Gates, Verdict, explained, findings, singular};
+use super::search::{Diagnosis, Gates, Verdict, explained, findings};
 use super::stage::{Ground, Stage};
 use super::trial::{Trial, trial, unseen};
 use crate::fit::inflation;
@@ -218,7 +218,9 @@ impl Answer {
 /// The model without any effect, and with those of the diagnosis.
 fn stages(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> Result<(Stage, Stage), Unsupported> {
     let list: Vec<usize> = diagnosis.findings.iter().map(|f| f.hypothesis).collect();
-    let paths = (inquiry.author)(&list, &[]).ok_or_else(singular)?.paths;
+    let paths = (inquiry.author)(&list, &[])
+        .ok_or_else(Unsupported::singular)?
+        .paths;
     let last = Stage {
         program: diagnosis.program.clone(),
         effects: list.into_iter().zip(paths).collect(),
@@ -226,7 +228,9 @@ fn stages(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> Result<(Stage, Stage)
         kept: diagnosis.kept.clone(),
         solution: diagnosis.after.clone(),
     };
-    let program = (inquiry.author)(&[], &[]).ok_or_else(singular)?.program;
+    let program = (inquiry.author)(&[], &[])
+        .ok_or_else(Unsupported::singular)?
+        .program;
     let mut varied = last.varied_in(&program);
     varied.truncate(diagnosis.before.values.len());
     let base = Stage {

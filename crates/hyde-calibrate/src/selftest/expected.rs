@@ -68,8 +68,7 @@ impl Reference {
             solution,
         };
         let at = stage.linearise(&ground)?;
-        let singular = || Unsupported::Start("the equations are singular".to_owned());
-        let projection = Projection::new(&stage, &at).ok_or_else(singular)?;
+        let projection = Projection::new(&stage, &at).ok_or_else(Unsupported::singular)?;
         let innovations = at
             .innovations
             .iter()

@@ -12,9 +12,10 @@
 use crate::dense::{add_product, set_product};
 use crate::diagnosis::projection::dot;
 use crate::gain::Observer;
+use crate::observer::When;
 use crate::recording::Recording;
 use crate::tangent::{Direction, Known, Modes, Own};
-use crate::track::{Track, When};
+use crate::track::Track;
 use hyde_program::Program;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::collections::BTreeMap;
