@@ -196,7 +196,7 @@ pub(crate) fn inverse(
 }
 
 /// The derivatives of the residual at a point.
-fn partials(program: &Program, at: Point<'_>, workspace: &mut Workspace) -> Vec<f64> {
+pub(crate) fn partials(program: &Program, at: Point<'_>, workspace: &mut Workspace) -> Vec<f64> {
     let mut values = vec![0.0; program.partials(Function::Residual).len()];
     let kernels: &dyn Kernels = program.kernels.as_ref();
     kernels.partials(Function::Residual, at, workspace, &mut values);
@@ -215,7 +215,7 @@ fn consistent(program: &Program, places: &Places, partials: &[f64]) -> DMatrix<f
     matrix
 }
 
-fn v_column(places: &Places, wrt: Wrt) -> Option<usize> {
+pub(crate) fn v_column(places: &Places, wrt: Wrt) -> Option<usize> {
     match wrt {
         Wrt::Derivative(column) if places.differential[column] => Some(column),
         Wrt::Unknown(column) if !places.differential[column] => Some(column),

@@ -303,7 +303,7 @@ impl Problem<'_> {
         let (mut innovations, mut derivatives) = (Vec::new(), Vec::new());
         let records = self.recordings.iter().zip(tracks).zip(late_columns);
         for ((recording, track), moved) in records {
-            let mut own = track.innovations.clone();
+            let mut own = track.route.innovations.clone();
             let rows = own.channels.iter().map(Vec::len).sum();
             let mut matrix = DMatrix::zeros(rows, self.varied.len());
             let mut numbers = along.iter();

@@ -89,7 +89,7 @@ pub(crate) struct Leg {
     pub(crate) level: usize,
     /// The combination of modes it was taken in.
     pub(crate) configuration: usize,
-    /// Where an event ended it, the positions of the states that are fixed from there on.
+    /// Where an event ended it, the numbers of the states that are fixed from there on.
     pub(crate) fixed: Option<Vec<usize>>,
 }
 
@@ -173,6 +173,15 @@ impl<'a> Plant<'a> {
     /// The combination of modes it is in.
     pub(crate) fn configuration(&self) -> &Configuration<'a> {
         &self.configurations[self.current].1
+    }
+
+    /// The numbers of the states that modes fix.
+    pub(crate) fn fixed_states(&self) -> Vec<usize> {
+        let number = |&(position, _): &(usize, f64)| {
+            let mut states = self.places.states.iter();
+            states.position(|&state| state == position)
+        };
+        self.pinned.iter().filter_map(number).collect()
     }
 
     /// The rates of the states.
@@ -261,11 +270,11 @@ impl<'a> Plant<'a> {
                 Outcome::Event => {
                     self.index += size_of(level);
                     self.settle();
-                    let fixed = self.pinned.iter().map(|(position, _)| *position);
+                    let fixed = Some(self.fixed_states());
                     self.legs.push(Leg {
                         level,
                         configuration,
-                        fixed: Some(fixed.collect()),
+                        fixed,
                     });
                 }
             }

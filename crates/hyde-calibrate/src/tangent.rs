@@ -9,13 +9,12 @@
 //! right to first order, for its force does not jump where it begins and ends to stick; of contacts it is a part. Modes that
 //! begin within a row act from there on.
 
-use crate::configuration::Places;
 use crate::dense::set_product;
 use crate::gain::{Observer, output_matrix};
 use crate::observer::{When, measured};
 use crate::plant::{Leg, Unsupported};
 use crate::recording::Recording;
-use crate::track::Track;
+use crate::track::{Track, Vectors};
 use hyde_program::{Function, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::{DMatrix, DMatrixView};
 use std::collections::BTreeMap;
@@ -72,7 +71,8 @@ pub(crate) fn along(
     directions: &[Direction],
     mut each: impl FnMut(usize, DMatrixView<'_, f64>),
 ) -> Result<(), Unsupported> {
-    let observer = &track.observer;
+    let route = &track.route;
+    let observer = &route.observer;
     let (states, channels) = (track.places.states.len(), recording.channels.len());
     let count = directions.len();
     let mut own = Own::new(program, p, directions);
@@ -86,16 +86,16 @@ pub(crate) fn along(
     let mut then = now.clone();
     let mut by_output = DMatrix::<f64>::zeros(channels, count);
     let mut corrected = Corrected::default();
-    let mut at = None;
-    for (row, passed) in track.rows.iter().enumerate() {
+    let (mut at, mut room) = (None, Vectors::default());
+    for (row, passed) in route.rows.iter().enumerate() {
         let [mode, next] = passed.modes;
         let seen = known.modes(row, When::Before, mode)?;
-        own.seen(
-            track.point(row, When::Before, p),
-            directions,
-            &mut by_output,
-        );
-        own.forces(track.point(row, When::After, p), directions, &mut then);
+        if own.shown {
+            let at = track.point(row, When::Before, p, &mut room);
+            own.seen(at, directions, &mut by_output);
+        }
+        let at_end = track.point(row, When::After, p, &mut room);
+        own.forces(at_end, directions, &mut then);
         // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
         let end = if next == mode { &then } else { &now };
         let legs = track.legs(row);
@@ -110,7 +110,7 @@ pub(crate) fn along(
                 let errors = step * before.rows(0, states + touched);
                 put(&mut before, 0, &errors);
                 if let Some(fixed) = &leg.fixed {
-                    fix(&track.places, fixed, &mut before);
+                    fix(fixed, &mut before);
                     start = end;
                 }
             }
@@ -133,7 +133,7 @@ pub(crate) fn along(
         if let Some(row) = row.checked_sub(recording.first_row) {
             each(row, after.rows(states, channels));
         }
-        fix(&track.places, &passed.pinned, &mut after);
+        fix(&passed.fixed, &mut after);
         std::mem::swap(&mut before, &mut after);
         std::mem::swap(&mut now, &mut then);
         at = Some(known.modes(row, When::After, next)?);
@@ -233,7 +233,7 @@ impl<'t> Known<'t> {
         p: &'t [f64],
         touched: &[usize],
     ) -> Self {
-        let count = track.configurations.len();
+        let count = track.route.configurations.len();
         Self {
             track,
             program,
@@ -258,8 +258,9 @@ impl<'t> Known<'t> {
             return Ok(number);
         }
         let track = self.track;
-        let own = &track.configurations[configuration];
-        let at = track.point(row, when, self.p);
+        let own = &track.route.configurations[configuration];
+        let mut room = Vectors::default();
+        let at = track.point(row, when, self.p, &mut room);
         let outputs = output_matrix(self.program, &track.places, own, at, &mut self.workspace);
         let step = &own.steps[0];
         let rates = self.rates(configuration)?;
@@ -279,7 +280,7 @@ impl<'t> Known<'t> {
     fn leg(&mut self, leg: &Leg) -> Result<&DMatrix<f64>, Unsupported> {
         let key = (leg.configuration, leg.level);
         if !self.legs.contains_key(&key) {
-            let step = &self.track.configurations[leg.configuration].steps[leg.level];
+            let step = &self.track.route.configurations[leg.configuration].steps[leg.level];
             let rates = self.rates(leg.configuration)?;
             let n = step.exp.nrows();
             let mut matrix = DMatrix::zeros(n, n + rates.ncols());
@@ -309,11 +310,9 @@ impl<'t> Known<'t> {
 }
 
 /// States that modes fix have no error, a row a state: what the observer corrects them by is lost.
-fn fix(places: &Places, positions: &[usize], errors: &mut DMatrix<f64>) {
-    for position in positions {
-        if let Some(state) = places.states.iter().position(|state| state == position) {
-            errors.row_mut(state).fill(0.0);
-        }
+fn fix(states: &[usize], errors: &mut DMatrix<f64>) {
+    for &state in states {
+        errors.row_mut(state).fill(0.0);
     }
 }
 
@@ -326,7 +325,7 @@ pub(crate) struct Own<'p> {
     /// What the channels show.
     measured: Box<dyn SomeRows + 'p>,
     /// Whether some direction changes what is measured.
-    shown: bool,
+    pub(crate) shown: bool,
     workspace: Workspace,
     /// What the channels show without a change.
     values: Vec<f64>,
@@ -368,9 +367,6 @@ impl<'p> Own<'p> {
 
     /// What a unit of each size adds to what the channels show, where it does: a column a direction.
     pub(crate) fn seen(&mut self, at: Point<'_>, directions: &[Direction], out: &mut DMatrix<f64>) {
-        if !self.shown {
-            return;
-        }
         self.measured
             .evaluate(at, &mut self.workspace, &mut self.values);
         for (number, direction) in directions.iter().enumerate() {

@@ -1,32 +1,49 @@
 //! [`Track`]: where an observer takes the plant along a record, row by row: what tangents are differentiated along.
 //!
-//! An effect of size 0 changes no run. So one track serves every effect that brings no unknowns, modes or delays of its
-//! own ([`Track::serves`]): its equations are evaluated where the model without it has been.
+//! An effect of size 0 changes no run. So one track serves every effect that brings no modes or delays of its own: its
+//! equations are evaluated where the model without it has been ([`Track::serves`]), and where they are linear its own
+//! unknowns are carried along ([`Track::carrying`]).
+
+mod carried;
+mod equations;
 
 use crate::configuration::{Configuration, Places, inverse};
 use crate::gain::Observer;
 use crate::observer::{Innovations, When, run_while};
 use crate::plant::{Leg, Plant, Unsupported};
 use crate::recording::Recording;
+use carried::Carried;
+pub(crate) use carried::Vectors;
 use hyde_program::{Point, Program, Workspace};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use std::ops::{ControlFlow, Range};
+use std::sync::Arc;
 
-/// A run of an observer over a record.
+/// A run of an observer over a record, in the vectors of a program.
 pub(crate) struct Track<'p> {
     program: &'p Program,
+    pub(crate) route: Arc<Route<'p>>,
+    /// The states and algebraic variables of the route.
+    pub(crate) places: Places,
+    /// If this is another program than the route's: what it has beside.
+    carried: Option<Carried>,
+}
+
+/// What a run of an observer has met, whatever else is carried along it.
+pub(crate) struct Route<'p> {
     pub(crate) innovations: Innovations,
     /// The observer of this very model.
     pub(crate) observer: Observer,
-    pub(crate) places: Places,
-    /// Combinations of modes met.
+    /// Combinations of modes.
     pub(crate) configurations: Vec<Configuration<'p>>,
     pub(crate) rows: Vec<Passed>,
     legs: Vec<Leg>,
     /// Of each row: unknowns, their rates and what drives the axis, before the correction and after it.
     values: Vec<f64>,
     memories: Vec<Vec<f64>>,
+    /// Number of unknowns.
+    unknowns: usize,
 }
 
 /// A row: everything before its correction, and after it.
@@ -37,8 +54,8 @@ pub(crate) struct Passed {
     memory: [usize; 2],
     /// The steps that led here.
     legs: Range<usize>,
-    /// Positions that modes fix.
-    pub(crate) pinned: Vec<usize>,
+    /// Numbers of the states that modes fix.
+    pub(crate) fixed: Vec<usize>,
 }
 
 impl<'p> Track<'p> {
@@ -73,23 +90,28 @@ impl<'p> Track<'p> {
                         modes: [before.0, here.0],
                         memory: [before.1, here.1],
                         legs: first_leg..legs.len(),
-                        pinned: plant.pinned.iter().map(|(place, _)| *place).collect(),
+                        fixed: plant.fixed_states(),
                     });
                 }
             }
             ControlFlow::Continue(())
         });
         let configurations = std::mem::take(&mut plant.configurations);
-        Ok(Self {
-            program,
+        let route = Route {
             innovations,
             observer,
-            places: plant.places,
             configurations: configurations.into_iter().map(|(_, own)| own).collect(),
             rows,
             legs,
             values,
             memories,
+            unknowns: program.n_unknowns,
+        };
+        Ok(Self {
+            program,
+            route: Arc::new(route),
+            places: plant.places,
+            carried: None,
         })
     }
 
@@ -107,11 +129,12 @@ impl<'p> Track<'p> {
 
     /// Whether another program has the same unknowns, modes and memory, so that it can be evaluated here.
     pub(crate) fn serves(&self, other: &Program) -> bool {
+        self.moves_as(other) && names(self.program) == names(other)
+    }
+
+    /// Whether another program has the same modes and memory.
+    fn moves_as(&self, other: &Program) -> bool {
         let own = self.program;
-        let names = |program: &Program| -> Vec<String> {
-            let each = 0..program.n_unknowns;
-            each.map(|number| program.unknown_name(number)).collect()
-        };
         let places = |program: &Program| -> Vec<usize> {
             program.automata.iter().map(|own| own.place).collect()
         };
@@ -120,12 +143,53 @@ impl<'p> Track<'p> {
             && own.delays.len() == other.delays.len()
             && own.columns == other.columns
             && places(own) == places(other)
-            && names(own) == names(other)
     }
 
     /// Where a row was, with some parameters.
-    pub(crate) fn point<'a>(&'a self, row: usize, when: When, p: &'a [f64]) -> Point<'a> {
-        let (n, passed) = (self.program.n_unknowns, &self.rows[row]);
+    pub(crate) fn point<'a>(
+        &'a self,
+        row: usize,
+        when: When,
+        p: &'a [f64],
+        room: &'a mut Vectors,
+    ) -> Point<'a> {
+        let at = self.route.point(row, when, p);
+        match &self.carried {
+            None => at,
+            Some(carried) => carried.point(row, when, at, room),
+        }
+    }
+
+    /// The steps that led to a row.
+    pub(crate) fn legs(&self, row: usize) -> &[Leg] {
+        &self.route.legs[self.route.rows[row].legs.clone()]
+    }
+
+    /// What a unit of the residuals of this program, or of one that this track serves, makes of rates and algebraic
+    /// variables, in a combination of modes: the inverse of dF/dv.
+    pub(crate) fn inverse(
+        &self,
+        program: &Program,
+        configuration: usize,
+        p: &[f64],
+        workspace: &mut Workspace,
+    ) -> Option<DMatrix<f64>> {
+        let known = &self.route.configurations[configuration];
+        let at = known.made.point(p);
+        let mut room = Vectors::default();
+        let at = match &self.carried {
+            None if std::ptr::eq(program, self.program) => return Some(known.inverse.clone()),
+            None => at,
+            Some(carried) => carried.at_rest(at, &mut room),
+        };
+        inverse(program, &self.places, at, workspace)
+    }
+}
+
+impl Route<'_> {
+    /// Where a row was, in the vectors of the route's program.
+    fn point<'a>(&'a self, row: usize, when: When, p: &'a [f64]) -> Point<'a> {
+        let passed = &self.rows[row];
         let width = self.values.len() / self.rows.len();
         let values = &self.values[row * width..][..width];
         let (before, after) = values.split_at(width / 2);
@@ -133,8 +197,8 @@ impl<'p> Track<'p> {
             When::Before => (before, passed.memory[0]),
             When::After => (after, passed.memory[1]),
         };
-        let (y, rest) = values.split_at(n);
-        let (yp, u) = rest.split_at(n);
+        let (y, rest) = values.split_at(self.unknowns);
+        let (yp, u) = rest.split_at(self.unknowns);
         Point {
             t: passed.t,
             y,
@@ -144,27 +208,12 @@ impl<'p> Track<'p> {
             p,
         }
     }
+}
 
-    /// The steps that led to a row.
-    pub(crate) fn legs(&self, row: usize) -> &[Leg] {
-        &self.legs[self.rows[row].legs.clone()]
-    }
-
-    /// What a unit of the residuals of a program that this track serves makes of rates and algebraic variables, in a
-    /// combination of modes: the inverse of dF/dv.
-    pub(crate) fn inverse(
-        &self,
-        program: &Program,
-        configuration: usize,
-        p: &[f64],
-        workspace: &mut Workspace,
-    ) -> Option<DMatrix<f64>> {
-        let known = &self.configurations[configuration];
-        if std::ptr::eq(program, self.program) {
-            return Some(known.inverse.clone());
-        }
-        inverse(program, &self.places, known.made.point(p), workspace)
-    }
+/// The names of the unknowns of a program.
+fn names(program: &Program) -> Vec<String> {
+    let each = 0..program.n_unknowns;
+    each.map(|number| program.unknown_name(number)).collect()
 }
 
 /// Keeps where a plant is: the numbers of its modes and of its memory.

@@ -7,6 +7,7 @@ mod bar;
 mod batches;
 mod bouncing_ball;
 mod candidates;
+mod carried;
 mod chosen_states;
 mod clocks;
 mod closed_form;

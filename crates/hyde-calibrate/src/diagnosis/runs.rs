@@ -22,8 +22,8 @@ const HOPELESS: f64 = 100.0;
 pub(crate) struct Runs<'s> {
     pub(crate) ground: &'s Ground<'s>,
     pub(crate) program: &'s Program,
-    /// Where the stage takes the observer, if so it does with the effect at size 0.
-    pub(crate) tracks: Option<&'s [Track<'s>]>,
+    /// Where the stage takes the observer.
+    pub(crate) tracks: &'s [Track<'s>],
     pub(crate) values: Vec<(String, f64)>,
     pub(crate) sizes: Vec<String>,
     pub(crate) shapes: Vec<String>,
@@ -67,7 +67,7 @@ impl Runs<'_> {
             let p = recording.parameters(self.program, &set);
             let own = self.on_track(number, &set, |track| {
                 along(track, self.program, recording, &p, &directions, each).ok()?;
-                Some(track.innovations.clone())
+                Some(track.route.innovations.clone())
             });
             innovations.push(own?);
             adding.end();
@@ -93,19 +93,23 @@ impl Runs<'_> {
         Some(columns)
     }
 
-    /// What something makes of the track of a record: the stage's, or one of its own.
+    /// What something makes of the track of a record: that of the stage, as it is or with what the effect brings along, or
+    /// one of its own.
     fn on_track<T>(
         &self,
         number: usize,
         set: &[(usize, f64)],
         make: impl FnOnce(&Track<'_>) -> Option<T>,
     ) -> Option<T> {
-        if let Some(tracks) = self.tracks {
-            return make(&tracks[number]);
+        let (known, recording) = (&self.tracks[number], &self.ground.recordings[number]);
+        if known.serves(self.program) {
+            return make(known);
         }
-        let recording = &self.ground.recordings[number];
-        let own = Track::new(self.program, recording, self.ground.observer, set);
-        make(&own.ok()?)
+        let own = match known.carrying(self.program, recording, set) {
+            Some(own) => own,
+            None => Track::new(self.program, recording, self.ground.observer, set).ok()?,
+        };
+        make(&own)
     }
 
     /// Every size of every shape, a little above 0.

@@ -332,8 +332,7 @@ impl Scanner<'_> {
         Runs {
             ground: self.ground,
             program,
-            tracks: Some(self.tracks)
-                .filter(|all| all.first().is_some_and(|own| own.serves(program))),
+            tracks: self.tracks,
             values: self.stage.values(),
             sizes: Hypothesis::names(&hypothesis.sizes, path),
             shapes: Hypothesis::names(&hypothesis.shapes, path),

@@ -15,7 +15,7 @@ use crate::gain::Observer;
 use crate::observer::When;
 use crate::recording::Recording;
 use crate::tangent::{Direction, Known, Modes, Own};
-use crate::track::Track;
+use crate::track::{Track, Vectors};
 use hyde_program::Program;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::collections::BTreeMap;
@@ -98,7 +98,7 @@ impl Carrier {
             });
         }
         let track = Track::new(program, recording, observer, set).ok()?;
-        let (observer, states) = (&track.observer, track.places.states.len());
+        let (observer, states) = (&track.route.observer, track.places.states.len());
         let mut found = Self {
             course: Course::default(),
             rows: Vec::new(),
@@ -114,19 +114,18 @@ impl Carrier {
         let mut known = Known::new(&track, program, &p, &own.touched);
         let mut forces = DMatrix::zeros(own.touched.len(), directions.len());
         let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
-        let mut passages = BTreeMap::new();
+        let (mut passages, mut room) = (BTreeMap::new(), Vectors::default());
         let mut increment = vec![0.0; states];
         let (mut place, mut speed) = (0.0, 0.0);
-        for (row, passed) in track.rows.iter().enumerate() {
+        for (row, passed) in track.route.rows.iter().enumerate() {
             let [before, after] = passed.modes;
-            own.seen(
-                track.point(row, When::Before, &p),
-                &directions,
-                &mut by_output,
-            );
+            if own.shown {
+                let at = track.point(row, When::Before, &p, &mut room);
+                own.seen(at, &directions, &mut by_output);
+            }
             let corrected = known.modes(row, When::Before, before).ok()?;
             let stepped = known.modes(row, When::After, after).ok()?;
-            let at = track.point(row, When::After, &p);
+            let at = track.point(row, When::After, &p, &mut room);
             own.forces(at, &directions, &mut forces);
             found.course.time.push(at.t);
             let at = place_and_speed(&forces).or_else(|| place_and_speed(&by_output));
@@ -157,13 +156,9 @@ impl Carrier {
                 found.passages.push(made);
                 found.passages.len() - 1
             });
-            let fixed = passed.pinned.iter().filter_map(|position| {
-                let mut states = track.places.states.iter();
-                states.position(|state| state == position)
-            });
             found.rows.push(Row {
                 passage,
-                fixed: fixed.collect(),
+                fixed: passed.fixed.clone(),
             });
         }
         Some(found)
