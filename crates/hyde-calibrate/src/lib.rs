@@ -4,7 +4,7 @@
 //! recording      a record, evenly sampled                                         recording.rs
 //! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, stepping.rs, model.rs, configuration.rs, events.rs, past.rs
 //! observer       a fixed Kalman gain; whitened innovations                        gain.rs, observer.rs
-//! track          where an observer takes the plant along a record                      track.rs
+//! track          where an observer takes the plant along a record                 track.rs, track/
 //! tangent        how innovations change with parameters, along one track              tangent.rs
 //! plan           what a `calibrate` block asks for                                 plan.rs
 //! calibration    bounded least squares on innovations and priors                  least_squares.rs, solution.rs, blocks.rs, varied.rs

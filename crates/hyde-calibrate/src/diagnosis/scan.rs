@@ -211,7 +211,7 @@ impl Scanner<'_> {
     fn look(&self, promised: &Promised, shapes: &[Vec<f64>]) -> Option<Look> {
         let hypothesis = &self.hypotheses[promised.number];
         let runs = self.runs(promised);
-        // What has states of its own moves by itself as its shapes say, also at size 0: each shape needs a run of its own.
+        // What has states of its own moves by itself as its shapes say, also at size 0: each shape has a track of its own.
         let chunk = if promised.program.n_unknowns > self.stage.program.n_unknowns {
             1
         } else {
