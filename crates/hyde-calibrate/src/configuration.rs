@@ -128,18 +128,8 @@ impl<'p> Configuration<'p> {
     ) -> Option<Self> {
         let here = partials(program, at, workspace);
         let inverse = consistent(program, places, &here).try_inverse()?;
-        let mut by_state = DMatrix::zeros(program.n_unknowns, places.states.len());
-        let mut column_of = vec![usize::MAX; program.n_unknowns];
-        for (number, &state) in places.states.iter().enumerate() {
-            column_of[state] = number;
-        }
-        for (entry, &value) in program.partials(Function::Residual).iter().zip(&here) {
-            if let Wrt::Unknown(column) = entry.wrt
-                && places.differential[column]
-            {
-                by_state[(entry.row, column_of[column])] += value;
-            }
-        }
+        let by_state = arranged(program, &here, |wrt| x_column(places, wrt));
+        let by_state = by_state.select_columns(&places.states);
         let (n, m) = (places.states.len(), places.algebraics.len());
         let ordered = [places.states.as_slice(), &places.algebraics].concat();
         let by_states = -(&inverse * by_state).select_rows(&ordered);
@@ -205,16 +195,26 @@ pub(crate) fn partials(program: &Program, at: Point<'_>, workspace: &mut Workspa
 
 /// dF/dv: by the rates of states, by the values of the others.
 fn consistent(program: &Program, places: &Places, partials: &[f64]) -> DMatrix<f64> {
+    arranged(program, partials, |wrt| v_column(places, wrt))
+}
+
+/// Derivatives of the residual, a row an equation, a column an unknown: those of a kind that says which column each has.
+pub(crate) fn arranged(
+    program: &Program,
+    partials: &[f64],
+    column: impl Fn(Wrt) -> Option<usize>,
+) -> DMatrix<f64> {
     let n = program.n_unknowns;
     let mut matrix = DMatrix::zeros(n, n);
     for (entry, &value) in program.partials(Function::Residual).iter().zip(partials) {
-        if let Some(column) = v_column(places, entry.wrt) {
+        if let Some(column) = column(entry.wrt) {
             matrix[(entry.row, column)] += value;
         }
     }
     matrix
 }
 
+/// The unknown of a derivative by v: by the rate of a state, or by an algebraic variable.
 pub(crate) fn v_column(places: &Places, wrt: Wrt) -> Option<usize> {
     match wrt {
         Wrt::Derivative(column) if places.differential[column] => Some(column),
@@ -225,6 +225,16 @@ pub(crate) fn v_column(places: &Places, wrt: Wrt) -> Option<usize> {
         | Wrt::Memory(_)
         | Wrt::Delayed(_)
         | Wrt::Time => None,
+    }
+}
+
+/// The state of a derivative by x.
+pub(crate) fn x_column(places: &Places, wrt: Wrt) -> Option<usize> {
+    match wrt {
+        Wrt::Unknown(column) => places.differential[column].then_some(column),
+        Wrt::Derivative(_) | Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => {
+            None
+        }
     }
 }
 

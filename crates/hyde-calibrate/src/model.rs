@@ -34,7 +34,7 @@ pub(crate) struct Model<'s> {
 }
 
 impl Model<'_> {
-    fn point<'a>(&'a self, t: f64, y: &'a [f64], yp: &'a [f64]) -> Point<'a> {
+    pub(crate) fn point<'a>(&'a self, t: f64, y: &'a [f64], yp: &'a [f64]) -> Point<'a> {
         Point {
             t,
             y,

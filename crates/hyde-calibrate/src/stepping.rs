@@ -6,11 +6,11 @@
 //! than any such number: states that an effect brings along get their own slope at every step where the linear part has
 //! another, and are carried by it alone (Hochbruck and Ostermann 2010, section 2.4, with a diagonal for the Jacobian).
 
-use crate::configuration::Places;
+use crate::configuration::{Configuration, Places};
 use crate::dense::set_product;
 use crate::model::{Model, Solving};
 use crate::plant::{LEVELS, Plant, shortest_steps, size_of, truth};
-use hyde_program::{Function, Point, Program};
+use hyde_program::{Function, Program, Workspace};
 
 /// A change of a state by which its slope is found.
 const PROBE: f64 = 1e-5;
@@ -80,34 +80,53 @@ pub(crate) enum Outcome {
     Bent(f64),
 }
 
-impl Plant<'_> {
+/// A plant taken apart: what steps read, and what they change.
+struct Parts<'s, 'a> {
+    model: Model<'s>,
+    configuration: &'s Configuration<'a>,
+    tolerances: &'s [f64],
+    watched: &'s [usize],
+    y: &'s mut Vec<f64>,
+    yp: &'s mut Vec<f64>,
+    workspace: &'s mut Workspace,
+    room: &'s mut Room,
+    even: &'s mut Option<(usize, usize)>,
+}
+
+impl<'a> Plant<'a> {
+    fn parts(&mut self) -> Parts<'_, 'a> {
+        Parts {
+            model: Model {
+                program: self.program,
+                places: &self.places,
+                p: &self.p,
+                z: &self.z,
+                u: &self.u,
+                pinned: &self.pinned,
+            },
+            configuration: &self.configurations[self.current].1,
+            tolerances: &self.tolerances,
+            watched: &self.watched,
+            y: &mut self.y,
+            yp: &mut self.yp,
+            workspace: &mut self.workspace,
+            room: &mut self.room,
+            even: &mut self.even,
+        }
+    }
+
     /// Rates and algebraic variables where the states are.
     pub(crate) fn make_consistent(&mut self) {
         let t = self.time();
-        let Self {
-            program,
-            places,
-            p,
-            configurations,
-            current,
+        let Parts {
+            model,
+            configuration,
             y,
             yp,
-            z,
-            u,
             workspace,
-            pinned,
             room,
             ..
-        } = self;
-        let model = Model {
-            program,
-            places,
-            p,
-            z,
-            u,
-            pinned,
-        };
-        let configuration = &configurations[*current].1;
+        } = self.parts();
         model.rates(configuration, t, y, yp, workspace, &mut room.solving);
     }
 
@@ -120,32 +139,17 @@ impl Plant<'_> {
         self.read_inputs_at_start();
         let t = self.time();
         let step_s = self.recording.step_s * size_of(level) as f64 / shortest_steps() as f64;
-        let Self {
-            program,
-            places,
-            p,
+        let Parts {
+            model,
+            configuration,
             tolerances,
-            configurations,
-            current,
             y,
             yp,
-            z,
-            u,
             workspace,
-            pinned,
             room,
             ..
-        } = self;
-        let configuration = &configurations[*current].1;
-        let model = Model {
-            program,
-            places,
-            p,
-            z,
-            u,
-            pinned,
-        };
-        for (state, &place) in places.states.iter().enumerate() {
+        } = self.parts();
+        for (state, &place) in model.places.states.iter().enumerate() {
             if tolerances[state].is_finite() {
                 continue;
             }
@@ -192,36 +196,20 @@ impl Plant<'_> {
             self.read_inputs_within(self.index + (WITHIN * size as f64) as usize, WITHIN);
         }
         self.read_inputs_at_end(self.index + size);
-        let Self {
-            program,
-            recording,
-            places,
-            p,
+        let step_s = self.recording.step_s * size as f64 / shortest_steps() as f64;
+        let row = self.row;
+        let Parts {
+            model,
+            configuration,
             tolerances,
-            configurations,
-            current,
+            watched,
             y,
             yp,
-            z,
-            u,
             workspace,
-            watched,
-            pinned,
             room,
-            row,
             even,
-            ..
-        } = self;
-        let configuration = &configurations[*current].1;
-        let step_s = recording.step_s * size as f64 / shortest_steps() as f64;
-        let model = Model {
-            program,
-            places,
-            p,
-            z,
-            u,
-            pinned,
-        };
+        } = self.parts();
+        let places = model.places;
         let (n, bending) = (places.states.len(), &configuration.bending);
         gather(yp, &places.states, &mut room.rate);
         room.y.copy_from_slice(y);
@@ -278,7 +266,7 @@ impl Plant<'_> {
                     return Outcome::TooLong;
                 }
                 if most < EVEN {
-                    *even = Some((*row + EVEN_ROWS, level));
+                    *even = Some((row + EVEN_ROWS, level));
                 }
                 for (sum, change) in room.correction.iter_mut().zip(&room.bend) {
                     *sum += change;
@@ -306,20 +294,12 @@ impl Plant<'_> {
         }
         let mut event = false;
         if !watched.is_empty() {
-            let at = Point {
-                t: end,
-                y: &room.y,
-                yp: &room.yp,
-                z,
-                u,
-                p,
-            };
-            program
-                .kernels
-                .evaluate(Function::Roots, at, workspace, &mut room.roots);
-            event = watched
-                .iter()
-                .any(|&number| truth(program, number, room.roots[number]) != (z[number] != 0.0));
+            let at = model.point(end, &room.y, &room.yp);
+            let kernels = &model.program.kernels;
+            kernels.evaluate(Function::Roots, at, workspace, &mut room.roots);
+            event = watched.iter().any(|&number| {
+                truth(model.program, number, room.roots[number]) != (model.z[number] != 0.0)
+            });
         }
         if event && level + 1 < LEVELS {
             return Outcome::TooLong;

@@ -22,7 +22,6 @@ use std::sync::Arc;
 
 /// A run of an observer over a record, in the vectors of a program.
 pub(crate) struct Track<'p> {
-    program: &'p Program,
     pub(crate) route: Arc<Route<'p>>,
     /// The states and algebraic variables of the route.
     pub(crate) places: Places,
@@ -32,6 +31,7 @@ pub(crate) struct Track<'p> {
 
 /// What a run of an observer has met, whatever else is carried along it.
 pub(crate) struct Route<'p> {
+    program: &'p Program,
     pub(crate) innovations: Innovations,
     /// The observer of this very model.
     pub(crate) observer: Observer,
@@ -42,8 +42,6 @@ pub(crate) struct Route<'p> {
     /// Of each row: unknowns, their rates and what drives the axis, before the correction and after it.
     values: Vec<f64>,
     memories: Vec<Vec<f64>>,
-    /// Number of unknowns.
-    unknowns: usize,
 }
 
 /// A row: everything before its correction, and after it.
@@ -98,6 +96,7 @@ impl<'p> Track<'p> {
         });
         let configurations = std::mem::take(&mut plant.configurations);
         let route = Route {
+            program,
             innovations,
             observer,
             configurations: configurations.into_iter().map(|(_, own)| own).collect(),
@@ -105,10 +104,8 @@ impl<'p> Track<'p> {
             legs,
             values,
             memories,
-            unknowns: program.n_unknowns,
         };
         Ok(Self {
-            program,
             route: Arc::new(route),
             places: plant.places,
             carried: None,
@@ -129,12 +126,12 @@ impl<'p> Track<'p> {
 
     /// Whether another program has the same unknowns, modes and memory, so that it can be evaluated here.
     pub(crate) fn serves(&self, other: &Program) -> bool {
-        self.moves_as(other) && names(self.program) == names(other)
+        self.moves_as(other) && names(self.route.program) == names(other)
     }
 
     /// Whether another program has the same modes and memory.
     fn moves_as(&self, other: &Program) -> bool {
-        let own = self.program;
+        let own = self.route.program;
         let places = |program: &Program| -> Vec<usize> {
             program.automata.iter().map(|own| own.place).collect()
         };
@@ -178,7 +175,9 @@ impl<'p> Track<'p> {
         let at = known.made.point(p);
         let mut room = Vectors::default();
         let at = match &self.carried {
-            None if std::ptr::eq(program, self.program) => return Some(known.inverse.clone()),
+            None if std::ptr::eq(program, self.route.program) => {
+                return Some(known.inverse.clone());
+            }
             None => at,
             Some(carried) => carried.at_rest(at, &mut room),
         };
@@ -197,8 +196,9 @@ impl Route<'_> {
             When::Before => (before, passed.memory[0]),
             When::After => (after, passed.memory[1]),
         };
-        let (y, rest) = values.split_at(self.unknowns);
-        let (yp, u) = rest.split_at(self.unknowns);
+        let unknowns = self.program.n_unknowns;
+        let (y, rest) = values.split_at(unknowns);
+        let (yp, u) = rest.split_at(unknowns);
         Point {
             t: passed.t,
             y,

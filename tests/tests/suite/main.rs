@@ -17,6 +17,7 @@ mod dead_time;
 mod delays;
 mod derivatives;
 mod digests;
+mod driven_body;
 mod effects;
 mod energy;
 mod event_suite;

@@ -69,12 +69,13 @@ impl<'p> Track<'p> {
         if self.carried.is_some() || !self.moves_as(program) {
             return None;
         }
-        let positions = positions(self.program, program)?;
+        let positions = positions(self.route.program, program)?;
         let start = Plant::new(program, recording, set).ok()?;
         let (p, mut places) = (start.p, start.places);
         let step_s = recording.step_s;
         let equations = Equations::new(self, program, &positions, &places, &p, step_s)?;
-        let mut x: Vec<f64> = equations.states.iter().map(|&own| start.y[own]).collect();
+        let states = &equations.own[..equations.states];
+        let mut x: Vec<f64> = states.iter().map(|&own| start.y[own]).collect();
         let count = self.route.rows.len();
         let mut values = Vec::with_capacity(4 * count * equations.own.len());
         let mut end = Vectors {
@@ -100,7 +101,6 @@ impl<'p> Track<'p> {
         places.states = in_it(&self.places.states);
         places.algebraics = in_it(&self.places.algebraics);
         Some(Self {
-            program,
             route: Arc::clone(&self.route),
             places,
             carried: Some(Carried {

@@ -6,9 +6,9 @@
 //! ```
 //! They are looked at wherever modes are new and now and then, with the own unknowns at 0 and elsewhere.
 
-use super::Track;
 use super::carried::Vectors;
-use crate::configuration::{Places, partials, v_column};
+use super::{Passed, Track};
+use crate::configuration::{Places, arranged, partials, v_column, x_column};
 use crate::exponential::steps;
 use crate::observer::When;
 use hyde_program::{Function, PartialEntry, Point, Program, SomeRows, Workspace, Wrt};
@@ -20,9 +20,9 @@ const LOOKS: usize = 8;
 
 /// The equations of what is brought.
 pub(super) struct Equations<'p> {
-    /// Positions of its unknowns: states, and below them algebraic variables.
+    /// Positions of its unknowns: so many states, and below them algebraic variables.
     pub(super) own: Vec<usize>,
-    pub(super) states: Vec<usize>,
+    pub(super) states: usize,
     /// Positions of the states of the axis.
     pub(super) of_axis: Vec<usize>,
     pub(super) residual: Box<dyn SomeRows + 'p>,
@@ -66,8 +66,8 @@ impl<'p> Equations<'p> {
             let list = list.iter().copied();
             list.filter(|&place| is_own[place] == wanted).collect()
         };
-        let states = chosen(&places.states, true);
-        let own = [states.clone(), chosen(&places.algebraics, true)].concat();
+        let own_states = chosen(&places.states, true);
+        let own = [own_states.as_slice(), &chosen(&places.algebraics, true)].concat();
         let derivatives = Derivatives::new(track, program, positions, &own, p)?;
         let (mut constant, mut drivers, mut uneven) = (true, BTreeSet::new(), BTreeSet::new());
         for (number, entry) in derivatives.entries.iter().enumerate() {
@@ -89,22 +89,20 @@ impl<'p> Equations<'p> {
             }
         }
         let drivers: Vec<usize> = drivers.difference(&uneven).copied().collect();
-        let of_v = |wrt| v_column(places, wrt);
-        let of_state = |wrt| match wrt {
-            Wrt::Unknown(place) => places.differential[place].then_some(place),
-            Wrt::Derivative(_)
-            | Wrt::Parameter(_)
-            | Wrt::Memory(_)
-            | Wrt::Delayed(_)
-            | Wrt::Time => None,
-        };
         let looks = &derivatives.looks;
-        let by_v = derivatives.matrix(&looks[0][0], &own, of_v);
-        let by_residual: DMatrix<f64> = -by_v.try_inverse()?;
-        let rates = by_residual.rows(0, states.len());
-        let a = |look: &[f64]| rates * derivatives.matrix(look, &states, of_state);
+        let of_own = |matrix: DMatrix<f64>, columns: &[usize]| {
+            matrix
+                .select_rows(&derivatives.rows)
+                .select_columns(columns)
+        };
+        let by_x = |look: &[f64]| arranged(program, look, |wrt| x_column(places, wrt));
+        let by_v = arranged(program, &looks[0][0], |wrt| v_column(places, wrt));
+        let by_residual: DMatrix<f64> = -of_own(by_v, &own).try_inverse()?;
+        let states = own_states.len();
+        let rates = by_residual.rows(0, states);
+        let a = |look: &[f64]| rates * of_own(by_x(look), &own_states);
         let flow = if constant {
-            let by_drivers = rates * derivatives.matrix(&looks[0][0], &drivers, of_state);
+            let by_drivers = rates * of_own(by_x(&looks[0][0]), &drivers);
             Flow::Constant {
                 over: over(&a(&looks[0][0]), &by_drivers, step_s),
                 drivers,
@@ -191,35 +189,16 @@ impl<'p> Derivatives<'p> {
         let mut looks = self.looks.iter();
         looks.all(|[here, moved]| here[number].to_bits() == moved[number].to_bits())
     }
-
-    /// Those of its equations by some unknowns, of a kind of derivatives that says of which unknown each is.
-    fn matrix(
-        &self,
-        look: &[f64],
-        columns: &[usize],
-        kind: impl Fn(Wrt) -> Option<usize>,
-    ) -> DMatrix<f64> {
-        let mut matrix = DMatrix::zeros(self.rows.len(), columns.len());
-        for (entry, value) in self.entries.iter().zip(look) {
-            let place = kind(entry.wrt);
-            let column = place.and_then(|place| columns.iter().position(|&own| own == place));
-            if let (Ok(row), Some(column)) = (self.rows.binary_search(&entry.row), column) {
-                matrix[(row, column)] += value;
-            }
-        }
-        matrix
-    }
 }
 
 /// The first row of each combination of modes, and some more.
 fn samples(track: &Track<'_>) -> BTreeSet<usize> {
     let rows = &track.route.rows;
-    let (mut met, mut found) = (BTreeSet::new(), BTreeSet::new());
-    for (row, passed) in rows.iter().enumerate() {
-        if met.insert(passed.modes[1]) {
-            found.insert(row);
-        }
-    }
+    let mut met = vec![false; track.route.configurations.len()];
+    let is_new =
+        |(_, passed): &(usize, &Passed)| !std::mem::replace(&mut met[passed.modes[1]], true);
+    let new = rows.iter().enumerate().filter(is_new);
+    let mut found: BTreeSet<usize> = new.map(|(row, _)| row).collect();
     found.extend((0..LOOKS).map(|look| look * rows.len() / LOOKS));
     found
 }
