@@ -17,7 +17,7 @@ use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
 use crate::guards::{current_mode, is_active};
 use crate::results::{Event, EventKind};
-use crate::root_rates::{root_rates, rounding};
+use crate::root_rates::{RootRate, root_rates, rounding};
 use crate::sensitivity::Sensitivities;
 use crate::state::State;
 use hyde_program::{Function, ReactionKind, RelationUse, Target};
@@ -46,6 +46,15 @@ pub(crate) struct Instant<'s, 'a> {
     pub(crate) crossed: Vec<usize>,
 }
 
+/// What is known of the relations at an instant.
+struct Known {
+    truths: Vec<bool>,
+    roots: Vec<f64>,
+    /// Relations whose truth is that of a moment later, with how far on the other side of zero their root functions may be
+    /// until then.
+    doubtful: Vec<(usize, f64)>,
+}
+
 impl Instant<'_, '_> {
     /// Iterates until nothing fires. `scheduled` are the relations whose instant this is. Returns whether anything
     /// changed that the equations read. At the start `when` conditions that hold already do not fire.
@@ -69,17 +78,20 @@ impl Instant<'_, '_> {
         let mut switched: Vec<usize> = Vec::new();
         for round in 0..MAX_ROUNDS {
             changed |= self.leave_slides(&mut located)?;
-            let (mut truths, mut roots) = self.truths(scheduled, &located)?;
+            let mut known = self.truths(scheduled, &located)?;
             if seen.is_empty() {
-                let short = self.short_of_zero(&truths);
+                let short = self.short_of_zero(&known.truths);
                 if !short.is_empty() {
                     located.extend(short);
-                    (truths, roots) = self.truths(scheduled, &located)?;
+                    known = self.truths(scheduled, &located)?;
                 }
-                let now = self.guards_that_became_true(&truths, &roots);
+                let now = self.guards_that_became_true(&known);
                 self.remember_located(&now);
                 located.extend(now);
             }
+            let Known {
+                truths, doubtful, ..
+            } = known;
             turned.extend(self.true_guards(&truths));
             let mut flipped = self.flip(&truths);
             switched.extend(&flipped);
@@ -96,7 +108,7 @@ impl Instant<'_, '_> {
             flipped.retain(|&relation| is_active(self.state, relation));
             if fired.is_empty() && flipped.is_empty() && !slid {
                 self.set_edges(|_, _| false);
-                self.remember_doubtful(&truths, &roots);
+                self.state.doubtful = doubtful;
                 return Ok(changed);
             }
             changed = true;
@@ -131,26 +143,26 @@ impl Instant<'_, '_> {
         Err(self.chattering(&causes))
     }
 
-    /// The truth of every relation that matters, with the root functions' values. A guard may ask for another relation,
-    /// `if a > 0 then …`: it is looked at again once that one is known.
+    /// The truth of every relation that matters. A guard may ask for another relation, `if a > 0 then …`: it is looked at
+    /// again once that one is known.
     fn truths(
         &mut self,
         scheduled: &[usize],
         located: &[(usize, f64)],
-    ) -> Result<(Vec<bool>, Vec<f64>), Box<Failure>> {
+    ) -> Result<Known, Box<Failure>> {
         let program = self.state.program;
         let before = self.state.z[..program.relations.len()].to_vec();
         let mut found = self.truths_once(scheduled, located)?;
         for _ in 0..MAX_NESTED {
             for (number, relation) in program.relations.iter().enumerate() {
                 if relation.used != RelationUse::Equation {
-                    self.state.z[number] = f64::from(u8::from(found.0[number]));
+                    self.state.z[number] = f64::from(u8::from(found.truths[number]));
                 }
             }
             let mut roots = vec![0.0; program.relations.len()];
             self.state
                 .evaluate(Function::Roots, self.t, self.y, self.yp, &mut roots);
-            let same = roots.iter().zip(&found.1);
+            let same = roots.iter().zip(&found.roots);
             if same.into_iter().all(|(a, b)| a.to_bits() == b.to_bits()) {
                 break;
             }
@@ -165,14 +177,14 @@ impl Instant<'_, '_> {
         &mut self,
         scheduled: &[usize],
         located: &[(usize, f64)],
-    ) -> Result<(Vec<bool>, Vec<f64>), Box<Failure>> {
+    ) -> Result<Known, Box<Failure>> {
         let program = self.state.program;
         let mut roots = vec![0.0; program.relations.len()];
         self.state
             .evaluate(Function::Roots, self.t, self.y, self.yp, &mut roots);
         let rounding = rounding(self.state, self.t, self.y, self.yp, self.largest);
-        let mut rates: Option<Vec<f64>> = None;
-        let mut truths = Vec::with_capacity(roots.len());
+        let mut rates: Option<Vec<RootRate>> = None;
+        let (mut truths, mut doubtful) = (Vec::with_capacity(roots.len()), Vec::new());
         for (number, &root) in roots.iter().enumerate() {
             let before = self.state.z[number] != 0.0;
             if !is_active(self.state, number) {
@@ -199,22 +211,24 @@ impl Instant<'_, '_> {
                 root_rates(self.state, self.consistent, self.t, self.y, self.yp)
             })[number];
             let inclusive = program.relations[number].inclusive;
-            truths.push(if rate == 0.0 {
+            let truth = if rate.mean == 0.0 {
                 if root == 0.0 { inclusive } else { root > 0.0 }
             } else {
-                rate > 0.0
-            });
+                rate.mean > 0.0
+            };
+            let against = root != 0.0 && (root > 0.0) != truth;
+            let band = if against { 2.0 * root.abs() } else { 0.0 };
+            let band = band + rate.detour(self.t);
+            if band > 0.0 {
+                doubtful.push((number, band));
+            }
+            truths.push(truth);
         }
-        Ok((truths, roots))
-    }
-
-    /// Takes down the relations whose truth was decided by the direction of the flow against their sign.
-    fn remember_doubtful(&mut self, truths: &[bool], roots: &[f64]) {
-        let pairs = truths.iter().zip(roots).enumerate();
-        self.state.doubtful = pairs
-            .filter(|(_, (truth, root))| **root != 0.0 && (**root > 0.0) != **truth)
-            .map(|(number, (_, root))| (number, 2.0 * root.abs()))
-            .collect();
+        Ok(Known {
+            truths,
+            roots,
+            doubtful,
+        })
     }
 
     /// The guards of current modes that are true.
@@ -230,14 +244,14 @@ impl Instant<'_, '_> {
     }
 
     /// The guards of current modes that are true now and were not: of these the root function is at its zero.
-    fn guards_that_became_true(&self, truths: &[bool], roots: &[f64]) -> Vec<(usize, f64)> {
+    fn guards_that_became_true(&self, known: &Known) -> Vec<(usize, f64)> {
         let relations = self.state.program.relations.iter().enumerate();
         relations
             .filter(|(number, relation)| {
                 let before = self.state.z[*number] != 0.0;
-                matches!(relation.used, RelationUse::Exit(..)) && truths[*number] && !before
+                matches!(relation.used, RelationUse::Exit(..)) && known.truths[*number] && !before
             })
-            .map(|(number, _)| (number, roots[number]))
+            .map(|(number, _)| (number, known.roots[number]))
             .collect()
     }
 

@@ -40,7 +40,25 @@ pub(crate) fn moment(t: f64) -> f64 {
     1e-9 * (1.0 + t.abs())
 }
 
-/// In which direction each root function leaves zero along the flow: the mean of its derivative now and a moment later.
+/// Where a root function goes: its derivative now, and the mean of that and the one a moment later.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct RootRate {
+    pub(crate) now: f64,
+    pub(crate) mean: f64,
+}
+
+impl RootRate {
+    /// How far a root function may be on the other side of zero before it goes where it goes: within the moment it turns,
+    /// and not farther than it would go on.
+    pub(crate) fn detour(self, t: f64) -> f64 {
+        match self.now * self.mean < 0.0 {
+            true => self.now.abs() * moment(t),
+            false => 0.0,
+        }
+    }
+}
+
+/// In which direction each root function leaves zero along the flow: the sign of the mean.
 ///
 /// A friction that breaks away does so where the acceleration is still zero, so the derivative alone would be rounding;
 /// a moment later it has its sign.
@@ -50,9 +68,17 @@ pub(crate) fn root_rates(
     t: f64,
     y: &[f64],
     yp: &[f64],
-) -> Vec<f64> {
+) -> Vec<RootRate> {
     let Some((now, dy, dyp)) = rates_at(Function::Roots, state, consistent, t, y, yp) else {
-        return vec![0.0; state.program.relations.len()];
+        return vec![RootRate::default(); state.program.relations.len()];
+    };
+    let with = |later: &[f64]| -> Vec<RootRate> {
+        let pairs = now.iter().zip(later);
+        let rate = |(&now, later): (&f64, &f64)| RootRate {
+            now,
+            mean: 0.5 * (now + later),
+        };
+        pairs.map(rate).collect()
     };
     let moment = moment(t);
     // To second order: what breaks away may do so where its acceleration is not quite zero yet.
@@ -66,7 +92,7 @@ pub(crate) fn root_rates(
         .solve(state, t + moment, &mut y_later, &mut yp_later, false)
         .is_err()
     {
-        return now;
+        return with(&now);
     }
     let later = rates_at(
         Function::Roots,
@@ -76,14 +102,7 @@ pub(crate) fn root_rates(
         &y_later,
         &yp_later,
     );
-    match later {
-        Some((later, ..)) => now
-            .iter()
-            .zip(later)
-            .map(|(now, later)| 0.5 * (now + later))
-            .collect(),
-        None => now,
-    }
+    with(later.as_ref().map_or(&now, |(later, ..)| later))
 }
 
 /// The derivatives of a function along the flow at a point, and those of y and y'.

@@ -25,7 +25,7 @@ pub(crate) struct State<'a> {
     /// The value of each guard's root function of states where it became true last: its zero as far as it could be located.
     pub(crate) located: Vec<(usize, f64)>,
     /// Relations that are at their zero since the last event, with how far from it their root functions may be: within
-    /// that a sign says nothing.
+    /// that a sign says nothing, until they have once been farther.
     pub(crate) doubtful: Vec<(usize, f64)>,
     /// Switches that are held at their surfaces.
     pub(crate) slides: Vec<Slide>,

@@ -34,7 +34,7 @@ impl Instant<'_, '_> {
         }
         let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
         let known = 0.5e-12 * (1.0 + self.t.abs());
-        let within = |relation: usize| (relation, known * rates[relation].abs());
+        let within = |relation: usize| (relation, known * rates[relation].mean.abs());
         stay.into_iter().map(within).collect()
     }
 
@@ -45,7 +45,7 @@ impl Instant<'_, '_> {
         let moment = moment(self.t);
         guards
             .iter()
-            .map(|&guard| (guard, 0.5 * moment * rates[guard].abs()))
+            .map(|&guard| (guard, 0.5 * moment * rates[guard].mean.abs()))
             .collect()
     }
 }
