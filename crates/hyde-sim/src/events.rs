@@ -80,11 +80,12 @@ impl Instant<'_, '_> {
             changed |= self.leave_slides(&mut located)?;
             let mut known = self.truths(scheduled, &located)?;
             if seen.is_empty() {
-                let short = self.short_of_zero(&known.truths);
+                let short = self.short_of_zero(&known);
                 if !short.is_empty() {
                     located.extend(short);
                     known = self.truths(scheduled, &located)?;
                 }
+                self.state.in_vain = (self.t, self.crossed_in_vain(&known.truths));
                 let now = self.guards_that_became_true(&known);
                 self.remember_located(&now);
                 located.extend(now);
@@ -218,7 +219,7 @@ impl Instant<'_, '_> {
             };
             let against = root != 0.0 && (root > 0.0) != truth;
             let band = if against { 2.0 * root.abs() } else { 0.0 };
-            let band = band + rate.detour(self.t);
+            let band = band + rate.detour();
             if band > 0.0 {
                 doubtful.push((number, band));
             }

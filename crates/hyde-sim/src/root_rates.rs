@@ -40,28 +40,40 @@ pub(crate) fn moment(t: f64) -> f64 {
     1e-9 * (1.0 + t.abs())
 }
 
+/// How many times longer the moment becomes until rounding no longer hides where a root function goes, and how often.
+const LONGER: f64 = 10.0;
+const MOST_TIMES: usize = 3;
+/// How far from rounding a derivative has a sign.
+const CLEAR: f64 = 4.0;
+
 /// Where a root function goes: its derivative now, and the mean of that and the one a moment later.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct RootRate {
     pub(crate) now: f64,
     pub(crate) mean: f64,
+    /// What rounding of the states makes of the derivative.
+    rounding: f64,
+    /// How much later, in s.
+    moment: f64,
 }
 
 impl RootRate {
     /// How far a root function may be on the other side of zero before it goes where it goes: within the moment it turns,
     /// and not farther than it would go on.
-    pub(crate) fn detour(self, t: f64) -> f64 {
-        match self.now * self.mean < 0.0 {
-            true => self.now.abs() * moment(t),
+    pub(crate) fn detour(self) -> f64 {
+        let back = match self.now * self.mean < 0.0 {
+            true => self.now.abs(),
             false => 0.0,
-        }
+        };
+        (back + self.rounding) * self.moment
     }
 }
 
 /// In which direction each root function leaves zero along the flow: the sign of the mean.
 ///
 /// A friction that breaks away does so where the acceleration is still zero, so the derivative alone would be rounding;
-/// a moment later it has its sign.
+/// a moment later it has its sign. In a stiff bar whose angles are large that takes longer: rounding of the angles is a
+/// torque there, which is tried by rounding them otherwise.
 pub(crate) fn root_rates(
     state: &mut State<'_>,
     consistent: &mut Consistent,
@@ -69,40 +81,67 @@ pub(crate) fn root_rates(
     y: &[f64],
     yp: &[f64],
 ) -> Vec<RootRate> {
+    let none = RootRate::default();
     let Some((now, dy, dyp)) = rates_at(Function::Roots, state, consistent, t, y, yp) else {
-        return vec![RootRate::default(); state.program.relations.len()];
+        return vec![none; state.program.relations.len()];
     };
-    let with = |later: &[f64]| -> Vec<RootRate> {
-        let pairs = now.iter().zip(later);
-        let rate = |(&now, later): (&f64, &f64)| RootRate {
-            now,
-            mean: 0.5 * (now + later),
+    let differential = state.differential.clone();
+    let mut at = |t: f64, mut y: Vec<f64>| -> Option<Vec<f64>> {
+        let mut yp = yp.to_vec();
+        consistent.solve(state, t, &mut y, &mut yp, false).ok()?;
+        let (rates, ..) = rates_at(Function::Roots, state, consistent, t, &y, &yp)?;
+        Some(rates)
+    };
+    let otherwise = at(t, rounded_otherwise(y, &differential));
+    let found = now.iter().enumerate().map(|(number, &now)| RootRate {
+        now,
+        mean: now,
+        rounding: otherwise
+            .as_ref()
+            .map_or(0.0, |rates| (rates[number] - now).abs()),
+        moment: moment(t),
+    });
+    let mut found: Vec<RootRate> = found.collect();
+    let hidden = |rate: &RootRate| rate.mean.abs() <= CLEAR * rate.rounding;
+    let mut ahead = moment(t);
+    for _ in 0..MOST_TIMES {
+        // To second order: what breaks away may do so where its acceleration is not quite zero yet.
+        let y_later = (0..y.len()).map(|i| {
+            let bend = if differential[i] { dyp[i] } else { 0.0 };
+            y[i] + ahead * (dy[i] + 0.5 * ahead * bend)
+        });
+        let Some(later) = at(t + ahead, y_later.collect()) else {
+            break;
         };
-        pairs.map(rate).collect()
-    };
-    let moment = moment(t);
-    // To second order: what breaks away may do so where its acceleration is not quite zero yet.
-    let ahead = |i: usize| {
-        let bend = if state.differential[i] { dyp[i] } else { 0.0 };
-        y[i] + moment * (dy[i] + 0.5 * moment * bend)
-    };
-    let mut y_later: Vec<f64> = (0..y.len()).map(ahead).collect();
-    let mut yp_later = yp.to_vec();
-    if consistent
-        .solve(state, t + moment, &mut y_later, &mut yp_later, false)
-        .is_err()
-    {
-        return with(&now);
+        for (rate, later) in found.iter_mut().zip(later) {
+            if rate.moment >= ahead || hidden(rate) {
+                rate.mean = 0.5 * (rate.now + later);
+                rate.moment = ahead;
+            }
+        }
+        if !found.iter().any(|rate| rate.rounding > 0.0 && hidden(rate)) {
+            break;
+        }
+        ahead *= LONGER;
     }
-    let later = rates_at(
-        Function::Roots,
-        state,
-        consistent,
-        t + moment,
-        &y_later,
-        &yp_later,
-    );
-    with(later.as_ref().map_or(&now, |(later, ..)| later))
+    found
+}
+
+/// States as they might as well be rounded: each by its own number of units in the last place, for what two have in common
+/// would cancel where their difference counts.
+fn rounded_otherwise(y: &[f64], differential: &[bool]) -> Vec<f64> {
+    let each = y.iter().zip(differential).enumerate();
+    each.map(|(number, (value, differential))| {
+        let units = match (*differential, number % 4) {
+            (false, _) => 0.0,
+            (true, 0) => 2.0,
+            (true, 1) => -1.0,
+            (true, 2) => 1.0,
+            (true, _) => -2.0,
+        };
+        value * (1.0 + units * f64::EPSILON)
+    })
+    .collect()
 }
 
 /// The derivatives of a function along the flow at a point, and those of y and y'.

@@ -1,6 +1,6 @@
 //! Instants that were located: how near to zero root functions count as at it.
 
-use super::Instant;
+use super::{Instant, Known};
 use crate::root_rates::{moment, root_rates};
 use hyde_program::RelationUse;
 
@@ -18,9 +18,31 @@ impl Instant<'_, '_> {
         }
     }
 
-    /// The crossed relations of reactions whose truth is as before: consistent values may fall short of a zero by rounding that the step
-    /// to it did not show. As far as the instant can be known they are at it.
-    pub(super) fn short_of_zero(&mut self, truths: &[bool]) -> Vec<(usize, f64)> {
+    /// The crossed relations of reactions whose truth is as before: consistent values may fall short of a zero by rounding
+    /// that the step to it did not show. As far as the instant can be known they are at it. One that was located in vain a
+    /// moment ago is at it however far that seems: the twist of a stiff bar is the difference of two large angles, and time
+    /// goes on by less than those can tell.
+    pub(super) fn short_of_zero(&mut self, found: &Known) -> Vec<(usize, f64)> {
+        let stay = self.crossed_in_vain(&found.truths);
+        if stay.is_empty() {
+            return Vec::new();
+        }
+        let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
+        let known = 0.5e-12 * (1.0 + self.t.abs());
+        let (before, ref in_vain) = self.state.in_vain;
+        let within = |relation: usize| {
+            let again = self.t - before <= moment(self.t) && in_vain.contains(&relation);
+            let band = match again {
+                true => found.roots[relation].abs(),
+                false => known * rates[relation].mean.abs(),
+            };
+            (relation, band)
+        };
+        stay.into_iter().map(within).collect()
+    }
+
+    /// The crossed relations of reactions whose truth is as before.
+    pub(super) fn crossed_in_vain(&self, truths: &[bool]) -> Vec<usize> {
         let state = &self.state;
         // Those of equations wait for the values of the branch they lead to: one of a loop may lead them all back.
         let stays = |relation: &usize| {
@@ -28,14 +50,7 @@ impl Instant<'_, '_> {
             let of_reaction = known.is_some_and(|r| r.used != RelationUse::Equation);
             of_reaction && truths[*relation] == (state.z[*relation] != 0.0)
         };
-        let stay: Vec<usize> = self.crossed.iter().copied().filter(stays).collect();
-        if stay.is_empty() {
-            return Vec::new();
-        }
-        let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
-        let known = 0.5e-12 * (1.0 + self.t.abs());
-        let within = |relation: usize| (relation, known * rates[relation].mean.abs());
-        stay.into_iter().map(within).collect()
+        self.crossed.iter().copied().filter(stays).collect()
     }
 
     /// Guards that lead in a circle may do so by rounding alone: a diode's current is zero where its voltage is. Those that
