@@ -113,6 +113,65 @@ fn a_drag_that_waves_along_the_way_is_found_and_written() {
     assert!(panel["gain"].as_f64().unwrap() > 2.0 * panel["band"].as_f64().unwrap());
 }
 
+/// A friction that remembers: its filter is found with the time constant, though parameters took half of it before.
+#[test]
+fn a_friction_that_grows_as_it_is_worked_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Translational.Guide
+           Real w(start = 0, fixed = true);
+           wrap grip by grip + 25 [N]*w;
+           wrap hold by hold + 25 [N]*w;
+         equation
+           der(w) = (noEvent(abs(v))/(100 [mm/s]) - w)/(0.15 [s]);
+         end Odd;",
+        " with Odd on guide",
+    );
+    let law = law_alone(&found);
+    assert!(
+        law.contains("wrap grip by grip + F*worked_tau/v1;"),
+        "{law}"
+    );
+    let filter = "tau*der(worked_tau) = noEvent(abs(v)) - worked_tau;";
+    assert!(law.contains(filter), "{law}");
+    let effect = &found["effects"][0];
+    let tau = effect["shape"]["tau"]["value"].as_f64().unwrap();
+    assert!((tau / 0.15 - 1.0).abs() < 0.1, "{tau}");
+    // 25 N at 100 mm/s are 50 N at the 200 mm/s that sizes are given at.
+    let size = effect["size"].as_f64().unwrap();
+    assert!((size / 50.0 - 1.0).abs() < 0.1, "{size}");
+}
+
+#[test]
+fn a_drag_in_one_direction_beyond_a_place_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Translational.Rail
+           add a.f = 40 [N]*(1 + tanh((a.s - 20 [mm])/(2 [mm])))/2*(1 + tanh(v/(2 [mm/s])))/2;
+           Velocity v = der(a.s);
+         end Odd;",
+        " with Odd on saddle.a",
+    );
+    let law = law_alone(&found);
+    let forwards = "(1 + v/(noEvent(abs(v)) + vs))/2*(1 + tanh((a.s - x0)/width))/2";
+    assert!(
+        law.contains(&format!("add a.f = -(F*{forwards});")),
+        "{law}"
+    );
+    let effect = &found["effects"][0];
+    let place = effect["shape"]["x0"]["value"].as_f64().unwrap();
+    assert!((place - 0.02).abs() < 0.5e-3, "{place}");
+    let size = effect["size"].as_f64().unwrap();
+    assert!((size / -40.0 - 1.0).abs() < 0.1, "{size}");
+}
+
+/// The text of the law that is the whole answer.
+fn law_alone(found: &Value) -> &str {
+    assert_eq!(found["verdict"], "unknown", "{}", found["sentence"]);
+    let effects = found["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 1, "{}", found["sentence"]);
+    assert_eq!(effects[0]["effect"], "Found");
+    found["unknown"]["law"]["text"].as_str().unwrap()
+}
+
 #[test]
 fn an_error_of_the_scale_at_one_place_is_found_and_written() {
     let found = diagnosed(

@@ -7,7 +7,7 @@
 //! fit        the few that promise most, on the model itself, as one effect with the freedoms of both
 //! ```
 
-use super::projection::{Sums, common};
+use super::projection::{Sums, change, common};
 use super::scan::{Node, Scanner, Score};
 use super::search::Gates;
 use super::stage::Stage;
@@ -61,14 +61,19 @@ pub(crate) fn pair(scanner: &Scanner<'_>, scores: &[Score], gates: Gates) -> Opt
     let fitted = promises.into_par_iter().filter_map(|promise| {
         let (a, b) = promise.sizes.split_at(promise.halves[0].node.sizes.len());
         let [first, second] = promise.halves;
-        let at = |half: &Half<'_>, sizes: &[f64]| {
+        let columns = first.columns.iter().chain(&second.columns);
+        let both = scanner
+            .projection
+            .parameters_with(&change(columns, &promise.sizes));
+        let at = |half: &Half<'_>, sizes: &[f64], parameters: Vec<f64>| {
             let node = Node {
                 sizes: sizes.to_vec(),
+                parameters,
                 ..half.node.clone()
             };
             (half.score.hypothesis, node)
         };
-        let nodes = [at(first, a), at(second, b)];
+        let nodes = [at(first, a, both), at(second, b, Vec::new())];
         let fitted = together(ground, stage, scanner.hypotheses, &nodes, scanner.build)?;
         let freedoms = fitted.varied.len() - stage.varied.len();
         let gate = gates.gain(freedoms) * inflation;

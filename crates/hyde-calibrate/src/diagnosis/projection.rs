@@ -134,6 +134,13 @@ impl Projection {
         self.least - (changed.norm_squared() - h.dot(&self.factor.solve(&h)))
     }
 
+    /// How far the parameters go to answer a change of innovations, in units of their scales.
+    pub(crate) fn parameters_with(&self, change: &DVector<f64>) -> Vec<f64> {
+        let h = &self.h + self.derivatives.tr_mul(change);
+        let back = self.factor.solve(&h);
+        back.iter().map(|step| -step).collect()
+    }
+
     /// The sizes that gain most if the answer is linear: columns are the changes of innovations a unit.
     pub(crate) fn answer(&self, columns: &[Vec<f64>]) -> Answer {
         self.answer_from(&self.sums(columns))
@@ -247,6 +254,17 @@ pub(crate) fn common(columns: &[Vec<f64>], others: &[Vec<f64>]) -> DMatrix<f64> 
     DMatrix::from_fn(columns.len(), others.len(), |i, j| {
         dot(&columns[i], &others[j])
     })
+}
+
+/// The change of innovations by some sizes: columns are that a unit.
+pub(crate) fn change<'c>(
+    columns: impl IntoIterator<Item = &'c Vec<f64>>,
+    sizes: &[f64],
+) -> DVector<f64> {
+    let each = columns.into_iter().zip(sizes);
+    each.map(|(column, &size)| DVector::from_column_slice(column) * size)
+        .reduce(|sum, own| sum + own)
+        .unwrap_or_else(|| DVector::zeros(0))
 }
 
 pub(crate) fn dot(a: &[f64], b: &[f64]) -> f64 {

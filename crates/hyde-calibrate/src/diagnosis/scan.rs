@@ -41,6 +41,8 @@ pub struct Node {
     pub(crate) visible: Vec<f64>,
     /// What is gained of the sum of squares.
     pub gain: f64,
+    /// How far the parameters go to answer it, in units of their scales; empty where no run tells.
+    pub(crate) parameters: Vec<f64>,
     /// Whether its sizes are those of a linear answer.
     pub(crate) linear: bool,
 }
@@ -235,6 +237,7 @@ impl Scanner<'_> {
                         .collect(),
                     gain: answer.gain_of(&sizes),
                     sizes,
+                    parameters: Vec::new(),
                     linear: true,
                 };
                 nodes.push(node);
@@ -266,13 +269,14 @@ impl Scanner<'_> {
         for halving in 0..HALVINGS {
             let mut sizes = vec![0.0; hypothesis.sizes.len()];
             sizes[0] = largest * 0.5_f64.powi(halving);
-            let gain = self.gain(promised, &sizes, &declared);
+            let (gain, parameters) = self.gain(promised, &sizes, &declared);
             promised.tried += 1;
             promised.nodes.push(Node {
                 shapes: declared.clone(),
                 visible: sizes.iter().map(|s| 0.1 * s.abs()).collect(),
                 sizes,
                 gain,
+                parameters,
                 linear: false,
             });
         }
@@ -301,9 +305,9 @@ impl Scanner<'_> {
             for factor in [1.0, 0.5, 2.0] {
                 let pairs = node.sizes.iter().zip(&hypothesis.sizes);
                 let sizes: Vec<f64> = pairs.map(|(s, size)| inside(s * factor, size)).collect();
-                let gain = self.gain(&promised, &sizes, &node.shapes);
+                let (gain, parameters) = self.gain(&promised, &sizes, &node.shapes);
                 if gain > node.gain {
-                    (node.gain, node.sizes) = (gain, sizes);
+                    (node.gain, node.sizes, node.parameters) = (gain, sizes, parameters);
                 }
                 if node.gain > AS_EXPECTED * expected {
                     break;
@@ -316,10 +320,13 @@ impl Scanner<'_> {
         promised.score(linear)
     }
 
-    /// What a run with some sizes and shapes gains.
-    fn gain(&self, promised: &Promised, sizes: &[f64], shapes: &[f64]) -> f64 {
+    /// What a run with some sizes and shapes gains, and how far the parameters go to answer it.
+    fn gain(&self, promised: &Promised, sizes: &[f64], shapes: &[f64]) -> (f64, Vec<f64>) {
         let change = self.runs(promised).change(sizes, shapes, &promised.plain);
-        change.map_or(f64::NEG_INFINITY, |change| self.projection.gain(&change))
+        change.map_or((f64::NEG_INFINITY, Vec::new()), |change| {
+            let gain = self.projection.gain(&change);
+            (gain, self.projection.parameters_with(&change))
+        })
     }
 
     fn runs<'r>(&'r self, promised: &'r Promised) -> Runs<'r> {

@@ -370,8 +370,12 @@ impl Unknowns {
         }
     }
 
-    /// Adds the sizes of an effect and its shapes, from a node; whole numbers stay.
+    /// Adds the sizes of an effect and its shapes, from a node, and lets the parameters answer it; whole numbers stay.
     fn add(&mut self, program: &Program, hypothesis: &Hypothesis, path: &str, node: &Node) {
+        let parameters = self.start.iter_mut().zip(&self.varied);
+        for ((value, varied), step) in parameters.zip(&node.parameters) {
+            *value = (*value + step * varied.scale()).clamp(varied.bounds.0, varied.bounds.1);
+        }
         let sizes = Hypothesis::names(&hypothesis.sizes, path)
             .into_iter()
             .zip(&hypothesis.sizes);

@@ -30,7 +30,7 @@ pub use site::{Kind, Site, Written};
 
 use super::forward::Taken;
 use super::hypothesis::{Built, Hypothesis};
-use super::projection::{Projection, dot};
+use super::projection::{Projection, change, dot};
 use super::scan::{Node, Score};
 use super::search::{Diagnosis, Gates, Verdict, explained, findings};
 use super::stage::{Ground, Stage};
@@ -163,14 +163,35 @@ pub fn propose(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis) -> Result<(), U
     Ok(())
 }
 
-/// Whether several effects were taken in at one site: they may be the parts of one that is not known.
+/// Whether several effects were taken in at one place where a law may act: they may be the parts of one that is not known.
 fn is_chain(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> bool {
-    let site = |finding: &super::Finding| {
-        let hypothesis = inquiry.hypotheses.get(finding.hypothesis);
-        hypothesis.map(|hypothesis| hypothesis.site.as_str())
+    let findings = diagnosis.findings.iter();
+    let hypotheses: Vec<&Hypothesis> = findings
+        .filter_map(|finding| inquiry.hypotheses.get(finding.hypothesis))
+        .collect();
+    let may_act = |one: &Hypothesis| inquiry.sites.iter().any(|site| site.path == one.site);
+    match hypotheses.as_slice() {
+        [first, others @ ..] if !others.is_empty() => {
+            may_act(first)
+                && others
+                    .iter()
+                    .all(|other| may_act(other) && at_one_place(first, other))
+        }
+        _ => false,
+    }
+}
+
+/// Whether two effects are at one connector, or one of them on a component that is connected there.
+fn at_one_place(one: &Hypothesis, other: &Hypothesis) -> bool {
+    let places = |of: &Hypothesis| -> Vec<String> {
+        let aliases = of.aliases.iter();
+        aliases.chain([&of.site]).cloned().collect()
     };
-    let sites: Vec<_> = diagnosis.findings.iter().map(site).collect();
-    sites.len() > 1 && sites.iter().all(|other| *other == sites[0])
+    let within =
+        |a: &str, b: &str| a == b || a.strip_prefix(b).is_some_and(|rest| rest.starts_with('.'));
+    let (one, other) = (places(one), places(other));
+    let mut pairs = one.iter().flat_map(|a| other.iter().map(move |b| (a, b)));
+    pairs.any(|(a, b)| within(a, b) || within(b, a))
 }
 
 /// The site of the answer, the maps of the others, and the law that was found there.
@@ -283,9 +304,15 @@ fn law(
         if share < LEAST_SHARE || slow {
             continue;
         }
-        let Some((trial, found)) =
-            fitted(inquiry, ground, stage, &places[number].0, own, share, gates)
-        else {
+        let Some((trial, found)) = fitted(
+            inquiry,
+            ground,
+            stage,
+            (&places[number].0, &projection),
+            own,
+            share,
+            gates,
+        ) else {
             continue;
         };
         if best
@@ -313,7 +340,7 @@ fn fitted(
     inquiry: &Inquiry<'_>,
     ground: &Ground<'_>,
     stage: &Stage,
-    felt: &Felt,
+    (felt, projection): (&Felt, &Projection),
     own: Selected,
     share: f64,
     gates: Gates,
@@ -328,14 +355,17 @@ fn fitted(
         (inquiry.author)(&known, written.map_or(&[], std::slice::from_ref))
     };
     let terms = || own.law.terms.iter();
-    let columns = terms().flat_map(|term| felt.columns(term));
+    let columns: Vec<Vec<f64>> = terms().flat_map(|term| felt.columns(term)).collect();
+    let sizes: Vec<f64> = terms().flat_map(|term| term.sizes.clone()).collect();
     let score = Score {
         hypothesis: number,
         nodes: vec![Node {
             shapes: terms().flat_map(Summand::constants).collect(),
-            sizes: terms().flat_map(|term| term.sizes.clone()).collect(),
+            parameters: projection.parameters_with(&change(&columns, &sizes)),
+            sizes,
             visible: columns
-                .map(|column| (VISIBLE / dot(&column, &column).max(1e-300)).sqrt())
+                .iter()
+                .map(|column| (VISIBLE / dot(column, column).max(1e-300)).sqrt())
                 .collect(),
             gain: *own.gains.last()?,
             linear: true,

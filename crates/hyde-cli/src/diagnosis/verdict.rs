@@ -1,7 +1,7 @@
 //! The verdict in one sentence, and its doubt.
 
 use super::{Told, named};
-use crate::before_after;
+use crate::before_after::{self, RecordErrors};
 use hyde_calibrate::{Finding, Quantity, Verdict};
 use hyde_units::significant;
 
@@ -88,6 +88,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
         if after > before {
             doubts.push("held-out records do not bear it out".to_owned());
         }
+        doubts.extend(beyond_the_fitted(&told.errors));
     }
     for finding in &told.found.findings {
         let others: Vec<String> = finding
@@ -157,6 +158,33 @@ pub(super) fn alternative(told: &Told<'_>, other: &hyde_calibrate::Alternative) 
     }
 }
 
+/// A record held out is not explained if its innovations are so many times those of any record that was fitted.
+const BEYOND: f64 = 1.2;
+
+/// Records held out that show what those fitted did not.
+fn beyond_the_fitted(errors: &[RecordErrors]) -> Option<String> {
+    let chi = |held: bool| {
+        let own = errors.iter().filter(move |record| record.holdout == held);
+        own.map(|record| (record.after.record.as_str(), record.after.chi))
+    };
+    let most = chi(false).map(|(_, chi)| chi).fold(0.0, f64::max);
+    let beyond = chi(true).filter(|(_, chi)| most > 0.0 && *chi > BEYOND * most);
+    let each: Vec<String> = beyond
+        .map(|(record, chi)| format!("{record} ({})", significant(chi, 3)))
+        .collect();
+    (!each.is_empty()).then(|| {
+        format!(
+            "the mean square of innovations stays larger in {} than in any record fitted (at most {}): there the axis does \
+             what those do not show",
+            each.join(", "),
+            significant(most, 3)
+        )
+    })
+}
+
+/// From so many percent on what is missing to all tells more than the share.
+const NEARLY_ALL: f64 = 99.0;
+
 /// Of the round that took in the last effect, the hypothesis that came nearest to it.
 fn next_best(told: &Told<'_>) -> Option<String> {
     let finding = told.found.findings.last()?;
@@ -177,9 +205,11 @@ fn next_best(told: &Told<'_>) -> Option<String> {
         .iter()
         .filter(|trial| !taken(trial.hypothesis) && !is_alternative(trial.hypothesis))
         .max_by(|a, b| a.gain.total_cmp(&b.gain))?;
-    Some(format!(
-        "the next best, {}, gains {} % of what it gains",
-        named(&told.hypotheses[next.hypothesis]),
-        significant(100.0 * next.gain / own.gain, 3)
-    ))
+    let share = 100.0 * next.gain / own.gain;
+    let gains = match share > NEARLY_ALL && share < 100.0 {
+        true => format!("gains {} % less", significant(100.0 - share, 2)),
+        false => format!("gains {} % of what it gains", significant(share, 3)),
+    };
+    let name = named(&told.hypotheses[next.hypothesis]);
+    Some(format!("the next best, {name}, {gains}"))
 }

@@ -30,6 +30,10 @@ pub enum Factor {
     Cube,
     /// Towards a constant from a speed on: `v/(|v| + vs)`.
     Switching(f64),
+    /// The same where it moves forwards, nothing backwards.
+    Forwards(f64),
+    /// The same where it moves backwards, nothing forwards.
+    Backwards(f64),
     /// Falls from a speed on, exponentially.
     Falling(f64),
     /// Falls from a speed on, as a bell.
@@ -38,6 +42,8 @@ pub enum Factor {
     SpeedBump(f64, f64),
     /// Speed, late by a filter of the first order: its time constant.
     Lagged(f64),
+    /// The speed's magnitude, late by such a filter: how much it has been moved lately. Its time constant.
+    Worked(f64),
     /// In proportion to place.
     Place,
     /// The square of place.
@@ -77,10 +83,13 @@ impl Factor {
             Self::Square => "the speed's square".to_owned(),
             Self::Cube => "the speed's third power".to_owned(),
             Self::Switching(a) => format!("the direction, above {}", n(a)),
+            Self::Forwards(a) => format!("forwards alone, above {}", n(a)),
+            Self::Backwards(a) => format!("backwards alone, above {}", n(a)),
             Self::Falling(a) => format!("a fall with speed over {}", n(a)),
             Self::Bell(a) => format!("a bell of speed of {}", n(a)),
             Self::SpeedBump(a, b) => format!("a bump at the speed {} ± {}", n(a), n(b)),
             Self::Lagged(a) => format!("the speed, {} s late", n(a)),
+            Self::Worked(a) => format!("the speed's magnitude, {} s late", n(a)),
             Self::Place => "the place".to_owned(),
             Self::PlaceSquare => "the place's square".to_owned(),
             Self::Wave(a) => format!("a wave over place of {}", n(a)),
@@ -103,9 +112,12 @@ impl Factor {
             | Self::PlaceSquare
             | Self::Time => Vec::new(),
             Self::Switching(a)
+            | Self::Forwards(a)
+            | Self::Backwards(a)
             | Self::Falling(a)
             | Self::Bell(a)
             | Self::Lagged(a)
+            | Self::Worked(a)
             | Self::Wave(a)
             | Self::Fading(a) => vec![a],
             Self::SpeedBump(a, b) | Self::Bump(a, b) | Self::Step(a, b) => vec![a, b],
@@ -125,9 +137,12 @@ impl Factor {
             | Self::PlaceSquare
             | Self::Time => self,
             Self::Switching(_) => Self::Switching(at(0)),
+            Self::Forwards(_) => Self::Forwards(at(0)),
+            Self::Backwards(_) => Self::Backwards(at(0)),
             Self::Falling(_) => Self::Falling(at(0)),
             Self::Bell(_) => Self::Bell(at(0)),
             Self::Lagged(_) => Self::Lagged(at(0)),
+            Self::Worked(_) => Self::Worked(at(0)),
             Self::Wave(_) => Self::Wave(at(0)),
             Self::Fading(_) => Self::Fading(at(0)),
             Self::SpeedBump(..) => Self::SpeedBump(at(0), at(1)),
@@ -150,11 +165,15 @@ impl Factor {
             | Self::Place
             | Self::PlaceSquare
             | Self::Time => true,
-            Self::Switching(vs) | Self::Falling(vs) | Self::Bell(vs) => vs <= 2.0 * seen.speed,
+            Self::Switching(vs)
+            | Self::Forwards(vs)
+            | Self::Backwards(vs)
+            | Self::Falling(vs)
+            | Self::Bell(vs) => vs <= 2.0 * seen.speed,
             Self::SpeedBump(centre, width) => {
                 inside(centre, (0.0, seen.speed)) && width <= seen.speed
             }
-            Self::Lagged(tau) => tau <= 0.3 * duration,
+            Self::Lagged(tau) | Self::Worked(tau) => tau <= 0.3 * duration,
             Self::Fading(tau) => tau <= 3.0 * duration,
             Self::Wave(p) => wave_number(p, turns) * travel >= std::f64::consts::PI,
             Self::Bump(centre, width) | Self::Step(centre, width) => {
@@ -182,20 +201,13 @@ impl Factor {
             Self::Square => speed(&|v| v * v / (v1 * v1)),
             Self::Cube => speed(&|v| (v / v1).powi(3)),
             Self::Switching(vs) => speed(&|v| v / (v.abs() + vs)),
+            Self::Forwards(vs) => speed(&|v| 0.5 + 0.5 * v / (v.abs() + vs)),
+            Self::Backwards(vs) => speed(&|v| 0.5 - 0.5 * v / (v.abs() + vs)),
             Self::Falling(vs) => speed(&|v| (-v.abs() / vs).exp()),
             Self::Bell(vs) => speed(&|v| (-(v / vs) * (v / vs)).exp()),
             Self::SpeedBump(v0, width) => speed(&|v| (-((v.abs() - v0) / width).powi(2)).exp()),
-            Self::Lagged(tau) => {
-                let mut state = 0.0;
-                let mut last = course.time.first().copied().unwrap_or(0.0);
-                let rows = course.speed.iter().zip(&course.time);
-                let list = rows.map(|(&v, &t)| {
-                    state += (1.0 - (-(t - last) / tau).exp()) * (v - state);
-                    last = t;
-                    state / v1
-                });
-                vec![list.collect()]
-            }
+            Self::Lagged(tau) => vec![late(course, tau, &|v| v / v1)],
+            Self::Worked(tau) => vec![late(course, tau, &|v| v.abs() / v1)],
             Self::Place => place(&|x| x / x1),
             Self::PlaceSquare => place(&|x| (x / x1) * (x / x1)),
             Self::Wave(p) => {
@@ -225,10 +237,13 @@ impl Factor {
             Self::Square => format!("({v}/{v}1)^2"),
             Self::Cube => format!("({v}/{v}1)^3"),
             Self::Switching(_) => format!("{v}/({abs} + {a})"),
+            Self::Forwards(_) => format!("(1 + {v}/({abs} + {a}))/2"),
+            Self::Backwards(_) => format!("(1 - {v}/({abs} + {a}))/2"),
             Self::Falling(_) => format!("exp(-{abs}/{a})"),
             Self::Bell(_) => format!("exp(-({v}/{a})^2)"),
             Self::SpeedBump(..) => format!("exp(-(({abs} - {a})/{b})^2)"),
             Self::Lagged(_) => format!("late_{a}/{v}1"),
+            Self::Worked(_) => format!("worked_{a}/{v}1"),
             Self::Place => format!("{x}/x1"),
             Self::PlaceSquare => format!("({x}/x1)^2"),
             Self::Wave(_) if kind.turns() => {
@@ -248,16 +263,37 @@ impl Factor {
     /// What else has to be written for it: a filter.
     pub(crate) fn equations(self, kind: Kind, names: &[String]) -> (String, String) {
         let v = kind.speed();
-        match (self, names.first()) {
-            (Self::Lagged(_), Some(tau)) => (
-                format!(
-                    "  Real late_{tau}(start = 0 [{}], fixed = true) \"the speed, late\";\n",
-                    if kind.turns() { "rad/s" } else { "m/s" }
-                ),
-                format!("  {tau}*der(late_{tau}) = {v} - late_{tau};\n"),
-            ),
-            (_, _) => (String::new(), String::new()),
-        }
+        let (name, input, what) = match self {
+            Self::Lagged(_) => ("late", v.to_owned(), "the speed, late"),
+            Self::Worked(_) => {
+                let what = "how much it has been moved lately";
+                ("worked", format!("noEvent(abs({v}))"), what)
+            }
+            Self::Speed
+            | Self::Magnitude
+            | Self::SignedSquare
+            | Self::Square
+            | Self::Cube
+            | Self::Switching(_)
+            | Self::Forwards(_)
+            | Self::Backwards(_)
+            | Self::Falling(_)
+            | Self::Bell(_)
+            | Self::SpeedBump(..)
+            | Self::Place
+            | Self::PlaceSquare
+            | Self::Wave(_)
+            | Self::Bump(..)
+            | Self::Step(..)
+            | Self::Time
+            | Self::Fading(_) => return (String::new(), String::new()),
+        };
+        let tau = names.first().map_or("", String::as_str);
+        let unit = if kind.turns() { "rad/s" } else { "m/s" };
+        (
+            format!("  Real {name}_{tau}(start = 0 [{unit}], fixed = true) \"{what}\";\n"),
+            format!("  {tau}*der({name}_{tau}) = {input} - {name}_{tau};\n"),
+        )
     }
 
     /// Its constants as they are written, with the ranges that a fit may search.
@@ -280,7 +316,11 @@ impl Factor {
             | Self::Place
             | Self::PlaceSquare
             | Self::Time => Vec::new(),
-            Self::Switching(a) | Self::Falling(a) | Self::Bell(a) => {
+            Self::Switching(a)
+            | Self::Forwards(a)
+            | Self::Backwards(a)
+            | Self::Falling(a)
+            | Self::Bell(a) => {
                 vec![positive("vs", a, speed, per_speed)]
             }
             Self::SpeedBump(centre, width) => vec![
@@ -290,7 +330,9 @@ impl Factor {
                 },
                 positive("dv", width, speed, per_speed),
             ],
-            Self::Lagged(tau) | Self::Fading(tau) => vec![positive("tau", tau, "s", 1.0)],
+            Self::Lagged(tau) | Self::Worked(tau) | Self::Fading(tau) => {
+                vec![positive("tau", tau, "s", 1.0)]
+            }
             Self::Wave(p) => {
                 let (stem, unit) = if kind.turns() {
                     ("N", "1")
@@ -320,10 +362,13 @@ impl Factor {
             | Self::SignedSquare
             | Self::Square
             | Self::Cube
-            | Self::Lagged(_) => [true, false, false],
+            | Self::Lagged(_)
+            | Self::Worked(_) => [true, false, false],
             Self::Place | Self::PlaceSquare => [false, true, false],
             Self::Time => [false, false, true],
             Self::Switching(_)
+            | Self::Forwards(_)
+            | Self::Backwards(_)
             | Self::Falling(_)
             | Self::Bell(_)
             | Self::SpeedBump(..)
@@ -377,6 +422,19 @@ impl Seen {
             time: round(self.time.1.max(1e-3)),
         }
     }
+}
+
+/// What a filter of the first order makes of a function of speed.
+fn late(course: &Course, tau: f64, of: &dyn Fn(f64) -> f64) -> Vec<f64> {
+    let mut state = 0.0;
+    let mut last = course.time.first().copied().unwrap_or(0.0);
+    let rows = course.speed.iter().zip(&course.time);
+    rows.map(|(&v, &t)| {
+        state += (1.0 - (-(t - last) / tau).exp()) * (of(v) - state);
+        last = t;
+        state
+    })
+    .collect()
 }
 
 fn wave_number(p: f64, turns: bool) -> f64 {

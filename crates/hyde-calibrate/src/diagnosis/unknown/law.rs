@@ -251,10 +251,12 @@ fn mark(factor: Factor, kind: Kind, names: &[String]) -> String {
         | Factor::Square
         | Factor::Cube
         | Factor::Switching(_)
+        | Factor::Worked(_)
         | Factor::Falling(_)
         | Factor::Bell(_)
         | Factor::SpeedBump(..)
         | Factor::Lagged(_) => "velocity".to_owned(),
+        Factor::Forwards(_) | Factor::Backwards(_) => "direction".to_owned(),
         Factor::Wave(_) if kind.turns() => format!("angle({first})"),
         Factor::Wave(_) | Factor::Bump(..) | Factor::Step(..) => format!("position({first})"),
         Factor::Place | Factor::PlaceSquare => "position".to_owned(),

@@ -208,9 +208,12 @@ fn first_steps(term: &Summand, seen: &Seen, turns: bool) -> Vec<f64> {
             | Factor::PlaceSquare
             | Factor::Time
             | Factor::Switching(_)
+            | Factor::Forwards(_)
+            | Factor::Backwards(_)
             | Factor::Falling(_)
             | Factor::Bell(_)
             | Factor::Lagged(_)
+            | Factor::Worked(_)
             | Factor::Fading(_) => steps.extend(constants.iter().map(|_| 0.3)),
         }
     }
@@ -233,6 +236,9 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
         speeds.extend([vec![Factor::Speed], vec![Factor::Magnitude]]);
     }
     let simple = speeds.clone();
+    // What acts by direction may do so at one place alone.
+    let mut by_direction: Vec<Vec<Factor>> = Vec::new();
+    let duration = seen.time.1 - seen.time.0;
     if kind.is_grip() {
         for vs in parts(8, 0.005) {
             speeds.extend([vec![Factor::Falling(vs)], vec![Factor::Bell(vs)]]);
@@ -246,17 +252,18 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
             vec![Factor::Square],
             vec![Factor::Cube],
         ]);
-        speeds.extend(
-            parts(5, 0.005)
-                .into_iter()
-                .map(|vs| vec![Factor::Switching(vs)]),
-        );
-        let duration = seen.time.1 - seen.time.0;
+        for (number, vs) in parts(5, 0.005).into_iter().enumerate() {
+            let shapes = [Factor::Switching, Factor::Forwards, Factor::Backwards];
+            let shapes = shapes.map(|shape| vec![shape(vs)]);
+            if number % 2 == 0 {
+                by_direction.extend(shapes.clone());
+            }
+            speeds.extend(shapes);
+        }
         let taus = [0.003, 0.01, 0.03, 0.1].map(|part| part * duration.min(3.0));
         speeds.extend(taus.map(|tau| vec![Factor::Lagged(tau)]));
     }
     let travel = seen.travel();
-    let duration = seen.time.1 - seen.time.0;
     let mut others: Vec<Vec<Factor>> = vec![
         Vec::new(),
         vec![Factor::Place],
@@ -265,6 +272,7 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
     ];
     for tau in [0.1, 0.3, 1.0] {
         others.push(vec![Factor::Fading(tau * duration)]);
+        others.push(vec![Factor::Worked(0.1 * tau * duration)]);
     }
     let mut places: Vec<Vec<Factor>> = Vec::new();
     for count in [10, 24] {
@@ -298,10 +306,12 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
             add(speed, other);
         }
     }
-    for speed in &simple {
+    for speed in simple.iter().chain(&by_direction) {
         for place in &places {
             add(speed, place);
         }
+    }
+    for speed in &simple {
         let count = if speed.is_empty() { WAVES } else { MIXED_WAVES };
         for wave in waves(count) {
             add(speed, &wave);
