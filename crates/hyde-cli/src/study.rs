@@ -252,13 +252,17 @@ fn files_of(
     for (record, pattern, span) in &patterns {
         let matching = files::matching(&folder, pattern);
         if matching.is_empty() {
+            let help = match args.data {
+                None => "name the folder of the records: `--data DIR`",
+                Some(_) => "put such files there, or write another pattern",
+            };
             diagnostics.push(
                 Diagnostic::error(
                     Code::NoFiles,
                     format!("no file is called `{pattern}` in `{}`", shown(&folder)),
                 )
                 .label(*span, "asked for here")
-                .help("name the folder of the records: `--data DIR`"),
+                .help(help),
             );
             return Vec::new();
         }

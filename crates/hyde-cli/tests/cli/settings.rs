@@ -56,6 +56,19 @@ fn missing_data_are_told_in_plain_words() {
 }
 
 #[test]
+fn records_missing_in_the_folder_named_are_not_asked_for_by_its_name() {
+    let folder = Folder::new();
+    let empty = folder.path("");
+    let output = hyde(&["fit", BENCH, "bench", "--data", &empty]);
+    assert_eq!(status(&output), 1);
+    let told = errors(&output);
+    for part in ["E0902", "fit-*.csv", "put such files there"] {
+        assert!(told.contains(part), "`{part}` is not in\n{told}");
+    }
+    assert!(!told.contains("name the folder"), "{told}");
+}
+
+#[test]
 fn records_are_found_by_data_and_by_name() {
     let folder = Folder::new();
     let log = folder.file("logs/emps_est.csv", &read("tests/records/emps.file.csv"));
