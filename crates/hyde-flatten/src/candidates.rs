@@ -70,8 +70,11 @@ impl Candidate {
 impl Model<'_, '_> {
     /// The list of what was offered, each site once.
     pub(crate) fn candidates(&mut self) -> Vec<Candidate> {
-        let sites = self.sites();
         let mut offers = std::mem::take(&mut self.offers);
+        if offers.is_empty() {
+            return Vec::new();
+        }
+        let sites = self.sites();
         // Hosts in the order in which they are made: a component before its parts.
         offers.sort_by_key(|offer| offer.host);
         let mut found = Vec::new();

@@ -12,7 +12,7 @@ use hyde_program::{
     RecordedResponse, Reduction, ReductionKind, Relation, RelationUse, ScaledColumn, Selection,
     Stepped, Stop, Target, UnknownBlock,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The program of compiled kernels.
@@ -480,8 +480,17 @@ fn experiment(dae: &Dae) -> Experiment {
 
 /// The flows of the connections among the outputs; one that is no output has no value of its own.
 fn flows(dae: &Dae) -> Vec<Flow> {
+    let flows = dae.experiment.flows.iter();
+    let wanted: BTreeSet<&str> = flows
+        .map(|flow| dae.variables[flow.var].name.as_str())
+        .collect();
+    if wanted.is_empty() {
+        return Vec::new();
+    }
     let names = dae.outputs.iter().flat_map(|output| &output.names);
-    let numbers: BTreeMap<&str, usize> = names.map(String::as_str).zip(0..).collect();
+    let numbered = names.map(String::as_str).zip(0..);
+    let numbers: BTreeMap<&str, usize> =
+        numbered.filter(|(name, _)| wanted.contains(name)).collect();
     let of = |flow: &flat::Flow| {
         let output = *numbers.get(dae.variables[flow.var].name.as_str())?;
         Some(Flow {
