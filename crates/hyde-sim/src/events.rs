@@ -17,7 +17,7 @@ use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
 use crate::guards::{current_mode, is_active};
 use crate::results::{Event, EventKind};
-use crate::root_rates::{RootRate, root_rates, rounding};
+use crate::root_rates::{root_rates, rounding};
 use crate::sensitivity::Sensitivities;
 use crate::state::State;
 use hyde_program::{Function, ReactionKind, RelationUse, Target};
@@ -184,12 +184,9 @@ impl Instant<'_, '_> {
         self.state
             .evaluate(Function::Roots, self.t, self.y, self.yp, &mut roots);
         let rounding = rounding(self.state, self.t, self.y, self.yp, self.largest);
-        let mut rates: Option<Vec<RootRate>> = None;
-        let (mut truths, mut doubtful) = (Vec::with_capacity(roots.len()), Vec::new());
+        let mut zeros = Vec::new();
         for (number, &root) in roots.iter().enumerate() {
-            let before = self.state.z[number] != 0.0;
             if !is_active(self.state, number) {
-                truths.push(before);
                 continue;
             }
             if !root.is_finite() {
@@ -204,26 +201,35 @@ impl Instant<'_, '_> {
             let zero = root.abs() <= rounding[number]
                 || scheduled.contains(&number)
                 || located.iter().any(still_there);
-            if !zero {
-                truths.push(root > 0.0);
-                continue;
+            if zero {
+                zeros.push(number);
             }
-            let rate = rates.get_or_insert_with(|| {
-                root_rates(self.state, self.consistent, self.t, self.y, self.yp)
-            })[number];
-            let inclusive = program.relations[number].inclusive;
-            let truth = if rate.mean == 0.0 {
-                if root == 0.0 { inclusive } else { root > 0.0 }
-            } else {
-                rate.mean > 0.0
-            };
-            let against = root != 0.0 && (root > 0.0) != truth;
-            let band = if against { 2.0 * root.abs() } else { 0.0 };
-            let band = band + rate.detour();
-            if band > 0.0 {
-                doubtful.push((number, band));
+        }
+        let sign = |(number, &root): (usize, &f64)| match is_active(self.state, number) {
+            true => root > 0.0,
+            false => self.state.z[number] != 0.0,
+        };
+        let mut truths: Vec<bool> = roots.iter().enumerate().map(sign).collect();
+        let mut doubtful = Vec::new();
+        if !zeros.is_empty() {
+            let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+            let rates = root_rates(self.state, self.consistent, at, &zeros);
+            for number in zeros {
+                let (root, rate) = (roots[number], rates[number]);
+                let inclusive = program.relations[number].inclusive;
+                let truth = if rate.mean == 0.0 {
+                    if root == 0.0 { inclusive } else { root > 0.0 }
+                } else {
+                    rate.mean > 0.0
+                };
+                let against = root != 0.0 && (root > 0.0) != truth;
+                let band = if against { 2.0 * root.abs() } else { 0.0 };
+                let band = band + rate.detour();
+                if band > 0.0 {
+                    doubtful.push((number, band));
+                }
+                truths[number] = truth;
             }
-            truths.push(truth);
         }
         Ok(Known {
             truths,

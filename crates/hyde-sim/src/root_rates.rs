@@ -69,7 +69,8 @@ impl RootRate {
     }
 }
 
-/// In which direction each root function leaves zero along the flow: the sign of the mean.
+/// In which direction some root functions leave zero along the flow: the sign of the mean. All have their rates, but only
+/// for these it is looked farther ahead.
 ///
 /// A friction that breaks away does so where the acceleration is still zero, so the derivative alone would be rounding;
 /// a moment later it has its sign. In a stiff bar whose angles are large that takes longer: rounding of the angles is a
@@ -77,13 +78,11 @@ impl RootRate {
 pub(crate) fn root_rates(
     state: &mut State<'_>,
     consistent: &mut Consistent,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
+    (t, y, yp): (f64, &[f64], &[f64]),
+    relations: &[usize],
 ) -> Vec<RootRate> {
-    let none = RootRate::default();
     let Some((now, dy, dyp)) = rates_at(Function::Roots, state, consistent, t, y, yp) else {
-        return vec![none; state.program.relations.len()];
+        return vec![RootRate::default(); state.program.relations.len()];
     };
     let differential = state.differential.clone();
     let mut at = |t: f64, mut y: Vec<f64>| -> Option<Vec<f64>> {
@@ -119,7 +118,8 @@ pub(crate) fn root_rates(
                 rate.moment = ahead;
             }
         }
-        if !found.iter().any(|rate| rate.rounding > 0.0 && hidden(rate)) {
+        let mut asked = relations.iter().map(|&relation| &found[relation]);
+        if !asked.any(|rate| rate.rounding > 0.0 && hidden(rate)) {
             break;
         }
         ahead *= LONGER;

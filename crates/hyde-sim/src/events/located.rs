@@ -27,7 +27,8 @@ impl Instant<'_, '_> {
         if stay.is_empty() {
             return Vec::new();
         }
-        let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
+        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let rates = root_rates(self.state, self.consistent, at, &stay);
         let known = 0.5e-12 * (1.0 + self.t.abs());
         let (before, ref in_vain) = self.state.in_vain;
         let within = |relation: usize| {
@@ -56,7 +57,8 @@ impl Instant<'_, '_> {
     /// Guards that lead in a circle may do so by rounding alone: a diode's current is zero where its voltage is. Those that
     /// cross zero within a moment of now count by the direction in which they do.
     pub(super) fn all_but_zero(&mut self, guards: &[usize]) -> Vec<(usize, f64)> {
-        let rates = root_rates(self.state, self.consistent, self.t, self.y, self.yp);
+        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let rates = root_rates(self.state, self.consistent, at, guards);
         let moment = moment(self.t);
         guards
             .iter()
