@@ -12,6 +12,7 @@ mod bending;
 mod compiled;
 mod emit;
 mod figures;
+mod flows;
 mod host;
 mod interpret;
 mod ledger;

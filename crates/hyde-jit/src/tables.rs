@@ -1,18 +1,18 @@
 //! The tables of a [`Program`], from the DAE.
 
 use crate::compiled::Compiled;
+use crate::flows::flows;
 use crate::{figures, ledger};
 use hyde_ir::dae::{self, Dae};
 use hyde_ir::flat;
 use hyde_ir::{Id as _, Interpolation, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Bode, Clock, Column, Delay, Derivatives, Experiment, Flow, Hold,
+    Assignment, Automaton, Bode, Clock, Column, Delay, Derivatives, Experiment, Hold,
     InitialCondition, Measure, Measured, MeasuredResponse, Method, Output, Parameter, Pin,
     Preparation, Prior, Program, Reaction, ReactionKind, RecordValue, RecordValueKind,
     RecordedResponse, Reduction, ReductionKind, Relation, RelationUse, ScaledColumn, Selection,
     Stepped, Stop, Target, UnknownBlock,
 };
-use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 /// The program of compiled kernels.
@@ -476,27 +476,4 @@ fn experiment(dae: &Dae) -> Experiment {
             flat::Method::Auto => Method::Auto,
         },
     }
-}
-
-/// The flows of the connections among the outputs; one that is no output has no value of its own.
-fn flows(dae: &Dae) -> Vec<Flow> {
-    let flows = dae.experiment.flows.iter();
-    let wanted: BTreeSet<&str> = flows
-        .map(|flow| dae.variables[flow.var].name.as_str())
-        .collect();
-    if wanted.is_empty() {
-        return Vec::new();
-    }
-    let names = dae.outputs.iter().flat_map(|output| &output.names);
-    let numbered = names.map(String::as_str).zip(0..);
-    let numbers: BTreeMap<&str, usize> =
-        numbered.filter(|(name, _)| wanted.contains(name)).collect();
-    let of = |flow: &flat::Flow| {
-        let output = *numbers.get(dae.variables[flow.var].name.as_str())?;
-        Some(Flow {
-            name: flow.name.clone(),
-            output,
-        })
-    };
-    dae.experiment.flows.iter().filter_map(of).collect()
 }
