@@ -49,7 +49,7 @@ const CLEAR: f64 = 4.0;
 /// Where a root function goes: its derivative now, and the mean of that and the one a moment later.
 #[derive(Clone, Copy, Default)]
 pub(crate) struct RootRate {
-    pub(crate) now: f64,
+    now: f64,
     pub(crate) mean: f64,
     /// What rounding of the states makes of the derivative.
     rounding: f64,

@@ -62,9 +62,8 @@ pub(crate) fn pair(scanner: &Scanner<'_>, scores: &[Score], gates: Gates) -> Opt
         let (a, b) = promise.sizes.split_at(promise.halves[0].node.sizes.len());
         let [first, second] = promise.halves;
         let columns = first.columns.iter().chain(&second.columns);
-        let both = scanner
-            .projection
-            .parameters_with(&change(columns, &promise.sizes));
+        let change = change(columns, &promise.sizes);
+        let (_, both) = scanner.projection.answered(&change);
         let at = |half: &Half<'_>, sizes: &[f64], parameters: Vec<f64>| {
             let node = Node {
                 sizes: sizes.to_vec(),

@@ -127,18 +127,13 @@ impl Projection {
         self.h.len()
     }
 
-    /// What a change of innovations gains.
-    pub(crate) fn gain(&self, change: &DVector<f64>) -> f64 {
+    /// What a change of innovations gains, and how far the parameters go to answer it, in units of their scales.
+    pub(crate) fn answered(&self, change: &DVector<f64>) -> (f64, Vec<f64>) {
         let changed = &self.innovations + change;
         let h = &self.h + self.derivatives.tr_mul(change);
-        self.least - (changed.norm_squared() - h.dot(&self.factor.solve(&h)))
-    }
-
-    /// How far the parameters go to answer a change of innovations, in units of their scales.
-    pub(crate) fn parameters_with(&self, change: &DVector<f64>) -> Vec<f64> {
-        let h = &self.h + self.derivatives.tr_mul(change);
         let back = self.factor.solve(&h);
-        back.iter().map(|step| -step).collect()
+        let gain = self.least - (changed.norm_squared() - h.dot(&back));
+        (gain, back.iter().map(|step| -step).collect())
     }
 
     /// The sizes that gain most if the answer is linear: columns are the changes of innovations a unit.

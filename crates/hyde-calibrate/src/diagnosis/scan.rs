@@ -324,8 +324,7 @@ impl Scanner<'_> {
     fn gain(&self, promised: &Promised, sizes: &[f64], shapes: &[f64]) -> (f64, Vec<f64>) {
         let change = self.runs(promised).change(sizes, shapes, &promised.plain);
         change.map_or((f64::NEG_INFINITY, Vec::new()), |change| {
-            let gain = self.projection.gain(&change);
-            (gain, self.projection.parameters_with(&change))
+            self.projection.answered(&change)
         })
     }
 

@@ -33,7 +33,7 @@ use super::hypothesis::{Built, Hypothesis};
 use super::projection::{Projection, change, dot};
 use super::scan::{Node, Score};
 use super::search::{Diagnosis, Gates, Verdict, explained, findings};
-use super::stage::{Ground, Stage};
+use super::stage::{Ground, Stage, below};
 use super::trial::{Trial, trial, unseen};
 use crate::fit::inflation;
 use crate::gain::Observer;
@@ -183,15 +183,15 @@ fn is_chain(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> bool {
 
 /// Whether two effects are at one connector, or one of them on a component that is connected there.
 fn at_one_place(one: &Hypothesis, other: &Hypothesis) -> bool {
-    let places = |of: &Hypothesis| -> Vec<String> {
-        let aliases = of.aliases.iter();
-        aliases.chain([&of.site]).cloned().collect()
-    };
-    let within =
-        |a: &str, b: &str| a == b || a.strip_prefix(b).is_some_and(|rest| rest.starts_with('.'));
-    let (one, other) = (places(one), places(other));
-    let mut pairs = one.iter().flat_map(|a| other.iter().map(move |b| (a, b)));
-    pairs.any(|(a, b)| within(a, b) || within(b, a))
+    let is_at = |a: &String, b: &String| a == b || below(a, b).is_some() || below(b, a).is_some();
+    let mut places = one.aliases.iter().chain([&one.site]);
+    places.any(|a| {
+        other
+            .aliases
+            .iter()
+            .chain([&other.site])
+            .any(|b| is_at(a, b))
+    })
 }
 
 /// The site of the answer, the maps of the others, and the law that was found there.
@@ -357,11 +357,12 @@ fn fitted(
     let terms = || own.law.terms.iter();
     let columns: Vec<Vec<f64>> = terms().flat_map(|term| felt.columns(term)).collect();
     let sizes: Vec<f64> = terms().flat_map(|term| term.sizes.clone()).collect();
+    let (_, parameters) = projection.answered(&change(&columns, &sizes));
     let score = Score {
         hypothesis: number,
         nodes: vec![Node {
             shapes: terms().flat_map(Summand::constants).collect(),
-            parameters: projection.parameters_with(&change(&columns, &sizes)),
+            parameters,
             sizes,
             visible: columns
                 .iter()

@@ -148,7 +148,8 @@ impl Effect<'_> {
         let back = -&change;
         let projection = &self.reference.projection;
         // Put on and taken off the innovations the noise counts with either sign.
-        Some(-0.5 * (projection.gain(&change) + projection.gain(&back)))
+        let gain = |change| projection.answered(change).0;
+        Some(-0.5 * (gain(&change) + gain(&back)))
     }
 
     /// The part of sizes at which they begin to show, at most 1; `None` if all of them does not.
