@@ -10,7 +10,8 @@ use std::path::Path;
 /// What is tried before: nothing that was planted.
 const DIAGNOSIS: &str = "
 diagnose few of calibrate small
-  candidates Effects.Pull, Effects.Viscous, Effects.Stribeck, Effects.Cogging, Effects.Signals.ScaleError;
+  candidates Effects.Pull, Effects.Viscous, Effects.Stribeck, Effects.Cogging, Effects.Signals.ScaleError,
+    Effects.Signals.TachoGain;
   max_effects 2;
 end few;
 ";
@@ -19,11 +20,24 @@ end few;
 fn diagnosed(effect: &str, with: &str) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let model = root().join("tests/models/small_axis.hyde");
-    // The saddle is read by a scale.
+    // The saddle is read by a scale, the motor's speed by a tacho.
     let plain = read(&model)
         .replace("  Guide guide(", "  PositionSensor scale;\n  Guide guide(")
         .replace("saddle.a, guide.a)", "saddle.a, guide.a, scale.a)")
-        .replace("saddle.s ~", "scale.s ~");
+        .replace("saddle.s ~", "scale.s ~")
+        .replace(
+            "import Translational.*;",
+            "import Translational.*;\nimport Drives.Control.*;",
+        )
+        .replace(
+            "  Mass saddle(",
+            "  Tachogenerator tacho(K_ta = 0.05 [V.s/rad]);\n  Mass saddle(",
+        )
+        .replace("bearing.a, coupling.a)", "bearing.a, coupling.a, tacho.a)")
+        .replace(
+            "file.w = rotor.w ~ 0.08 [rad/s]",
+            "file.V = tacho.V6 ~ 4 [mV]",
+        );
     let made = format!(
         "{plain}
 {effect}
@@ -52,7 +66,7 @@ fn record(folder: &Path) {
         ("t", 0.0),
         ("T", 0.0),
         ("rotor.phi", 1e-4),
-        ("rotor.w", 0.08),
+        ("tacho.V6", 4e-3),
         ("scale.s", 3e-7),
     ];
     let places = noise.map(|(name, sd)| {
@@ -60,7 +74,7 @@ fn record(folder: &Path) {
         (head.iter().position(named).unwrap(), sd)
     });
     let mut random = Random(7);
-    let mut text = "t [s],T [N.m],phi [rad],w [rad/s],s [m]\n".to_owned();
+    let mut text = "t [s],T [N.m],phi [rad],V [V],s [m]\n".to_owned();
     let mut rows = 0;
     for line in lines {
         let values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap_or(0.0)).collect();
@@ -190,6 +204,26 @@ fn an_error_of_the_scale_at_one_place_is_found_and_written() {
     let size = effect["size"].as_f64().unwrap();
     assert!((size / 6e-6 - 1.0).abs() < 0.05, "{size}");
     assert_eq!(found["unexplained"], false);
+}
+
+#[test]
+fn a_voltage_of_the_tacho_that_bends_with_speed_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Tachogenerator
+           wrap V6 by V6 + 0.03 [V]*(w/(100 [rad/s]))*noEvent(abs(w))/(100 [rad/s]);
+         end Odd;",
+        " with Odd on tacho",
+    );
+    let law = law_alone(&found);
+    assert_eq!(found["effects"][0]["site"], "tacho");
+    assert!(law.contains("on Drives.Control.Tachogenerator"), "{law}");
+    assert!(
+        law.contains("wrap V6 by V6 + U*w*noEvent(abs(w))/w1^2;"),
+        "{law}"
+    );
+    // 0.03 V at 100 rad/s are 0.12 V at the 200 rad/s that sizes are given at.
+    let size = found["effects"][0]["size"].as_f64().unwrap();
+    assert!((size / 0.12 - 1.0).abs() < 0.03, "{size}");
 }
 
 #[test]

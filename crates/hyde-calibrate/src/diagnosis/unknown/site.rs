@@ -1,6 +1,6 @@
 //! [`Site`]: a place where an unwritten law may act, and the words that the language has for it there.
 
-/// A kind of place: a force or torque on a connector, the grip of a friction that sticks, or what a sensor reads.
+/// A kind of place: a force or torque on a connector, the grip of a friction that sticks, or what a sensor tells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     /// A force on what slides.
@@ -15,6 +15,8 @@ pub enum Kind {
     Scale,
     /// What an angle sensor reads.
     Encoder,
+    /// The voltage of a tachogenerator.
+    Tacho,
 }
 
 /// A place where a law may act.
@@ -39,6 +41,7 @@ impl Kind {
             ("Rotational", "Friction") => Some(Self::Bearing),
             ("Translational", "PositionSensor") => Some(Self::Scale),
             ("Rotational", "AngleSensor") => Some(Self::Encoder),
+            ("Drives.Control", "Tachogenerator") => Some(Self::Tacho),
             _ => None,
         }
     }
@@ -52,7 +55,10 @@ impl Kind {
     /// Whether it turns.
     #[must_use]
     pub fn turns(self) -> bool {
-        matches!(self, Self::Flange | Self::Bearing | Self::Encoder)
+        matches!(
+            self,
+            Self::Flange | Self::Bearing | Self::Encoder | Self::Tacho
+        )
     }
 
     pub(crate) fn host(self) -> &'static str {
@@ -63,6 +69,7 @@ impl Kind {
             Self::Bearing => "Rotational.Friction",
             Self::Scale => "Translational.PositionSensor",
             Self::Encoder => "Rotational.AngleSensor",
+            Self::Tacho => "Drives.Control.Tachogenerator",
         }
     }
 
@@ -73,6 +80,7 @@ impl Kind {
             Self::Flange | Self::Bearing => "N.m",
             Self::Scale => "m",
             Self::Encoder => "rad",
+            Self::Tacho => "V",
         }
     }
 
@@ -82,6 +90,7 @@ impl Kind {
             Self::Rail | Self::Guide => "F",
             Self::Flange | Self::Bearing => "T",
             Self::Scale | Self::Encoder => "e",
+            Self::Tacho => "U",
         }
     }
 
@@ -92,6 +101,7 @@ impl Kind {
             Self::Rail | Self::Guide => "a force",
             Self::Flange | Self::Bearing => "a torque",
             Self::Scale | Self::Encoder => "an error",
+            Self::Tacho => "a voltage",
         }
     }
 
@@ -120,7 +130,7 @@ impl Kind {
     pub(crate) fn speed(self) -> &'static str {
         match self {
             Self::Rail | Self::Guide | Self::Scale => "v",
-            Self::Flange | Self::Bearing | Self::Encoder => "w",
+            Self::Flange | Self::Bearing | Self::Encoder | Self::Tacho => "w",
         }
     }
 
@@ -133,6 +143,7 @@ impl Kind {
             Self::Bearing => format!("  wrap grip by grip + {law};\n"),
             Self::Scale => format!("  wrap s by s + {law};\n  Real v = der(a.s);\n"),
             Self::Encoder => format!("  wrap phi by phi + {law};\n  Real w = der(a.phi);\n"),
+            Self::Tacho => format!("  wrap V6 by V6 + {law};\n"),
         }
     }
 }
@@ -158,6 +169,7 @@ pub(crate) fn probe(site: &Site, name: &str) -> Written {
         Kind::Rail | Kind::Guide => ("[N/m]", "[N.s/m]"),
         Kind::Flange | Kind::Bearing => ("[N.m/rad]", "[N.m.s/rad]"),
         Kind::Scale | Kind::Encoder => ("", "[s]"),
+        Kind::Tacho => ("[V/rad]", "[V.s/rad]"),
     };
     let law = format!("(force + by_place*{place} + by_speed*{speed})");
     let text = format!(
