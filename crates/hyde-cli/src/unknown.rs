@@ -1,6 +1,8 @@
 //! What is missing and in no library: the sites where a law may act, written effects compiled, and what is told of them.
 
-use hyde_calibrate::{Built, Diagnosis, FoundLaw, Kind, Panel, Site, Summand, Unknown, Written};
+use hyde_calibrate::{
+    Built, Diagnosis, FoundLaw, Kind, Map, Panel, Site, Summand, Unknown, Written,
+};
 use hyde_compiler::{Additions, Candidate, Request};
 use hyde_diag::Diagnostics;
 use hyde_units::significant;
@@ -105,7 +107,7 @@ pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
                 let _ = writeln!(
                     out,
                     "  nearly as good: {} ({} of the first term's gain)",
-                    named(term),
+                    named(term, own.law.site.kind),
                     significant(*share, 3)
                 );
             }
@@ -122,7 +124,7 @@ pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
         let _ = writeln!(
             out,
             "    {:<20} {:>9} {:>9}",
-            panel.variable.name(),
+            panel.variable.name(unknown.map.site.kind),
             significant(panel.gain, 3),
             significant(panel.band, 3)
         );
@@ -132,16 +134,19 @@ pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
 
 /// The same as JSON; numbers are SI.
 pub(crate) fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
-    let panel = |panel: &Panel| {
+    let panel = |panel: &Panel, kind: Kind| {
         json!({
-            "variable": panel.variable.name(),
+            "variable": panel.variable.name(kind),
             "gain": panel.gain,
             "band": panel.band.is_finite().then_some(panel.band),
             "at": panel.knots,
             "force": panel.force,
         })
     };
-    let panels = |list: &[Panel]| -> Vec<Value> { list.iter().map(panel).collect() };
+    let panels = |map: &Map| -> Vec<Value> {
+        let each = map.panels.iter();
+        each.map(|one| panel(one, map.site.kind)).collect()
+    };
     let latent: Vec<Value> = unknown
         .latent
         .iter()
@@ -158,11 +163,11 @@ pub(crate) fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
     let others: Vec<Value> = unknown
         .others
         .iter()
-        .map(|map| json!({ "site": map.site.path, "panels": panels(&map.panels) }))
+        .map(|map| json!({ "site": map.site.path, "panels": panels(map) }))
         .collect();
     json!({
         "law": unknown.found.as_ref().map(|own| law(own, found)),
-        "map": { "site": unknown.map.site.path, "panels": panels(&unknown.map.panels) },
+        "map": { "site": unknown.map.site.path, "panels": panels(&unknown.map) },
         "latent": latent,
         "other_sites": others,
     })
@@ -180,7 +185,7 @@ fn law(own: &FoundLaw, found: &Diagnosis) -> Value {
     let equivalents: Vec<Value> = own
         .equivalents
         .iter()
-        .map(|(term, share)| json!({ "form": named(term), "share": share }))
+        .map(|(term, share)| json!({ "form": named(term, own.law.site.kind), "share": share }))
         .collect();
     json!({
         "name": own.written.name,
@@ -202,8 +207,12 @@ fn law(own: &FoundLaw, found: &Diagnosis) -> Value {
 }
 
 /// A term in words.
-fn named(term: &Summand) -> String {
-    let names: Vec<String> = term.factors.iter().map(|factor| factor.words()).collect();
+fn named(term: &Summand, kind: Kind) -> String {
+    let names: Vec<String> = term
+        .factors
+        .iter()
+        .map(|factor| factor.words(kind))
+        .collect();
     match names.as_slice() {
         [] => "a constant".to_owned(),
         list => list.join(" times "),

@@ -11,17 +11,22 @@ use std::path::Path;
 const DIAGNOSIS: &str = "
 diagnose few of calibrate small
   candidates Effects.Pull, Effects.Viscous, Effects.Stribeck, Effects.Cogging, Effects.Signals.ScaleError,
-    Effects.Signals.TachoGain;
+    Effects.Signals.TachoGain, Effects.Signals.AmplifierGain, Effects.CouplingBacklash;
   max_effects 2;
 end few;
 ";
 
 /// A record of 3 s with the effect on a site, diagnosed.
 fn diagnosed(effect: &str, with: &str) -> Value {
+    diagnosed_on(&[], effect, with)
+}
+
+/// The same on another axis: its text with some parts replaced.
+fn diagnosed_on(changes: &[(&str, &str)], effect: &str, with: &str) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let model = root().join("tests/models/small_axis.hyde");
     // The saddle is read by a scale, the motor's speed by a tacho.
-    let plain = read(&model)
+    let mut plain = read(&model)
         .replace("  Guide guide(", "  PositionSensor scale;\n  Guide guide(")
         .replace("saddle.a, guide.a)", "saddle.a, guide.a, scale.a)")
         .replace("saddle.s ~", "scale.s ~")
@@ -38,6 +43,10 @@ fn diagnosed(effect: &str, with: &str) -> Value {
             "file.w = rotor.w ~ 0.08 [rad/s]",
             "file.V = tacho.V6 ~ 4 [mV]",
         );
+    for (from, to) in changes {
+        assert!(plain.contains(from), "{from}");
+        plain = plain.replace(from, to);
+    }
     let made = format!(
         "{plain}
 {effect}
@@ -206,6 +215,23 @@ fn an_error_of_the_scale_at_one_place_is_found_and_written() {
     assert_eq!(found["unexplained"], false);
 }
 
+/// In the linear answer a square with its sign gains more than the cube; fitted, the cube does.
+#[test]
+fn a_coupling_that_becomes_stiffer_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Rotational.SpringDamper
+           wrap T by T + 2 [N.m]*(twist/(2 [mrad]))^3;
+         end Odd;",
+        " with Odd on coupling",
+    );
+    let law = law_alone(&found);
+    assert_eq!(found["effects"][0]["site"], "coupling");
+    assert!(law.contains("wrap T by T + M*(twist/x1)^3;"), "{law}");
+    assert!(law.contains("x1 = 2 [mrad]"), "{law}");
+    let size = found["effects"][0]["size"].as_f64().unwrap();
+    assert!((size / 2.0 - 1.0).abs() < 0.05, "{size}");
+}
+
 #[test]
 fn a_voltage_of_the_tacho_that_bends_with_speed_is_found_and_written() {
     let found = diagnosed(
@@ -224,6 +250,41 @@ fn a_voltage_of_the_tacho_that_bends_with_speed_is_found_and_written() {
     // 0.03 V at 100 rad/s are 0.12 V at the 200 rad/s that sizes are given at.
     let size = found["effects"][0]["size"].as_f64().unwrap();
     assert!((size / 0.12 - 1.0).abs() < 0.03, "{size}");
+}
+
+/// The drive has a winding and an amplifier, which gives less than it is asked for the more that is.
+#[test]
+fn an_amplifier_that_gives_less_and_less_is_found_and_written() {
+    let winding = "  Rotational.Drive motor(T = 0.5 [N.m/A]*i);
+  Current i(start = 0, fixed = true);
+  Electrical.CurrentAmplifier amplifier(i_ref = T/(0.5 [N.m/A]), i = i, Kc = 20 [V/A]);";
+    let changes = [
+        ("  Rotational.Drive motor(T = T);", winding),
+        (
+            "  connect(motor.a, rotor.a);",
+            "  connect(motor.a, rotor.a);\n  2 [mH]*der(i) = amplifier.u - 0.5 [ohm]*i;",
+        ),
+        (
+            "import Translational.*;",
+            "import Translational.*;\nimport Electrical;",
+        ),
+    ];
+    let found = diagnosed_on(
+        &changes,
+        "effect Odd on Electrical.CurrentAmplifier
+           wrap demand by demand*(1 - 0.05*noEvent(abs(demand))/(10 [A]));
+         end Odd;",
+        " with Odd on amplifier",
+    );
+    let law = law_alone(&found);
+    assert_eq!(found["effects"][0]["site"], "amplifier");
+    assert!(
+        law.contains("wrap demand by demand + I*i_ref*noEvent(abs(i_ref))/x1^2;"),
+        "{law}"
+    );
+    // 5 % less at 10 A are 12.5 A less at the 50 A that sizes are given at.
+    let size = found["effects"][0]["size"].as_f64().unwrap();
+    assert!((size / -12.5 - 1.0).abs() < 0.01, "{size}");
 }
 
 #[test]

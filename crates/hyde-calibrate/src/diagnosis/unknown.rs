@@ -9,6 +9,7 @@
 //! factor         the shapes a law is a product of                              unknown/factor.rs
 //! law            a sum of products; its text                                   unknown/law.rs
 //! regression     which products, with which constants                          unknown/regression.rs
+//! fitted         the law on the whole model, as short as it can be             unknown/fitted.rs
 //! ```
 //! The method is that of de Silva, Higdon, Brunton and Kutz (Front. Artif. Intell. 3, 2020, 25) in that the discrepancy of a
 //! model is regressed and not the model itself; here in the space of innovations, parameters projected out. A law that
@@ -16,6 +17,7 @@
 
 mod factor;
 mod felt;
+mod fitted;
 mod latent;
 mod law;
 mod map;
@@ -30,34 +32,28 @@ pub use site::{Kind, Site, Written};
 
 use super::forward::Taken;
 use super::hypothesis::{Built, Hypothesis};
-use super::projection::{Projection, change, dot};
-use super::scan::{Node, Score};
+use super::projection::Projection;
 use super::search::{Diagnosis, Gates, Verdict, explained, findings};
 use super::stage::{Ground, Stage, below};
-use super::trial::{Trial, trial, unseen};
+use super::trial::Trial;
 use crate::fit::inflation;
 use crate::gain::Observer;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
 use crate::solution::Solution;
 use felt::Felt;
+use fitted::{shortest, with_best_first};
 use rayon::prelude::*;
 use regression::{Selected, select};
 
 /// Puts known hypotheses, by number, and written effects on the model; `None` where they cannot be.
 pub type Author<'a> = dyn Fn(&[usize], &[Written]) -> Option<Built> + Sync + 'a;
 
-/// What the written effect is called.
-const NAME: &str = "Found";
 /// Sites whose map gains this part of the best one's are searched for a law, so many at most.
 const NEAR: f64 = 0.8;
 const SITES: usize = 3;
-/// A law is refused that gains less than this part of what the best panel of its map does.
-const LEAST_SHARE: f64 = 0.6;
 /// Gains that fall slowly: the last of the most terms a law may have still gains this part of the first.
 const SLOW: f64 = 0.1;
-/// A change of innovations that can be seen: the sum of its squares.
-const VISIBLE: f64 = 100.0;
 
 /// What a proposal is made from.
 #[derive(Clone, Copy)]
@@ -290,8 +286,9 @@ fn law(
     let mut selected: Vec<(usize, Selected)> = Vec::new();
     for (number, (felt, map)) in places.iter().enumerate().take(SITES) {
         if map.gain() >= NEAR * most
-            && let Some(own) = select(felt, &projection, gate)
+            && let Some(own) = select(felt, &projection, gate, None)
         {
+            let own = with_best_first(inquiry, ground, stage, (felt, &projection), own, gate);
             selected.push((number, own));
         }
     }
@@ -299,20 +296,13 @@ fn law(
     selected.sort_by(|a, b| gain(&b.1).total_cmp(&gain(&a.1)));
     let mut best: Option<(usize, FoundLaw, Trial)> = None;
     for (number, own) in selected {
-        let share = gain(&own) / places[number].1.gain();
         let slow = own.gains.len() == 3 && own.gains[2] - own.gains[1] > SLOW * own.gains[0];
-        if share < LEAST_SHARE || slow {
+        if slow {
             continue;
         }
-        let Some((trial, found)) = fitted(
-            inquiry,
-            ground,
-            stage,
-            (&places[number].0, &projection),
-            own,
-            share,
-            gates,
-        ) else {
+        let (felt, map) = &places[number];
+        let at = (felt, &projection, map.gain());
+        let Some((trial, found)) = shortest(inquiry, ground, stage, at, &own, gates) else {
             continue;
         };
         if best
@@ -333,82 +323,6 @@ fn law(
         projection,
         found: best.map(|(_, found, trial)| (found, trial)),
     }))
-}
-
-/// Fits a law together with all parameters and judges it; `None` where it does not pass the gates.
-fn fitted(
-    inquiry: &Inquiry<'_>,
-    ground: &Ground<'_>,
-    stage: &Stage,
-    (felt, projection): (&Felt, &Projection),
-    own: Selected,
-    share: f64,
-    gates: Gates,
-) -> Option<(Trial, FoundLaw)> {
-    let (written, hypothesis) = own.law.written(NAME, false);
-    let number = inquiry.hypotheses.len();
-    let mut hypotheses = inquiry.hypotheses.to_vec();
-    hypotheses.push(hypothesis.clone());
-    let build = |list: &[usize]| {
-        let known: Vec<usize> = list.iter().copied().filter(|&one| one != number).collect();
-        let written = (known.len() < list.len()).then_some(&written);
-        (inquiry.author)(&known, written.map_or(&[], std::slice::from_ref))
-    };
-    let terms = || own.law.terms.iter();
-    let columns: Vec<Vec<f64>> = terms().flat_map(|term| felt.columns(term)).collect();
-    let sizes: Vec<f64> = terms().flat_map(|term| term.sizes.clone()).collect();
-    let (_, parameters) = projection.answered(&change(&columns, &sizes));
-    let score = Score {
-        hypothesis: number,
-        nodes: vec![Node {
-            shapes: terms().flat_map(Summand::constants).collect(),
-            parameters,
-            sizes,
-            visible: columns
-                .iter()
-                .map(|column| (VISIBLE / dot(column, column).max(1e-300)).sqrt())
-                .collect(),
-            gain: *own.gains.last()?,
-            linear: true,
-        }],
-        tried: own.tried,
-        linear: false,
-        detectable: None,
-    };
-    let mut trial = trial(ground, stage, &hypotheses, &score, &build)?;
-    let gates = Gates {
-        tried: gates.tried + own.tried,
-        ..gates
-    };
-    let gate = gates.gain(own.law.freedoms()) * trial.inflation;
-    if trial.rejected.is_some() || trial.gain < gate {
-        return None;
-    }
-    let fold_gain = unseen(ground, stage)? - unseen(ground, &trial.stage)?;
-    if fold_gain < gate.max(gates.material()) {
-        return None;
-    }
-    trial.fold_gain = Some(fold_gain);
-    // Trials are fitted by tangents: what is taken in is fitted to the end.
-    let polished = trial.stage.polished(ground).ok()?;
-    trial.settle(polished.solution, stage);
-    let first = own.gains.first().copied().unwrap_or(f64::NAN);
-    let found = FoundLaw {
-        gain: trial.gain,
-        fold_gain,
-        share,
-        equivalents: own
-            .others
-            .iter()
-            .take(3)
-            .map(|(term, gain)| (term.clone(), gain / first))
-            .collect(),
-        gains: own.gains,
-        written: own.law.with(&trial.values).written(NAME, true).0,
-        law: own.law,
-        hypothesis,
-    };
-    Some((trial, found))
 }
 
 /// Makes the answer that of the diagnosis.

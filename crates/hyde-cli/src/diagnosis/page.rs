@@ -81,10 +81,10 @@ fn effects(told: &Told<'_>) -> Vec<[String; 4]> {
 fn unknown(told: &Told<'_>) -> Vec<[String; 3]> {
     let own = told.found.unknown.iter();
     own.flat_map(|own| {
-        let site = &own.map.site.path;
+        let site = &own.map.site;
         own.map.panels.iter().map(move |panel| {
             [
-                format!("{} at {site}", panel.variable.name()),
+                format!("{} at {}", panel.variable.name(site.kind), site.path),
                 significant(panel.gain, 3),
                 significant(panel.band, 3),
             ]

@@ -48,6 +48,12 @@ pub enum Factor {
     Place,
     /// The square of place.
     PlaceSquare,
+    /// The same with its sign.
+    PlaceSignedSquare,
+    /// The third power of place.
+    PlaceCube,
+    /// Towards a constant from a place on, either way: `x/(|x| + x0)`.
+    Yielding(f64),
     /// A sine and a cosine over place: period. Of an angle the number of times a turn.
     Wave(f64),
     /// More about a place: centre and width.
@@ -72,27 +78,31 @@ pub(crate) struct Constant {
 }
 
 impl Factor {
-    /// What it is, in words; numbers are SI.
+    /// What it is at a kind of site, in words; numbers are SI.
     #[must_use]
-    pub fn words(self) -> String {
+    pub fn words(self, kind: Kind) -> String {
         let n = |value: f64| hyde_units::significant(value, 3);
+        let [place, speed] = kind.variables();
         match self {
-            Self::Speed => "the speed".to_owned(),
-            Self::Magnitude => "the speed's magnitude".to_owned(),
-            Self::SignedSquare => "the speed's square with its sign".to_owned(),
-            Self::Square => "the speed's square".to_owned(),
-            Self::Cube => "the speed's third power".to_owned(),
+            Self::Speed => format!("the {speed}"),
+            Self::Magnitude => format!("the {speed}'s magnitude"),
+            Self::SignedSquare => format!("the {speed}'s square with its sign"),
+            Self::Square => format!("the {speed}'s square"),
+            Self::Cube => format!("the {speed}'s third power"),
             Self::Switching(a) => format!("the direction, above {}", n(a)),
             Self::Forwards(a) => format!("forwards alone, above {}", n(a)),
             Self::Backwards(a) => format!("backwards alone, above {}", n(a)),
-            Self::Falling(a) => format!("a fall with speed over {}", n(a)),
-            Self::Bell(a) => format!("a bell of speed of {}", n(a)),
-            Self::SpeedBump(a, b) => format!("a bump at the speed {} ± {}", n(a), n(b)),
-            Self::Lagged(a) => format!("the speed, {} s late", n(a)),
-            Self::Worked(a) => format!("the speed's magnitude, {} s late", n(a)),
-            Self::Place => "the place".to_owned(),
-            Self::PlaceSquare => "the place's square".to_owned(),
-            Self::Wave(a) => format!("a wave over place of {}", n(a)),
+            Self::Falling(a) => format!("a fall with {speed} over {}", n(a)),
+            Self::Bell(a) => format!("a bell of {speed} of {}", n(a)),
+            Self::SpeedBump(a, b) => format!("a bump at the {speed} {} ± {}", n(a), n(b)),
+            Self::Lagged(a) => format!("the {speed}, {} s late", n(a)),
+            Self::Worked(a) => format!("the {speed}'s magnitude, {} s late", n(a)),
+            Self::Place => format!("the {place}"),
+            Self::PlaceSquare => format!("the {place}'s square"),
+            Self::PlaceSignedSquare => format!("the {place}'s square with its sign"),
+            Self::PlaceCube => format!("the {place}'s third power"),
+            Self::Yielding(a) => format!("the {place}, less and less beyond {}", n(a)),
+            Self::Wave(a) => format!("a wave over {place} of {}", n(a)),
             Self::Bump(a, b) => format!("a bump at {} ± {}", n(a), n(b)),
             Self::Step(a, b) => format!("a step at {} ± {}", n(a), n(b)),
             Self::Time => "time".to_owned(),
@@ -110,12 +120,15 @@ impl Factor {
             | Self::Cube
             | Self::Place
             | Self::PlaceSquare
+            | Self::PlaceSignedSquare
+            | Self::PlaceCube
             | Self::Time => Vec::new(),
             Self::Switching(a)
             | Self::Forwards(a)
             | Self::Backwards(a)
             | Self::Falling(a)
             | Self::Bell(a)
+            | Self::Yielding(a)
             | Self::Lagged(a)
             | Self::Worked(a)
             | Self::Wave(a)
@@ -135,7 +148,10 @@ impl Factor {
             | Self::Cube
             | Self::Place
             | Self::PlaceSquare
+            | Self::PlaceSignedSquare
+            | Self::PlaceCube
             | Self::Time => self,
+            Self::Yielding(_) => Self::Yielding(at(0)),
             Self::Switching(_) => Self::Switching(at(0)),
             Self::Forwards(_) => Self::Forwards(at(0)),
             Self::Backwards(_) => Self::Backwards(at(0)),
@@ -164,7 +180,10 @@ impl Factor {
             | Self::Cube
             | Self::Place
             | Self::PlaceSquare
+            | Self::PlaceSignedSquare
+            | Self::PlaceCube
             | Self::Time => true,
+            Self::Yielding(x0) => x0 <= 2.0 * travel,
             Self::Switching(vs)
             | Self::Forwards(vs)
             | Self::Backwards(vs)
@@ -210,6 +229,9 @@ impl Factor {
             Self::Worked(tau) => vec![late(course, tau, &|v| v.abs() / v1)],
             Self::Place => place(&|x| x / x1),
             Self::PlaceSquare => place(&|x| (x / x1) * (x / x1)),
+            Self::PlaceSignedSquare => place(&|x| x * x.abs() / (x1 * x1)),
+            Self::PlaceCube => place(&|x| (x / x1).powi(3)),
+            Self::Yielding(x0) => place(&|x| x / (x.abs() + x0)),
             Self::Wave(p) => {
                 let k = wave_number(p, turns);
                 vec![
@@ -246,6 +268,9 @@ impl Factor {
             Self::Worked(_) => format!("worked_{a}/{v}1"),
             Self::Place => format!("{x}/x1"),
             Self::PlaceSquare => format!("({x}/x1)^2"),
+            Self::PlaceSignedSquare => format!("{x}*noEvent(abs({x}))/x1^2"),
+            Self::PlaceCube => format!("({x}/x1)^3"),
+            Self::Yielding(_) => format!("{x}/(noEvent(abs({x})) + {a})"),
             Self::Wave(_) if kind.turns() => {
                 return vec![format!("sin({a}*{x})"), format!("cos({a}*{x})")];
             }
@@ -282,6 +307,9 @@ impl Factor {
             | Self::SpeedBump(..)
             | Self::Place
             | Self::PlaceSquare
+            | Self::PlaceSignedSquare
+            | Self::PlaceCube
+            | Self::Yielding(_)
             | Self::Wave(_)
             | Self::Bump(..)
             | Self::Step(..)
@@ -289,7 +317,7 @@ impl Factor {
             | Self::Fading(_) => return (String::new(), String::new()),
         };
         let tau = names.first().map_or("", String::as_str);
-        let unit = if kind.turns() { "rad/s" } else { "m/s" };
+        let (unit, _) = kind.speed_unit();
         (
             format!("  Real {name}_{tau}(start = 0 [{unit}], fixed = true) \"{what}\";\n"),
             format!("  {tau}*der({name}_{tau}) = {input} - {name}_{tau};\n"),
@@ -315,6 +343,8 @@ impl Factor {
             | Self::Cube
             | Self::Place
             | Self::PlaceSquare
+            | Self::PlaceSignedSquare
+            | Self::PlaceCube
             | Self::Time => Vec::new(),
             Self::Switching(a)
             | Self::Forwards(a)
@@ -323,6 +353,7 @@ impl Factor {
             | Self::Bell(a) => {
                 vec![positive("vs", a, speed, per_speed)]
             }
+            Self::Yielding(a) => vec![positive("x0", a, place, per_place)],
             Self::SpeedBump(centre, width) => vec![
                 Constant {
                     range: (0.0, seen.speed),
@@ -364,7 +395,9 @@ impl Factor {
             | Self::Cube
             | Self::Lagged(_)
             | Self::Worked(_) => [true, false, false],
-            Self::Place | Self::PlaceSquare => [false, true, false],
+            Self::Place | Self::PlaceSquare | Self::PlaceSignedSquare | Self::PlaceCube => {
+                [false, true, false]
+            }
             Self::Time => [false, false, true],
             Self::Switching(_)
             | Self::Forwards(_)
@@ -372,6 +405,7 @@ impl Factor {
             | Self::Falling(_)
             | Self::Bell(_)
             | Self::SpeedBump(..)
+            | Self::Yielding(_)
             | Self::Wave(_)
             | Self::Bump(..)
             | Self::Step(..)

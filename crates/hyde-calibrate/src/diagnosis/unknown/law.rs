@@ -259,7 +259,11 @@ fn mark(factor: Factor, kind: Kind, names: &[String]) -> String {
         Factor::Forwards(_) | Factor::Backwards(_) => "direction".to_owned(),
         Factor::Wave(_) if kind.turns() => format!("angle({first})"),
         Factor::Wave(_) | Factor::Bump(..) | Factor::Step(..) => format!("position({first})"),
-        Factor::Place | Factor::PlaceSquare => "position".to_owned(),
+        Factor::Place
+        | Factor::PlaceSquare
+        | Factor::PlaceSignedSquare
+        | Factor::PlaceCube
+        | Factor::Yielding(_) => kind.mark_of_place().to_owned(),
         Factor::Time => "offset".to_owned(),
         Factor::Fading(_) => format!("time({first})"),
     }
@@ -272,8 +276,9 @@ fn knob(name: &str, constant: &Constant) -> Knob {
         range: constant.range,
         integer: false,
         unit: match constant.unit {
-            "mm" => "m",
+            "mm" | "um" => "m",
             "mm/s" => "m/s",
+            "mrad" => "rad",
             other => other,
         }
         .to_owned(),

@@ -6,7 +6,7 @@
 
 use super::felt::Felt;
 use super::latent::Course;
-use super::site::Site;
+use super::site::{Kind, Site};
 use crate::diagnosis::projection::Projection;
 
 /// What a force may be a function of.
@@ -27,16 +27,17 @@ pub enum Variable {
 }
 
 impl Variable {
-    /// Its name in reports.
+    /// Its name in reports, at a kind of site.
     #[must_use]
-    pub fn name(self) -> &'static str {
+    pub fn name(self, kind: Kind) -> String {
+        let [place, speed] = kind.variables();
         match self {
-            Self::Speed => "speed",
-            Self::Place => "place",
-            Self::Turn => "angle in a turn",
-            Self::Time => "time",
-            Self::SpeedByPlace => "speed times place",
-            Self::SpeedByTime => "speed times time",
+            Self::Speed => speed.to_owned(),
+            Self::Place => place.to_owned(),
+            Self::Turn => "angle in a turn".to_owned(),
+            Self::Time => "time".to_owned(),
+            Self::SpeedByPlace => format!("{speed} times {place}"),
+            Self::SpeedByTime => format!("{speed} times time"),
         }
     }
 }

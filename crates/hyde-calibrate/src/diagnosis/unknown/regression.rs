@@ -30,13 +30,17 @@ pub(crate) struct Selected {
     pub(crate) tried: usize,
 }
 
-/// Selects terms until the next one gains too little.
-pub(crate) fn select(felt: &Felt, projection: &Projection, gate: f64) -> Option<Selected> {
+/// Selects terms until the next one gains too little; the first may be given, with what it gains.
+pub(crate) fn select(
+    felt: &Felt,
+    projection: &Projection,
+    gate: f64,
+    first: Option<(Summand, f64)>,
+) -> Option<Selected> {
     let dictionary = dictionary(felt);
     let alone = |term: &Summand| projection.sums(&felt.columns(term));
     let each: Vec<Sums> = dictionary.par_iter().map(alone).collect();
-    let mut terms: Vec<Summand> = Vec::new();
-    let mut gains: Vec<f64> = Vec::new();
+    let (mut terms, mut gains): (Vec<Summand>, Vec<f64>) = first.into_iter().unzip();
     let mut others = Vec::new();
     let mut tried = 0;
     while terms.len() < MOST_TERMS {
@@ -97,22 +101,53 @@ pub(crate) fn select(felt: &Felt, projection: &Projection, gate: f64) -> Option<
     if terms.is_empty() {
         return None;
     }
+    Some(Selected {
+        law: sized(felt, projection, terms),
+        gains,
+        others,
+        tried,
+    })
+}
+
+impl Selected {
+    /// The law of another first term alone.
+    pub(crate) fn of_other(
+        &self,
+        (term, gain): (Summand, f64),
+        felt: &Felt,
+        projection: &Projection,
+    ) -> Self {
+        Self {
+            law: sized(felt, projection, vec![term]),
+            gains: vec![gain],
+            ..self.clone()
+        }
+    }
+
+    /// The same with its first terms alone.
+    pub(crate) fn with_first(&self, count: usize, felt: &Felt, projection: &Projection) -> Self {
+        let terms = self.law.terms[..count].to_vec();
+        Self {
+            law: sized(felt, projection, terms),
+            gains: self.gains[..count].to_vec(),
+            ..self.clone()
+        }
+    }
+}
+
+/// A law of terms, their sizes in the linear answer.
+fn sized(felt: &Felt, projection: &Projection, mut terms: Vec<Summand>) -> Law {
     let columns: Vec<Vec<f64>> = terms.iter().flat_map(|term| felt.columns(term)).collect();
     let mut sizes = projection.answer(&columns).sizes.into_iter();
     for term in &mut terms {
         let own: Vec<f64> = sizes.by_ref().take(term.sizes.len()).collect();
         term.sizes = own;
     }
-    Some(Selected {
-        law: Law {
-            site: felt.site.clone(),
-            terms,
-            seen: felt.seen,
-        },
-        gains,
-        others,
-        tried,
-    })
+    Law {
+        site: felt.site.clone(),
+        terms,
+        seen: felt.seen,
+    }
 }
 
 fn same_form(a: &Summand, b: &Summand) -> bool {
@@ -206,6 +241,9 @@ fn first_steps(term: &Summand, seen: &Seen, turns: bool) -> Vec<f64> {
             | Factor::Cube
             | Factor::Place
             | Factor::PlaceSquare
+            | Factor::PlaceSignedSquare
+            | Factor::PlaceCube
+            | Factor::Yielding(_)
             | Factor::Time
             | Factor::Switching(_)
             | Factor::Forwards(_)
@@ -274,6 +312,14 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
         others.push(vec![Factor::Fading(tau * duration)]);
         others.push(vec![Factor::Worked(0.1 * tau * duration)]);
     }
+    // A spring becomes stiffer as it is stretched, or yields; an amplifier gives less than it is asked for.
+    let bends = kind.bends_about_zero();
+    if bends {
+        others.extend([vec![Factor::PlaceSignedSquare], vec![Factor::PlaceCube]]);
+        for part in [0.03, 0.1, 0.3] {
+            others.push(vec![Factor::Yielding(part * travel)]);
+        }
+    }
     let mut places: Vec<Vec<Factor>> = Vec::new();
     for count in [10, 24] {
         let width = 1.2 * travel / f64::from(count);
@@ -311,7 +357,7 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
             add(speed, place);
         }
     }
-    for speed in &simple {
+    for speed in simple.iter().filter(|_| !bends) {
         let count = if speed.is_empty() { WAVES } else { MIXED_WAVES };
         for wave in waves(count) {
             add(speed, &wave);
