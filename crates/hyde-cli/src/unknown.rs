@@ -117,14 +117,17 @@ pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
     let _ = writeln!(
         out,
         "\n  map of {} at {}: what any function of it gains, and by chance",
-        unknown.map.site.kind.words(),
+        unknown.map.site.kind.words().what,
         unknown.map.site.path
     );
+    let name = |panel: &Panel| panel.variable.name(unknown.map.site.kind);
+    let widths = unknown.map.panels.iter().map(|panel| name(panel).len());
+    let width = widths.max().unwrap_or(0);
     for panel in &unknown.map.panels {
         let _ = writeln!(
             out,
-            "    {:<20} {:>9} {:>9}",
-            panel.variable.name(unknown.map.site.kind),
+            "    {:<width$} {:>9} {:>9}",
+            name(panel),
             significant(panel.gain, 3),
             significant(panel.band, 3)
         );

@@ -248,7 +248,8 @@ impl Factor {
 
     /// How it is written, the names of its constants given: one expression, of a wave two.
     pub(crate) fn expressions(self, kind: Kind, names: &[String]) -> Vec<String> {
-        let (x, v) = (kind.place(), kind.speed());
+        let words = kind.words();
+        let ((x, _), (v, _)) = (words.place, words.speed);
         let name = |index: usize| names.get(index).map_or("", String::as_str);
         let (a, b) = (name(0), name(1));
         let abs = format!("noEvent(abs({v}))");
@@ -287,7 +288,7 @@ impl Factor {
 
     /// What else has to be written for it: a filter.
     pub(crate) fn equations(self, kind: Kind, names: &[String]) -> (String, String) {
-        let v = kind.speed();
+        let (v, (unit, _)) = kind.words().speed;
         let (name, input, what) = match self {
             Self::Lagged(_) => ("late", v.to_owned(), "the speed, late"),
             Self::Worked(_) => {
@@ -317,7 +318,6 @@ impl Factor {
             | Self::Fading(_) => return (String::new(), String::new()),
         };
         let tau = names.first().map_or("", String::as_str);
-        let (unit, _) = kind.speed_unit();
         (
             format!("  Real {name}_{tau}(start = 0 [{unit}], fixed = true) \"{what}\";\n"),
             format!("  {tau}*der({name}_{tau}) = {input} - {name}_{tau};\n"),
@@ -326,8 +326,8 @@ impl Factor {
 
     /// Its constants as they are written, with the ranges that a fit may search.
     pub(crate) fn written(self, kind: Kind, seen: &Seen) -> Vec<Constant> {
-        let (place, per_place) = kind.place_unit();
-        let (speed, per_speed) = kind.speed_unit();
+        let words = kind.words();
+        let ((_, (place, per_place)), (_, (speed, per_speed))) = (words.place, words.speed);
         let positive = |stem, value: f64, unit, per_si| Constant {
             stem,
             value,

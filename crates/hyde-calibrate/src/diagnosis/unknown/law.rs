@@ -2,7 +2,7 @@
 
 use super::factor::{Constant, Factor, Scales, Seen};
 use super::latent::Carrier;
-use super::site::{Kind, Site, Written};
+use super::site::{Kind, Site, Written, si};
 use crate::diagnosis::{Hypothesis, Knob};
 use hyde_units::significant;
 use std::fmt::Write as _;
@@ -116,7 +116,8 @@ impl Law {
         let mut signature: Vec<String> = Vec::new();
         let mut stems: Vec<&'static str> = Vec::new();
         let single = self.terms.len() == 1;
-        let size_stem = kind.stem();
+        let words = kind.words();
+        let (size_stem, unit) = words.value;
         for (number, term) in self.terms.iter().enumerate() {
             let mut products = vec![String::new()];
             for factor in &term.factors {
@@ -170,7 +171,6 @@ impl Law {
                     * value
                         .abs()
                         .max(term.sizes.iter().fold(0.0, |m, s| f64::max(m, s.abs()))));
-                let unit = kind.unit();
                 let _ = writeln!(
                     text,
                     "  size Real {own} = {} [{unit}] in {} .. {} [{unit}];",
@@ -188,14 +188,10 @@ impl Law {
                 sum.push(format!("{own}{product}"));
             }
         }
-        let (speed, per_speed) = kind.speed_unit();
-        let (place, per_place) = kind.place_unit();
+        let (speed_name, (speed, per_speed)) = words.speed;
+        let (_, (place, per_place)) = words.place;
         let units = [
-            (
-                format!("{}1", kind.speed()),
-                scales.speed * per_speed,
-                speed,
-            ),
+            (format!("{speed_name}1"), scales.speed * per_speed, speed),
             ("x1".to_owned(), scales.place * per_place, place),
             ("t1".to_owned(), scales.time, "s"),
         ];
@@ -221,7 +217,7 @@ impl Law {
         }
         let text = format!(
             "effect {name} on {} \"found in records, in no library\"\n{text}end {name};\n",
-            kind.host()
+            words.host
         );
         let written = Written {
             name: name.to_owned(),
@@ -275,13 +271,7 @@ fn knob(name: &str, constant: &Constant) -> Knob {
         value: constant.value,
         range: constant.range,
         integer: false,
-        unit: match constant.unit {
-            "mm" | "um" => "m",
-            "mm/s" => "m/s",
-            "mrad" => "rad",
-            other => other,
-        }
-        .to_owned(),
+        unit: si(constant.unit).to_owned(),
     }
 }
 

@@ -29,6 +29,21 @@ pub enum Kind {
     Amplifier,
 }
 
+/// The words of the language at a kind of place. Units are as they are written, with how many of them an SI unit is.
+#[derive(Clone, Copy, Debug)]
+pub struct Words {
+    /// What an effect there is on.
+    pub(crate) host: &'static str,
+    /// What the law is.
+    pub what: &'static str,
+    /// What a size of the law is called, and its unit.
+    pub(crate) value: (&'static str, &'static str),
+    /// The place as the law's text names it, and its unit.
+    pub(crate) place: (&'static str, (&'static str, f64)),
+    /// The speed as the law's text names it, and its unit.
+    pub(crate) speed: (&'static str, (&'static str, f64)),
+}
+
 /// A place where a law may act.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Site {
@@ -120,102 +135,63 @@ impl Kind {
         }
     }
 
-    pub(crate) fn host(self) -> &'static str {
-        match self {
-            Self::Rail => "Translational.Rail",
-            Self::Flange => "Rotational.Flange",
-            Self::Guide => "Translational.Guide",
-            Self::Bearing => "Rotational.Friction",
-            Self::Belt => "Drives.Belt",
-            Self::Joint => "Rotational.SpringDamper",
-            Self::Contact => "Translational.Contact",
-            Self::Scale => "Translational.PositionSensor",
-            Self::Encoder => "Rotational.AngleSensor",
-            Self::Tacho => "Drives.Control.Tachogenerator",
-            Self::Amplifier => "Electrical.CurrentAmplifier",
-        }
-    }
-
-    /// The unit of the law's value.
-    pub(crate) fn unit(self) -> &'static str {
-        match self {
-            Self::Rail | Self::Guide | Self::Contact => "N",
-            Self::Flange | Self::Bearing | Self::Belt | Self::Joint => "N.m",
-            Self::Scale => "m",
-            Self::Encoder => "rad",
-            Self::Tacho => "V",
-            Self::Amplifier => "A",
-        }
-    }
-
-    /// What a size of the law is called.
-    pub(crate) fn stem(self) -> &'static str {
-        match self {
-            Self::Rail | Self::Guide => "F",
-            // What a spring holds is called F or T already.
-            Self::Contact => "P",
-            Self::Belt | Self::Joint => "M",
-            Self::Flange | Self::Bearing => "T",
-            Self::Scale | Self::Encoder => "e",
-            Self::Tacho => "U",
-            Self::Amplifier => "I",
-        }
-    }
-
-    /// What the law is, in words.
+    /// The words of the language for it.
     #[must_use]
-    pub fn words(self) -> &'static str {
+    pub fn words(self) -> Words {
+        let of = |host, what, value, place, speed| Words {
+            host,
+            what,
+            value,
+            place,
+            speed,
+        };
+        let (mm, mm_s) = (("mm", 1e3), ("mm/s", 1e3));
+        let (rad, rad_s) = (("rad", 1.0), ("rad/s", 1.0));
+        let (mrad, um) = (("mrad", 1e3), ("um", 1e6));
+        let (slides, speed) = (("a.s", mm), ("v", mm_s));
+        let (turns, rate) = (("a.phi", rad), ("w", rad_s));
+        let (force, torque) = (("F", "N"), ("T", "N.m"));
         match self {
-            Self::Rail | Self::Guide | Self::Contact => "a force",
-            Self::Flange | Self::Bearing | Self::Belt | Self::Joint => "a torque",
-            Self::Scale | Self::Encoder => "an error",
-            Self::Tacho => "a voltage",
-            Self::Amplifier => "a current",
-        }
-    }
-
-    /// The units of place and speed at the site, as they are written, and how many of them an SI unit is.
-    pub(crate) fn place_unit(self) -> (&'static str, f64) {
-        match self {
-            Self::Contact => ("um", 1e6),
-            Self::Belt | Self::Joint => ("mrad", 1e3),
-            Self::Rail | Self::Guide | Self::Scale => ("mm", 1e3),
-            Self::Flange | Self::Bearing | Self::Encoder | Self::Tacho => ("rad", 1.0),
-            Self::Amplifier => ("A", 1.0),
-        }
-    }
-
-    pub(crate) fn speed_unit(self) -> (&'static str, f64) {
-        match self {
-            Self::Rail | Self::Guide | Self::Contact | Self::Scale => ("mm/s", 1e3),
-            Self::Flange
-            | Self::Bearing
-            | Self::Belt
-            | Self::Joint
-            | Self::Encoder
-            | Self::Tacho => ("rad/s", 1.0),
-            Self::Amplifier => ("A/s", 1.0),
-        }
-    }
-
-    /// Place and speed as the law's text names them.
-    pub(crate) fn place(self) -> &'static str {
-        match self {
-            Self::Belt => "stretch",
-            Self::Joint => "twist",
-            Self::Contact => "e",
-            Self::Rail | Self::Guide | Self::Scale => "a.s",
-            Self::Flange | Self::Bearing | Self::Encoder | Self::Tacho => "a.phi",
-            Self::Amplifier => "i_ref",
-        }
-    }
-
-    pub(crate) fn speed(self) -> &'static str {
-        match self {
-            Self::Rail | Self::Guide | Self::Contact | Self::Scale => "v",
-            Self::Flange | Self::Bearing | Self::Belt | Self::Encoder | Self::Tacho => "w",
-            Self::Joint => "w_rel",
-            Self::Amplifier => "rise",
+            Self::Rail => of("Translational.Rail", "a force", force, slides, speed),
+            Self::Guide => of("Translational.Guide", "a force", force, slides, speed),
+            Self::Flange => of("Rotational.Flange", "a torque", torque, turns, rate),
+            Self::Bearing => of("Rotational.Friction", "a torque", torque, turns, rate),
+            // What a spring holds is called T or F already.
+            Self::Belt => of(
+                "Drives.Belt",
+                "a torque",
+                ("M", "N.m"),
+                ("stretch", mrad),
+                rate,
+            ),
+            Self::Joint => {
+                let (host, rate) = ("Rotational.SpringDamper", ("w_rel", rad_s));
+                of(host, "a torque", ("M", "N.m"), ("twist", mrad), rate)
+            }
+            Self::Contact => of(
+                "Translational.Contact",
+                "a force",
+                ("P", "N"),
+                ("e", um),
+                speed,
+            ),
+            Self::Scale => {
+                let host = "Translational.PositionSensor";
+                of(host, "an error", ("e", "m"), slides, speed)
+            }
+            Self::Encoder => {
+                let host = "Rotational.AngleSensor";
+                of(host, "an error", ("e", "rad"), turns, rate)
+            }
+            Self::Tacho => {
+                let host = "Drives.Control.Tachogenerator";
+                of(host, "a voltage", ("U", "V"), turns, rate)
+            }
+            Self::Amplifier => {
+                let (host, demand) = ("Electrical.CurrentAmplifier", ("i_ref", ("A", 1.0)));
+                let rise = ("rise", ("A/s", 1.0));
+                of(host, "a current", ("I", "A"), demand, rise)
+            }
         }
     }
 
@@ -250,24 +226,30 @@ pub struct Written {
     pub site: String,
 }
 
-/// An effect by which a force at a site is felt, or a sensor's error: its sizes are the force, and forces proportional to
-/// place and to speed.
+/// The SI unit of what is written in one of the units of [`Words`].
+pub(crate) fn si(unit: &'static str) -> &'static str {
+    match unit {
+        "mm" | "um" => "m",
+        "mm/s" => "m/s",
+        "mrad" => "rad",
+        other => other,
+    }
+}
+
+/// An effect by which a force at a site is felt, or a sensor's error: its sizes are the force, and forces a unit of
+/// place and of speed.
 pub(crate) fn probe(site: &Site, name: &str) -> Written {
     let kind = site.kind;
-    let (place, speed) = (kind.place(), kind.speed());
-    let unit = kind.unit();
-    let (per_place, per_speed) = match kind {
-        Kind::Rail | Kind::Guide | Kind::Contact => ("[N/m]", "[N.s/m]"),
-        Kind::Flange | Kind::Bearing | Kind::Belt | Kind::Joint => ("[N.m/rad]", "[N.m.s/rad]"),
-        Kind::Scale | Kind::Encoder => ("", "[s]"),
-        Kind::Tacho => ("[V/rad]", "[V.s/rad]"),
-        Kind::Amplifier => ("", "[s]"),
-    };
-    let law = format!("(force + by_place*{place} + by_speed*{speed})");
+    let words = kind.words();
+    let ((_, unit), (place, (of_place, _)), (speed, (of_speed, _))) =
+        (words.value, words.place, words.speed);
+    let (of_place, of_speed) = (si(of_place), si(of_speed));
+    let law =
+        format!("(force + by_place*{place}/(1 [{of_place}]) + by_speed*{speed}/(1 [{of_speed}]))");
+    let size = format!("= 0 [{unit}] in -1 .. 1 [{unit}]");
     let text = format!(
-        "effect {name} on {}\n  size Real force = 0 [{unit}] in -1 .. 1 [{unit}], by_place = 0 {per_place} in -1 .. 1 \
-         {per_place}, by_speed = 0 {per_speed} in -1 .. 1 {per_speed};\n{}end {name};\n",
-        kind.host(),
+        "effect {name} on {}\n  size Real force {size}, by_place {size}, by_speed {size};\n{}end {name};\n",
+        words.host,
         kind.clauses(&law)
     );
     Written {
