@@ -17,10 +17,12 @@
 //! apart          the experiment that would tell alternatives apart                        diagnosis/apart.rs
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
 //! whole          orders of angles that are likelier whole numbers                         diagnosis/whole.rs
+//! calibrated     the model found, calibrated with an observer of its own                   diagnosis/calibrated.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
 mod apart;
+mod calibrated;
 mod contest;
 mod exchange;
 mod forward;
@@ -43,6 +45,7 @@ pub(crate) use projection::Projection;
 pub(crate) use stage::{Ground, Stage, flat};
 
 pub use apart::{Alternative, Experiment};
+pub use calibrated::calibrate_found;
 pub use hypothesis::{Build, Built, Hypothesis, Knob};
 pub use scan::Score;
 pub use search::{Diagnosis, Finding, Gates, Quantity, Round, Verdict, diagnose};

@@ -449,7 +449,7 @@ impl Problem<'_> {
     }
 }
 
-fn sum_of_squares(innovations: &[Innovations]) -> f64 {
+pub(crate) fn sum_of_squares(innovations: &[Innovations]) -> f64 {
     innovations.iter().map(Innovations::sum_of_squares).sum()
 }
 

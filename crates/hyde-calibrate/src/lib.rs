@@ -46,8 +46,8 @@ pub use blocks::Fold;
 pub use diagnosis::{
     Alternative, Author, Build, Built, Diagnosis, Experiment, Factor, Finding, FoundLaw, Gates,
     Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, Map, Panel, Quantity, Rejection, Round,
-    Scales, Score, Seen, Site, Summand, Trial, Unknown, Variable, Verdict, Written, diagnose,
-    propose,
+    Scales, Score, Seen, Site, Summand, Trial, Unknown, Variable, Verdict, Written,
+    calibrate_found, diagnose, propose,
 };
 pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};

@@ -112,6 +112,8 @@ pub struct Diagnosis {
     pub verdict: Verdict,
     /// The effects taken in.
     pub findings: Vec<Finding>,
+    /// Their hypotheses, by number, with the paths of their instances.
+    pub effects: Vec<(usize, String)>,
     /// The rounds of the search.
     pub rounds: Vec<Round>,
     /// Parameters and costs before any effect, and after all.
@@ -128,6 +130,44 @@ pub struct Diagnosis {
     pub unexplained: bool,
     /// What that is, where it was asked for ([`super::propose`]).
     pub unknown: Option<super::Unknown>,
+}
+
+impl Diagnosis {
+    /// The model as it was found.
+    pub(crate) fn stage(&self) -> Stage {
+        Stage {
+            program: self.program.clone(),
+            effects: self.effects.clone(),
+            varied: self.varied.clone(),
+            kept: self.kept.clone(),
+            solution: self.after.clone(),
+        }
+    }
+
+    /// Makes a stage the answer. What is known of effects that were found before stays.
+    pub(crate) fn take(&mut self, stage: Stage, hypotheses: &[Hypothesis]) {
+        let known = std::mem::take(&mut self.findings);
+        let round = self.rounds.len();
+        let taken = stage.effects.iter().map(|(number, _)| {
+            let same = known.iter().find(|finding| finding.hypothesis == *number);
+            same.map_or_else(
+                || Taken {
+                    round,
+                    alternatives: Vec::new(),
+                },
+                |finding| Taken {
+                    round: finding.round,
+                    alternatives: finding.alternatives.clone(),
+                },
+            )
+        });
+        self.findings = findings(&stage, hypotheses, taken.collect());
+        self.effects = stage.effects;
+        self.after = stage.solution;
+        self.program = stage.program;
+        self.varied = stage.varied;
+        self.kept = stage.kept;
+    }
 }
 
 /// Finds what a model lacks.
@@ -196,6 +236,7 @@ pub fn diagnose(
     Ok(Diagnosis {
         verdict,
         findings,
+        effects: stage.effects,
         rounds,
         before,
         after: stage.solution,
@@ -231,11 +272,7 @@ pub(super) fn explained(solution: &Solution) -> bool {
 }
 
 /// The effects with their quantities and intervals.
-pub(super) fn findings(
-    stage: &Stage,
-    hypotheses: &[Hypothesis],
-    taken: Vec<Taken>,
-) -> Vec<Finding> {
+fn findings(stage: &Stage, hypotheses: &[Hypothesis], taken: Vec<Taken>) -> Vec<Finding> {
     let covariance = covariance(&stage.solution, inflation(&stage.solution.innovations));
     let values = stage.values();
     let number_of = |name: &str| stage.varied.iter().position(|varied| varied.name == name);

@@ -30,10 +30,9 @@ pub use law::{Law, Summand};
 pub use map::{Map, Panel, Variable};
 pub use site::{Kind, Site, Written};
 
-use super::forward::Taken;
 use super::hypothesis::{Built, Hypothesis};
 use super::projection::Projection;
-use super::search::{Diagnosis, Gates, Verdict, explained, findings};
+use super::search::{Diagnosis, Finding, Gates, Verdict, explained};
 use super::stage::{Ground, Stage, below};
 use super::trial::Trial;
 use crate::fit::inflation;
@@ -102,6 +101,15 @@ pub struct FoundLaw {
     pub share: f64,
     /// Other forms of the first term with the part of its gain that they have.
     pub equivalents: Vec<(Summand, f64)>,
+}
+
+impl FoundLaw {
+    /// Its text with other values found.
+    pub(super) fn rewrite(&mut self, finding: &Finding) {
+        let quantities = finding.sizes.iter().chain(&finding.shapes);
+        let values: Vec<f64> = quantities.map(|quantity| quantity.value).collect();
+        self.written = self.law.with(&values).written(&self.written.name, true).0;
+    }
 }
 
 /// Asks what is missing where innovations are not explained, and puts the answer into the diagnosis.
@@ -234,17 +242,7 @@ impl Answer {
 
 /// The model without any effect, and with those of the diagnosis.
 fn stages(inquiry: &Inquiry<'_>, diagnosis: &Diagnosis) -> Result<(Stage, Stage), Unsupported> {
-    let list: Vec<usize> = diagnosis.findings.iter().map(|f| f.hypothesis).collect();
-    let paths = (inquiry.author)(&list, &[])
-        .ok_or_else(Unsupported::singular)?
-        .paths;
-    let last = Stage {
-        program: diagnosis.program.clone(),
-        effects: list.into_iter().zip(paths).collect(),
-        varied: diagnosis.varied.clone(),
-        kept: diagnosis.kept.clone(),
-        solution: diagnosis.after.clone(),
-    };
+    let last = diagnosis.stage();
     let program = (inquiry.author)(&[], &[])
         .ok_or_else(Unsupported::singular)?
         .program;
@@ -333,28 +331,9 @@ fn take_in(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis, answer: Option<Answ
         let stage = trial.stage;
         let mut hypotheses = inquiry.hypotheses.to_vec();
         hypotheses.push(own.hypothesis.clone());
-        let known = std::mem::take(&mut diagnosis.findings);
-        let round = diagnosis.rounds.len();
-        let taken = stage.effects.iter().map(|(number, _)| {
-            let same = known.iter().find(|finding| finding.hypothesis == *number);
-            same.map_or_else(
-                || Taken {
-                    round,
-                    alternatives: Vec::new(),
-                },
-                |finding| Taken {
-                    round: finding.round,
-                    alternatives: finding.alternatives.clone(),
-                },
-            )
-        });
-        diagnosis.findings = findings(&stage, &hypotheses, taken.collect());
         diagnosis.unexplained = !explained(&stage.solution);
-        diagnosis.after = stage.solution;
-        diagnosis.program = stage.program;
-        diagnosis.varied = stage.varied;
-        diagnosis.kept = stage.kept;
         diagnosis.verdict = Verdict::Unknown;
+        diagnosis.take(stage, &hypotheses);
     }
     diagnosis.unknown = Some(unknown);
 }

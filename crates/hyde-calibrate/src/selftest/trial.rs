@@ -4,7 +4,8 @@ use super::case::{Case, Planting, Size};
 use super::expected::{Reference, shows, size_of};
 use super::simulated::{Faulty, Simulated, simulated};
 use crate::diagnosis::{
-    Author, Build, Built, Hypothesis, Inquiry, Site, Verdict, Written, diagnose, propose,
+    Author, Build, Built, Hypothesis, Inquiry, Site, Verdict, Written, calibrate_found, diagnose,
+    propose,
 };
 use crate::gain::Observer;
 use crate::plant::Unsupported;
@@ -226,6 +227,7 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         author: &author,
     };
     propose(&inquiry, &mut found).map_err(SelftestError::Unsupported)?;
+    calibrate_found(&inquiry, &mut found).map_err(SelftestError::Unsupported)?;
     if axis.interrupted.load(Ordering::Relaxed) {
         return Err(SelftestError::Interrupted);
     }

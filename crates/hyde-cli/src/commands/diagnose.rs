@@ -84,7 +84,9 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
                 sites: &sites,
                 author: &author,
             };
-            hyde_calibrate::propose(&inquiry, &mut found).map(|()| found)
+            hyde_calibrate::propose(&inquiry, &mut found)?;
+            hyde_calibrate::calibrate_found(&inquiry, &mut found)?;
+            Ok(found)
         })
     };
     let told = found.and_then(|found| {

@@ -1,0 +1,73 @@
+//! [`calibrate_found`]: the last of a diagnosis: the model with its effects, calibrated as any model is.
+//!
+//! The search compares models by one observer, that of the declared one. For the model that was found its gain is not the
+//! best: it gives a body on a spring, say, no correction at all, and a fit by innovations that are larger than they need be
+//! leans towards parameters that make them smaller (Ljung, System Identification, 2nd ed. 1999, section 8.4: in closed loop
+//! a noise model that is wrong biases the rest). So parameters, sizes and shapes with their intervals are those of a fit with
+//! the observer of the model found; errors are still told by the declared one's.
+
+use super::search::Diagnosis;
+use super::stage::{Ground, Stage};
+use super::unknown::Inquiry;
+use crate::gain::Observer;
+use crate::least_squares::{Slopes, sum_of_squares};
+use crate::plant::Unsupported;
+use crate::solution::Solution;
+
+/// Calibrates the model that was found with an observer of its own.
+///
+/// # Errors
+/// The model has no fixed-step form.
+pub fn calibrate_found(
+    inquiry: &Inquiry<'_>,
+    diagnosis: &mut Diagnosis,
+) -> Result<(), Unsupported> {
+    if diagnosis.findings.is_empty() {
+        return Ok(());
+    }
+    let stage = diagnosis.stage();
+    let declared = Ground {
+        recordings: inquiry.recordings,
+        observer: inquiry.observer,
+        set: inquiry.set,
+    };
+    let places = declared.set_in(&stage.program, &stage.values());
+    let observer = Observer::new(&stage.program, inquiry.recordings, &places)?;
+    let own = Ground {
+        observer: &observer,
+        ..declared
+    };
+    let set = declared.set_in(&stage.program, &stage.kept);
+    let problem = own.problem(&stage.program, &stage.varied, &set, None);
+    let here = problem.solve_in(&stage.solution.values, 0, Slopes::Tangents)?;
+    let fitted = Stage {
+        solution: here,
+        ..stage
+    }
+    .polished(&own)?;
+    let innovations = declared
+        .problem(&fitted.program, &fitted.varied, &set, None)
+        .innovations(&fitted.solution.values)?;
+    let solution = Solution {
+        data: sum_of_squares(&innovations),
+        innovations,
+        ..fitted.solution
+    };
+    let mut hypotheses = inquiry.hypotheses.to_vec();
+    let law = diagnosis
+        .unknown
+        .as_ref()
+        .and_then(|own| own.found.as_ref());
+    hypotheses.extend(law.map(|law| law.hypothesis.clone()));
+    let stage = Stage { solution, ..fitted };
+    diagnosis.take(stage, &hypotheses);
+    let last = diagnosis.findings.last().cloned();
+    let law = diagnosis
+        .unknown
+        .as_mut()
+        .and_then(|own| own.found.as_mut());
+    if let (Some(law), Some(finding)) = (law, last) {
+        law.rewrite(&finding);
+    }
+    Ok(())
+}
