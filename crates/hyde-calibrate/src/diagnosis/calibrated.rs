@@ -10,7 +10,7 @@ use super::search::Diagnosis;
 use super::stage::{Ground, Stage};
 use super::unknown::Inquiry;
 use crate::gain::Observer;
-use crate::least_squares::{Slopes, sum_of_squares};
+use crate::least_squares::{MAX_STEPS, Slopes, sum_of_squares};
 use crate::plant::Unsupported;
 use crate::solution::Solution;
 
@@ -39,7 +39,7 @@ pub fn calibrate_found(
     };
     let set = declared.set_in(&stage.program, &stage.kept);
     let problem = own.problem(&stage.program, &stage.varied, &set, None);
-    let here = problem.solve_in(&stage.solution.values, 0, Slopes::Tangents)?;
+    let here = problem.solve_in(&stage.solution.values, MAX_STEPS, Slopes::Tangents)?;
     let fitted = Stage {
         solution: here,
         ..stage
