@@ -17,7 +17,7 @@
 //! apart          the experiment that would tell alternatives apart                        diagnosis/apart.rs
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
 //! whole          orders of angles that are likelier whole numbers                         diagnosis/whole.rs
-//! calibrated     the model found, calibrated with an observer of its own                   diagnosis/calibrated.rs
+//! calibrated     a model with states of its own calibrated with a gain for them           diagnosis/calibrated.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 

@@ -118,6 +118,12 @@ impl Observer {
         }
     }
 
+    /// Whether all states of another observer's model have a gain here.
+    pub(crate) fn knows_states_of(&self, other: &Self) -> bool {
+        let mut states = other.states.iter();
+        states.all(|state| self.states.contains(state))
+    }
+
     /// A plant at the first row of a record, its steps as exact as its observer is; and that.
     pub(crate) fn on<'a>(
         &self,
