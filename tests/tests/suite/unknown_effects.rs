@@ -14,15 +14,19 @@ diagnose few of calibrate small
     Effects.Signals.TachoGain, Effects.Signals.AmplifierGain, Effects.CouplingBacklash;
   max_effects 2;
 end few;
+
+diagnose bodies of calibrate small
+  candidates Effects.Rocking, Effects.Pull;
+end bodies;
 ";
 
 /// A record of 3 s with the effect on a site, diagnosed.
 fn diagnosed(effect: &str, with: &str) -> Value {
-    diagnosed_on(&[], effect, with)
+    diagnosed_on(&[], effect, with, "few")
 }
 
-/// The same on another axis: its text with some parts replaced.
-fn diagnosed_on(changes: &[(&str, &str)], effect: &str, with: &str) -> Value {
+/// The same by a study, on another axis: its text with some parts replaced.
+fn diagnosed_on(changes: &[(&str, &str)], effect: &str, with: &str, study: &str) -> Value {
     let folder = tempfile::tempdir().unwrap();
     let model = root().join("tests/models/small_axis.hyde");
     // The saddle is read by a scale, the motor's speed by a tacho.
@@ -63,7 +67,7 @@ end made;
     );
     hyde(folder.path(), &["run", "made.hyde", "made", "--out", "out"]);
     record(folder.path());
-    report(folder.path(), &["diagnose", "axis.hyde", "few"])
+    report(folder.path(), &["diagnose", "axis.hyde", study])
 }
 
 /// The results as a record with the noise that the experiment declares.
@@ -275,6 +279,7 @@ fn an_amplifier_that_gives_less_and_less_is_found_and_written() {
            wrap demand by demand*(1 - 0.05*noEvent(abs(demand))/(10 [A]));
          end Odd;",
         " with Odd on amplifier",
+        "few",
     );
     let law = law_alone(&found);
     assert_eq!(found["effects"][0]["site"], "amplifier");
@@ -285,6 +290,25 @@ fn an_amplifier_that_gives_less_and_less_is_found_and_written() {
     // 5 % less at 10 A are 12.5 A less at the 50 A that sizes are given at.
     let size = found["effects"][0]["size"].as_f64().unwrap();
     assert!((size / -12.5 - 1.0).abs() < 0.01, "{size}");
+}
+
+/// A body on a spring has states that the declared observer has no gain for: the model is calibrated with one of its own.
+#[test]
+fn parameters_beside_a_body_on_a_spring_are_those_of_the_axis() {
+    let body = " with Effects.Rocking(m = 60 [kg], f = 30 [Hz], zeta = 0.02) on saddle.a";
+    let found = diagnosed_on(&[], "", body, "bodies");
+    assert_eq!(found["verdict"], "effect");
+    let interval = &found["effects"][0]["interval"];
+    let ends = [&interval[0], &interval[1]].map(|end| end.as_f64().unwrap());
+    assert!(ends[0] < 60.0 && 60.0 < ends[1], "{ends:?}");
+    // With the declared gain the body's mass is told five times worse, to 2.4 kg.
+    assert!(ends[1] - ends[0] < 1.0, "{ends:?}");
+    let parameters = found["parameters"].as_array().unwrap();
+    for (name, value) in [("saddle.M", 262.0), ("guide.F", 145.0), ("rotor.J", 3.9e-3)] {
+        let own = parameters.iter().find(|one| one["name"] == name).unwrap();
+        let after = own["after"]["value"].as_f64().unwrap();
+        assert!((after / value - 1.0).abs() < 0.02, "{name} {after}");
+    }
 }
 
 #[test]
