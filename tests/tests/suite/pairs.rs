@@ -42,3 +42,41 @@ fn two_effects_that_hide_each_other_are_found_together() {
     assert!((of("Early") - FORCE).abs() < 0.03, "{}", found["sentence"]);
     assert!((of("Late") + FORCE).abs() < 0.03, "{}", found["sentence"]);
 }
+
+/// A swing of any frequency, and a chord of three that is nearly the first one's opposite in the middle.
+const SWINGS: &str = "effect Swings on Rail
+  size Force F = 0 in -50 .. 50 [N];
+  shape AngularVelocity w = 35 [rad/s] in 20 .. 80 [rad/s];
+  add a.f = -F*sin(w*time);
+end Swings;
+";
+
+const CHORD: &str = "effect Chord on Rail
+  size Force F = 0 in -50 .. 50 [N];
+  add a.f = -F*(1.5*sin(30 [rad/s]*time) - 0.7*sin(40 [rad/s]*time) + 0.2*sin(50 [rad/s]*time));
+end Chord;
+";
+
+/// Alone the swing is best at the chord's 30 rad/s. Beside it the chord stands for some of what is left; no fit leads the
+/// swing from there to its 40 rad/s.
+#[test]
+fn a_shape_that_was_led_away_is_sought_anew() {
+    let found = diagnosed(&[SWINGS, CHORD], |t| {
+        let tone = |w: f64| (1.0 - (w * t).cos()) / w;
+        let v = (3.0 * t).sin() / 3.0 + 1.5 * tone(30.0) + 0.3 * tone(40.0) + 0.2 * tone(50.0);
+        ((3.0 * t).cos(), v)
+    });
+    assert_eq!(found["verdict"], "effect", "{}", found["sentence"]);
+    assert_eq!(found["unexplained"], false);
+    let effects = found["effects"].as_array().unwrap();
+    assert_eq!(effects.len(), 2, "{}", found["sentence"]);
+    let of = |name: &str| {
+        let own = effects.iter().find(|effect| effect["effect"] == name);
+        own.unwrap_or_else(|| panic!("{}", found["sentence"]))
+    };
+    let size = |name: &str| of(name)["size"].as_f64().unwrap();
+    assert!((size("Swings") - 1.0).abs() < 0.03, "{}", found["sentence"]);
+    assert!((size("Chord") - 1.0).abs() < 0.03, "{}", found["sentence"]);
+    let w = of("Swings")["shape"]["w"]["value"].as_f64().unwrap();
+    assert!((w - 40.0).abs() < 0.1, "{}", found["sentence"]);
+}

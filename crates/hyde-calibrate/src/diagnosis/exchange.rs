@@ -2,23 +2,28 @@
 //!
 //! The first effect is chosen while all others are missing: a law with one more shape bends a little towards what came
 //! later, and a rival that had been behind may be the right one (exchange after forward selection; Miller, Subset
-//! Selection in Regression, 2nd ed. 2002, section 3.6).
+//! Selection in Regression, 2nd ed. 2002, section 3.6). A period that was led away has minima between it and the right
+//! one, which no fit crosses: effect and rivals are scanned anew where the others are.
 
 use super::contest::Contest;
 use super::forward::{Branch, Forward, Taken};
+use super::projection::Projection;
 use super::prune::without;
 use super::scan::Score;
+use super::search::explained;
 use super::stage::Stage;
+use crate::fit::inflation;
 use crate::plant::Unsupported;
 
-/// A rival gained this part of what the effect did when it was taken in.
-const RIVAL: f64 = 0.8;
+/// A rival gained this part of what the effect did when it was taken in: of a stage that is explained, and of one that is
+/// not.
+const RIVAL: [f64; 2] = [0.8, 0.5];
 /// Rivals at most, the effect itself among them.
 const MOST: usize = 4;
 
 impl Forward<'_> {
-    /// Exchanges effects of a branch; whether any was.
-    pub(super) fn exchange(&self, branch: &mut Branch) -> Result<bool, Unsupported> {
+    /// Exchanges effects of a branch, or their shapes; whether any was.
+    pub(super) fn exchange(&mut self, branch: &mut Branch) -> Result<bool, Unsupported> {
         let Branch { stage, taken } = branch;
         let earlier = stage.effects.len().saturating_sub(1);
         let mut exchanged = false;
@@ -27,20 +32,26 @@ impl Forward<'_> {
                 continue;
             };
             let rivals = self.rivals(effect, taken[number].round, stage);
-            if rivals.len() < 2 {
+            let left = !explained(&stage.solution);
+            if rivals.len() < 2 && !left {
                 continue;
             }
             let Some(less) = without(self.ground, stage, number, self.build) else {
                 continue;
             };
-            let Contest { trials, accepted } = self.contest(&less, rivals, Vec::new());
+            let scores = self.scores_on(&less, &rivals)?;
+            let Contest { trials, accepted } =
+                self.contest(&less, scores.iter().collect(), Vec::new());
             let fine = |own: usize| trials.iter().any(|trial| trial.hypothesis == own);
             let Some((best, alternatives)) = accepted.filter(|_| fine(effect)) else {
                 continue;
             };
-            if trials[best].hypothesis == effect {
+            let gate = self.gates.gain(1) * inflation(&stage.solution.innovations);
+            let gain = trials[best].stage.solution.gain_over(&stage.solution);
+            let same = trials[best].hypothesis == effect;
+            if same && gain < gate {
                 taken[number].alternatives = alternatives;
-            } else {
+            } else if gain > -gate {
                 *stage = trials[best].stage.polished(self.ground)?;
                 let Taken { round, .. } = taken.remove(number);
                 taken.push(Taken {
@@ -53,24 +64,37 @@ impl Forward<'_> {
         Ok(exchanged)
     }
 
-    /// Scores of an effect and of those that came near it in its round, without those that the stage has.
-    fn rivals(&self, effect: usize, round: usize, stage: &Stage) -> Vec<&Score> {
-        let round = &self.rounds[round];
-        let gain = |hypothesis: usize| {
-            let mut trials = round.trials.iter();
-            trials
-                .find(|trial| trial.hypothesis == hypothesis)
-                .map(|trial| trial.gain)
+    /// Scores of some hypotheses on a stage, the best first.
+    fn scores_on(
+        &mut self,
+        stage: &Stage,
+        hypotheses: &[usize],
+    ) -> Result<Vec<Score>, Unsupported> {
+        let tracks = stage.tracks(self.ground)?;
+        let at = stage.linearise_on(&tracks, self.ground)?;
+        let projection = Projection::new(stage, &at).ok_or_else(Unsupported::singular)?;
+        let scores = self.scanner(stage, &tracks, &projection).scores(hypotheses);
+        self.gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
+        Ok(scores)
+    }
+
+    /// An effect and those that came near it in its round, without those that the stage has.
+    fn rivals(&self, effect: usize, round: usize, stage: &Stage) -> Vec<usize> {
+        let trials = &self.rounds[round].trials;
+        let own = trials.iter().find(|trial| trial.hypothesis == effect);
+        let [explained_part, left_part] = RIVAL;
+        let part = if explained(&stage.solution) {
+            explained_part
+        } else {
+            left_part
         };
-        let least = RIVAL * gain(effect).unwrap_or(f64::INFINITY);
-        let near = |score: &&Score| {
-            !stage.has(score.hypothesis) && gain(score.hypothesis).is_some_and(|gain| gain >= least)
-        };
-        let own = round
-            .scores
+        let least = part * own.map_or(f64::INFINITY, |trial| trial.gain);
+        let mut near: Vec<_> = trials
             .iter()
-            .filter(|score| score.hypothesis == effect);
-        own.chain(round.scores.iter().filter(near).take(MOST - 1))
-            .collect()
+            .filter(|trial| !stage.has(trial.hypothesis) && trial.gain >= least)
+            .collect();
+        near.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+        let near = near.into_iter().map(|trial| trial.hypothesis);
+        std::iter::once(effect).chain(near.take(MOST - 1)).collect()
     }
 }

@@ -1,5 +1,5 @@
 //! [`Forward`]: from a stage on takes in one effect after the other, drops what is not missed any more, and tries earlier
-//! ones against their rivals. Where nothing gains alone and something is left, two are tried together ([`super::pair`]).
+//! ones anew against their rivals ([`Forward::exchange`]). Where nothing gains alone and something is left, two are tried together ([`super::pair`]).
 //!
 //! Effects mask each other, so the best of the first round may be one that stands for several. Where its branch ends with
 //! something left, that of the runner-up is followed too: a beam of two, which costs nothing where the first one explains
@@ -17,6 +17,7 @@ use super::stage::{Ground, Stage};
 use super::trial::{Rejection, Trial};
 use crate::fit::inflation;
 use crate::plant::Unsupported;
+use crate::track::Track;
 
 /// Hypotheses fitted in a round at first, and the part of the best score that they must have.
 const SURVIVORS: usize = 6;
@@ -53,7 +54,29 @@ pub(crate) struct Forward<'s> {
     pub(crate) rounds: Vec<Round>,
 }
 
-impl Forward<'_> {
+impl<'s> Forward<'s> {
+    /// What scans a stage.
+    pub(super) fn scanner<'t>(
+        &self,
+        stage: &'t Stage,
+        tracks: &'t [Track<'t>],
+        projection: &'t Projection,
+    ) -> Scanner<'t>
+    where
+        's: 't,
+    {
+        Scanner {
+            ground: self.ground,
+            stage,
+            tracks,
+            projection,
+            hypotheses: self.hypotheses,
+            build: self.build,
+            gate: self.gates.gain(1),
+            fitted: 2 * SURVIVORS,
+        }
+    }
+
     /// The end of the better of two branches.
     pub(crate) fn search(&mut self, stage: Stage) -> Result<Branch, Unsupported> {
         let taken = Vec::new();
@@ -112,8 +135,12 @@ impl Forward<'_> {
                 break;
             }
             self.prune(&mut branch);
+            // What stands on a wrong effect, or one with a wrong shape, is not built upon.
+            if !explained(&branch.stage.solution) && self.exchange(&mut branch)? {
+                self.prune(&mut branch);
+            }
         }
-        if self.exchange(&mut branch)? {
+        if explained(&branch.stage.solution) && self.exchange(&mut branch)? {
             self.prune(&mut branch);
         }
         Ok(branch)
@@ -153,17 +180,9 @@ impl Forward<'_> {
         let tracks = stage.tracks(self.ground)?;
         let at = stage.linearise_on(&tracks, self.ground)?;
         let projection = Projection::new(stage, &at).ok_or_else(Unsupported::singular)?;
-        let scanner = Scanner {
-            ground: self.ground,
-            stage,
-            tracks: &tracks,
-            projection: &projection,
-            hypotheses: self.hypotheses,
-            build: self.build,
-            gate: self.gates.gain(1),
-            fitted: 2 * SURVIVORS,
-        };
-        let scores = scanner.scores();
+        let scanner = self.scanner(stage, &tracks, &projection);
+        let all: Vec<usize> = (0..self.hypotheses.len()).collect();
+        let scores = scanner.scores(&all);
         self.gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
         let gates = self.gates;
         let Contest { trials, accepted } = self.fitted(stage, &scores);

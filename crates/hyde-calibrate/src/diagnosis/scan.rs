@@ -125,11 +125,12 @@ impl Promised {
 }
 
 impl Scanner<'_> {
-    /// The scores of all hypotheses that can be put on the model, the best first. What promises too little beside the best, or
+    /// The scores of those of some hypotheses that can be put on the model, the best first. What promises too little beside the best, or
     /// less than as many as are fitted have gained, is not tried by runs of its own: its score is what tangents promise.
-    pub(crate) fn scores(&self) -> Vec<Score> {
-        let all = (0..self.hypotheses.len()).into_par_iter();
-        let mut promised: Vec<Promised> = all.filter_map(|number| self.promised(number)).collect();
+    pub(crate) fn scores(&self, hypotheses: &[usize]) -> Vec<Score> {
+        let each = hypotheses.par_iter();
+        let mut promised: Vec<Promised> =
+            each.filter_map(|&number| self.promised(number)).collect();
         promised.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
         let mut rest = promised.into_iter().peekable();
         let mut scores: Vec<Score> = Vec::new();

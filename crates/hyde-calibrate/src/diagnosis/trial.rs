@@ -6,7 +6,7 @@ use super::scan::{Node, Score};
 use super::search::{Gates, chi_squared};
 use super::stage::{Ground, Stage};
 use crate::blocks::Fold;
-use crate::fit::{covariance_of_first, inflation_of};
+use crate::fit::{covariance, covariance_of_first, inflation_of};
 use crate::least_squares::{LAST_STEPS, MAX_STEPS, Slopes};
 use crate::observer::Innovations;
 use crate::solution::Solution;
@@ -108,6 +108,17 @@ impl Trial {
         let inverse = own.into_owned().try_inverse();
         inverse.is_some_and(|inverse| {
             (values.transpose() * inverse * values)[0] >= chi_squared(count, NOT_TOLD)
+        })
+    }
+
+    /// Whether the 95 % interval of one of its sizes at least leaves out 0, its shapes fitted beside them: a size and a shape
+    /// that make up for each other without end say that the law has another form.
+    pub(super) fn tells_a_size(&self) -> bool {
+        let solution = &self.stage.solution;
+        let covariance = covariance(solution, self.inflation);
+        self.own.clone().any(|size| {
+            let deviation = covariance[(size, size)].max(0.0).sqrt();
+            (solution.values[size] / self.stage.varied[size].scale()).abs() > 1.96 * deviation
         })
     }
 

@@ -165,6 +165,9 @@ fn judged(
     // Trials are fitted by tangents: what is taken in is fitted to the end.
     let polished = trial.stage.polished(ground).ok()?;
     trial.settle(polished.solution, stage);
+    if !trial.tells_a_size() {
+        return None;
+    }
     let ends = (own.gains.first().copied(), own.gains.last().copied());
     let (first, last) = (ends.0.unwrap_or(f64::NAN), ends.1.unwrap_or(f64::NAN));
     let (_, hypothesis) = own.law.written(NAME, false);
