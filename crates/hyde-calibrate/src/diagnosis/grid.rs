@@ -2,17 +2,20 @@
 //!
 //! One shape is varied, the others stay as declared. What is a period or an order has a peak as narrow as the axis goes far:
 //! half a turn over all of it more or less, and nothing is left of the gain. So it is looked for in two steps: over parts of
-//! a second, each with sizes of its own, where peaks are wide; and finely around the best of those.
+//! a second, each with sizes of its own, where peaks are wide; and finely around the best of those. What else is missing
+//! leads the first of them astray, so there are several, and whole orders are tried for themselves.
 
 use super::hypothesis::{Hypothesis, Knob};
 
 /// Nodes of a shape at most, and of a resonance.
 const NODES: usize = 12;
 const RESONANT_NODES: usize = 24;
-/// Nodes of a period or an order: so many by ratio, and so many evenly spread over orders.
+/// Nodes of a period or an order: so many by ratio, so many evenly spread over orders, and whole orders.
 const PERIODIC_NODES: usize = 64;
+/// Nodes nearer than this to a whole order are it.
+const WHOLE: f64 = 0.02;
 /// Best places around which a period is looked for finely, and values tried at each.
-const PLACES: usize = 2;
+const PLACES: usize = 4;
 const FINE: usize = 24;
 /// Nodes are beside each other up to so many steps.
 const BESIDE: f64 = 1.5;
@@ -199,6 +202,12 @@ impl<'h> Grid<'h> {
         if self.hypothesis.periodic.is_some() {
             let (from, to) = (self.measure(low), self.measure(high));
             values.extend(parts().map(|part| self.value(from + (to - from) * part)));
+            // What is fixed to a shaft comes back with each turn: the peak there is not left to the places looked at finely.
+            if shape.unit == "1" && !shape.integer {
+                values.retain(|value| (value - value.round()).abs() > WHOLE);
+                let (first, last) = (low.ceil().max(1.0) as u32, high.floor() as u32);
+                values.extend((first..=last).map(f64::from).take(most));
+            }
         }
         if shape.integer {
             values.push(shape.value);
@@ -221,4 +230,35 @@ enum Measure {
 fn by_ratio(shape: &Knob) -> bool {
     let (low, high) = shape.range;
     low > 0.0 && high / low > 4.0
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_orders_are_nodes_with_none_beside_them() {
+        let order = Knob {
+            name: "order".to_owned(),
+            value: 1.0,
+            range: (0.5, 20.0),
+            integer: false,
+            unit: "1".to_owned(),
+        };
+        let hypothesis = Hypothesis {
+            effect: "LeadError".to_owned(),
+            site: "screw".to_owned(),
+            aliases: Vec::new(),
+            sizes: Vec::new(),
+            shapes: vec![order],
+            periodic: Some(0),
+            resonant: None,
+        };
+        let grid = Grid::new(&hypothesis);
+        for whole in (1..=20).map(f64::from) {
+            let near = |value: &&f64| (*value - whole).abs() <= WHOLE;
+            let nodes: Vec<&f64> = grid.values.iter().filter(near).collect();
+            assert_eq!(nodes, [&whole]);
+        }
+    }
 }
