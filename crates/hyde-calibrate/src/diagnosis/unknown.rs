@@ -6,6 +6,7 @@
 //! latent         a force at a site, whatever its course, in the innovations    unknown/latent.rs
 //! felt           a site with a probe run along every record                    unknown/felt.rs
 //! map            of which variable the force is a function                     unknown/map.rs
+//! seen           what records show of a site                                  unknown/seen.rs
 //! factor         the shapes a law is a product of                              unknown/factor.rs
 //! law            a sum of products; its text                                   unknown/law.rs
 //! regression     which products, with which constants                          unknown/regression.rs
@@ -22,12 +23,14 @@ mod latent;
 mod law;
 mod map;
 mod regression;
+mod seen;
 mod site;
 
-pub use factor::{Factor, Scales, Seen};
+pub use factor::Factor;
 pub use latent::LatentForce;
 pub use law::{Law, Summand};
 pub use map::{Map, Panel, Variable};
+pub use seen::{Scales, Seen};
 pub use site::{Kind, Site, Written};
 
 use super::hypothesis::{Built, Hypothesis};

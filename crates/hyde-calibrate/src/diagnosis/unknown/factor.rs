@@ -2,18 +2,8 @@
 //! be written down.
 
 use super::latent::Course;
+use super::seen::{Scales, Seen};
 use super::site::Kind;
-
-/// Round numbers by which speed, place and time are measured in a law: sizes are forces then.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scales {
-    /// A speed of the record, SI.
-    pub speed: f64,
-    /// A way of the record, SI.
-    pub place: f64,
-    /// A time of the record, s.
-    pub time: f64,
-}
 
 /// A shape, with its constants, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,7 +20,9 @@ pub enum Factor {
     Cube,
     /// Towards a constant from a speed on: `v/(|v| + vs)`.
     Switching(f64),
-    /// The same where it moves forwards, nothing backwards.
+    /// To a constant at a speed, and no more beyond it: `tanh(v/vs)`.
+    Turning(f64),
+    /// As [`Self::Switching`] where it moves forwards, nothing backwards.
     Forwards(f64),
     /// The same where it moves backwards, nothing forwards.
     Backwards(f64),
@@ -90,6 +82,7 @@ impl Factor {
             Self::Square => format!("the {speed}'s square"),
             Self::Cube => format!("the {speed}'s third power"),
             Self::Switching(a) => format!("the direction, above {}", n(a)),
+            Self::Turning(a) => format!("the direction, all of it above {}", n(a)),
             Self::Forwards(a) => format!("forwards alone, above {}", n(a)),
             Self::Backwards(a) => format!("backwards alone, above {}", n(a)),
             Self::Falling(a) => format!("a fall with {speed} over {}", n(a)),
@@ -124,6 +117,7 @@ impl Factor {
             | Self::PlaceCube
             | Self::Time => Vec::new(),
             Self::Switching(a)
+            | Self::Turning(a)
             | Self::Forwards(a)
             | Self::Backwards(a)
             | Self::Falling(a)
@@ -153,6 +147,7 @@ impl Factor {
             | Self::Time => self,
             Self::Yielding(_) => Self::Yielding(at(0)),
             Self::Switching(_) => Self::Switching(at(0)),
+            Self::Turning(_) => Self::Turning(at(0)),
             Self::Forwards(_) => Self::Forwards(at(0)),
             Self::Backwards(_) => Self::Backwards(at(0)),
             Self::Falling(_) => Self::Falling(at(0)),
@@ -185,6 +180,7 @@ impl Factor {
             | Self::Time => true,
             Self::Yielding(x0) => x0 <= 2.0 * travel,
             Self::Switching(vs)
+            | Self::Turning(vs)
             | Self::Forwards(vs)
             | Self::Backwards(vs)
             | Self::Falling(vs)
@@ -220,6 +216,7 @@ impl Factor {
             Self::Square => speed(&|v| v * v / (v1 * v1)),
             Self::Cube => speed(&|v| (v / v1).powi(3)),
             Self::Switching(vs) => speed(&|v| v / (v.abs() + vs)),
+            Self::Turning(vs) => speed(&|v| (v / vs).tanh()),
             Self::Forwards(vs) => speed(&|v| 0.5 + 0.5 * v / (v.abs() + vs)),
             Self::Backwards(vs) => speed(&|v| 0.5 - 0.5 * v / (v.abs() + vs)),
             Self::Falling(vs) => speed(&|v| (-v.abs() / vs).exp()),
@@ -260,6 +257,7 @@ impl Factor {
             Self::Square => format!("({v}/{v}1)^2"),
             Self::Cube => format!("({v}/{v}1)^3"),
             Self::Switching(_) => format!("{v}/({abs} + {a})"),
+            Self::Turning(_) => format!("tanh({v}/{a})"),
             Self::Forwards(_) => format!("(1 + {v}/({abs} + {a}))/2"),
             Self::Backwards(_) => format!("(1 - {v}/({abs} + {a}))/2"),
             Self::Falling(_) => format!("exp(-{abs}/{a})"),
@@ -301,6 +299,7 @@ impl Factor {
             | Self::Square
             | Self::Cube
             | Self::Switching(_)
+            | Self::Turning(_)
             | Self::Forwards(_)
             | Self::Backwards(_)
             | Self::Falling(_)
@@ -347,6 +346,7 @@ impl Factor {
             | Self::PlaceCube
             | Self::Time => Vec::new(),
             Self::Switching(a)
+            | Self::Turning(a)
             | Self::Forwards(a)
             | Self::Backwards(a)
             | Self::Falling(a)
@@ -400,6 +400,7 @@ impl Factor {
             }
             Self::Time => [false, false, true],
             Self::Switching(_)
+            | Self::Turning(_)
             | Self::Forwards(_)
             | Self::Backwards(_)
             | Self::Falling(_)
@@ -410,50 +411,6 @@ impl Factor {
             | Self::Bump(..)
             | Self::Step(..)
             | Self::Fading(_) => [false; 3],
-        }
-    }
-}
-
-/// What the records show of a site, SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Seen {
-    /// The highest speed, either way.
-    pub speed: f64,
-    /// From where to where it was.
-    pub place: (f64, f64),
-    /// From when to when.
-    pub time: (f64, f64),
-}
-
-impl Seen {
-    /// What some courses show.
-    pub(crate) fn of<'a>(courses: impl Iterator<Item = &'a Course> + Clone) -> Self {
-        let range = |of: &dyn Fn(&'a Course) -> &'a [f64]| {
-            let values = courses.clone().flat_map(of);
-            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| {
-                (low.min(x), high.max(x))
-            })
-        };
-        let speed = range(&|course| &course.speed);
-        Self {
-            speed: speed.0.abs().max(speed.1.abs()),
-            place: range(&|course| &course.place),
-            time: range(&|course| &course.time),
-        }
-    }
-
-    /// The length of the way.
-    pub(crate) fn travel(&self) -> f64 {
-        self.place.1 - self.place.0
-    }
-
-    /// Round numbers of what was seen.
-    pub(crate) fn scales(&self) -> Scales {
-        let most = self.place.0.abs().max(self.place.1.abs());
-        Scales {
-            speed: round(self.speed),
-            place: round(most),
-            time: round(self.time.1.max(1e-3)),
         }
     }
 }
@@ -473,18 +430,4 @@ fn late(course: &Course, tau: f64, of: &dyn Fn(f64) -> f64) -> Vec<f64> {
 
 fn wave_number(p: f64, turns: bool) -> f64 {
     if turns { p } else { std::f64::consts::TAU / p }
-}
-
-/// The nearest of 1, 2, 5 times a power of ten, below.
-fn round(value: f64) -> f64 {
-    let power = 10.0_f64.powf(value.max(1e-12).log10().floor());
-    let leading = value / power;
-    power
-        * if leading >= 5.0 {
-            5.0
-        } else if leading >= 2.0 {
-            2.0
-        } else {
-            1.0
-        }
 }

@@ -1,9 +1,9 @@
 //! [`Felt`]: a site with a probe run along every record.
 
 use super::Author;
-use super::factor::{Scales, Seen};
 use super::latent::Carrier;
 use super::law::Summand;
+use super::seen::{Scales, Seen};
 use super::site::{Site, probe};
 use crate::diagnosis::projection::dot;
 use crate::diagnosis::stage::{Ground, Stage};

@@ -1,7 +1,8 @@
 //! [`Law`]: a sum of products of shapes at a site, and its text as an effect of the language.
 
-use super::factor::{Constant, Factor, Scales, Seen};
+use super::factor::{Constant, Factor};
 use super::latent::Carrier;
+use super::seen::{Scales, Seen};
 use super::site::{Kind, Site, Written, si};
 use crate::diagnosis::{Hypothesis, Knob};
 use hyde_units::significant;
@@ -247,6 +248,7 @@ fn mark(factor: Factor, kind: Kind, names: &[String]) -> String {
         | Factor::Square
         | Factor::Cube
         | Factor::Switching(_)
+        | Factor::Turning(_)
         | Factor::Worked(_)
         | Factor::Falling(_)
         | Factor::Bell(_)

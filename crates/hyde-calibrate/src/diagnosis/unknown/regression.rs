@@ -1,9 +1,10 @@
 //! Forward selection of a law's terms in the space of innovations, all parameters answering (orthogonal matching pursuit:
 //! Pati, Rezaiifar and Krishnaprasad, Asilomar 1993), the constants of each term refined before the next.
 
-use super::factor::{Factor, Seen};
+use super::factor::Factor;
 use super::felt::Felt;
 use super::law::{Law, Summand};
+use super::seen::Seen;
 use crate::diagnosis::projection::{Projection, Sums};
 use rayon::prelude::*;
 
@@ -246,6 +247,7 @@ fn first_steps(term: &Summand, seen: &Seen, turns: bool) -> Vec<f64> {
             | Factor::Yielding(_)
             | Factor::Time
             | Factor::Switching(_)
+            | Factor::Turning(_)
             | Factor::Forwards(_)
             | Factor::Backwards(_)
             | Factor::Falling(_)
@@ -297,6 +299,7 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
                 by_direction.extend(shapes.clone());
             }
             speeds.extend(shapes);
+            speeds.push(vec![Factor::Turning(vs)]);
         }
         let taus = [0.003, 0.01, 0.03, 0.1].map(|part| part * duration.min(3.0));
         speeds.extend(taus.map(|tau| vec![Factor::Lagged(tau)]));
