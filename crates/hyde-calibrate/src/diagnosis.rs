@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! hypothesis     an effect at a site, with sizes and shapes; a model with some put on     diagnosis/hypothesis.rs
+//! inquiry        a model on records, with all that may be missing of it                diagnosis/inquiry.rs
 //! projection     what a change of innovations gains once parameters have answered it      diagnosis/projection.rs
 //! grid           the values of its shapes that are tried                                   diagnosis/grid.rs
 //! products       sums over rows that scores are made of                                   diagnosis/products.rs
@@ -28,6 +29,7 @@ mod exchange;
 mod forward;
 mod grid;
 mod hypothesis;
+mod inquiry;
 mod pair;
 mod products;
 mod profile;
@@ -45,12 +47,12 @@ pub(crate) use projection::Projection;
 pub(crate) use stage::{Ground, Stage, flat};
 
 pub use apart::{Alternative, Experiment};
-pub use calibrated::calibrate_found;
-pub use hypothesis::{Build, Built, Hypothesis, Knob};
+pub use hypothesis::{Built, Hypothesis, Knob};
+pub use inquiry::{Author, Inquiry};
 pub use scan::Score;
 pub use search::{Diagnosis, Finding, Gates, Quantity, Round, Verdict, diagnose};
 pub use trial::{Rejection, Trial};
 pub use unknown::{
-    Author, Factor, FoundLaw, Inquiry, Kind, LatentForce, Law, Map, Panel, Scales, Seen, Site,
-    Summand, Unknown, Variable, Written, propose,
+    Factor, FoundLaw, Kind, LatentForce, Law, Map, Panel, Scales, Seen, Site, Summand, Unknown,
+    Variable, Written,
 };

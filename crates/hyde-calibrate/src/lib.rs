@@ -44,10 +44,9 @@ mod windows;
 
 pub use blocks::Fold;
 pub use diagnosis::{
-    Alternative, Author, Build, Built, Diagnosis, Experiment, Factor, Finding, FoundLaw, Gates,
+    Alternative, Author, Built, Diagnosis, Experiment, Factor, Finding, FoundLaw, Gates,
     Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, Map, Panel, Quantity, Rejection, Round,
-    Scales, Score, Seen, Site, Summand, Trial, Unknown, Variable, Verdict, Written,
-    calibrate_found, diagnose, propose,
+    Scales, Score, Seen, Site, Summand, Trial, Unknown, Variable, Verdict, Written, diagnose,
 };
 pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};

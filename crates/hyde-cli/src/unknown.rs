@@ -98,7 +98,7 @@ pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
             );
             let _ = writeln!(
                 out,
-                "  gain {}, {} on unseen rows; {} of what the best panel of the map gains",
+                "  gain {}, {} on unseen rows; {} of what the best row of the map gains",
                 significant(own.gain, 3),
                 significant(own.fold_gain, 3),
                 significant(own.share, 3)
@@ -121,8 +121,9 @@ pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
         unknown.map.site.path
     );
     let name = |panel: &Panel| panel.variable.name(unknown.map.site.kind);
+    let wave = wave(&unknown.map);
     let widths = unknown.map.panels.iter().map(|panel| name(panel).len());
-    let width = widths.max().unwrap_or(0);
+    let width = widths.max().unwrap_or(0).max(wave.len());
     for panel in &unknown.map.panels {
         let _ = writeln!(
             out,
@@ -132,7 +133,15 @@ pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
             significant(panel.band, 3)
         );
     }
+    let gain = significant(unknown.map.waves, 3);
+    let _ = writeln!(out, "    {wave:<width$} {gain:>9} {:>9}", "-");
     out
+}
+
+/// The row of a map for waves too short for its panels.
+pub(crate) fn wave(map: &Map) -> String {
+    let [place, speed] = map.site.kind.variables();
+    format!("wave over {place}, or {speed} times one")
 }
 
 /// The same as JSON; numbers are SI.
@@ -166,11 +175,15 @@ pub(crate) fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
     let others: Vec<Value> = unknown
         .others
         .iter()
-        .map(|map| json!({ "site": map.site.path, "panels": panels(map) }))
+        .map(|map| json!({ "site": map.site.path, "panels": panels(map), "waves": map.waves }))
         .collect();
     json!({
         "law": unknown.found.as_ref().map(|own| law(own, found)),
-        "map": { "site": unknown.map.site.path, "panels": panels(&unknown.map) },
+        "map": {
+            "site": unknown.map.site.path,
+            "panels": panels(&unknown.map),
+            "waves": unknown.map.waves,
+        },
         "latent": latent,
         "other_sites": others,
     })

@@ -219,6 +219,42 @@ fn an_error_of_the_scale_at_one_place_is_found_and_written() {
     assert_eq!(found["unexplained"], false);
 }
 
+/// Waves of 7 mm over a way of more than 100 mm show in no function of 16 pieces: every site's map is empty but for its waves.
+#[test]
+fn a_drag_that_waves_shortly_is_found_where_it_is() {
+    let found = diagnosed(
+        "effect Odd on Translational.Rail
+           add a.f = 40 [N]*sin(2*pi*a.s/(7.3 [mm]))*v/(100 [mm/s]);
+           Velocity v = der(a.s);
+         end Odd;",
+        " with Odd on saddle.a",
+    );
+    let law = law_alone(&found);
+    assert_eq!(found["effects"][0]["site"], "saddle.a");
+    assert!(law.contains("Fs*v/v1*sin(2*pi*a.s/period)"), "{law}");
+    let period = &found["effects"][0]["shape"]["period"]["value"];
+    let period = period.as_f64().unwrap();
+    assert!((period / 7.3e-3 - 1.0).abs() < 0.005, "{period}");
+    let map = &found["unknown"]["map"];
+    let panel = map["panels"][0]["gain"].as_f64().unwrap();
+    assert!(map["waves"].as_f64().unwrap() > 3.0 * panel, "{panel}");
+}
+
+#[test]
+fn a_scale_that_lags_by_direction_is_found_and_written() {
+    let found = diagnosed(
+        "effect Odd on Translational.PositionSensor
+           wrap s by s - 4 [um]*tanh(der(a.s)/(3 [mm/s]));
+         end Odd;",
+        " with Odd on scale",
+    );
+    let law = law_alone(&found);
+    assert_eq!(found["effects"][0]["site"], "scale");
+    assert!(law.contains("wrap s by s + e*tanh(v/vs);"), "{law}");
+    let size = found["effects"][0]["size"].as_f64().unwrap();
+    assert!((size / -4e-6 - 1.0).abs() < 0.05, "{size}");
+}
+
 /// In the linear answer a square with its sign gains more than the cube; fitted, the cube does.
 #[test]
 fn a_coupling_that_becomes_stiffer_is_found_and_written() {

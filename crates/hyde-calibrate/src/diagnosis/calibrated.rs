@@ -6,19 +6,16 @@
 //! rest). So parameters, sizes and shapes with their intervals are those of a fit with the observer of the model found; errors
 //! are still told by the declared one's. Where nothing but equations changed the declared gain is as good, and stays.
 
+use super::inquiry::Inquiry;
 use super::search::Diagnosis;
 use super::stage::{Ground, Stage};
-use super::unknown::Inquiry;
 use crate::gain::Observer;
 use crate::least_squares::{MAX_STEPS, Slopes, sum_of_squares};
 use crate::plant::Unsupported;
 use crate::solution::Solution;
 
 /// Calibrates the model that was found with an observer of its own, where it has states that the declared one's does not know.
-///
-/// # Errors
-/// The model has no fixed-step form.
-pub fn calibrate_found(
+pub(super) fn calibrate_found(
     inquiry: &Inquiry<'_>,
     diagnosis: &mut Diagnosis,
 ) -> Result<(), Unsupported> {
@@ -26,11 +23,7 @@ pub fn calibrate_found(
         return Ok(());
     }
     let stage = diagnosis.stage();
-    let declared = Ground {
-        recordings: inquiry.recordings,
-        observer: inquiry.observer,
-        set: inquiry.set,
-    };
+    let declared = inquiry.ground();
     let places = declared.set_in(&stage.program, &stage.values());
     let observer = Observer::new(&stage.program, inquiry.recordings, &places)?;
     if inquiry.observer.knows_states_of(&observer) {

@@ -2,8 +2,8 @@
 //! ones anew against their rivals ([`Forward::exchange`]). Where nothing gains alone and something is left, two are tried together ([`super::pair`]).
 //!
 //! Effects mask each other, so the best of the first round may be one that stands for several. Where its branch ends with
-//! something left, that of the runner-up is followed too: a beam of two, which costs nothing where the first one explains
-//! all there is.
+//! something left, that of the runner-up is followed too ([`Forward::followed`]): a beam of two, which costs nothing
+//! where the first one explains all there is.
 
 use super::apart::Alternative;
 use super::contest::Contest;
@@ -44,6 +44,16 @@ pub(crate) struct Branch {
     pub(crate) taken: Vec<Taken>,
 }
 
+impl Branch {
+    /// One that begins at a stage without effects.
+    pub(crate) fn of(stage: Stage) -> Self {
+        Self {
+            stage,
+            taken: Vec::new(),
+        }
+    }
+}
+
 /// The search, and what it has met so far.
 pub(crate) struct Forward<'s> {
     pub(crate) ground: &'s Ground<'s>,
@@ -77,10 +87,10 @@ impl<'s> Forward<'s> {
         }
     }
 
-    /// The end of the better of two branches.
-    pub(crate) fn search(&mut self, stage: Stage) -> Result<Branch, Unsupported> {
-        let taken = Vec::new();
-        let first = self.follow(Branch { stage, taken })?;
+    /// The end of a branch, or that of its first round's runner-up, if that is better.
+    pub(crate) fn followed(&mut self, mut branch: Branch) -> Result<Branch, Unsupported> {
+        self.settle(&mut branch)?;
+        let first = self.follow(branch)?;
         if explained(&first.stage.solution) {
             return Ok(first);
         }
@@ -134,16 +144,22 @@ impl<'s> Forward<'s> {
             if !self.round(&mut branch)? {
                 break;
             }
-            self.prune(&mut branch);
-            // What stands on a wrong effect, or one with a wrong shape, is not built upon.
-            if !explained(&branch.stage.solution) && self.exchange(&mut branch)? {
-                self.prune(&mut branch);
-            }
+            self.settle(&mut branch)?;
         }
         if explained(&branch.stage.solution) && self.exchange(&mut branch)? {
             self.prune(&mut branch);
         }
         Ok(branch)
+    }
+
+    /// Drops what is not missed beside what a round took in. What stands on a wrong effect, or one with a wrong shape, is
+    /// not built upon.
+    fn settle(&mut self, branch: &mut Branch) -> Result<(), Unsupported> {
+        self.prune(branch);
+        if !explained(&branch.stage.solution) && self.exchange(branch)? {
+            self.prune(branch);
+        }
+        Ok(())
     }
 
     /// Drops effects of a branch that are not missed any more.
@@ -174,8 +190,8 @@ impl<'s> Forward<'s> {
         }
     }
 
-    /// A round on a branch; whether it takes in anything.
-    fn round(&mut self, branch: &mut Branch) -> Result<bool, Unsupported> {
+    /// A round on a branch: whether it takes in anything. What follows from that is left ([`Self::followed`]).
+    pub(crate) fn round(&mut self, branch: &mut Branch) -> Result<bool, Unsupported> {
         let stage = &branch.stage;
         let tracks = stage.tracks(self.ground)?;
         let at = stage.linearise_on(&tracks, self.ground)?;

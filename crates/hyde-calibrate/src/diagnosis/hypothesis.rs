@@ -104,4 +104,4 @@ pub struct Built {
 }
 
 /// Puts hypotheses, by number, on the model; `None` where they cannot be together.
-pub type Build<'a> = dyn Fn(&[usize]) -> Option<Built> + Sync + 'a;
+pub(crate) type Build<'a> = dyn Fn(&[usize]) -> Option<Built> + Sync + 'a;

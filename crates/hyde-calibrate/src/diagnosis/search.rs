@@ -7,16 +7,17 @@
 //! number of innovations. Everything is chosen inside the records to fit.
 
 use super::apart::Alternative;
+use super::calibrated::calibrate_found;
 use super::forward::{Branch, Forward, Taken};
-use super::hypothesis::{Build, Built, Hypothesis};
+use super::hypothesis::{Built, Hypothesis};
+use super::inquiry::Inquiry;
 use super::scan::Score;
 use super::stage::{Ground, Stage};
 use super::trial::Trial;
+use super::unknown::{Places, propose, take_in};
 use super::whole::whole;
 use crate::fit::{correlation, covariance, inflation, mean_square};
-use crate::gain::Observer;
 use crate::plant::Unsupported;
-use crate::recording::Recording;
 use crate::solution::Solution;
 use crate::varied::Varied;
 
@@ -128,7 +129,7 @@ pub struct Diagnosis {
     pub kept: Vec<(String, f64)>,
     /// Something is left that no effect known explains.
     pub unexplained: bool,
-    /// What that is, where it was asked for ([`super::propose`]).
+    /// What that is, as far as it could be told.
     pub unknown: Option<super::Unknown>,
 }
 
@@ -174,88 +175,97 @@ impl Diagnosis {
 ///
 /// # Errors
 /// The model has no fixed-step form.
-#[allow(clippy::too_many_arguments, reason = "a diagnosis is of all of these")]
-pub fn diagnose(
-    recordings: &[Recording],
-    observer: &Observer,
-    varied: &[Varied],
-    set: &[(String, f64)],
-    hypotheses: &[Hypothesis],
-    build: &Build<'_>,
-    max_effects: usize,
-) -> Result<Diagnosis, Unsupported> {
-    let ground = Ground {
-        recordings,
-        observer,
-        set,
-    };
-    let Built { program, .. } = build(&[]).ok_or_else(Unsupported::singular)?;
-    let settings = ground.set_in(&program, &[]);
-    let start: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
-    let solution = ground
-        .problem(&program, varied, &settings, None)
-        .solve(&start)?;
-    let before = solution.clone();
-    let stage = Stage {
-        program,
-        effects: Vec::new(),
-        varied: varied.to_vec(),
-        kept: Vec::new(),
-        solution,
-    };
-    let innovations = stage
-        .solution
-        .innovations
-        .iter()
-        .flat_map(|i| &i.channels)
-        .map(Vec::len)
-        .sum();
+pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
+    let ground = inquiry.ground();
+    let build = |numbers: &[usize]| (inquiry.author)(numbers, &[]);
+    let declared = calibrated(inquiry, &ground)?;
+    let innovations = declared.solution.innovations.iter();
+    let innovations = innovations.flat_map(|i| &i.channels).map(Vec::len).sum();
     let mut search = Forward {
         ground: &ground,
-        hypotheses,
-        build,
-        max_effects,
+        hypotheses: inquiry.hypotheses,
+        build: &build,
+        max_effects: inquiry.max_effects,
         gates: Gates {
             tried: 1,
             innovations,
         },
         rounds: Vec::new(),
     };
-    let Branch { stage, taken } = search.search(stage)?;
-    let stage = whole(&ground, hypotheses, stage)?;
-    let rounds = search.rounds;
-    let findings = findings(&stage, hypotheses, taken);
+    let mut branch = Branch::of(declared.clone());
+    let goes_on = search.round(&mut branch)?;
+    // A law of one term that explains what no effect does alone spares the rest of the search.
+    let (mut plain, mut places) = (None, None);
+    if !explained(&branch.stage.solution) {
+        places = Places::of(inquiry, &declared)?;
+        let looked = places.as_ref();
+        plain = looked.and_then(|own| own.plain_law(&branch.stage, search.gates));
+    }
+    if goes_on && plain.is_none() {
+        branch = search.followed(branch)?;
+    }
+    let Forward { rounds, gates, .. } = search;
+    let Branch { stage, taken } = branch;
+    let stage = whole(&ground, inquiry.hypotheses, stage)?;
+    let findings = findings(&stage, inquiry.hypotheses, taken);
+    let before = &declared.solution;
     let unexplained = !explained(&stage.solution);
     let verdict = match findings.as_slice() {
         [] if unexplained => Verdict::Unknown,
         [] => Verdict::None,
-        _ if unexplained && share(&before, &stage.solution) < MOSTLY => Verdict::Unknown,
+        _ if unexplained && share(before, &stage.solution) < MOSTLY => Verdict::Unknown,
         list if list.iter().any(|finding| !finding.alternatives.is_empty()) => Verdict::OneOf,
         _ => Verdict::Effect,
     };
-    Ok(Diagnosis {
+    let mut diagnosis = Diagnosis {
         verdict,
         findings,
         effects: stage.effects,
         rounds,
-        before,
+        before: before.clone(),
         after: stage.solution,
         program: stage.program,
         varied: stage.varied,
         kept: stage.kept,
         unexplained,
         unknown: None,
+    };
+    match (places, plain) {
+        (Some(places), Some(law)) => take_in(inquiry, &mut diagnosis, places.answer(Some(law))),
+        (places, _) => propose(inquiry, &mut diagnosis, &declared, places, gates)?,
+    }
+    calibrate_found(inquiry, &mut diagnosis)?;
+    Ok(diagnosis)
+}
+
+/// The model as it is declared, calibrated.
+fn calibrated(inquiry: &Inquiry<'_>, ground: &Ground<'_>) -> Result<Stage, Unsupported> {
+    let Built { program, .. } = (inquiry.author)(&[], &[]).ok_or_else(Unsupported::singular)?;
+    let varied = inquiry.varied.to_vec();
+    let settings = ground.set_in(&program, &[]);
+    let start: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
+    let solution = ground
+        .problem(&program, &varied, &settings, None)
+        .solve(&start)?;
+    Ok(Stage {
+        program,
+        effects: Vec::new(),
+        varied,
+        kept: Vec::new(),
+        solution,
     })
 }
 
 /// The part of what was more than noise that is explained.
 fn share(before: &Solution, after: &Solution) -> f64 {
-    let rest = |solution: &Solution| {
-        let channels = solution.innovations.iter().flat_map(|i| &i.channels);
-        let more = channels.map(|list| (mean_square(list) - 1.0).max(0.0) * list.len() as f64);
-        more.sum::<f64>()
-    };
-    1.0 - rest(after) / rest(before).max(1e-300)
+    1.0 - excess(after) / excess(before).max(1e-300)
+}
+
+/// What is more than noise, of the sum of squares.
+pub(super) fn excess(solution: &Solution) -> f64 {
+    let channels = solution.innovations.iter().flat_map(|i| &i.channels);
+    let more = channels.map(|list| (mean_square(list) - 1.0).max(0.0) * list.len() as f64);
+    more.sum()
 }
 
 /// Whether innovations are what the noise makes of them: no channel of a record is materially larger, or more like itself

@@ -6,7 +6,7 @@
 //! Continuous Univariate Distributions 2, 1995, ch. 29). An effect is said to show where that passes the gate in 39 of 40
 //! sets of noise: `G - 4*sqrt(G) >= gate`.
 
-use crate::diagnosis::{Build, Built, Gates, Ground, Hypothesis, Projection, Stage, flat};
+use crate::diagnosis::{Author, Built, Gates, Ground, Hypothesis, Projection, Stage, flat};
 use crate::gain::Observer;
 use crate::least_squares::Slopes;
 use crate::observer::Innovations;
@@ -93,9 +93,9 @@ impl Reference {
         hypothesis: &'r Hypothesis,
         number: usize,
         shapes: &'r [f64],
-        build: &Build<'_>,
+        author: &Author<'_>,
     ) -> Option<Effect<'r>> {
-        let Built { program, paths } = build(&[number])?;
+        let Built { program, paths } = author(&[number], &[])?;
         let path = paths.last()?;
         let effect = Effect {
             sizes: Hypothesis::names(&hypothesis.sizes, path),

@@ -3,10 +3,7 @@
 use super::case::{Case, Planting, Size};
 use super::expected::{Reference, shows, size_of};
 use super::simulated::{Faulty, Simulated, simulated};
-use crate::diagnosis::{
-    Author, Build, Built, Hypothesis, Inquiry, Site, Verdict, Written, calibrate_found, diagnose,
-    propose,
-};
+use crate::diagnosis::{Author, Built, Hypothesis, Inquiry, Site, Verdict, Written, diagnose};
 use crate::gain::Observer;
 use crate::plant::Unsupported;
 use crate::recording::{RecordError, Recording};
@@ -35,8 +32,6 @@ pub struct Axis<'a> {
     pub set: &'a [(String, f64)],
     /// Every effect at every site.
     pub hypotheses: &'a [Hypothesis],
-    /// Puts hypotheses on the observed form.
-    pub build: &'a Build<'a>,
     /// Where a law that no effect is may act.
     pub sites: &'a [Site],
     /// Puts hypotheses and written effects on the observed form.
@@ -128,7 +123,6 @@ impl<'a> Axis<'a> {
         varied: &'a [Varied],
         set: &'a [(String, f64)],
         hypotheses: &'a [Hypothesis],
-        build: &'a Build<'a>,
         laws: (&'a [Site], &'a Author<'a>),
         simulate: &'a Simulate<'a>,
         max_effects: usize,
@@ -154,7 +148,6 @@ impl<'a> Axis<'a> {
             varied,
             set,
             hypotheses,
-            build,
             sites: laws.0,
             author: laws.1,
             simulate,
@@ -200,34 +193,21 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         .iter()
         .map(|&number| axis.hypotheses[number].clone())
         .collect();
-    let build = |numbers: &[usize]| {
-        let numbers: Vec<usize> = numbers.iter().map(|&number| known[number]).collect();
-        (axis.build)(&numbers)
-    };
     let author = |numbers: &[usize], written: &[Written]| {
         let numbers: Vec<usize> = numbers.iter().map(|&number| known[number]).collect();
         (axis.author)(&numbers, written)
     };
-    let mut found = diagnose(
-        &recordings,
-        &observer,
-        axis.varied,
-        axis.set,
-        &hypotheses,
-        &build,
-        axis.max_effects,
-    )
-    .map_err(SelftestError::Unsupported)?;
     let inquiry = Inquiry {
         recordings: &recordings,
         observer: &observer,
+        varied: axis.varied,
         set: axis.set,
         hypotheses: &hypotheses,
         sites: axis.sites,
         author: &author,
+        max_effects: axis.max_effects,
     };
-    propose(&inquiry, &mut found).map_err(SelftestError::Unsupported)?;
-    calibrate_found(&inquiry, &mut found).map_err(SelftestError::Unsupported)?;
+    let found = diagnose(&inquiry).map_err(SelftestError::Unsupported)?;
     if axis.interrupted.load(Ordering::Relaxed) {
         return Err(SelftestError::Interrupted);
     }
@@ -287,7 +267,7 @@ fn planted(axis: &Axis<'_>, case: &Case) -> Result<Planted, SelftestError> {
     let (whole, shapes) = case.direction(axis.seed, hypothesis);
     let reference = &axis.reference;
     let effect = reference
-        .effect(hypothesis, number, &shapes, axis.build)
+        .effect(hypothesis, number, &shapes, axis.author)
         .ok_or(SelftestError::Model)?;
     let detectable = effect.detectable(&whole);
     let part = match size {

@@ -8,8 +8,8 @@ use crate::project::{self, complain, print_output};
 use crate::records;
 use crate::study;
 use crate::unknown;
-use hyde_calibrate::{Built, Hypothesis, Inquiry, Knob};
-use hyde_compiler::{Additions, Candidate, DiagnosisPlan, Form};
+use hyde_calibrate::{Hypothesis, Inquiry, Knob};
+use hyde_compiler::{Candidate, DiagnosisPlan, Form};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::{Study, StudyKind};
 use serde_json::Value;
@@ -49,44 +49,18 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
         let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
         let headers = records::headers(&project.records);
         let request = project.request(&settings, &headers, Form::Observed);
-        let build = |numbers: &[usize]| {
-            let file = project.file.files.first()?.0;
-            let mut additions = Additions::kept();
-            let paths = numbers
-                .iter()
-                .map(|&number| additions.put(file, &candidates[number]))
-                .collect();
-            let compiled =
-                hyde_compiler::compile_with(&request, &additions, &mut Diagnostics::new())?;
-            Some(Built {
-                program: compiled.program,
-                paths,
-            })
-        };
-        let found = hyde_calibrate::diagnose(
-            &calibration.fitted,
-            &calibration.observer,
-            &calibration.varied,
-            &project.set(),
-            &hypotheses,
-            &build,
-            plan.max_effects,
-        );
         let author = |known: &[usize], written: &[hyde_calibrate::Written]| {
             unknown::built(&request, &candidates, known, written)
         };
-        found.and_then(|mut found| {
-            let inquiry = Inquiry {
-                recordings: &calibration.fitted,
-                observer: &calibration.observer,
-                set: &project.set(),
-                hypotheses: &hypotheses,
-                sites: &sites,
-                author: &author,
-            };
-            hyde_calibrate::propose(&inquiry, &mut found)?;
-            hyde_calibrate::calibrate_found(&inquiry, &mut found)?;
-            Ok(found)
+        hyde_calibrate::diagnose(&Inquiry {
+            recordings: &calibration.fitted,
+            observer: &calibration.observer,
+            varied: &calibration.varied,
+            set: &project.set(),
+            hypotheses: &hypotheses,
+            sites: &sites,
+            author: &author,
+            max_effects: plan.max_effects,
         })
     };
     let told = found.and_then(|found| {

@@ -88,11 +88,10 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
     let set = calibration.project.set();
     let outcomes = {
         let models = Models::new(&calibration.project, &candidates);
-        let build = |numbers: &[usize]| models.observed(numbers);
         let simulate = |numbers: &[usize], sizes: &[f64], shapes: &[f64]| {
             models.recorded(numbers, sizes, shapes)
         };
-        let author = |numbers: &[usize], written: &[Written]| models.written(numbers, written);
+        let author = |numbers: &[usize], written: &[Written]| models.observed(numbers, written);
         let interrupted = run::interrupted();
         let axis = Axis::new(
             &calibration.compiled.program,
@@ -100,7 +99,6 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
             &calibration.varied,
             &set,
             &hypotheses,
-            &build,
             (&sites, &author),
             &simulate,
             plan.max_effects,

@@ -82,13 +82,16 @@ fn unknown(told: &Told<'_>) -> Vec<[String; 3]> {
     let own = told.found.unknown.iter();
     own.flat_map(|own| {
         let site = &own.map.site;
-        own.map.panels.iter().map(move |panel| {
+        let panels = own.map.panels.iter().map(move |panel| {
             [
                 format!("{} at {}", panel.variable.name(site.kind), site.path),
                 significant(panel.gain, 3),
                 significant(panel.band, 3),
             ]
-        })
+        });
+        let waves = significant(own.map.waves, 3);
+        let wave = format!("{} at {}", crate::unknown::wave(&own.map), site.path);
+        panels.chain([[wave, waves, "-".to_owned()]])
     })
     .collect()
 }

@@ -1,10 +1,10 @@
 //! [`Felt`]: a site with a probe run along every record.
 
-use super::Author;
 use super::latent::Carrier;
 use super::law::Summand;
 use super::seen::{Scales, Seen};
 use super::site::{Site, probe};
+use crate::diagnosis::inquiry::Author;
 use crate::diagnosis::projection::dot;
 use crate::diagnosis::stage::{Ground, Stage};
 use nalgebra::DMatrix;

@@ -3,10 +3,11 @@
 //! The linear answer that selects terms is that of a small effect. Once it is fitted, another first term may be the better
 //! one ([`with_best_first`]), and further terms may stand for what parameters do then ([`shortest`]).
 
+use super::FoundLaw;
 use super::felt::Felt;
 use super::law::Summand;
 use super::regression::{Selected, select};
-use super::{FoundLaw, Inquiry};
+use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::projection::{Projection, change, dot};
 use crate::diagnosis::scan::{Node, Score};
 use crate::diagnosis::search::Gates;
@@ -15,7 +16,7 @@ use crate::diagnosis::trial::{Trial, trial, unseen};
 
 /// What the written effect is called.
 const NAME: &str = "Found";
-/// A law is refused that gains less than this part of what the best panel of its map does.
+/// A law is refused that gains less than this part of what its map says that one can.
 const LEAST_SHARE: f64 = 0.6;
 /// Other first terms that gain this part of the best one are fitted beside it, so many at most.
 const RIVAL: f64 = 0.9;
@@ -30,6 +31,7 @@ pub(super) fn with_best_first(
     stage: &Stage,
     (felt, projection): (&Felt, &Projection),
     mut own: Selected,
+    most_terms: usize,
     gate: f64,
 ) -> Selected {
     let (first, gain) = (own.law.terms[0].clone(), own.gains[0]);
@@ -60,7 +62,7 @@ pub(super) fn with_best_first(
         let mut others = std::mem::take(&mut own.others);
         others.retain(|(term, _)| *term != rival.0);
         others.insert(0, (first, gain));
-        let again = select(felt, projection, gate, Some(rival));
+        let again = select(felt, projection, gate, most_terms, Some(rival));
         own = Selected {
             others,
             ..again.unwrap_or(own)
@@ -70,7 +72,7 @@ pub(super) fn with_best_first(
 }
 
 /// The law with as few of its terms as do: a term that the linear answer asked for may stand for what parameters do once
-/// they are fitted. `None` where none passes the gates, or explains what the best panel of the map, which gains `most`, does.
+/// they are fitted. `None` where none passes the gates, or explains what the map says that a law can: `most`.
 pub(super) fn shortest(
     inquiry: &Inquiry<'_>,
     ground: &Ground<'_>,

@@ -6,6 +6,7 @@
 
 use super::felt::Felt;
 use super::latent::Course;
+use super::regression::best_wave;
 use super::site::{Kind, Site};
 use crate::diagnosis::projection::Projection;
 
@@ -64,13 +65,16 @@ pub struct Map {
     pub site: Site,
     /// Its panels.
     pub panels: Vec<Panel>,
+    /// What the best wave over place gains, by itself or times speed: of a short one panels show nothing.
+    pub waves: f64,
 }
 
 impl Map {
-    /// What the best panel gains.
+    /// What a law there can gain: as much as the best panel, or the best wave.
     #[must_use]
     pub fn gain(&self) -> f64 {
-        self.panels.first().map_or(0.0, |panel| panel.gain)
+        let panel = self.panels.first();
+        panel.map_or(0.0, |panel| panel.gain).max(self.waves)
     }
 }
 
@@ -97,6 +101,7 @@ pub(crate) fn map(felt: &Felt, projection: &Projection) -> Map {
     Map {
         site: felt.site.clone(),
         panels,
+        waves: best_wave(felt, projection),
     }
 }
 

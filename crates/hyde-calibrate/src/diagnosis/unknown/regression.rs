@@ -9,7 +9,7 @@ use crate::diagnosis::projection::{Projection, Sums};
 use rayon::prelude::*;
 
 /// Terms of a law at most.
-const MOST_TERMS: usize = 3;
+pub(crate) const MOST_TERMS: usize = 3;
 /// A further term is to gain this part of the first.
 const LEAST_PART: f64 = 0.01;
 /// Terms whose constants are refined in a round, and the part of the best one's gain that they must have before.
@@ -31,11 +31,12 @@ pub(crate) struct Selected {
     pub(crate) tried: usize,
 }
 
-/// Selects terms until the next one gains too little; the first may be given, with what it gains.
+/// Selects terms until the next one gains too little, so many at most; the first may be given, with what it gains.
 pub(crate) fn select(
     felt: &Felt,
     projection: &Projection,
     gate: f64,
+    most_terms: usize,
     first: Option<(Summand, f64)>,
 ) -> Option<Selected> {
     let dictionary = dictionary(felt);
@@ -44,7 +45,7 @@ pub(crate) fn select(
     let (mut terms, mut gains): (Vec<Summand>, Vec<f64>) = first.into_iter().unzip();
     let mut others = Vec::new();
     let mut tried = 0;
-    while terms.len() < MOST_TERMS {
+    while terms.len() < most_terms {
         // What a term gains beside those that are known: of its columns only products are needed.
         let known: Vec<Vec<f64>> = terms.iter().flat_map(|term| felt.columns(term)).collect();
         let (of_known, common) = (projection.sums(&known), felt.common(&known));
@@ -335,16 +336,6 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
         let centre = seen.place.0 + travel * f64::from(k) / 8.0;
         places.push(vec![Factor::Step(centre, 0.05 * travel)]);
     }
-    let waves = |count: usize| {
-        (1..=count).map(move |k| {
-            let half_turns = k as f64;
-            vec![Factor::Wave(if kind.turns() {
-                half_turns * std::f64::consts::PI / travel
-            } else {
-                2.0 * travel / half_turns
-            })]
-        })
-    };
     let mut found = Vec::new();
     let mut add = |speed: &[Factor], other: &[Factor]| {
         let factors = [speed, other].concat();
@@ -362,9 +353,39 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
     }
     for speed in simple.iter().filter(|_| !bends) {
         let count = if speed.is_empty() { WAVES } else { MIXED_WAVES };
-        for wave in waves(count) {
-            add(speed, &wave);
+        for wave in waves(felt, count) {
+            add(speed, &[wave]);
         }
     }
     found
+}
+
+/// Waves over place, half a turn further each over the whole way.
+fn waves(felt: &Felt, count: usize) -> impl Iterator<Item = Factor> {
+    let (turns, travel) = (felt.site.kind.turns(), felt.seen.travel());
+    (1..=count).map(move |k| {
+        let half_turns = k as f64;
+        Factor::Wave(if turns {
+            half_turns * std::f64::consts::PI / travel
+        } else {
+            2.0 * travel / half_turns
+        })
+    })
+}
+
+/// What the best wave over place gains, by itself or times speed.
+pub(crate) fn best_wave(felt: &Felt, projection: &Projection) -> f64 {
+    if felt.site.kind.bends_about_zero() {
+        return 0.0;
+    }
+    let all: Vec<Factor> = waves(felt, MIXED_WAVES).collect();
+    let gain = |wave: &Factor| {
+        let each = [
+            Summand::new(&[*wave]),
+            Summand::new(&[Factor::Speed, *wave]),
+        ];
+        let gains = each.map(|term| projection.answer(&felt.columns(&term)).gain);
+        gains.into_iter().fold(0.0, f64::max)
+    };
+    all.par_iter().map(gain).reduce(|| 0.0, f64::max)
 }

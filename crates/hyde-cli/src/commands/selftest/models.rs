@@ -31,15 +31,17 @@ impl<'a> Models<'a> {
         }
     }
 
-    /// What an observer runs.
-    pub(super) fn observed(&self, numbers: &[usize]) -> Option<Built> {
+    /// What an observer runs, with effects written for it behind those known.
+    pub(super) fn observed(&self, numbers: &[usize], written: &[Written]) -> Option<Built> {
+        if numbers.len() > 1 || !written.is_empty() {
+            let settings: BTreeMap<String, f64> = self.project.set().into_iter().collect();
+            let request = self.request(&settings, Form::Observed);
+            return unknown::built(&request, self.candidates, numbers, written);
+        }
         let built = |made: &Made| {
             let (program, paths) = made.clone()?;
             Some(Built { program, paths })
         };
-        if numbers.len() > 1 {
-            return built(&self.compiled(numbers, Form::Observed, |_| Vec::new()));
-        }
         let lock = || self.observed.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(made) = lock().get(numbers) {
             return built(made);
@@ -70,13 +72,6 @@ impl<'a> Models<'a> {
         };
         let (program, paths) = self.compiled(numbers, Form::Recorded, of_last)?;
         Some(Built { program, paths })
-    }
-
-    /// What an observer runs, with effects written for it.
-    pub(super) fn written(&self, numbers: &[usize], written: &[Written]) -> Option<Built> {
-        let settings: BTreeMap<String, f64> = self.project.set().into_iter().collect();
-        let request = self.request(&settings, Form::Observed);
-        unknown::built(&request, self.candidates, numbers, written)
     }
 
     fn compiled(

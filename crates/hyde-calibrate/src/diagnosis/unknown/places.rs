@@ -1,0 +1,187 @@
+//! [`Places`]: the sites of a stage where a law may act, each with its map, and the law that explains most there.
+
+use super::felt::Felt;
+use super::fitted::{shortest, with_best_first};
+use super::latent;
+use super::map::{self, Map};
+use super::regression::{MOST_TERMS, Selected, select};
+use super::site::Site;
+use super::{FoundLaw, Unknown};
+use crate::diagnosis::inquiry::Inquiry;
+use crate::diagnosis::projection::Projection;
+use crate::diagnosis::search::{Gates, excess, explained};
+use crate::diagnosis::stage::Stage;
+use crate::diagnosis::trial::Trial;
+use crate::fit::inflation;
+use crate::plant::Unsupported;
+use crate::solution::Solution;
+use rayon::prelude::*;
+
+/// Sites whose map gains this part of the best one's are searched for a law, so many at most.
+const NEAR: f64 = 0.8;
+const SITES: usize = 3;
+/// Gains that fall slowly: the last of the most terms a law may have still gains this part of the first.
+const SLOW: f64 = 0.1;
+/// A term that gains this part of what is more than noise, in the linear answer, may explain all once it is fitted.
+const PROMISING: f64 = 0.6;
+
+/// The sites of a stage.
+pub(crate) struct Places<'a> {
+    inquiry: &'a Inquiry<'a>,
+    stage: &'a Stage,
+    projection: Projection,
+    /// Each with its map, the best first: one at least.
+    sites: Vec<(Felt, Map)>,
+}
+
+/// A law with the number of its site.
+pub(crate) struct Best {
+    site: usize,
+    law: FoundLaw,
+    trial: Trial,
+}
+
+impl<'a> Places<'a> {
+    /// Runs a probe on every site; `None` where a force can be put nowhere.
+    pub(crate) fn of(
+        inquiry: &'a Inquiry<'a>,
+        stage: &'a Stage,
+    ) -> Result<Option<Self>, Unsupported> {
+        let ground = inquiry.ground();
+        let at = stage.linearise(&ground)?;
+        let Some(projection) = Projection::new(stage, &at) else {
+            return Ok(None);
+        };
+        let felt = |site: &Site| {
+            let felt = Felt::new(&ground, stage, site, inquiry.author)?;
+            let map = map::map(&felt, &projection);
+            Some((felt, map))
+        };
+        let mut sites: Vec<(Felt, Map)> = inquiry.sites.par_iter().filter_map(felt).collect();
+        sites.sort_by(|a, b| b.1.gain().total_cmp(&a.1.gain()));
+        Ok((!sites.is_empty()).then_some(Self {
+            inquiry,
+            stage,
+            projection,
+            sites,
+        }))
+    }
+
+    /// The law of one term that explains all, and significantly more than other effects do.
+    pub(crate) fn plain_law(&self, other: &Stage, gates: Gates) -> Option<Best> {
+        let least = PROMISING * excess(&self.stage.solution);
+        self.best(1, least, gates).filter(|best| {
+            let solution = &best.trial.stage.solution;
+            explained(solution) && solution.gain_over(&other.solution) >= gate_of_one(other, gates)
+        })
+    }
+
+    /// The law that explains most.
+    pub(crate) fn law(self, gates: Gates) -> Answer {
+        let best = self.best(MOST_TERMS, 0.0, gates);
+        self.answer(best)
+    }
+
+    /// The law of so many terms at most that explains most; its first is to gain `least` in the linear answer.
+    fn best(&self, terms: usize, least: f64, gates: Gates) -> Option<Best> {
+        let Self {
+            inquiry,
+            stage,
+            projection,
+            sites,
+        } = self;
+        let ground = inquiry.ground();
+        let gate = gate_of_one(stage, gates);
+        let most = sites.first()?.1.gain();
+        let near = sites.iter().enumerate().take(SITES);
+        let near = near.filter(|(_, (_, map))| map.gain() >= NEAR * most);
+        let mut selected: Vec<(usize, Selected)> = Vec::new();
+        for (site, (felt, _)) in near {
+            let own = select(felt, projection, gate, terms, None);
+            if let Some(own) = own.filter(|own| own.gains[0] >= least) {
+                let at = (felt, projection);
+                let own = with_best_first(inquiry, &ground, stage, at, own, terms, gate);
+                selected.push((site, own));
+            }
+        }
+        let gain = |own: &Selected| own.gains.last().copied().unwrap_or(0.0);
+        selected.sort_by(|a, b| gain(&b.1).total_cmp(&gain(&a.1)));
+        let slow = |own: &Selected| {
+            own.gains.len() == MOST_TERMS && own.gains[2] - own.gains[1] > SLOW * own.gains[0]
+        };
+        let mut best: Option<Best> = None;
+        for (site, own) in selected.into_iter().filter(|(_, own)| !slow(own)) {
+            let (felt, map) = &sites[site];
+            let at = (felt, projection, map.gain());
+            let Some((trial, law)) = shortest(inquiry, &ground, stage, at, &own, gates) else {
+                continue;
+            };
+            let known = best.as_ref();
+            if known.is_none_or(|known| law.fold_gain > known.law.fold_gain) {
+                best = Some(Best { site, law, trial });
+            }
+        }
+        best
+    }
+
+    /// A law, or none, with all that is said beside it.
+    pub(crate) fn answer(self, best: Option<Best>) -> Answer {
+        let mut sites = self.sites;
+        let at = best.as_ref().map_or(0, |best| best.site);
+        let (place, map) = sites.remove(at);
+        Answer {
+            place,
+            map,
+            others: sites.into_iter().map(|(_, map)| map).collect(),
+            projection: self.projection,
+            found: best.map(|Best { law, trial, .. }| (law, trial)),
+        }
+    }
+}
+
+/// What a gain over a stage has to reach that a single number is worth.
+pub(super) fn gate_of_one(stage: &Stage, gates: Gates) -> f64 {
+    gates.gain(1) * inflation(&stage.solution.innovations)
+}
+
+/// The site of the answer, the maps of the others, and the law that was found there.
+pub(crate) struct Answer {
+    place: Felt,
+    map: Map,
+    others: Vec<Map>,
+    projection: Projection,
+    found: Option<(FoundLaw, Trial)>,
+}
+
+impl Answer {
+    /// Where its law leads, with the number of its constants.
+    pub(super) fn solution(&self) -> Option<(&Solution, usize)> {
+        let (_, trial) = self.found.as_ref()?;
+        Some((&trial.stage.solution, trial.freedoms))
+    }
+
+    /// With what a report needs beside it: the bands of the map, and the force that the balance would need.
+    pub(super) fn told(self) -> (Unknown, Option<Trial>) {
+        let Self {
+            place,
+            mut map,
+            others,
+            projection,
+            found,
+        } = self;
+        map::add_bands(&mut map, &place, &projection);
+        let innovations = projection.innovations.as_slice();
+        let latent = place.parts();
+        let latent =
+            latent.filter_map(|(carrier, own)| latent::smoothed(carrier, &innovations[own]));
+        let latent = latent.collect();
+        let (found, trial) = found.unzip();
+        let unknown = Unknown {
+            map,
+            others,
+            latent,
+            found,
+        };
+        (unknown, trial)
+    }
+}
