@@ -15,6 +15,11 @@ diagnose few of calibrate small
   max_effects 2;
 end few;
 
+diagnose forms of calibrate small
+  candidates Effects.Stribeck, Effects.Tustin, Effects.DirectionalViscous, Effects.GroundSpring, Effects.Cogging;
+  max_effects 3;
+end forms;
+
 diagnose bodies of calibrate small
   candidates Effects.Rocking, Effects.Pull;
 end bodies;
@@ -253,6 +258,36 @@ fn a_scale_that_lags_by_direction_is_found_and_written() {
     assert!(law.contains("wrap s by s + e*tanh(v/vs);"), "{law}");
     let size = found["effects"][0]["size"].as_f64().unwrap();
     assert!((size / -4e-6 - 1.0).abs() < 0.05, "{size}");
+}
+
+/// Alone both forms of friction bend towards the drag that is missing beside them.
+#[test]
+fn a_drag_beside_a_known_friction_is_found_and_both_are_told() {
+    let found = diagnosed_on(
+        &[],
+        "effect Odd on Translational.Rail
+           add a.f = 30 [N]*(v/(100 [mm/s]))*a.s/(50 [mm]);
+           Velocity v = der(a.s);
+         end Odd;",
+        " with Effects.Stribeck(dF = 40 [N], vs = 9 [mm/s]) on guide, Odd on saddle.a",
+        "forms",
+    );
+    assert_eq!(found["verdict"], "unknown", "{}", found["sentence"]);
+    let [known, law] = found["effects"].as_array().unwrap().as_slice() else {
+        panic!("{}", found["sentence"]);
+    };
+    assert_eq!(
+        (&known["effect"], &known["site"]),
+        (&"Stribeck".into(), &"guide".into())
+    );
+    let size = known["size"].as_f64().unwrap();
+    assert!((size / 40.0 - 1.0).abs() < 0.05, "{size}");
+    assert_eq!(
+        (&law["effect"], &law["site"]),
+        (&"Found".into(), &"saddle.a".into())
+    );
+    let text = found["unknown"]["law"]["text"].as_str().unwrap();
+    assert!(text.contains("add a.f = -(F*v/v1*a.s/x1);"), "{text}");
 }
 
 /// In the linear answer a square with its sign gains more than the cube; fitted, the cube does.

@@ -38,10 +38,15 @@ pub use site::{Kind, Site, Written};
 
 use super::hypothesis::Hypothesis;
 use super::inquiry::Inquiry;
-use super::search::{Diagnosis, Finding, Gates, Verdict, explained};
+use super::search::{Diagnosis, Finding, Gates, Round, Verdict, explained};
 use super::stage::{Stage, below};
+use super::trial::{Rejection, Trial};
 use crate::plant::Unsupported;
 use places::gate_of_one;
+
+/// Effects of the first round that gained this part of what the best did may have a law beside them, so many at most.
+const FIRST: f64 = 0.8;
+const FIRST_ONES: usize = 3;
 
 /// What is missing where no effect known is it.
 pub struct Unknown {
@@ -96,6 +101,13 @@ pub(super) fn propose(
     if !(diagnosis.unexplained || is_chain(inquiry, diagnosis)) {
         return Ok(());
     }
+    let last = diagnosis.stage();
+    if diagnosis.unexplained
+        && let Some(answer) = beside(inquiry, &diagnosis.rounds, &last, gates)?
+    {
+        take_in(inquiry, diagnosis, answer);
+        return Ok(());
+    }
     let places = match places {
         Some(places) => Some(places),
         None => Places::of(inquiry, declared)?,
@@ -103,7 +115,6 @@ pub(super) fn propose(
     let Some(alone) = places.map(|places| places.law(gates)) else {
         return Ok(());
     };
-    let last = diagnosis.stage();
     if last.effects.is_empty() {
         take_in(inquiry, diagnosis, alone);
         return Ok(());
@@ -135,6 +146,46 @@ pub(super) fn propose(
         take_in(inquiry, diagnosis, answer);
     }
     Ok(())
+}
+
+/// The law of one term that explains all beside one of the effects that were best at first, and better than what was taken
+/// in: a form of friction bends towards what is missing beside it, and what comes next stands on that.
+fn beside(
+    inquiry: &Inquiry<'_>,
+    rounds: &[Round],
+    last: &Stage,
+    gates: Gates,
+) -> Result<Option<Answer>, Unsupported> {
+    let trials = rounds.first().map_or(&[][..], |round| &round.trials);
+    let fine = |trial: &&Trial| matches!(trial.rejected, None | Some(Rejection::Behind));
+    let best = trials.iter().filter(fine).map(|trial| trial.gain);
+    let least = FIRST * best.fold(0.0, f64::max);
+    let first = trials
+        .iter()
+        .filter(fine)
+        .filter(|trial| trial.gain >= least);
+    let mut found: Option<Answer> = None;
+    for trial in first.take(FIRST_ONES) {
+        let Some(places) = Places::of(inquiry, &trial.stage)? else {
+            continue;
+        };
+        let Some(law) = places.plain_law(last, gates) else {
+            continue;
+        };
+        let answer = places.answer(Some(law));
+        let gain = |answer: &Answer| {
+            answer
+                .solution()
+                .map(|(own, _)| own.gain_over(&last.solution))
+        };
+        if found
+            .as_ref()
+            .is_none_or(|known| gain(&answer) > gain(known))
+        {
+            found = Some(answer);
+        }
+    }
+    Ok(found)
 }
 
 /// Whether several effects were taken in at one place where a law may act: they may be the parts of one that is not known.
