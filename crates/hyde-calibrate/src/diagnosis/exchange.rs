@@ -12,7 +12,6 @@ use super::prune::without;
 use super::scan::Score;
 use super::search::explained;
 use super::stage::Stage;
-use crate::fit::inflation;
 use crate::plant::Unsupported;
 
 /// A rival gained this part of what the effect did when it was taken in: of a stage that is explained, and of one that is
@@ -46,7 +45,7 @@ impl Forward<'_> {
             let Some((best, alternatives)) = accepted.filter(|_| fine(effect)) else {
                 continue;
             };
-            let gate = self.gates.gain(1) * inflation(&stage.solution.innovations);
+            let gate = self.gates.of_one(&stage.solution);
             let gain = trials[best].stage.solution.gain_over(&stage.solution);
             let same = trials[best].hypothesis == effect;
             if same && gain < gate {

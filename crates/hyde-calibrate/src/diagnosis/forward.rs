@@ -14,8 +14,7 @@ use super::prune::prune;
 use super::scan::{Scanner, Score};
 use super::search::{Gates, Round, explained};
 use super::stage::{Ground, Stage};
-use super::trial::{Rejection, Trial};
-use crate::fit::inflation;
+use super::trial::Trial;
 use crate::plant::Unsupported;
 use crate::track::Track;
 
@@ -99,7 +98,7 @@ impl<'s> Forward<'s> {
         };
         let second = self.follow(second)?;
         let (a, b) = (&first.stage, &second.stage);
-        let gate = self.gates.gain(1) * inflation(&a.solution.innovations);
+        let gate = self.gates.of_one(&a.solution);
         let gain = b.solution.gain_over(&a.solution);
         let simpler = b.varied.len() < a.varied.len();
         Ok(if gain >= gate || (gain >= -gate && simpler) {
@@ -118,11 +117,7 @@ impl<'s> Forward<'s> {
         let trials = &self.rounds[taken.round].trials;
         let best = trials.iter().filter(|trial| has(trial));
         let best = best.map(|trial| trial.gain).fold(0.0, f64::max);
-        let fine = |trial: &&Trial| {
-            matches!(trial.rejected, None | Some(Rejection::Behind))
-                && trial.gain >= RUNNER_UP * best
-                && !has(trial)
-        };
+        let fine = |trial: &&Trial| trial.passed() && trial.gain >= RUNNER_UP * best && !has(trial);
         let next = trials.iter().filter(fine);
         let Some(next) = next.max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
             return Ok(None);

@@ -47,6 +47,11 @@ impl Gates {
         MARGIN * chi_squared(freedoms.max(1), CHANCE / self.tried.max(1) as f64)
     }
 
+    /// What a gain over a model has to reach that a single number is worth.
+    pub(super) fn of_one(&self, model: &Solution) -> f64 {
+        self.gain(1) * inflation(&model.innovations)
+    }
+
     /// What a gain on what was not fitted has to reach beside that.
     #[must_use]
     pub fn material(&self) -> f64 {

@@ -84,6 +84,11 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// Whether it passed every gate, or another one is merely ahead of it.
+    pub(super) fn passed(&self) -> bool {
+        matches!(self.rejected, None | Some(Rejection::Behind))
+    }
+
     /// What it has to gain.
     pub(super) fn gate(&self, gates: Gates) -> f64 {
         gates.gain(self.freedoms) * self.inflation

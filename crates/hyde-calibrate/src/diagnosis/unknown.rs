@@ -6,11 +6,11 @@
 //! latent         a force at a site, whatever its course, in the innovations    unknown/latent.rs
 //! felt           a site with a probe run along every record                    unknown/felt.rs
 //! map            of which variable the force is a function                     unknown/map.rs
-//! seen           what records show of a site                                  unknown/seen.rs
+//! seen           what records show of a site                                   unknown/seen.rs
 //! factor         the shapes a law is a product of                              unknown/factor.rs
 //! law            a sum of products; its text                                   unknown/law.rs
 //! regression     which products, with which constants                          unknown/regression.rs
-//! places         the sites of a stage, and the law that explains most there          unknown/places.rs
+//! places         the sites of a stage, and the law that explains most there    unknown/places.rs
 //! fitted         the law on the whole model, as short as it can be             unknown/fitted.rs
 //! ```
 //! The method is that of de Silva, Higdon, Brunton and Kutz (Front. Artif. Intell. 3, 2020, 25) in that the discrepancy of a
@@ -40,9 +40,8 @@ use super::hypothesis::Hypothesis;
 use super::inquiry::Inquiry;
 use super::search::{Diagnosis, Finding, Gates, Round, Verdict, explained};
 use super::stage::{Stage, below};
-use super::trial::{Rejection, Trial};
+use super::trial::Trial;
 use crate::plant::Unsupported;
-use places::gate_of_one;
 
 /// Effects of the first round that gained this part of what the best did may have a law beside them, so many at most.
 const FIRST: f64 = 0.8;
@@ -121,7 +120,7 @@ pub(super) fn propose(
     }
     // What was taken in before may have stood for the unknown effect: the law alone is the answer where it does as well
     // as both, and where it does significantly better than what was taken in, or as well with fewer constants.
-    let gate = gate_of_one(&last, gates);
+    let gate = gates.of_one(&last.solution);
     let constants = last.varied.len() + last.kept.len() - declared.varied.len();
     let better = |alone: &Answer| {
         alone.solution().is_some_and(|(solution, freedoms)| {
@@ -157,7 +156,7 @@ fn beside(
     gates: Gates,
 ) -> Result<Option<Answer>, Unsupported> {
     let trials = rounds.first().map_or(&[][..], |round| &round.trials);
-    let fine = |trial: &&Trial| matches!(trial.rejected, None | Some(Rejection::Behind));
+    let fine = |trial: &&Trial| trial.passed();
     let best = trials.iter().filter(fine).map(|trial| trial.gain);
     let least = FIRST * best.fold(0.0, f64::max);
     let first = trials

@@ -12,7 +12,6 @@ use crate::diagnosis::projection::Projection;
 use crate::diagnosis::search::{Gates, excess, explained};
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::trial::Trial;
-use crate::fit::inflation;
 use crate::plant::Unsupported;
 use crate::solution::Solution;
 use rayon::prelude::*;
@@ -72,7 +71,8 @@ impl<'a> Places<'a> {
         let least = PROMISING * excess(&self.stage.solution);
         self.best(1, least, gates).filter(|best| {
             let solution = &best.trial.stage.solution;
-            explained(solution) && solution.gain_over(&other.solution) >= gate_of_one(other, gates)
+            explained(solution)
+                && solution.gain_over(&other.solution) >= gates.of_one(&other.solution)
         })
     }
 
@@ -91,7 +91,7 @@ impl<'a> Places<'a> {
             sites,
         } = self;
         let ground = inquiry.ground();
-        let gate = gate_of_one(stage, gates);
+        let gate = gates.of_one(&stage.solution);
         let most = sites.first()?.1.gain();
         let near = sites.iter().enumerate().take(SITES);
         let near = near.filter(|(_, (_, map))| map.gain() >= NEAR * most);
@@ -137,11 +137,6 @@ impl<'a> Places<'a> {
             found: best.map(|Best { law, trial, .. }| (law, trial)),
         }
     }
-}
-
-/// What a gain over a stage has to reach that a single number is worth.
-pub(super) fn gate_of_one(stage: &Stage, gates: Gates) -> f64 {
-    gates.gain(1) * inflation(&stage.solution.innovations)
 }
 
 /// The site of the answer, the maps of the others, and the law that was found there.
