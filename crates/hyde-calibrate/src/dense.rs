@@ -27,6 +27,83 @@ pub(crate) fn set_product(matrix: &DMatrix<f64>, vector: &[f64], product: &mut [
     add_product(matrix, vector, product);
 }
 
+/// Vectors that are multiplied at once: two or more registers full on any processor.
+pub(crate) const SIDE_BY_SIDE: usize = 8;
+
+/// The products of a matrix and of so many vectors, one or [`SIDE_BY_SIDE`]; their first entries stand side by side, then
+/// their second ones, and so on.
+pub(crate) fn set_products<const N: usize>(
+    matrix: &DMatrix<f64>,
+    vectors: &[f64],
+    products: &mut [f64],
+) {
+    if N == 1 {
+        set_product(matrix, vectors, products);
+        return;
+    }
+    assert_eq!(N * matrix.ncols(), vectors.len(), "factors a column");
+    assert_eq!(N * matrix.nrows(), products.len(), "products a row");
+    ARCH.dispatch(SetProducts::<N> {
+        matrix: matrix.as_slice(),
+        rows: matrix.nrows(),
+        vectors,
+        products,
+    });
+}
+
+/// A matrix, column behind column, times vectors that stand side by side.
+struct SetProducts<'a, const N: usize> {
+    matrix: &'a [f64],
+    rows: usize,
+    vectors: &'a [f64],
+    products: &'a mut [f64],
+}
+
+impl<const N: usize> WithSimd for SetProducts<'_, N> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        let mut row = 0;
+        // Four rows at a time: their sums stay in registers.
+        let mut blocks = self.products.chunks_exact_mut(4 * N);
+        for block in blocks.by_ref() {
+            let column_of = |matrix: &'_ [f64], column: usize| {
+                let at = column * self.rows + row;
+                [matrix[at], matrix[at + 1], matrix[at + 2], matrix[at + 3]]
+            };
+            let mut sums = [[simd.splat_f64s(0.0); N]; 4];
+            for (column, vector) in self.vectors.chunks_exact(N).enumerate() {
+                let entries = column_of(self.matrix, column);
+                let (wide, _) = S::as_simd_f64s(vector);
+                for (sums, entry) in sums.iter_mut().zip(entries) {
+                    let entry = simd.splat_f64s(entry);
+                    for (sum, &value) in sums.iter_mut().zip(wide) {
+                        *sum = simd.mul_add_e_f64s(entry, value, *sum);
+                    }
+                }
+            }
+            for (out, sums) in block.chunks_exact_mut(N).zip(sums) {
+                let (wide, _) = S::as_mut_simd_f64s(out);
+                wide.iter_mut().zip(sums).for_each(|(out, sum)| *out = sum);
+            }
+            row += 4;
+        }
+        for out in blocks.into_remainder().chunks_exact_mut(N) {
+            let (wide, _) = S::as_mut_simd_f64s(out);
+            wide.fill(simd.splat_f64s(0.0));
+            for (column, vector) in self.vectors.chunks_exact(N).enumerate() {
+                let entry = simd.splat_f64s(self.matrix[column * self.rows + row]);
+                let (values, _) = S::as_simd_f64s(vector);
+                for (out, &value) in wide.iter_mut().zip(values) {
+                    *out = simd.mul_add_e_f64s(entry, value, *out);
+                }
+            }
+            row += 1;
+        }
+    }
+}
+
 /// A matrix, column behind column, times a vector, added to a sum as long as a column.
 struct AddProduct<'a> {
     matrix: &'a [f64],
@@ -95,6 +172,20 @@ mod tests {
                 add_product(&matrix, vector.as_slice(), &mut product);
                 let known = (&matrix * vector).add_scalar(1.0);
                 assert_eq!(product, known.as_slice(), "{rows} x {columns}");
+            }
+        }
+    }
+    #[test]
+    fn vectors_side_by_side_are_multiplied_as_each_is() {
+        const N: usize = SIDE_BY_SIDE;
+        for rows in 1..20 {
+            for columns in 0..10 {
+                let matrix = DMatrix::from_fn(rows, columns, |i, j| (i * 7 + j) as f64 - 11.0);
+                let vectors = DMatrix::from_fn(N, columns, |n, j| (3 * n + j) as f64 - 5.0);
+                let mut products = vec![1.0; rows * N];
+                set_products::<N>(&matrix, vectors.as_slice(), &mut products);
+                let known = &vectors * matrix.transpose();
+                assert_eq!(products, known.as_slice(), "{rows} x {columns}");
             }
         }
     }

@@ -23,7 +23,7 @@ const MOST: usize = 4;
 impl Forward<'_> {
     /// Exchanges effects of a branch, or their shapes; whether any was.
     pub(super) fn exchange(&mut self, branch: &mut Branch) -> Result<bool, Unsupported> {
-        let Branch { stage, taken } = branch;
+        let Branch { stage, taken, .. } = branch;
         let earlier = stage.effects.len().saturating_sub(1);
         let mut exchanged = false;
         for effect in stage.numbers().into_iter().take(earlier) {

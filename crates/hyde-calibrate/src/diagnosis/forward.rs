@@ -41,6 +41,8 @@ pub(crate) struct Branch {
     pub(crate) stage: Stage,
     /// What is known of its effects, in their order.
     pub(crate) taken: Vec<Taken>,
+    /// Nothing more is to be taken in.
+    pub(crate) ended: bool,
 }
 
 impl Branch {
@@ -49,6 +51,7 @@ impl Branch {
         Self {
             stage,
             taken: Vec::new(),
+            ended: false,
         }
     }
 }
@@ -87,8 +90,7 @@ impl<'s> Forward<'s> {
     }
 
     /// The end of a branch, or that of its first round's runner-up, if that is better.
-    pub(crate) fn followed(&mut self, mut branch: Branch) -> Result<Branch, Unsupported> {
-        self.settle(&mut branch)?;
+    pub(crate) fn followed(&mut self, branch: Branch) -> Result<Branch, Unsupported> {
         let first = self.follow(branch)?;
         if explained(&first.stage.solution) {
             return Ok(first);
@@ -128,6 +130,7 @@ impl<'s> Forward<'s> {
                 round: taken.round,
                 alternatives: Vec::new(),
             }],
+            ended: false,
         }))
     }
 
@@ -135,11 +138,8 @@ impl<'s> Forward<'s> {
     fn follow(&mut self, mut branch: Branch) -> Result<Branch, Unsupported> {
         // An effect that is dropped again makes room for another: so many rounds more at most.
         let most = self.rounds.len() + self.max_effects + MORE_ROUNDS;
-        while branch.stage.effects.len() < self.max_effects && self.rounds.len() < most {
-            if !self.round(&mut branch)? {
-                break;
-            }
-            self.settle(&mut branch)?;
+        while !branch.ended && self.rounds.len() < most {
+            self.step(&mut branch)?;
         }
         if explained(&branch.stage.solution) && self.exchange(&mut branch)? {
             self.prune(&mut branch);
@@ -147,9 +147,22 @@ impl<'s> Forward<'s> {
         Ok(branch)
     }
 
+    /// A round on a branch, if there is room, and what follows from it.
+    pub(crate) fn step(&mut self, branch: &mut Branch) -> Result<(), Unsupported> {
+        if branch.stage.effects.len() < self.max_effects {
+            self.round(branch)?;
+        } else {
+            branch.ended = true;
+        }
+        if !branch.ended {
+            self.settle(branch)?;
+        }
+        Ok(())
+    }
+
     /// Drops what is not missed beside what a round took in. What stands on a wrong effect, or one with a wrong shape, is
     /// not built upon.
-    fn settle(&mut self, branch: &mut Branch) -> Result<(), Unsupported> {
+    pub(crate) fn settle(&mut self, branch: &mut Branch) -> Result<(), Unsupported> {
         self.prune(branch);
         if !explained(&branch.stage.solution) && self.exchange(branch)? {
             self.prune(branch);
@@ -185,8 +198,8 @@ impl<'s> Forward<'s> {
         }
     }
 
-    /// A round on a branch: whether it takes in anything. What follows from that is left ([`Self::followed`]).
-    pub(crate) fn round(&mut self, branch: &mut Branch) -> Result<bool, Unsupported> {
+    /// A round on a branch, which ends where it takes in nothing. What follows from that is left ([`Self::settle`]).
+    pub(crate) fn round(&mut self, branch: &mut Branch) -> Result<(), Unsupported> {
         let stage = &branch.stage;
         let tracks = stage.tracks(self.ground)?;
         let at = stage.linearise_on(&tracks, self.ground)?;
@@ -217,7 +230,8 @@ impl<'s> Forward<'s> {
             gates,
         });
         let Some((next, each)) = next else {
-            return Ok(false);
+            branch.ended = true;
+            return Ok(());
         };
         branch.stage = next;
         branch
@@ -226,6 +240,6 @@ impl<'s> Forward<'s> {
                 round,
                 alternatives,
             }));
-        Ok(true)
+        Ok(())
     }
 }

@@ -15,6 +15,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 /// Innovations, with what parameters can do about them.
 pub(crate) struct Projection {
     pub(crate) innovations: DVector<f64>,
+    /// The derivatives, a row a parameter.
     derivatives: DMatrix<f64>,
     /// Of each record, row by row with its channels beside each other: derivatives, and the innovation below them.
     pub(crate) records: Vec<DMatrix<f64>>,
@@ -87,18 +88,19 @@ impl Projection {
     pub(crate) fn new(stage: &Stage, at: &Linearised) -> Option<Self> {
         let innovations = DVector::from_vec(flat(&at.innovations));
         let n = stage.varied.len();
-        let mut derivatives = DMatrix::zeros(innovations.len(), n);
+        let mut derivatives = DMatrix::zeros(n, innovations.len());
         let mut first = 0;
         for own in &at.derivatives {
-            derivatives.rows_mut(first, own.nrows()).copy_from(own);
-            first += own.nrows();
+            let rows = own.nrows();
+            derivatives.columns_mut(first, rows).tr_copy_from(own);
+            first += rows;
         }
         let records = at.derivatives.iter().zip(&at.innovations);
         let records = records
             .map(|(own, innovations)| beside(own, innovations))
             .collect();
-        let mut a = derivatives.tr_mul(&derivatives);
-        let mut h = derivatives.tr_mul(&innovations);
+        let mut a = &derivatives * derivatives.transpose();
+        let mut h = &derivatives * &innovations;
         for (i, varied) in stage.varied.iter().enumerate() {
             if let Some(sd) = varied.prior {
                 let (scale, weight) = (varied.scale() / sd, stage.solution.weight);
@@ -130,7 +132,7 @@ impl Projection {
     /// What a change of innovations gains, and how far the parameters go to answer it, in units of their scales.
     pub(crate) fn answered(&self, change: &DVector<f64>) -> (f64, Vec<f64>) {
         let changed = &self.innovations + change;
-        let h = &self.h + self.derivatives.tr_mul(change);
+        let h = &self.h + &self.derivatives * change;
         let back = self.factor.solve(&h);
         let gain = self.least - (changed.norm_squared() - h.dot(&back));
         (gain, back.iter().map(|step| -step).collect())
@@ -148,10 +150,33 @@ impl Projection {
 
     fn sums_of(&self, columns: &DMatrix<f64>) -> Sums {
         Sums {
-            onto: self.derivatives.tr_mul(columns),
+            onto: &self.derivatives * columns,
             own: columns.tr_mul(columns),
             with_innovations: columns.tr_mul(&self.innovations),
         }
+    }
+
+    /// The same of several lists of columns, apart from each other.
+    pub(crate) fn sums_each(&self, lists: &[Vec<Vec<f64>>]) -> Vec<Sums> {
+        let rows = self.innovations.len();
+        let count = lists.iter().map(Vec::len).sum();
+        let all: Vec<&[f64]> = lists.iter().flatten().map(Vec::as_slice).collect();
+        let all = DMatrix::from_vec(rows, count, all.concat());
+        let onto = &self.derivatives * &all;
+        let mut first = 0;
+        let own = |columns: &Vec<Vec<f64>>| {
+            let onto = onto.columns(first, columns.len()).into_owned();
+            first += columns.len();
+            let with_innovations = columns
+                .iter()
+                .map(|column| dot(column, self.innovations.as_slice()));
+            Sums {
+                onto,
+                own: common(columns, columns),
+                with_innovations: DVector::from_iterator(columns.len(), with_innovations),
+            }
+        };
+        lists.iter().map(own).collect()
     }
 
     /// The sizes that gain most if the answer is linear, from products.
@@ -174,7 +199,7 @@ impl Projection {
         let sums = self.sums_of(&columns);
         let gain = |innovations| {
             let innovations = DVector::from_vec(innovations);
-            let h = self.derivatives.tr_mul(&innovations);
+            let h = &self.derivatives * &innovations;
             let with_innovations = columns.tr_mul(&innovations);
             self.answer_to(&sums.onto, sums.own.clone(), &with_innovations, &h)
                 .gain

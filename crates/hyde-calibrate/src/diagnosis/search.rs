@@ -14,7 +14,7 @@ use super::inquiry::Inquiry;
 use super::scan::Score;
 use super::stage::{Ground, Stage};
 use super::trial::Trial;
-use super::unknown::{Places, propose, take_in};
+use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
 use crate::fit::{correlation, covariance, inflation, mean_square};
 use crate::plant::Unsupported;
@@ -198,19 +198,29 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
         rounds: Vec::new(),
     };
     let mut branch = Branch::of(declared.clone());
-    let goes_on = search.round(&mut branch)?;
-    // A law of one term that explains what no effect does alone spares the rest of the search.
-    let (mut plain, mut places) = (None, None);
+    search.round(&mut branch)?;
+    // A law of one term that explains what no effect does alone, or beside another, spares the rest of the search.
+    let (mut law, mut places) = (None, None);
     if !explained(&branch.stage.solution) {
         places = Places::of(inquiry, &declared)?;
         let looked = places.as_ref();
-        plain = looked.and_then(|own| own.plain_law(&branch.stage, search.gates));
+        let best = looked.and_then(|own| own.plain_law(&branch.stage, search.gates));
+        if best.is_some() {
+            law = places.take().map(|own| own.answer(best));
+        }
     }
-    if goes_on && plain.is_none() {
-        branch = search.followed(branch)?;
+    if law.is_none() && !branch.ended {
+        search.settle(&mut branch)?;
+        search.step(&mut branch)?;
+        if !explained(&branch.stage.solution) {
+            law = beside(inquiry, &search.rounds[0], &branch.stage, search.gates)?;
+        }
+        if law.is_none() {
+            branch = search.followed(branch)?;
+        }
     }
     let Forward { rounds, gates, .. } = search;
-    let Branch { stage, taken } = branch;
+    let Branch { stage, taken, .. } = branch;
     let stage = whole(&ground, inquiry.hypotheses, stage)?;
     let findings = findings(&stage, inquiry.hypotheses, taken);
     let before = &declared.solution;
@@ -235,9 +245,9 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
         unexplained,
         unknown: None,
     };
-    match (places, plain) {
-        (Some(places), Some(law)) => take_in(inquiry, &mut diagnosis, places.answer(Some(law))),
-        (places, _) => propose(inquiry, &mut diagnosis, &declared, places, gates)?,
+    match law {
+        Some(answer) => take_in(inquiry, &mut diagnosis, answer),
+        None => propose(inquiry, &mut diagnosis, &declared, places, gates)?,
     }
     calibrate_found(inquiry, &mut diagnosis)?;
     Ok(diagnosis)

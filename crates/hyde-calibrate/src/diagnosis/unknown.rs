@@ -101,12 +101,6 @@ pub(super) fn propose(
         return Ok(());
     }
     let last = diagnosis.stage();
-    if diagnosis.unexplained
-        && let Some(answer) = beside(inquiry, &diagnosis.rounds, &last, gates)?
-    {
-        take_in(inquiry, diagnosis, answer);
-        return Ok(());
-    }
     let places = match places {
         Some(places) => Some(places),
         None => Places::of(inquiry, declared)?,
@@ -147,42 +141,43 @@ pub(super) fn propose(
     Ok(())
 }
 
-/// The law of one term that explains all beside one of the effects that were best at first, and better than what was taken
-/// in: a form of friction bends towards what is missing beside it, and what comes next stands on that.
-fn beside(
+/// The law of one term that explains all beside one of the effects that were best in the first round, and better than what
+/// was taken in since: a form of friction bends towards what is missing beside it, and what comes next stands on that.
+pub(super) fn beside(
     inquiry: &Inquiry<'_>,
-    rounds: &[Round],
+    first: &Round,
     last: &Stage,
     gates: Gates,
 ) -> Result<Option<Answer>, Unsupported> {
-    let trials = rounds.first().map_or(&[][..], |round| &round.trials);
     let fine = |trial: &&Trial| trial.passed();
-    let best = trials.iter().filter(fine).map(|trial| trial.gain);
+    let best = first.trials.iter().filter(fine).map(|trial| trial.gain);
     let least = FIRST * best.fold(0.0, f64::max);
-    let first = trials
-        .iter()
-        .filter(fine)
-        .filter(|trial| trial.gain >= least);
+    let ones = first.trials.iter().filter(fine);
+    let ones = ones.filter(|trial| trial.gain >= least);
+    let law = |inquiry: &Inquiry<'_>, trial: &Trial| -> Result<Option<Answer>, Unsupported> {
+        let places = Places::of(inquiry, &trial.stage)?;
+        Ok(places.and_then(|places| {
+            let law = places.plain_law(last, gates)?;
+            Some(places.answer(Some(law)))
+        }))
+    };
+    let gain = |answer: &Answer| {
+        let found = answer.solution();
+        found.map_or(0.0, |(own, _)| own.gain_over(&last.solution))
+    };
     let mut found: Option<Answer> = None;
-    for trial in first.take(FIRST_ONES) {
-        let Some(places) = Places::of(inquiry, &trial.stage)? else {
-            continue;
-        };
-        let Some(law) = places.plain_law(last, gates) else {
-            continue;
-        };
-        let answer = places.answer(Some(law));
-        let gain = |answer: &Answer| {
-            answer
-                .solution()
-                .map(|(own, _)| own.gain_over(&last.solution))
-        };
-        if found
-            .as_ref()
-            .is_none_or(|known| gain(&answer) > gain(known))
-        {
-            found = Some(answer);
+    for trial in ones.take(FIRST_ONES) {
+        // Beside another first one the law is sought at its site, and everywhere only if it does better there.
+        if let Some(known) = &found {
+            let there = Inquiry {
+                sites: std::slice::from_ref(known.site()),
+                ..*inquiry
+            };
+            if law(&there, trial)?.is_none_or(|own| gain(&own) <= gain(known)) {
+                continue;
+            }
         }
+        found = law(inquiry, trial)?.or(found);
     }
     Ok(found)
 }

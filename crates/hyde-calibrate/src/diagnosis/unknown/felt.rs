@@ -4,6 +4,7 @@ use super::latent::Carrier;
 use super::law::Summand;
 use super::seen::{Scales, Seen};
 use super::site::{Site, probe};
+use crate::dense::SIDE_BY_SIDE;
 use crate::diagnosis::inquiry::Author;
 use crate::diagnosis::projection::dot;
 use crate::diagnosis::stage::{Ground, Stage};
@@ -51,15 +52,24 @@ impl Felt {
 
     /// The changes of innovations a unit of each size of a term.
     pub(crate) fn columns(&self, term: &Summand) -> Vec<Vec<f64>> {
+        self.columns_of(std::slice::from_ref(term)).concat()
+    }
+
+    /// The same of several terms, which are run side by side.
+    pub(crate) fn columns_of(&self, terms: &[Summand]) -> Vec<Vec<Vec<f64>>> {
         let turns = self.site.kind.turns();
-        let mut lists: Vec<Vec<f64>> = vec![Vec::new(); term.sizes.len()];
+        let count: usize = terms.iter().map(|term| term.sizes.len()).sum();
+        let mut lists: Vec<Vec<f64>> = vec![Vec::new(); count];
         for carrier in &self.carriers {
-            let courses = term.along(carrier, turns, &self.scales);
-            for (list, course) in lists.iter_mut().zip(&courses) {
-                list.extend(carrier.change(course));
+            let along = |term: &Summand| term.along(carrier, turns, &self.scales);
+            let courses: Vec<Vec<f64>> = terms.iter().flat_map(along).collect();
+            for (list, change) in lists.iter_mut().zip(carrier.changes(&courses)) {
+                list.extend(change);
             }
         }
-        lists
+        let mut lists = lists.into_iter();
+        let own = |term: &Summand| lists.by_ref().take(term.sizes.len()).collect();
+        terms.iter().map(own).collect()
     }
 
     /// What a term's columns have in common with given changes: a row a size of the term. `forces` are those changes as
@@ -104,13 +114,17 @@ impl Felt {
     /// The changes of innovations by forces given along every record: a function of the record's number.
     pub(crate) fn changes(&self, forces: &[Vec<Vec<f64>>]) -> Vec<Vec<f64>> {
         let count = forces.first().map_or(0, Vec::len);
-        (0..count)
-            .into_par_iter()
-            .map(|which| {
-                let each = self.carriers.iter().zip(forces);
-                each.flat_map(|(carrier, own)| carrier.change(&own[which]))
-                    .collect()
-            })
-            .collect()
+        let firsts = (0..count).into_par_iter().step_by(SIDE_BY_SIDE);
+        let few = |first: usize| {
+            let own = first..count.min(first + SIDE_BY_SIDE);
+            let each = self.carriers.iter().zip(forces);
+            each.map(|(carrier, forces)| carrier.changes(&forces[own.clone()]))
+                .reduce(|mut lists, more| {
+                    lists.iter_mut().zip(more).for_each(|(a, b)| a.extend(b));
+                    lists
+                })
+                .unwrap_or_default()
+        };
+        firsts.flat_map_iter(few).collect()
     }
 }

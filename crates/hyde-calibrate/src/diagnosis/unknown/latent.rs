@@ -9,7 +9,7 @@
 //! does what any change has in common with every course, which is the same rows backwards. Guards are taken to act when they
 //! do without the force.
 
-use crate::dense::{add_product, set_product};
+use crate::dense::{SIDE_BY_SIDE, add_product, set_product, set_products};
 use crate::diagnosis::projection::dot;
 use crate::gain::Observer;
 use crate::observer::When;
@@ -169,34 +169,62 @@ impl Carrier {
         vec![self.rows.len() - self.first_row; self.channels]
     }
 
-    /// The change of whitened innovations by a course of the force (one value a row), channels one behind the other.
-    pub(crate) fn change(&self, force: &[f64]) -> Vec<f64> {
-        let counted = self.rows.len() - self.first_row;
-        let mut change = vec![0.0; self.channels * counted];
-        let mut error = vec![0.0; self.states];
-        let mut room = vec![0.0; self.channels + self.states];
-        let entries = self.entries.chunks_exact(2 * self.states.max(1));
-        for (number, (row, entry)) in self.rows.iter().zip(entries).enumerate() {
-            set_product(&self.passages[row.passage].matrix, &error, &mut room);
-            let (answer, next) = room.split_at(self.channels);
-            let now = force[number];
-            if let Some(at) = number.checked_sub(self.first_row) {
-                let shown = &self.shown[number * self.channels..];
-                for (channel, (value, shown)) in answer.iter().zip(shown).enumerate() {
-                    change[channel * counted + at] = value + shown * now;
-                }
-            }
-            let growth = force.get(number + 1).map_or(0.0, |then| then - now);
-            let (first, second) = entry.split_at(self.states);
-            for (state, value) in error.iter_mut().enumerate() {
-                *value = next[state] + first[state] * now + second[state] * growth;
-            }
-            row.fixed.iter().for_each(|&state| error[state] = 0.0);
-        }
-        change
+    /// The changes of whitened innovations by courses of the force (a value a row), channels one behind the other.
+    pub(crate) fn changes(&self, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
+        let few = forces.chunks(SIDE_BY_SIDE);
+        few.flat_map(|few| match few {
+            [first, second] => [self.beside::<1>(&[first]), self.beside::<1>(&[second])].concat(),
+            [one] => self.beside::<1>(&[one]),
+            few => self.beside::<SIDE_BY_SIDE>(&few.iter().collect::<Vec<_>>()),
+        })
+        .collect()
     }
 
-    /// What the changes by unit forces in each row have in common with a given change: the transpose of [`Self::change`].
+    /// The same of so many courses at most, side by side.
+    fn beside<const N: usize>(&self, forces: &[&Vec<f64>]) -> Vec<Vec<f64>> {
+        let counted = self.rows.len() - self.first_row;
+        let mut changes = vec![vec![0.0; self.channels * counted]; forces.len()];
+        let mut errors = vec![[0.0; N]; self.states];
+        let mut room = vec![[0.0; N]; self.channels + self.states];
+        let at = |row: usize| -> [f64; N] {
+            let force = |n: usize| forces.get(n).and_then(|force| force.get(row));
+            std::array::from_fn(|n| force(n).copied().unwrap_or(0.0))
+        };
+        let mut now = at(0);
+        let entries = self.entries.chunks_exact(2 * self.states.max(1));
+        for (number, (row, entry)) in self.rows.iter().zip(entries).enumerate() {
+            let matrix = &self.passages[row.passage].matrix;
+            set_products::<N>(matrix, errors.as_flattened(), room.as_flattened_mut());
+            let (answer, next) = room.split_at(self.channels);
+            if let Some(counts) = number.checked_sub(self.first_row) {
+                let shown = &self.shown[number * self.channels..];
+                for (channel, (values, shown)) in answer.iter().zip(shown).enumerate() {
+                    let place = channel * counted + counts;
+                    for ((change, value), now) in changes.iter_mut().zip(values).zip(now) {
+                        change[place] = value + shown * now;
+                    }
+                }
+            }
+            // The last force does not grow any more.
+            let then = if number + 1 < self.rows.len() {
+                at(number + 1)
+            } else {
+                now
+            };
+            let (first, second) = entry.split_at(self.states);
+            let each = errors.iter_mut().zip(next).zip(first.iter().zip(second));
+            for ((errors, next), (first, second)) in each {
+                for n in 0..N {
+                    errors[n] = next[n] + first * now[n] + second * (then[n] - now[n]);
+                }
+            }
+            row.fixed.iter().for_each(|&state| errors[state] = [0.0; N]);
+            now = then;
+        }
+        changes
+    }
+
+    /// What the changes by unit forces in each row have in common with a given change: the transpose of [`Self::changes`].
     pub(crate) fn common(&self, change: &[f64]) -> Vec<f64> {
         let counted = self.rows.len() - self.first_row;
         let mut force = vec![0.0; self.rows.len()];
@@ -262,14 +290,12 @@ pub(crate) fn smoothed(carrier: &Carrier, innovations: &[f64]) -> Option<LatentF
     }
     let at = |knot: usize| knot as f64 * (rows - 1) as f64 / (knots - 1) as f64;
     let width = at(1);
-    let columns: Vec<Vec<f64>> = (0..knots)
-        .map(|knot| {
-            let hat: Vec<f64> = (0..rows)
-                .map(|row| (1.0 - (row as f64 - at(knot)).abs() / width).max(0.0))
-                .collect();
-            carrier.change(&hat)
-        })
-        .collect();
+    let hat = |knot: usize| -> Vec<f64> {
+        let each = 0..rows;
+        each.map(|row| (1.0 - (row as f64 - at(knot)).abs() / width).max(0.0))
+            .collect()
+    };
+    let columns = carrier.changes(&(0..knots).map(hat).collect::<Vec<_>>());
     let mut gram = DMatrix::zeros(knots, knots);
     let mut b = DVector::zeros(knots);
     for i in 0..knots {

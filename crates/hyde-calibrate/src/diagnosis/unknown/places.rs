@@ -1,10 +1,10 @@
 //! [`Places`]: the sites of a stage where a law may act, each with its map, and the law that explains most there.
 
 use super::felt::Felt;
-use super::fitted::{shortest, with_best_first};
+use super::fitted::{Fitting, Wanted};
 use super::latent;
 use super::map::{self, Map};
-use super::regression::{MOST_TERMS, Selected, select};
+use super::regression::{MOST_TERMS, Selected};
 use super::site::Site;
 use super::{FoundLaw, Unknown};
 use crate::diagnosis::inquiry::Inquiry;
@@ -19,8 +19,6 @@ use rayon::prelude::*;
 /// Sites whose map gains this part of the best one's are searched for a law, so many at most.
 const NEAR: f64 = 0.8;
 const SITES: usize = 3;
-/// Gains that fall slowly: the last of the most terms a law may have still gains this part of the first.
-const SLOW: f64 = 0.1;
 /// A term that gains this part of what is more than noise, in the linear answer, may explain all once it is fitted.
 const PROMISING: f64 = 0.6;
 
@@ -68,8 +66,12 @@ impl<'a> Places<'a> {
 
     /// The law of one term that explains all, and significantly more than other effects do.
     pub(crate) fn plain_law(&self, other: &Stage, gates: Gates) -> Option<Best> {
-        let least = PROMISING * excess(&self.stage.solution);
-        self.best(1, least, gates).filter(|best| {
+        let wanted = Wanted {
+            terms: 1,
+            least: PROMISING * excess(&self.stage.solution),
+            all: true,
+        };
+        self.best(wanted, gates).filter(|best| {
             let solution = &best.trial.stage.solution;
             explained(solution)
                 && solution.gain_over(&other.solution) >= gates.of_one(&other.solution)
@@ -78,44 +80,49 @@ impl<'a> Places<'a> {
 
     /// The law that explains most.
     pub(crate) fn law(self, gates: Gates) -> Answer {
-        let best = self.best(MOST_TERMS, 0.0, gates);
+        let wanted = Wanted {
+            terms: MOST_TERMS,
+            least: 0.0,
+            all: false,
+        };
+        let best = self.best(wanted, gates);
         self.answer(best)
     }
 
-    /// The law of so many terms at most that explains most; its first is to gain `least` in the linear answer.
-    fn best(&self, terms: usize, least: f64, gates: Gates) -> Option<Best> {
-        let Self {
-            inquiry,
-            stage,
-            projection,
-            sites,
-        } = self;
-        let ground = inquiry.ground();
-        let gate = gates.of_one(&stage.solution);
-        let most = sites.first()?.1.gain();
-        let near = sites.iter().enumerate().take(SITES);
+    /// Of laws as they are wanted, the one that explains most.
+    fn best(&self, wanted: Wanted, gates: Gates) -> Option<Best> {
+        let gate = gates.of_one(&self.stage.solution);
+        let most = self.sites.first()?.1.gain();
+        let near = self.sites.iter().enumerate().take(SITES);
         let near = near.filter(|(_, (_, map))| map.gain() >= NEAR * most);
-        let mut selected: Vec<(usize, Selected)> = Vec::new();
-        for (site, (felt, _)) in near {
-            let own = select(felt, projection, gate, terms, None);
-            if let Some(own) = own.filter(|own| own.gains[0] >= least) {
-                let at = (felt, projection);
-                let own = with_best_first(inquiry, &ground, stage, at, own, terms, gate);
-                selected.push((site, own));
-            }
-        }
-        let gain = |own: &Selected| own.gains.last().copied().unwrap_or(0.0);
-        selected.sort_by(|a, b| gain(&b.1).total_cmp(&gain(&a.1)));
-        let slow = |own: &Selected| {
-            own.gains.len() == MOST_TERMS && own.gains[2] - own.gains[1] > SLOW * own.gains[0]
-        };
+        let mut fitted: Vec<(usize, Fitting<'_>, Trial, Selected)> = near
+            .filter_map(|(site, (felt, map))| {
+                let fitting = Fitting {
+                    inquiry: self.inquiry,
+                    stage: self.stage,
+                    projection: &self.projection,
+                    felt,
+                    most: map.gain(),
+                    wanted,
+                    gates,
+                };
+                let (trial, law) = fitting.law()?;
+                Some((site, fitting, trial, law))
+            })
+            .collect();
+        fitted.sort_by(|a, b| b.2.gain.total_cmp(&a.2.gain));
         let mut best: Option<Best> = None;
-        for (site, own) in selected.into_iter().filter(|(_, own)| !slow(own)) {
-            let (felt, map) = &sites[site];
-            let at = (felt, projection, map.gain());
-            let Some((trial, law)) = shortest(inquiry, &ground, stage, at, &own, gates) else {
+        let mut least = f64::NEG_INFINITY;
+        for (site, fitting, trial, law) in fitted {
+            // What fits tell from the best one needs no judge.
+            if trial.gain < least {
+                break;
+            }
+            let near = trial.gain - gate;
+            let Some((trial, law)) = fitting.judged(trial, law) else {
                 continue;
             };
+            least = least.max(near);
             let known = best.as_ref();
             if known.is_none_or(|known| law.fold_gain > known.law.fold_gain) {
                 best = Some(Best { site, law, trial });
@@ -149,6 +156,11 @@ pub(crate) struct Answer {
 }
 
 impl Answer {
+    /// The site of the law, or the one that explains most.
+    pub(super) fn site(&self) -> &Site {
+        &self.place.site
+    }
+
     /// Where its law leads, with the number of its constants.
     pub(super) fn solution(&self) -> Option<(&Solution, usize)> {
         let (_, trial) = self.found.as_ref()?;

@@ -5,8 +5,11 @@ use super::factor::Factor;
 use super::felt::Felt;
 use super::law::{Law, Summand};
 use super::seen::Seen;
+use crate::dense::SIDE_BY_SIDE;
 use crate::diagnosis::projection::{Projection, Sums};
+use crate::diagnosis::search::Gates;
 use rayon::prelude::*;
+use std::cell::LazyCell;
 
 /// Terms of a law at most.
 pub(crate) const MOST_TERMS: usize = 3;
@@ -40,8 +43,14 @@ pub(crate) fn select(
     first: Option<(Summand, f64)>,
 ) -> Option<Selected> {
     let dictionary = dictionary(felt);
+    // Of terms alone, as many as are run side by side at a time; nothing where the first one is given and no other asked.
+    let each = LazyCell::new(|| -> Vec<Sums> {
+        let several = dictionary.par_chunks(SIDE_BY_SIDE);
+        several
+            .flat_map_iter(|few| projection.sums_each(&felt.columns_of(few)))
+            .collect()
+    });
     let alone = |term: &Summand| projection.sums(&felt.columns(term));
-    let each: Vec<Sums> = dictionary.par_iter().map(alone).collect();
     let (mut terms, mut gains): (Vec<Summand>, Vec<f64>) = first.into_iter().unzip();
     let mut others = Vec::new();
     let mut tried = 0;
@@ -58,7 +67,7 @@ pub(crate) fn select(
         let gain_of = |term: &Summand| gain_beside(term, &alone(term));
         let mut scored: Vec<(Summand, f64)> = dictionary
             .par_iter()
-            .zip(&each)
+            .zip(&*each)
             .map(|(term, sums)| (term.clone(), gain_beside(term, sums)))
             .filter(|(_, gain)| gain.is_finite())
             .collect();
@@ -112,6 +121,14 @@ pub(crate) fn select(
 }
 
 impl Selected {
+    /// The gates once its terms have been tried.
+    pub(crate) fn gates(&self, before: Gates) -> Gates {
+        Gates {
+            tried: before.tried + self.tried,
+            ..before
+        }
+    }
+
     /// The law of another first term alone.
     pub(crate) fn of_other(
         &self,
@@ -373,19 +390,23 @@ fn waves(felt: &Felt, count: usize) -> impl Iterator<Item = Factor> {
     })
 }
 
-/// What the best wave over place gains, by itself or times speed.
+/// What the best wave over place gains, by itself or times speed; in proportion to speed a friction is a force.
 pub(crate) fn best_wave(felt: &Felt, projection: &Projection) -> f64 {
-    if felt.site.kind.bends_about_zero() {
+    let kind = felt.site.kind;
+    if kind.bends_about_zero() {
         return 0.0;
     }
     let all: Vec<Factor> = waves(felt, MIXED_WAVES).collect();
-    let gain = |wave: &Factor| {
-        let each = [
-            Summand::new(&[*wave]),
-            Summand::new(&[Factor::Speed, *wave]),
-        ];
-        let gains = each.map(|term| projection.answer(&felt.columns(&term)).gain);
-        gains.into_iter().fold(0.0, f64::max)
+    let gain = |few: &[Factor]| {
+        let mut terms: Vec<Summand> = few.iter().map(|wave| Summand::new(&[*wave])).collect();
+        if !kind.is_grip() {
+            terms.extend(few.iter().map(|wave| Summand::new(&[Factor::Speed, *wave])));
+        }
+        let sums = projection.sums_each(&felt.columns_of(&terms));
+        let gains = sums.iter().map(|sums| projection.answer_from(sums).gain);
+        gains.fold(0.0, f64::max)
     };
-    all.par_iter().map(gain).reduce(|| 0.0, f64::max)
+    // A wave has two columns.
+    let few = all.par_chunks(SIDE_BY_SIDE / 2);
+    few.map(gain).reduce(|| 0.0, f64::max)
 }
