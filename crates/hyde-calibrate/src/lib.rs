@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! recording      a record, evenly sampled                                         recording.rs
+//! frozen         readings that were held                                          frozen.rs
 //! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, stepping.rs, model.rs, configuration.rs, events.rs, past.rs
 //! observer       a fixed Kalman gain; whitened innovations                        gain.rs, observer.rs
 //! track          where an observer takes the plant along a record                 track.rs, track/
@@ -23,6 +24,7 @@ mod events;
 mod exponential;
 mod fit;
 mod free_run;
+mod frozen;
 mod gain;
 mod least_squares;
 mod measures;
@@ -50,6 +52,7 @@ pub use diagnosis::{
 };
 pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};
+pub use frozen::{Frozen, frozen};
 pub use gain::Observer;
 pub use least_squares::Problem;
 pub use measures::{FreeMeasure, Measures, Model};

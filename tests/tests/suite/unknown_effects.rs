@@ -5,7 +5,9 @@ use crate::points::Random;
 use hyde_tests::root;
 use serde_json::Value;
 use std::fmt::Write as _;
+use std::ops::Range;
 use std::path::Path;
+use tempfile::TempDir;
 
 /// What is tried before: nothing that was planted.
 const DIAGNOSIS: &str = "
@@ -32,6 +34,12 @@ fn diagnosed(effect: &str, with: &str) -> Value {
 
 /// The same by a study, on another axis: its text with some parts replaced.
 fn diagnosed_on(changes: &[(&str, &str)], effect: &str, with: &str, study: &str) -> Value {
+    let folder = made(changes, effect, with);
+    report(folder.path(), &["diagnose", "axis.hyde", study])
+}
+
+/// A folder with such an axis and its record.
+fn made(changes: &[(&str, &str)], effect: &str, with: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
     let model = root().join("tests/models/small_axis.hyde");
     // The saddle is read by a scale, the motor's speed by a tacho.
@@ -72,7 +80,7 @@ end made;
     );
     hyde(folder.path(), &["run", "made.hyde", "made", "--out", "out"]);
     record(folder.path());
-    report(folder.path(), &["diagnose", "axis.hyde", study])
+    folder
 }
 
 /// The results as a record with the noise that the experiment declares.
@@ -387,4 +395,40 @@ fn a_record_without_an_effect_has_no_unknown_one() {
     let found = diagnosed("", "");
     assert_eq!(found["verdict"], "none");
     assert!(found["unknown"].is_null());
+}
+
+/// Holds a column of the record through some rows.
+fn hold(folder: &Path, column: usize, rows: Range<usize>) {
+    let path = folder.join("fit-1.csv");
+    let text = read(&path);
+    let mut held = String::new();
+    let mut lines: Vec<String> = Vec::new();
+    for (line, text) in text.lines().enumerate() {
+        let mut values: Vec<&str> = text.split(',').collect();
+        // The head is the line before the first row.
+        if line == rows.start + 1 {
+            held = values[column].to_owned();
+        } else if line > rows.start + 1 && line <= rows.end {
+            values[column] = &held;
+        }
+        lines.push(values.join(","));
+    }
+    write(&path, &(lines.join("\n") + "\n"));
+}
+
+/// Two spells ask for a law that passes every gate, and is of no drive.
+#[test]
+fn of_a_reading_that_was_held_no_law_is_made() {
+    let folder = made(&[], "", "");
+    for rows in [1000..1100, 2000..2100] {
+        hold(folder.path(), 2, rows);
+    }
+    let found = report(folder.path(), &["diagnose", "axis.hyde", "few"]);
+    assert_eq!(found["verdict"], "unknown");
+    assert_eq!(found["unknown"]["law"], Value::Null);
+    let doubts = found["doubts"].to_string();
+    for spell in ["from 1 to 1.099 s", "from 2 to 2.099 s"] {
+        let told = format!("phi of fit-1.csv reads the same {spell}");
+        assert!(doubts.contains(&told), "{doubts}");
+    }
 }

@@ -17,6 +17,7 @@ use super::trial::Trial;
 use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
 use crate::fit::{correlation, covariance, inflation, mean_square};
+use crate::frozen::{Frozen, frozen};
 use crate::plant::Unsupported;
 use crate::solution::Solution;
 use crate::varied::Varied;
@@ -136,6 +137,8 @@ pub struct Diagnosis {
     pub unexplained: bool,
     /// What that is, as far as it could be told.
     pub unknown: Option<super::Unknown>,
+    /// Readings that were held for a while: no law is sought of what they leave.
+    pub frozen: Vec<Frozen>,
 }
 
 impl Diagnosis {
@@ -244,6 +247,7 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
         kept: stage.kept,
         unexplained,
         unknown: None,
+        frozen: frozen(inquiry.recordings),
     };
     match law {
         Some(answer) => take_in(inquiry, &mut diagnosis, answer),

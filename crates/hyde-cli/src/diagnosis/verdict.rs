@@ -130,6 +130,17 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
             "what is left is larger, or more like itself from row to row, than noise".to_owned(),
         );
     }
+    for held in &told.found.frozen {
+        let measured = &told.found.program.experiment.measured[held.channel];
+        let (from, to) = held.time_s;
+        doubts.push(format!(
+            "{} of {} reads the same from {} to {} s, and jumps then: a sensor or its line, not a drive",
+            measured.name,
+            held.record,
+            significant(from, 4),
+            significant(to, 4)
+        ));
+    }
     for (_, new) in &told.parameters {
         if new.left_range || new.at_bound {
             doubts.push(format!(
