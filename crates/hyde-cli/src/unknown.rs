@@ -80,7 +80,7 @@ pub(crate) fn candidate(written: &Written) -> Candidate {
 }
 
 /// The effect written, where it was seen, and the map, in lines.
-pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
+pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
     let mut out = String::new();
     match &unknown.found {
         Some(own) => {
@@ -112,7 +112,13 @@ pub(crate) fn text(unknown: &Unknown, _found: &Diagnosis) -> String {
                 );
             }
         }
-        None => out.push_str("\n  no formula is worth its constants; the map is the answer\n"),
+        None => {
+            let why = match found.frozen.as_slice() {
+                [] => "no formula is worth its constants",
+                _ => "no formula is sought where a reading was held",
+            };
+            let _ = writeln!(out, "\n  {why}; the map is the answer");
+        }
     }
     let _ = writeln!(
         out,

@@ -153,6 +153,12 @@ impl Diagnosis {
         }
     }
 
+    /// The name of the channel that was held.
+    #[must_use]
+    pub fn channel(&self, held: &Frozen) -> &str {
+        &self.program.experiment.measured[held.channel].name
+    }
+
     /// Makes a stage the answer. What is known of effects that were found before stays.
     pub(crate) fn take(&mut self, stage: Stage, hypotheses: &[Hypothesis]) {
         let known = std::mem::take(&mut self.findings);

@@ -24,6 +24,7 @@ pub(crate) fn json(told: &Told<'_>) -> Value {
         "verdict": verdict,
         "sentence": verdict::sentence(told),
         "doubts": verdict::doubts(told),
+        "held": held(told),
         "effects": effects(told),
         "unexplained": told.found.unexplained,
         "unknown": told
@@ -39,6 +40,19 @@ pub(crate) fn json(told: &Told<'_>) -> Value {
         "new_model": told.written.model,
         "new_experiment": told.written.experiment,
     })
+}
+
+/// Readings that were held.
+fn held(told: &Told<'_>) -> Value {
+    let each = told.found.frozen.iter().map(|own| {
+        json!({
+            "channel": told.found.channel(own),
+            "record": own.record,
+            "from_s": own.time_s.0,
+            "to_s": own.time_s.1,
+        })
+    });
+    each.collect()
 }
 
 fn effects(told: &Told<'_>) -> Value {

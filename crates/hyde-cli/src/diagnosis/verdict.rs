@@ -2,7 +2,7 @@
 
 use super::{Told, named};
 use crate::before_after::{self, RecordErrors};
-use hyde_calibrate::{Finding, Quantity, Verdict};
+use hyde_calibrate::{Finding, Frozen, Quantity, Verdict};
 use hyde_units::significant;
 
 /// One sentence, without the stop at its end.
@@ -15,9 +15,13 @@ pub(super) fn sentence(told: &Told<'_>) -> String {
         .collect();
     match told.found.verdict {
         Verdict::None => "no effect is missing that these records would show".to_owned(),
-        Verdict::Unknown if names.is_empty() => {
-            "something is missing, and no effect known is it".to_owned()
-        }
+        Verdict::Unknown if names.is_empty() => match told.found.frozen.as_slice() {
+            [] => "something is missing, and no effect known is it".to_owned(),
+            _ => {
+                "a sensor or its line held a reading; what the drive lacks such records do not tell"
+                    .to_owned()
+            }
+        },
         Verdict::Unknown => {
             let unknown = told.found.unknown.as_ref();
             let names = names.join(", then ");
@@ -65,7 +69,12 @@ pub(super) fn quantity(quantity: &Quantity) -> String {
 
 /// What speaks for the verdict, and what against it.
 pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
-    let mut doubts = Vec::new();
+    let mut doubts: Vec<String> = told
+        .found
+        .frozen
+        .iter()
+        .map(|own| held(told, own))
+        .collect();
     let held_out = before_after::chi(&told.errors, true);
     let seen = before_after::chi(&told.errors, false);
     if let Some((before, after)) = held_out.or(seen) {
@@ -130,17 +139,6 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
             "what is left is larger, or more like itself from row to row, than noise".to_owned(),
         );
     }
-    for held in &told.found.frozen {
-        let measured = &told.found.program.experiment.measured[held.channel];
-        let (from, to) = held.time_s;
-        doubts.push(format!(
-            "{} of {} reads the same from {} to {} s, and jumps then: a sensor or its line, not a drive",
-            measured.name,
-            held.record,
-            significant(from, 4),
-            significant(to, 4)
-        ));
-    }
     for (_, new) in &told.parameters {
         if new.left_range || new.at_bound {
             doubts.push(format!(
@@ -153,6 +151,18 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
         doubts.push("the last fit has not converged".to_owned());
     }
     doubts
+}
+
+/// A reading that was held.
+fn held(told: &Told<'_>, own: &Frozen) -> String {
+    let (from, to) = own.time_s;
+    format!(
+        "{} of {} reads the same from {} to {} s, and jumps then: a sensor or its line, not a drive",
+        told.found.channel(own),
+        own.record,
+        significant(from, 4),
+        significant(to, 4)
+    )
 }
 
 /// An alternative, and the experiment that would tell.
