@@ -68,15 +68,11 @@ impl<const N: usize> WithSimd for SetProducts<'_, N> {
         // Four rows at a time: their sums stay in registers.
         let mut blocks = self.products.chunks_exact_mut(4 * N);
         for block in blocks.by_ref() {
-            let column_of = |matrix: &'_ [f64], column: usize| {
-                let at = column * self.rows + row;
-                [matrix[at], matrix[at + 1], matrix[at + 2], matrix[at + 3]]
-            };
             let mut sums = [[simd.splat_f64s(0.0); N]; 4];
             for (column, vector) in self.vectors.chunks_exact(N).enumerate() {
-                let entries = column_of(self.matrix, column);
+                let entries = &self.matrix[column * self.rows + row..][..4];
                 let (wide, _) = S::as_simd_f64s(vector);
-                for (sums, entry) in sums.iter_mut().zip(entries) {
+                for (sums, &entry) in sums.iter_mut().zip(entries) {
                     let entry = simd.splat_f64s(entry);
                     for (sum, &value) in sums.iter_mut().zip(wide) {
                         *sum = simd.mul_add_e_f64s(entry, value, *sum);
@@ -175,6 +171,7 @@ mod tests {
             }
         }
     }
+
     #[test]
     fn vectors_side_by_side_are_multiplied_as_each_is() {
         const N: usize = SIDE_BY_SIDE;

@@ -51,13 +51,16 @@ fn spells(values: &[f64]) -> Vec<(usize, usize)> {
         if step == 0.0 {
             continue;
         }
-        let before = median(&steps[first.saturating_sub(ROWS)..first]);
-        let after = median(&steps[row + 1..steps.len().min(row + 1 + ROWS)]);
-        let moves = before > 0.0 && after > 0.0;
-        if row + 1 - first >= ROWS && moves && step > FURTHER * before.max(after) {
-            found.push((first, row));
+        let start = std::mem::replace(&mut first, row + 1);
+        if first - start < ROWS {
+            continue;
         }
-        first = row + 1;
+        let before = median(&steps[start.saturating_sub(ROWS)..start]);
+        let after = median(&steps[first..steps.len().min(first + ROWS)]);
+        let moves = before > 0.0 && after > 0.0;
+        if moves && step > FURTHER * before.max(after) {
+            found.push((start, row));
+        }
     }
     let rows: usize = found.iter().map(|(first, last)| last + 1 - first).sum();
     if rows as f64 > SELDOM * values.len() as f64 {

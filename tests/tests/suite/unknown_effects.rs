@@ -426,7 +426,7 @@ fn of_a_reading_that_was_held_no_law_is_made() {
     let found = report(folder.path(), &["diagnose", "axis.hyde", "few"]);
     assert_eq!(found["verdict"], "unknown");
     assert_eq!(found["unknown"]["law"], Value::Null);
-    let held = found["held"].as_array().unwrap().iter();
+    let held = found["frozen"].as_array().unwrap().iter();
     let held: Vec<String> = held.map(ToString::to_string).collect();
     assert_eq!(
         held,

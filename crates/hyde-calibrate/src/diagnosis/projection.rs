@@ -145,38 +145,33 @@ impl Projection {
 
     /// Products of columns with all there is.
     pub(crate) fn sums(&self, columns: &[Vec<f64>]) -> Sums {
-        self.sums_of(&matrix(self.innovations.len(), columns))
-    }
-
-    fn sums_of(&self, columns: &DMatrix<f64>) -> Sums {
-        Sums {
-            onto: &self.derivatives * columns,
-            own: columns.tr_mul(columns),
-            with_innovations: columns.tr_mul(&self.innovations),
-        }
+        self.sums_beside(columns, &self.derivatives * self.matrix(columns))
     }
 
     /// The same of several lists of columns, apart from each other.
     pub(crate) fn sums_each(&self, lists: &[Vec<Vec<f64>>]) -> Vec<Sums> {
-        let rows = self.innovations.len();
-        let count = lists.iter().map(Vec::len).sum();
-        let all: Vec<&[f64]> = lists.iter().flatten().map(Vec::as_slice).collect();
-        let all = DMatrix::from_vec(rows, count, all.concat());
-        let onto = &self.derivatives * &all;
+        let onto = &self.derivatives * self.matrix(lists.iter().flatten());
         let mut first = 0;
         let own = |columns: &Vec<Vec<f64>>| {
             let onto = onto.columns(first, columns.len()).into_owned();
             first += columns.len();
-            let with_innovations = columns
-                .iter()
-                .map(|column| dot(column, self.innovations.as_slice()));
-            Sums {
-                onto,
-                own: common(columns, columns),
-                with_innovations: DVector::from_iterator(columns.len(), with_innovations),
-            }
+            self.sums_beside(columns, onto)
         };
         lists.iter().map(own).collect()
+    }
+
+    /// The same where the products with derivatives are known.
+    fn sums_beside(&self, columns: &[Vec<f64>], onto: DMatrix<f64>) -> Sums {
+        Sums {
+            onto,
+            own: common(columns, columns),
+            with_innovations: with(columns, self.innovations.as_slice()),
+        }
+    }
+
+    fn matrix<'c>(&self, columns: impl IntoIterator<Item = &'c Vec<f64>>) -> DMatrix<f64> {
+        let all: Vec<&[f64]> = columns.into_iter().map(Vec::as_slice).collect();
+        DMatrix::from_vec(self.innovations.len(), all.len(), all.concat())
     }
 
     /// The sizes that gain most if the answer is linear, from products.
@@ -195,12 +190,10 @@ impl Projection {
         columns: &[Vec<f64>],
         others: impl Iterator<Item = Vec<f64>>,
     ) -> Vec<f64> {
-        let columns = matrix(self.innovations.len(), columns);
-        let sums = self.sums_of(&columns);
-        let gain = |innovations| {
-            let innovations = DVector::from_vec(innovations);
-            let h = &self.derivatives * &innovations;
-            let with_innovations = columns.tr_mul(&innovations);
+        let sums = self.sums(columns);
+        let gain = |innovations: Vec<f64>| {
+            let with_innovations = with(columns, &innovations);
+            let h = &self.derivatives * DVector::from_vec(innovations);
             self.answer_to(&sums.onto, sums.own.clone(), &with_innovations, &h)
                 .gain
         };
@@ -265,8 +258,10 @@ fn beside(derivatives: &DMatrix<f64>, innovations: &Innovations) -> DMatrix<f64>
     })
 }
 
-fn matrix(rows: usize, columns: &[Vec<f64>]) -> DMatrix<f64> {
-    DMatrix::from_iterator(rows, columns.len(), columns.iter().flatten().copied())
+/// Products of columns with innovations.
+fn with(columns: &[Vec<f64>], innovations: &[f64]) -> DVector<f64> {
+    let each = columns.iter().map(|column| dot(column, innovations));
+    DVector::from_iterator(columns.len(), each)
 }
 
 /// Products of columns with others: a row a column, a column another.

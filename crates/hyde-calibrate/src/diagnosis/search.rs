@@ -137,7 +137,7 @@ pub struct Diagnosis {
     pub unexplained: bool,
     /// What that is, as far as it could be told.
     pub unknown: Option<super::Unknown>,
-    /// Readings that were held for a while: no law is sought of what they leave.
+    /// Readings that were held for a while: they ask for forces that no drive knows, and no law is sought of them.
     pub frozen: Vec<Frozen>,
 }
 
@@ -191,6 +191,7 @@ impl Diagnosis {
 /// The model has no fixed-step form.
 pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
     let ground = inquiry.ground();
+    let frozen = frozen(inquiry.recordings);
     let build = |numbers: &[usize]| (inquiry.author)(numbers, &[]);
     let declared = calibrated(inquiry, &ground)?;
     let innovations = declared.solution.innovations.iter();
@@ -210,7 +211,7 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
     search.round(&mut branch)?;
     // A law of one term that explains what no effect does alone, or beside another, spares the rest of the search.
     let (mut law, mut places) = (None, None);
-    if !explained(&branch.stage.solution) {
+    if frozen.is_empty() && !explained(&branch.stage.solution) {
         places = Places::of(inquiry, &declared)?;
         let looked = places.as_ref();
         let best = looked.and_then(|own| own.plain_law(&branch.stage, search.gates));
@@ -221,7 +222,7 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
     if law.is_none() && !branch.ended {
         search.settle(&mut branch)?;
         search.step(&mut branch)?;
-        if !explained(&branch.stage.solution) {
+        if frozen.is_empty() && !explained(&branch.stage.solution) {
             law = beside(inquiry, &search.rounds[0], &branch.stage, search.gates)?;
         }
         if law.is_none() {
@@ -253,7 +254,7 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
         kept: stage.kept,
         unexplained,
         unknown: None,
-        frozen: frozen(inquiry.recordings),
+        frozen,
     };
     match law {
         Some(answer) => take_in(inquiry, &mut diagnosis, answer),

@@ -105,7 +105,12 @@ pub(super) fn propose(
         Some(places) => Some(places),
         None => Places::of(inquiry, declared)?,
     };
-    let Some(alone) = places.map(|places| places.law(gates)) else {
+    let lawful = diagnosis.frozen.is_empty();
+    let law = |places: Places<'_>| match lawful {
+        true => places.law(gates),
+        false => places.answer(None),
+    };
+    let Some(alone) = places.map(law) else {
         return Ok(());
     };
     if last.effects.is_empty() {
@@ -125,7 +130,7 @@ pub(super) fn propose(
     let mut answer = Some(alone).filter(better);
     let explains = |alone: &Answer| alone.solution().is_some_and(|(own, _)| explained(own));
     if diagnosis.unexplained && !answer.as_ref().is_some_and(explains) {
-        let both = Places::of(inquiry, &last)?.map(|places| places.law(gates));
+        let both = Places::of(inquiry, &last)?.map(law);
         let as_good = |alone: &Answer| {
             let both = both.as_ref().and_then(Answer::solution);
             let alone = alone.solution();

@@ -24,7 +24,7 @@ pub(crate) fn json(told: &Told<'_>) -> Value {
         "verdict": verdict,
         "sentence": verdict::sentence(told),
         "doubts": verdict::doubts(told),
-        "held": held(told),
+        "frozen": frozen(told),
         "effects": effects(told),
         "unexplained": told.found.unexplained,
         "unknown": told
@@ -42,8 +42,8 @@ pub(crate) fn json(told: &Told<'_>) -> Value {
     })
 }
 
-/// Readings that were held.
-fn held(told: &Told<'_>) -> Value {
+/// Readings that were held for a while.
+fn frozen(told: &Told<'_>) -> Value {
     let each = told.found.frozen.iter().map(|own| {
         json!({
             "channel": told.found.channel(own),

@@ -73,7 +73,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
         .found
         .frozen
         .iter()
-        .map(|own| held(told, own))
+        .map(|own| frozen(told, own))
         .collect();
     let held_out = before_after::chi(&told.errors, true);
     let seen = before_after::chi(&told.errors, false);
@@ -154,7 +154,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
 }
 
 /// A reading that was held.
-fn held(told: &Told<'_>, own: &Frozen) -> String {
+fn frozen(told: &Told<'_>, own: &Frozen) -> String {
     let (from, to) = own.time_s;
     format!(
         "{} of {} reads the same from {} to {} s, and jumps then: a sensor or its line, not a drive",

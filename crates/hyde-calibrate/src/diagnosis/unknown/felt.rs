@@ -58,16 +58,12 @@ impl Felt {
     /// The same of several terms, which are run side by side.
     pub(crate) fn columns_of(&self, terms: &[Summand]) -> Vec<Vec<Vec<f64>>> {
         let turns = self.site.kind.turns();
-        let count: usize = terms.iter().map(|term| term.sizes.len()).sum();
-        let mut lists: Vec<Vec<f64>> = vec![Vec::new(); count];
-        for carrier in &self.carriers {
+        let each = self.carriers.iter().map(|carrier| {
             let along = |term: &Summand| term.along(carrier, turns, &self.scales);
             let courses: Vec<Vec<f64>> = terms.iter().flat_map(along).collect();
-            for (list, change) in lists.iter_mut().zip(carrier.changes(&courses)) {
-                list.extend(change);
-            }
-        }
-        let mut lists = lists.into_iter();
+            carrier.changes(&courses)
+        });
+        let mut lists = joined(each).into_iter();
         let own = |term: &Summand| lists.by_ref().take(term.sizes.len()).collect();
         terms.iter().map(own).collect()
     }
@@ -118,13 +114,17 @@ impl Felt {
         let few = |first: usize| {
             let own = first..count.min(first + SIDE_BY_SIDE);
             let each = self.carriers.iter().zip(forces);
-            each.map(|(carrier, forces)| carrier.changes(&forces[own.clone()]))
-                .reduce(|mut lists, more| {
-                    lists.iter_mut().zip(more).for_each(|(a, b)| a.extend(b));
-                    lists
-                })
-                .unwrap_or_default()
+            joined(each.map(|(carrier, forces)| carrier.changes(&forces[own.clone()])))
         };
         firsts.flat_map_iter(few).collect()
     }
+}
+
+/// Changes of innovations record by record, those of a record behind those of the one before.
+fn joined(records: impl Iterator<Item = Vec<Vec<f64>>>) -> Vec<Vec<f64>> {
+    let all = records.reduce(|mut lists, more| {
+        lists.iter_mut().zip(more).for_each(|(a, b)| a.extend(b));
+        lists
+    });
+    all.unwrap_or_default()
 }

@@ -172,16 +172,19 @@ impl Carrier {
     /// The changes of whitened innovations by courses of the force (a value a row), channels one behind the other.
     pub(crate) fn changes(&self, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let few = forces.chunks(SIDE_BY_SIDE);
-        few.flat_map(|few| match few {
-            [first, second] => [self.beside::<1>(&[first]), self.beside::<1>(&[second])].concat(),
-            [one] => self.beside::<1>(&[one]),
-            few => self.beside::<SIDE_BY_SIDE>(&few.iter().collect::<Vec<_>>()),
+        few.flat_map(|few| match few.len() {
+            // Registers that are mostly empty cost more than one course after the other.
+            ..3 => few
+                .chunks(1)
+                .flat_map(|one| self.beside::<1>(one))
+                .collect(),
+            3.. => self.beside::<SIDE_BY_SIDE>(few),
         })
         .collect()
     }
 
     /// The same of so many courses at most, side by side.
-    fn beside<const N: usize>(&self, forces: &[&Vec<f64>]) -> Vec<Vec<f64>> {
+    fn beside<const N: usize>(&self, forces: &[Vec<f64>]) -> Vec<Vec<f64>> {
         let counted = self.rows.len() - self.first_row;
         let mut changes = vec![vec![0.0; self.channels * counted]; forces.len()];
         let mut errors = vec![[0.0; N]; self.states];

@@ -12,7 +12,6 @@ use crate::diagnosis::projection::Projection;
 use crate::diagnosis::search::{Gates, excess, explained};
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::trial::Trial;
-use crate::frozen::frozen;
 use crate::plant::Unsupported;
 use crate::solution::Solution;
 use rayon::prelude::*;
@@ -92,10 +91,6 @@ impl<'a> Places<'a> {
 
     /// Of laws as they are wanted, the one that explains most.
     fn best(&self, wanted: Wanted, gates: Gates) -> Option<Best> {
-        // A reading that was held asks for forces that no drive knows.
-        if !frozen(self.inquiry.recordings).is_empty() {
-            return None;
-        }
         let gate = gates.of_one(&self.stage.solution);
         let most = self.sites.first()?.1.gain();
         let near = self.sites.iter().enumerate().take(SITES);
