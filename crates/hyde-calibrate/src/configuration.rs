@@ -8,6 +8,7 @@
 
 use crate::dense::set_product;
 use crate::exponential::{Step, steps};
+use crate::leg::Instant;
 use hyde_program::{Function, Kernels, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::DMatrix;
 
@@ -38,41 +39,8 @@ pub(crate) struct Configuration<'p> {
     pub(crate) flows: Vec<DMatrix<f64>>,
     /// What is not linear.
     pub(crate) bending: Bending<'p>,
-    /// Where it was made.
-    pub(crate) made: Made,
-}
-
-/// The point at which a configuration is linear.
-pub(crate) struct Made {
-    t: f64,
-    y: Vec<f64>,
-    yp: Vec<f64>,
-    z: Vec<f64>,
-    u: Vec<f64>,
-}
-
-impl Made {
-    fn at(at: Point<'_>) -> Self {
-        Self {
-            t: at.t,
-            y: at.y.to_vec(),
-            yp: at.yp.to_vec(),
-            z: at.z.to_vec(),
-            u: at.u.to_vec(),
-        }
-    }
-
-    /// The point, with some parameters.
-    pub(crate) fn point<'a>(&'a self, p: &'a [f64]) -> Point<'a> {
-        Point {
-            t: self.t,
-            y: &self.y,
-            yp: &self.yp,
-            z: &self.z,
-            u: &self.u,
-            p,
-        }
-    }
+    /// The point at which it is linear.
+    pub(crate) made: Instant,
 }
 
 /// The equations that are not linear, or read what is outside ([`Kernels::bending_rows`]): in a step, only these are evaluated.
@@ -163,7 +131,7 @@ impl<'p> Configuration<'p> {
             affine,
             by_states,
             bending,
-            made: Made::at(at),
+            made: Instant::of(at),
         })
     }
 

@@ -232,6 +232,22 @@ impl Problem<'_> {
         set
     }
 
+    /// How whitened innovations change with each parameter, a unit its scale, along one run: what fits follow and scans are
+    /// made of. Records, channels and rows one behind the other, as in [`Innovations`].
+    ///
+    /// # Errors
+    /// The program has no fixed-step form.
+    pub fn derivatives(&self, values: &[f64]) -> Result<Vec<Vec<f64>>, Unsupported> {
+        let found = self.linearise(values, Slopes::Tangents)?.derivatives;
+        let of = |number: usize| -> Vec<f64> {
+            let columns = found.iter().map(|own| own.column(number));
+            columns
+                .flat_map(|own| own.iter().copied().collect::<Vec<_>>())
+                .collect()
+        };
+        Ok((0..self.varied.len()).map(of).collect())
+    }
+
     /// Innovations and their derivatives: by tangents along one run, or by differences of runs.
     pub(crate) fn linearise(
         &self,

@@ -3,7 +3,7 @@
 //! ```text
 //! recording      a record, evenly sampled                                         recording.rs
 //! frozen         readings that were held                                          frozen.rs
-//! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, stepping.rs, model.rs, configuration.rs, events.rs, past.rs
+//! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, inputs.rs, stepping.rs, leg.rs, model.rs, configuration.rs, events.rs, past.rs
 //! observer       a fixed Kalman gain; whitened innovations                        gain.rs, observer.rs
 //! track          where an observer takes the plant along a record                 track.rs, track/
 //! tangent        how innovations change with parameters, along one track              tangent.rs
@@ -26,7 +26,9 @@ mod fit;
 mod free_run;
 mod frozen;
 mod gain;
+mod inputs;
 mod least_squares;
+mod leg;
 mod measures;
 mod model;
 mod observer;

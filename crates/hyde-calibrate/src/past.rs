@@ -9,7 +9,8 @@
 //! ```
 //! What depends on states is not known beforehand: a model that delays such a thing is refused.
 
-use crate::plant::{Unsupported, interpolate, shortest_steps};
+use crate::inputs::interpolate;
+use crate::plant::{Unsupported, shortest_steps};
 use crate::recording::Recording;
 use hyde_program::{Constant, Function, Point, Program, Workspace, Wrt};
 

@@ -7,6 +7,7 @@
 //! stays there bitwise.
 
 use crate::configuration::{Configuration, Places};
+use crate::leg::{Event, Instant, Leg};
 use crate::past::Past;
 use crate::recording::Recording;
 use crate::stepping::{Outcome, Room, gather};
@@ -75,22 +76,14 @@ pub(crate) struct Plant<'a> {
     pub(crate) conditions: Vec<bool>,
     /// Positions fixed by modes, with their values.
     pub(crate) pinned: Vec<(usize, f64)>,
+    /// Those that any mode fixed since the last row or event began: friction that slips back has held in between.
+    met: Vec<usize>,
     pub(crate) room: Room,
     /// The steps of the last row.
     pub(crate) legs: Vec<Leg>,
-    past: Past,
+    pub(crate) past: Past,
     /// Delayed values where the next step begins, and where it ends.
-    late: (Vec<f64>, Vec<f64>),
-}
-
-/// A step that was taken.
-pub(crate) struct Leg {
-    /// Its level: a row's time over 2^level.
-    pub(crate) level: usize,
-    /// The combination of modes it was taken in.
-    pub(crate) configuration: usize,
-    /// Where an event ended it, the numbers of the states that are fixed from there on.
-    pub(crate) fixed: Option<Vec<usize>>,
+    pub(crate) late: (Vec<f64>, Vec<f64>),
 }
 
 impl<'a> Plant<'a> {
@@ -154,6 +147,7 @@ impl<'a> Plant<'a> {
             watched: Vec::new(),
             conditions: vec![false; program.reactions.len()],
             pinned: Vec::new(),
+            met: Vec::new(),
             room: Room::new(program, &places),
             legs: Vec::new(),
             past,
@@ -175,13 +169,11 @@ impl<'a> Plant<'a> {
         &self.configurations[self.current].1
     }
 
-    /// The numbers of the states that modes fix.
+    /// The numbers of the states that modes fix, or did where the last events began, or in passing.
     pub(crate) fn fixed_states(&self) -> Vec<usize> {
-        let number = |&(position, _): &(usize, f64)| {
-            let mut states = self.places.states.iter();
-            states.position(|&state| state == position)
-        };
-        self.pinned.iter().filter_map(number).collect()
+        let states = self.places.states.iter().enumerate();
+        let fixed = states.filter(|(_, position)| self.met.contains(position));
+        fixed.map(|(number, _)| number).collect()
     }
 
     /// The rates of the states.
@@ -229,6 +221,7 @@ impl<'a> Plant<'a> {
     /// Begins a row: what drives the axis jumps, the states change by an increment, those that modes fix apart.
     pub(crate) fn begin_row(&mut self, increment: &[f64]) {
         self.read_inputs();
+        self.forget_fixed();
         for (&position, change) in self.places.states.iter().zip(increment) {
             self.y[position] += change;
         }
@@ -259,7 +252,7 @@ impl<'a> Plant<'a> {
                     self.legs.push(Leg {
                         level,
                         configuration,
-                        fixed: None,
+                        event: None,
                     });
                     if self.level > LONGEST && self.index.is_multiple_of(size_of(self.level - 1)) {
                         self.level -= 1;
@@ -269,12 +262,11 @@ impl<'a> Plant<'a> {
                 Outcome::Bent(_) | Outcome::TooLong => self.level += 1,
                 Outcome::Event => {
                     self.index += size_of(level);
-                    self.settle();
-                    let fixed = Some(self.fixed_states());
+                    let event = Some(self.event());
                     self.legs.push(Leg {
                         level,
                         configuration,
-                        fixed,
+                        event,
                     });
                 }
             }
@@ -282,6 +274,18 @@ impl<'a> Plant<'a> {
         }
         self.row += 1;
         self.index = 0;
+    }
+
+    /// What happens where a guard has become true.
+    fn event(&mut self) -> Event {
+        let before = Instant::of(self.here());
+        self.forget_fixed();
+        self.settle();
+        Event {
+            fixed: self.fixed_states(),
+            before,
+            after: Instant::of(self.here()),
+        }
     }
 
     /// After a step with too large an error: goes over to another linear part of the same modes, one met before, else that of
@@ -385,85 +389,14 @@ impl<'a> Plant<'a> {
         for &(position, value) in &self.pinned {
             self.y[position] = value;
             self.yp[position] = 0.0;
+            self.met.push(position);
         }
     }
 
-    /// What drives the axis where a row begins.
-    fn read_inputs(&mut self) {
-        if !self.past.is_empty() {
-            let at = self.row as f64;
-            let (begin, end) = &mut self.late;
-            self.past.over(at, at, begin, end);
-        }
-        self.read_inputs_at_start();
-    }
-
-    /// What drives the axis where a step begins.
-    pub(crate) fn read_inputs_at_start(&mut self) {
-        interpolate(
-            self.program,
-            self.recording,
-            self.row,
-            self.index,
-            &mut self.u,
-        );
-        self.u[2 * self.program.columns.len()..].copy_from_slice(&self.late.0);
-    }
-
-    /// What drives the axis where a step ends.
-    pub(crate) fn read_inputs_at_end(&mut self, index: usize) {
-        interpolate(self.program, self.recording, self.row, index, &mut self.u);
-        self.u[2 * self.program.columns.len()..].copy_from_slice(&self.late.1);
-    }
-
-    /// What drives the axis within a step: `index` shortest steps into the row, a part of the step on.
-    pub(crate) fn read_inputs_within(&mut self, index: usize, part: f64) {
-        let u = &mut self.room.u_within;
-        interpolate(self.program, self.recording, self.row, index, u);
-        let (begin, end) = &self.late;
-        let delayed = u[2 * self.program.columns.len()..].iter_mut();
-        for ((delayed, begin), end) in delayed.zip(begin).zip(end) {
-            *delayed = begin + part * (end - begin);
-        }
-    }
-
-    /// Delayed values of the next step, the rates following where they jump; false where it is too long for what arrives within.
-    fn read_past(&mut self) -> bool {
-        let rows = shortest_steps() as f64;
-        let from = self.row as f64 + self.index as f64 / rows;
-        let to = from + size_of(self.level) as f64 / rows;
-        if self.level < self.past.level(from, to) {
-            return false;
-        }
-        let (begin, end) = &mut self.late;
-        self.past.over(from, to, begin, end);
-        if self.u[2 * self.program.columns.len()..] != *begin {
-            self.read_inputs_at_start();
-            self.make_consistent();
-        }
-        true
-    }
-}
-
-/// Columns at a part of a row: where it begins what steps has its new value, and linear ones are on their way to the next.
-pub(crate) fn interpolate(
-    program: &Program,
-    recording: &Recording,
-    row: usize,
-    index: usize,
-    u: &mut [f64],
-) {
-    let part = index as f64 / shortest_steps() as f64;
-    for (number, (column, read)) in recording.columns.iter().zip(&program.columns).enumerate() {
-        let last = column.len() - 1;
-        let (now, then) = (column[row.min(last)], column[(row + 1).min(last)]);
-        let linear = read.continuous && !read.next;
-        u[2 * number] = if linear {
-            now + (then - now) * part
-        } else {
-            now
-        };
-        u[2 * number + 1] = now;
+    fn forget_fixed(&mut self) {
+        self.met.clear();
+        self.met
+            .extend(self.pinned.iter().map(|(position, _)| *position));
     }
 }
 

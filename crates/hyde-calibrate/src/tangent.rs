@@ -6,13 +6,14 @@
 //! A change forces the equations by what it adds to their residual where the plant is, taken linearly over a row, and the
 //! channels by dh. Both are differences by the parameter, of kernels alone. So a direction costs a few evaluations and a
 //! column of a product a row, and no run of its own. Guards are taken to act when they do without it: for friction that is
-//! right to first order, for its force does not jump where it begins and ends to stick; of contacts it is a part. Modes that
-//! begin within a row act from there on.
+//! right to first order, for its force does not jump where it begins and ends to stick, and what has stuck in between forgets
+//! its speed; of contacts it is a part. Modes that begin within a row act from there on.
 
 use crate::dense::set_product;
 use crate::gain::{Observer, output_matrix};
+use crate::leg::{Leg, length};
 use crate::observer::{When, measured};
-use crate::plant::{Leg, Unsupported};
+use crate::plant::{Unsupported, size_of};
 use crate::recording::Recording;
 use crate::track::{Track, Vectors};
 use hyde_program::{Function, Point, Program, SomeRows, Workspace, Wrt};
@@ -83,38 +84,51 @@ pub(crate) fn along(
     // Errors after it and the answers below them; forces are put over these in the next row.
     let mut after = before.clone();
     let mut now = DMatrix::<f64>::zeros(touched, count);
-    let mut then = now.clone();
+    let (mut then, mut reached) = (now.clone(), now.clone());
     let mut by_output = DMatrix::<f64>::zeros(channels, count);
     let mut corrected = Corrected::default();
     let (mut at, mut room) = (None, Vectors::default());
     for (row, passed) in route.rows.iter().enumerate() {
-        let [mode, next] = passed.modes;
-        let seen = known.modes(row, When::Before, mode)?;
+        let [before_it, next] = passed.modes;
+        let seen = known.modes(row, When::Before, before_it)?;
         if own.shown {
             let at = track.point(row, When::Before, p, &mut room);
             own.seen(at, directions, &mut by_output);
         }
         let at_end = track.point(row, When::After, p, &mut room);
         own.forces(at_end, directions, &mut then);
-        // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
-        let end = if next == mode { &then } else { &now };
         let legs = track.legs(row);
-        let within = legs.iter().any(|leg| leg.fixed.is_some());
+        let within = legs.iter().any(|leg| leg.event.is_some());
         if at.is_some() && within {
             // Modes that begin within the row act from there on: the axis may ring several times in a row's time.
-            // So do forces, which may be others from one mode to the next.
-            let mut start = &now;
-            for leg in legs {
-                put(&mut before, states, start);
-                let step = known.leg(leg)?;
-                let errors = step * before.rows(0, states + touched);
-                put(&mut before, 0, &errors);
-                if let Some(fixed) = &leg.fixed {
-                    fix(fixed, &mut before);
-                    start = end;
+            // So do forces, which jump from one mode to the next, and grow evenly in each.
+            for mode in legs.split_inclusive(|leg| leg.event.is_some()) {
+                let event = mode.last().and_then(|leg| leg.event.as_ref());
+                if let Some(event) = event {
+                    let at = track.within(row, &event.before, p, &mut room);
+                    own.forces(at, directions, &mut reached);
+                } else if next == before_it {
+                    reached.copy_from(&then);
+                } else {
+                    reached.copy_from(&now);
+                }
+                for (number, leg) in mode.iter().enumerate() {
+                    put(&mut before, states, &now);
+                    let part = size_of(leg.level) as f64 / length(&mode[number..]) as f64;
+                    now.zip_apply(&reached, |now, end| *now += part * (end - *now));
+                    put(&mut before, states + touched, &now);
+                    let errors = known.leg(leg)? * before.rows(0, states + 2 * touched);
+                    put(&mut before, 0, &errors);
+                }
+                if let Some(event) = event {
+                    fix(&event.fixed, &mut before);
+                    let at = track.within(row, &event.after, p, &mut room);
+                    own.forces(at, directions, &mut now);
                 }
             }
         } else {
+            // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
+            let end = if next == before_it { &then } else { &now };
             put(&mut before, states, &now);
             put(&mut before, states + touched, end);
         }
@@ -276,18 +290,20 @@ impl<'t> Known<'t> {
         Ok(self.modes.len() - 1)
     }
 
-    /// Times errors, and forces below them, this is errors at the end of a step.
+    /// Times errors, and forces at the begin and the end of a step below them, this is errors at its end.
     fn leg(&mut self, leg: &Leg) -> Result<&DMatrix<f64>, Unsupported> {
         let key = (leg.configuration, leg.level);
         if !self.legs.contains_key(&key) {
             let step = &self.track.route.configurations[leg.configuration].steps[leg.level];
             let rates = self.rates(leg.configuration)?;
             let n = step.exp.nrows();
-            let mut matrix = DMatrix::zeros(n, n + rates.ncols());
+            let forces = rates.ncols();
+            let (first, second) = (&step.first * rates, &step.second * rates);
+            let mut matrix = DMatrix::zeros(n, n + 2 * forces);
             matrix.columns_mut(0, n).copy_from(&step.exp);
-            matrix
-                .columns_mut(n, rates.ncols())
-                .copy_from(&(&step.first * rates));
+            // The second integral is that of a growth over the step.
+            matrix.columns_mut(n, forces).copy_from(&(first - &second));
+            matrix.columns_mut(n + forces, forces).copy_from(&second);
             self.legs.insert(key, matrix);
         }
         Ok(&self.legs[&key])

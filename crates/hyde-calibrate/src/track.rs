@@ -9,8 +9,9 @@ mod equations;
 
 use crate::configuration::{Configuration, Places, inverse};
 use crate::gain::Observer;
+use crate::leg::{Instant, Leg};
 use crate::observer::{Innovations, When, run_while};
-use crate::plant::{Leg, Plant, Unsupported};
+use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
 use carried::Carried;
 pub(crate) use carried::Vectors;
@@ -155,6 +156,23 @@ impl<'p> Track<'p> {
             None => at,
             Some(carried) => carried.point(row, when, at, room),
         }
+    }
+
+    /// An instant on the way to a row, with some parameters.
+    pub(crate) fn within<'a>(
+        &'a self,
+        row: usize,
+        instant: &'a Instant,
+        p: &'a [f64],
+        room: &'a mut Vectors,
+    ) -> Point<'a> {
+        let at = instant.point(p);
+        let Some(carried) = &self.carried else {
+            return at;
+        };
+        let rows = &self.route.rows;
+        let (begin, end) = (rows[row - 1].t, rows[row].t);
+        carried.within(row, (at.t - begin) / (end - begin), at, room)
     }
 
     /// The steps that led to a row.

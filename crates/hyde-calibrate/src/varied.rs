@@ -80,7 +80,8 @@ impl Varied {
     }
 
     /// What the parameter is measured in: a visible change, its prior, a tenth of its value or of its range.
-    pub(crate) fn scale(&self) -> f64 {
+    #[must_use]
+    pub fn scale(&self) -> f64 {
         let range = self.bounds.1 - self.bounds.0;
         match self.visible.or(self.prior) {
             Some(scale) => scale,

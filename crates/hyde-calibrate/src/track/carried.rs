@@ -36,17 +36,44 @@ impl Carried {
         at: Point<'a>,
         room: &'a mut Vectors,
     ) -> Point<'a> {
+        let (y, yp) = self.at(row, when).split_at(self.own.len());
+        room.reach(self.positions.len() + self.own.len());
+        room.take(&self.positions, at);
+        room.take(&self.own, Point { y, yp, ..at });
+        room.in_place(at)
+    }
+
+    /// A part of the way to a row: what is its own goes there evenly.
+    pub(super) fn within<'a>(
+        &self,
+        row: usize,
+        part: f64,
+        at: Point<'a>,
+        room: &'a mut Vectors,
+    ) -> Point<'a> {
+        let ends = self
+            .at(row - 1, When::After)
+            .iter()
+            .zip(self.at(row, When::Before));
+        let values: Vec<f64> = ends
+            .map(|(begin, end)| begin + part * (end - begin))
+            .collect();
+        let (y, yp) = values.split_at(self.own.len());
+        room.reach(self.positions.len() + self.own.len());
+        room.take(&self.positions, at);
+        room.take(&self.own, Point { y, yp, ..at });
+        room.in_place(at)
+    }
+
+    /// Its own unknowns in a row, and their rates.
+    fn at(&self, row: usize, when: When) -> &[f64] {
         let count = self.own.len();
         let first = 4 * count * row
             + match when {
                 When::Before => 0,
                 When::After => 2 * count,
             };
-        let (y, yp) = self.values[first..][..2 * count].split_at(count);
-        room.reach(self.positions.len() + count);
-        room.take(&self.positions, at);
-        room.take(&self.own, Point { y, yp, ..at });
-        room.in_place(at)
+        &self.values[first..][..2 * count]
     }
 
     /// A point of the route in the vectors of the program, what is its own being 0.
