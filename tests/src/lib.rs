@@ -1,6 +1,7 @@
 //! What the tests across crates and the figures share: the examples, compiled as the command line compiles them.
 
 pub mod batches;
+pub mod bench_axis;
 mod closed_form;
 mod cluster;
 mod data;

@@ -3,9 +3,11 @@
 //! this program itself.
 
 use super::promise::{Figure, Measured, Promise, Session};
-use crate::root;
+use crate::{bench_axis, root};
+use hyde_calibrate::{Observer, Recording, Varied};
+use hyde_compiler::Backend;
 use serde_json::Value;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::time::Instant;
 
@@ -135,40 +137,82 @@ fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
     let report = command("diagnose", &axis, data)?;
     let minutes = begin.elapsed().as_secs_f64() / 60.0;
     let fitted = match answer {
-        Some(answer) => truth(&axis, data, answer)?,
+        Some(answer) => truth(data, answer)?,
         None => command("fit", &axis, data)?,
     };
     Ok(SetResult {
         right: right(&report, answer),
-        above_truth: chi(&report) - chi(&fitted),
+        above_truth: chi(&report) - chi_of_truth(data, answer)?,
         windows_over_truth: over(&report, &fitted, "windows"),
         free_run_over_truth: over(&report, &fitted, "free_run"),
         minutes,
     })
 }
 
-/// The axis with the true effect, calibrated in the same way.
+/// Mean square of whitened innovations over the records held out of the axis with the true effect, calibrated in the same way.
+/// The observer is that round the declared model, as it is before and after: with one of its own, which a play loosens, the
+/// truth would be measured by another yardstick.
+fn chi_of_truth(data: &Path, answer: Option<&Answer>) -> Result<f64, String> {
+    let declared = bench_axis::declared()?.observed();
+    let truth = match answer {
+        Some(answer) => bench_axis::with(answer.with)?.observed(),
+        None => declared.clone(),
+    };
+    let [declared_program, program] = [&declared, &truth].map(|of| of.compile(Backend::Native));
+    let (declared_program, program) = (declared_program?.program, program?.program);
+    let fitted = records(data, "fit-")?;
+    let of = |files: &[PathBuf], program| -> Result<Vec<Recording>, String> {
+        let each = files.iter().map(|file| {
+            let tables = declared.clone().record("file", file).parse()?.tables;
+            let name = file.display().to_string();
+            Recording::new(&name, program, tables).map_err(|error| format!("{name}: {error:?}"))
+        });
+        each.collect()
+    };
+    let unsupported = |error| format!("{error:?}");
+    let observer = Observer::new(&declared_program, &of(&fitted, &declared_program)?, &[]);
+    let mut p = vec![0.0; program.n_parameters];
+    program.kernels.parameters(&[], &mut p);
+    let found = hyde_calibrate::fit(
+        &program,
+        &of(&fitted, &program)?,
+        &of(&records(data, "validate-")?, &program)?,
+        &observer.map_err(unsupported)?,
+        &Varied::uncertain(&program, &p),
+        &[],
+        1,
+    );
+    let found = found.map_err(unsupported)?;
+    let held = found.records.iter().filter(|record| record.holdout);
+    let held: Vec<f64> = held.map(|record| record.after.0).collect();
+    Ok(held.iter().sum::<f64>() / held.len() as f64)
+}
+
+/// The records of a set whose names begin so, in order.
+fn records(data: &Path, begin: &str) -> Result<Vec<PathBuf>, String> {
+    let entries = std::fs::read_dir(data).map_err(|error| error.to_string())?;
+    let paths = entries.filter_map(|entry| entry.ok().map(|entry| entry.path()));
+    let named = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        name.starts_with(begin) && name.ends_with(".csv")
+    };
+    let mut found: Vec<PathBuf> = paths.filter(named).collect();
+    found.sort();
+    Ok(found)
+}
+
+/// The errors of the axis with the true effect, calibrated in the same way.
 #[allow(
     clippy::disallowed_methods,
     reason = "the model with the true effect is written for the command"
 )]
-fn truth(axis: &Path, data: &Path, answer: &Answer) -> Result<Value, String> {
-    let text = std::fs::read_to_string(axis).map_err(|error| error.to_string())?;
-    let text = text
-        .replace("calibrate bench of Axis", "calibrate bench of Truth")
-        .replace(") of Axis \"a record", ") of Truth \"a record")
-        .replace(
-            "experiment bench",
-            &format!(
-                "model Truth = Axis with {};\n\nexperiment bench",
-                answer.with
-            ),
-        );
+fn truth(data: &Path, answer: &Answer) -> Result<Value, String> {
+    let text = bench_axis::with(answer.with)?;
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let record = root().join("examples/bench_axis/strokes.csv");
     std::fs::copy(&record, folder.path().join("strokes.csv")).map_err(|error| error.to_string())?;
     let file = folder.path().join("truth.hyde");
-    std::fs::write(&file, text).map_err(|error| error.to_string())?;
+    std::fs::write(&file, text.text()).map_err(|error| error.to_string())?;
     command("fit", &file, data)
 }
 

@@ -6,16 +6,12 @@ use hyde_calibrate::{Innovations, Observer, Problem, Recording, Varied, fit};
 use hyde_compiler::{Backend, Compiled};
 use hyde_experiment::Options;
 use hyde_signal::{Column, Table};
-use hyde_tests::{Example, Loaded};
+use hyde_tests::{Example, Loaded, bench_axis};
 use std::collections::BTreeMap;
 
 /// The bench axis as an observer runs it.
 fn bench() -> (Example, Loaded, Compiled) {
-    observed(axis())
-}
-
-fn axis() -> Example {
-    Example::load("examples/bench_axis/axis.hyde", Some("bench")).unwrap()
+    observed(bench_axis::declared().unwrap())
 }
 
 /// With few cells: above half the sampling rate a record says nothing.
@@ -107,12 +103,7 @@ fn follow_the_exact_run((example, loaded, compiled): &(Example, Loaded, Compiled
 
 /// The bench axis with an effect.
 fn with(effect: &str) -> (Example, Loaded, Compiled) {
-    let truth = format!("model Truth = Axis with Effects.{effect};\n\nexperiment bench");
-    let example = axis()
-        .rewritten("experiment bench", &truth)
-        .rewritten(") of Axis \"a record", ") of Truth \"a record")
-        .rewritten("calibrate bench of Axis", "calibrate bench of Truth");
-    observed(example)
+    observed(bench_axis::with(effect).unwrap())
 }
 
 /// Friction acts some 100 times in the record.
