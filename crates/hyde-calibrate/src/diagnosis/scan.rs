@@ -47,6 +47,17 @@ pub struct Node {
     pub(crate) linear: bool,
 }
 
+impl Node {
+    /// The same shapes where there is no effect, and parameters have nothing to answer.
+    pub(crate) fn without(&self) -> Self {
+        Self {
+            sizes: vec![0.0; self.sizes.len()],
+            parameters: Vec::new(),
+            ..self.clone()
+        }
+    }
+}
+
 /// What an effect at a site gains at best.
 #[derive(Clone, Debug)]
 pub struct Score {

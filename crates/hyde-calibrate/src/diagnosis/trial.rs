@@ -185,22 +185,25 @@ pub(crate) fn begin<'s>(
     let list = stage.numbers_with(&[score.hypothesis]);
     let Built { program, paths } = build(&list)?;
     let own_path = paths.last()?.clone();
-    // A few steps from every node, the rest from the best of them.
-    let mut best: Option<Refit> = None;
-    let nodes = score
-        .nodes
-        .iter()
-        .filter(|node| node.gain >= 0.5 * score.gain());
-    for node in nodes {
+    let from = |node: &Node| -> Option<Refit> {
         let mut unknowns = Unknowns::of(stage, &program);
         unknowns.add(&program, hypothesis, &own_path, node);
-        let Some(refit) = unknowns.fitted(ground, &program, FIRST_STEPS) else {
-            continue;
-        };
-        let better = |(known, ..): &Refit| refit.0.gain_over(known) > 0.0;
-        if best.as_ref().is_none_or(better) {
-            best = Some(refit);
-        }
+        unknowns.fitted(ground, &program, FIRST_STEPS)
+    };
+    let better = |known: Option<Refit>, other: Refit| match known {
+        Some(known) if other.0.gain_over(&known.0) <= 0.0 => Some(known),
+        Some(_) | None => Some(other),
+    };
+    // A few steps from every node, the rest from the best of them.
+    let nodes = score.nodes.iter();
+    let nodes = nodes.filter(|node| node.gain >= 0.5 * score.gain());
+    let mut best = nodes.filter_map(from).fold(None, better);
+    let gains = |(own, ..): &Refit| own.gain_over(&stage.solution) > 0.0;
+    // Where slopes at a node lead astray, all begins where there is no effect yet.
+    if !best.as_ref().is_some_and(gains) {
+        let without = score.nodes.first().map(Node::without);
+        let other = without.as_ref().and_then(from);
+        best = other.into_iter().fold(best, better);
     }
     let refit = best?;
     Some(Begun {
@@ -264,6 +267,12 @@ pub(crate) fn finish(
     };
     if worth && !solution.converged {
         solution = fit(&solution, &varied)?;
+    }
+    // What slopes along one run do not bring to its end, differences do.
+    if worth && !solution.converged {
+        let problem = ground.problem(&program, &varied, &set, None);
+        let end = problem.solve_in(&solution.values, LAST_STEPS, Slopes::Differences);
+        solution = end.unwrap_or(solution);
     }
     let own = stage.varied.len()..varied.len();
     let sizes = own.start..own.start + hypothesis.sizes.len().min(own.len());

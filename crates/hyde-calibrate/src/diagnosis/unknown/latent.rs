@@ -156,10 +156,11 @@ impl Carrier {
                 found.passages.push(made);
                 found.passages.len() - 1
             });
-            found.rows.push(Row {
-                passage,
-                fixed: passed.fixed.clone(),
-            });
+            // What a mode fixed within the row has no error since; the little that grew again until its end is left out.
+            let events = track.legs(row).iter().filter_map(|leg| leg.event.as_ref());
+            let mut fixed = passed.fixed.clone();
+            fixed.extend(events.flat_map(|event| &event.fixed));
+            found.rows.push(Row { passage, fixed });
         }
         Some(found)
     }
