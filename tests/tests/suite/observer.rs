@@ -103,7 +103,7 @@ fn follow_the_exact_run((example, loaded, compiled): &(Example, Loaded, Compiled
 
 /// The bench axis with an effect.
 fn with(effect: &str) -> (Example, Loaded, Compiled) {
-    observed(bench_axis::with(effect).unwrap())
+    observed(bench_axis::with(&format!("Effects.{effect}")).unwrap())
 }
 
 /// Friction acts some 100 times in the record.
