@@ -161,7 +161,7 @@ pub(crate) struct Begun<'s> {
     pub(crate) gain: f64,
 }
 
-/// Fits a hypothesis from its best nodes; `None` where it cannot be run.
+/// Fits a law from its best nodes; `None` where it cannot be run. It was chosen by slopes: where they lead astray it is none.
 pub(crate) fn trial(
     ground: &Ground<'_>,
     stage: &Stage,
@@ -169,11 +169,12 @@ pub(crate) fn trial(
     score: &Score,
     build: &Build<'_>,
 ) -> Option<Trial> {
-    let begun = begin(ground, stage, hypotheses, score, build)?;
+    let begun = begin_from(ground, stage, hypotheses, score, &score.nodes, build)?;
     finish(ground, stage, hypotheses, begun, true)
 }
 
-/// Fits a hypothesis in a few steps from each of its best nodes; `None` where it cannot be run.
+/// Fits an effect in a few steps from each of its best nodes, or where slopes at these lead astray from where there is no
+/// effect yet; `None` where it cannot be run.
 pub(crate) fn begin<'s>(
     ground: &Ground<'_>,
     stage: &Stage,
@@ -181,29 +182,44 @@ pub(crate) fn begin<'s>(
     score: &'s Score,
     build: &Build<'_>,
 ) -> Option<Begun<'s>> {
+    let begun = begin_from(ground, stage, hypotheses, score, &score.nodes, build);
+    let without = score.nodes.first().filter(|_| {
+        let gains = |begun: &Begun<'_>| begun.gain > 0.0;
+        !begun.as_ref().is_some_and(gains)
+    });
+    let other = without
+        .and_then(|node| begin_from(ground, stage, hypotheses, score, &[node.without()], build));
+    begun
+        .into_iter()
+        .chain(other)
+        .max_by(|a, b| a.gain.total_cmp(&b.gain))
+}
+
+/// Fits a hypothesis in a few steps from each of some nodes; `None` where it cannot be run.
+fn begin_from<'s>(
+    ground: &Ground<'_>,
+    stage: &Stage,
+    hypotheses: &[Hypothesis],
+    score: &'s Score,
+    nodes: &[Node],
+    build: &Build<'_>,
+) -> Option<Begun<'s>> {
     let hypothesis = &hypotheses[score.hypothesis];
     let list = stage.numbers_with(&[score.hypothesis]);
     let Built { program, paths } = build(&list)?;
     let own_path = paths.last()?.clone();
-    let from = |node: &Node| -> Option<Refit> {
+    // A few steps from every node, the rest from the best of them.
+    let mut best: Option<Refit> = None;
+    for node in nodes.iter().filter(|node| node.gain >= 0.5 * score.gain()) {
         let mut unknowns = Unknowns::of(stage, &program);
         unknowns.add(&program, hypothesis, &own_path, node);
-        unknowns.fitted(ground, &program, FIRST_STEPS)
-    };
-    let better = |known: Option<Refit>, other: Refit| match known {
-        Some(known) if other.0.gain_over(&known.0) <= 0.0 => Some(known),
-        Some(_) | None => Some(other),
-    };
-    // A few steps from every node, the rest from the best of them.
-    let nodes = score.nodes.iter();
-    let nodes = nodes.filter(|node| node.gain >= 0.5 * score.gain());
-    let mut best = nodes.filter_map(from).fold(None, better);
-    let gains = |(own, ..): &Refit| own.gain_over(&stage.solution) > 0.0;
-    // Where slopes at a node lead astray, all begins where there is no effect yet.
-    if !best.as_ref().is_some_and(gains) {
-        let without = score.nodes.first().map(Node::without);
-        let other = without.as_ref().and_then(from);
-        best = other.into_iter().fold(best, better);
+        let Some(refit) = unknowns.fitted(ground, &program, FIRST_STEPS) else {
+            continue;
+        };
+        let better = |(known, ..): &Refit| refit.0.gain_over(known) > 0.0;
+        if best.as_ref().is_none_or(better) {
+            best = Some(refit);
+        }
     }
     let refit = best?;
     Some(Begun {
