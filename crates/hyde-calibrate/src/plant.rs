@@ -79,8 +79,8 @@ pub(crate) struct Plant<'a> {
     /// Those that any mode fixed since the last row or event began: friction that slips back has held in between.
     met: Vec<usize>,
     pub(crate) room: Room,
-    /// The steps of the last row.
-    pub(crate) legs: Vec<Leg>,
+    /// The steps of the last row, where somebody follows them.
+    pub(crate) legs: Option<Vec<Leg>>,
     pub(crate) past: Past,
     /// Delayed values where the next step begins, and where it ends.
     pub(crate) late: (Vec<f64>, Vec<f64>),
@@ -149,7 +149,7 @@ impl<'a> Plant<'a> {
             pinned: Vec::new(),
             met: Vec::new(),
             room: Room::new(program, &places),
-            legs: Vec::new(),
+            legs: None,
             past,
             late: (
                 vec![0.0; program.delays.len()],
@@ -234,7 +234,6 @@ impl<'a> Plant<'a> {
 
     /// On to the next row, up to what drives the axis there.
     pub(crate) fn advance(&mut self) {
-        self.legs.clear();
         // Linear parts that would not do for the next step: their configurations, and the errors.
         let mut tried = Vec::new();
         while self.index < shortest_steps() {
@@ -249,11 +248,7 @@ impl<'a> Plant<'a> {
             match self.step(level) {
                 Outcome::Taken => {
                     self.index += size_of(level);
-                    self.legs.push(Leg {
-                        level,
-                        configuration,
-                        event: None,
-                    });
+                    self.keep(level, configuration, None);
                     if self.level > LONGEST && self.index.is_multiple_of(size_of(self.level - 1)) {
                         self.level -= 1;
                     }
@@ -262,12 +257,8 @@ impl<'a> Plant<'a> {
                 Outcome::Bent(_) | Outcome::TooLong => self.level += 1,
                 Outcome::Event => {
                     self.index += size_of(level);
-                    let event = Some(self.event());
-                    self.legs.push(Leg {
-                        level,
-                        configuration,
-                        event,
-                    });
+                    let event = self.event();
+                    self.keep(level, configuration, event);
                 }
             }
             tried.clear();
@@ -276,15 +267,26 @@ impl<'a> Plant<'a> {
         self.index = 0;
     }
 
-    /// What happens where a guard has become true.
-    fn event(&mut self) -> Event {
-        let before = Instant::of(self.here());
+    /// Goes through what happens where a guard has become true, and tells it where somebody follows.
+    fn event(&mut self) -> Option<Event> {
+        let followed = self.legs.is_some();
+        let before = followed.then(|| Instant::of(self.here()));
         self.forget_fixed();
         self.settle();
-        Event {
+        before.map(|before| Event {
             fixed: self.fixed_states(),
             before,
             after: Instant::of(self.here()),
+        })
+    }
+
+    fn keep(&mut self, level: usize, configuration: usize, event: Option<Event>) {
+        if let Some(legs) = &mut self.legs {
+            legs.push(Leg {
+                level,
+                configuration,
+                event,
+            });
         }
     }
 

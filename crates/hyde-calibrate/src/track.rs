@@ -71,6 +71,7 @@ impl<'p> Track<'p> {
         let mut innovations = Innovations::empty(recording);
         let mut rows = Vec::with_capacity(recording.rows());
         let (mut legs, mut memories) = (Vec::new(), Vec::new());
+        plant.legs = Some(Vec::new());
         let mut before = (0, 0);
         let _end = run_while(&mut plant, &observer, |plant, row, when, error| {
             let here = keep(plant, &mut values, &mut memories);
@@ -83,7 +84,7 @@ impl<'p> Track<'p> {
                 }
                 When::After => {
                     let first_leg = legs.len();
-                    legs.append(&mut plant.legs);
+                    plant.legs.iter_mut().for_each(|own| legs.append(own));
                     rows.push(Passed {
                         t: plant.time(),
                         modes: [before.0, here.0],

@@ -140,9 +140,13 @@ fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
         Some(answer) => truth(data, answer)?,
         None => command("fit", &axis, data)?,
     };
+    let chi_of_truth = match answer {
+        Some(answer) => chi_of_truth(data, answer)?,
+        None => chi(&fitted),
+    };
     Ok(SetResult {
         right: right(&report, answer),
-        above_truth: chi(&report) - chi_of_truth(data, answer)?,
+        above_truth: chi(&report) - chi_of_truth,
         windows_over_truth: over(&report, &fitted, "windows"),
         free_run_over_truth: over(&report, &fitted, "free_run"),
         minutes,
@@ -152,12 +156,9 @@ fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
 /// Mean square of whitened innovations over the records held out of the axis with the true effect, calibrated in the same way.
 /// The observer is that round the declared model, as it is before and after: with one of its own, which a play loosens, the
 /// truth would be measured by another yardstick.
-fn chi_of_truth(data: &Path, answer: Option<&Answer>) -> Result<f64, String> {
+fn chi_of_truth(data: &Path, answer: &Answer) -> Result<f64, String> {
     let declared = bench_axis::declared()?.observed();
-    let truth = match answer {
-        Some(answer) => bench_axis::with(answer.with)?.observed(),
-        None => declared.clone(),
-    };
+    let truth = bench_axis::with(answer.with)?.observed();
     let [declared_program, program] = [&declared, &truth].map(|of| of.compile(Backend::Native));
     let (declared_program, program) = (declared_program?.program, program?.program);
     let fitted = records(data, "fit-")?;
@@ -184,8 +185,7 @@ fn chi_of_truth(data: &Path, answer: Option<&Answer>) -> Result<f64, String> {
     );
     let found = found.map_err(unsupported)?;
     let held = found.records.iter().filter(|record| record.holdout);
-    let held: Vec<f64> = held.map(|record| record.after.0).collect();
-    Ok(held.iter().sum::<f64>() / held.len() as f64)
+    Ok(mean(held.map(|record| record.after.0)))
 }
 
 /// The records of a set whose names begin so, in order.
@@ -251,10 +251,12 @@ fn over(one: &Value, other: &Value, measure: &str) -> f64 {
 
 /// Mean square of whitened innovations over the records held out.
 fn chi(report: &Value) -> f64 {
-    let held: Vec<f64> = held_out(report)
-        .filter_map(|record| record["chi"]["after"].as_f64())
-        .collect();
-    held.iter().sum::<f64>() / held.len() as f64
+    mean(held_out(report).filter_map(|record| record["chi"]["after"].as_f64()))
+}
+
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let values: Vec<f64> = values.collect();
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 fn right(report: &Value, answer: Option<&Answer>) -> bool {

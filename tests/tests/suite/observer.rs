@@ -1,7 +1,7 @@
 //! Observers on the bench axis: their fixed steps against the exact run, and what calibration finds in records that the
 //! exact run has made.
 
-use crate::points::Random;
+use crate::points::{Random, parameters};
 use hyde_calibrate::{Innovations, Observer, Problem, Recording, Varied, fit};
 use hyde_compiler::{Backend, Compiled};
 use hyde_experiment::Options;
@@ -142,8 +142,7 @@ fn innovations_change_along_a_run_as_differences_of_runs_do() {
     let program = &compiled.program;
     let recordings = [Recording::new("strokes", program, loaded.tables.clone()).unwrap()];
     let observer = Observer::new(program, &recordings, &[]).unwrap();
-    let mut p = vec![0.0; program.n_parameters];
-    program.kernels.parameters(&[], &mut p);
+    let p = parameters(program, &[]);
     let varied = Varied::uncertain(program, &p);
     let problem = Problem {
         program,
@@ -197,8 +196,7 @@ fn calibration_finds_the_parameters_that_a_record_was_made_with() {
     let recording = Recording::new("made", program, made(&example, &loaded, &truth, 1.0)).unwrap();
     let recordings = [recording];
     let observer = Observer::new(program, &recordings, &[]).unwrap();
-    let mut p = vec![0.0; program.n_parameters];
-    program.kernels.parameters(&[], &mut p);
+    let p = parameters(program, &[]);
     let mut varied = Varied::uncertain(program, &p);
     assert_eq!(varied.len(), 12);
     varied.retain(|varied| truth.iter().any(|(name, _)| varied.name == *name));

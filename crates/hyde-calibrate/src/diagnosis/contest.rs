@@ -38,7 +38,7 @@ impl Forward<'_> {
         } = *self;
         let begun: Vec<Begun<'_>> = scores
             .into_par_iter()
-            .filter_map(|score| begin(ground, stage, hypotheses, score, build))
+            .filter_map(|score| begin(ground, stage, hypotheses, score, build, true))
             .collect();
         let gains = begun.iter().map(|begun| begun.gain);
         let gains = gains.chain(earlier.iter().map(|trial| trial.gain));

@@ -169,57 +169,41 @@ pub(crate) fn trial(
     score: &Score,
     build: &Build<'_>,
 ) -> Option<Trial> {
-    let begun = begin_from(ground, stage, hypotheses, score, &score.nodes, build)?;
+    let begun = begin(ground, stage, hypotheses, score, build, false)?;
     finish(ground, stage, hypotheses, begun, true)
 }
 
-/// Fits an effect in a few steps from each of its best nodes, or where slopes at these lead astray from where there is no
-/// effect yet; `None` where it cannot be run.
+/// Fits a hypothesis in a few steps from each of its best nodes, and if it may begin `anew` and slopes at these lead astray,
+/// from where there is no effect yet; `None` where it cannot be run.
 pub(crate) fn begin<'s>(
     ground: &Ground<'_>,
     stage: &Stage,
     hypotheses: &[Hypothesis],
     score: &'s Score,
     build: &Build<'_>,
-) -> Option<Begun<'s>> {
-    let begun = begin_from(ground, stage, hypotheses, score, &score.nodes, build);
-    let without = score.nodes.first().filter(|_| {
-        let gains = |begun: &Begun<'_>| begun.gain > 0.0;
-        !begun.as_ref().is_some_and(gains)
-    });
-    let other = without
-        .and_then(|node| begin_from(ground, stage, hypotheses, score, &[node.without()], build));
-    begun
-        .into_iter()
-        .chain(other)
-        .max_by(|a, b| a.gain.total_cmp(&b.gain))
-}
-
-/// Fits a hypothesis in a few steps from each of some nodes; `None` where it cannot be run.
-fn begin_from<'s>(
-    ground: &Ground<'_>,
-    stage: &Stage,
-    hypotheses: &[Hypothesis],
-    score: &'s Score,
-    nodes: &[Node],
-    build: &Build<'_>,
+    anew: bool,
 ) -> Option<Begun<'s>> {
     let hypothesis = &hypotheses[score.hypothesis];
     let list = stage.numbers_with(&[score.hypothesis]);
     let Built { program, paths } = build(&list)?;
     let own_path = paths.last()?.clone();
-    // A few steps from every node, the rest from the best of them.
-    let mut best: Option<Refit> = None;
-    for node in nodes.iter().filter(|node| node.gain >= 0.5 * score.gain()) {
+    let from = |node: &Node| -> Option<Refit> {
         let mut unknowns = Unknowns::of(stage, &program);
         unknowns.add(&program, hypothesis, &own_path, node);
-        let Some(refit) = unknowns.fitted(ground, &program, FIRST_STEPS) else {
-            continue;
-        };
-        let better = |(known, ..): &Refit| refit.0.gain_over(known) > 0.0;
-        if best.as_ref().is_none_or(better) {
-            best = Some(refit);
-        }
+        unknowns.fitted(ground, &program, FIRST_STEPS)
+    };
+    let better = |known: Option<Refit>, other: Refit| match known {
+        Some(known) if other.0.gain_over(&known.0) <= 0.0 => Some(known),
+        Some(_) | None => Some(other),
+    };
+    // A few steps from every node, the rest from the best of them.
+    let nodes = score.nodes.iter();
+    let nodes = nodes.filter(|node| node.gain >= 0.5 * score.gain());
+    let mut best = nodes.filter_map(from).fold(None, better);
+    let gains = |(own, ..): &Refit| own.gain_over(&stage.solution) > 0.0;
+    if anew && !best.as_ref().is_some_and(gains) {
+        let other = score.nodes.first().and_then(|node| from(&node.without()));
+        best = other.into_iter().fold(best, better);
     }
     let refit = best?;
     Some(Begun {
@@ -275,19 +259,16 @@ pub(crate) fn finish(
     let hypothesis = &hypotheses[score.hypothesis];
     let own_path = effects.last()?.1.clone();
     let set = ground.set_in(&program, &kept);
-    let fit = |from: &Solution, varied: &[Varied]| {
+    let fit = |from: &Solution, varied: &[Varied], steps: usize, slopes: Slopes| {
         let problem = ground.problem(&program, varied, &set, None);
-        problem
-            .solve_in(&from.values, MAX_STEPS, Slopes::Tangents)
-            .ok()
+        problem.solve_in(&from.values, steps, slopes).ok()
     };
     if worth && !solution.converged {
-        solution = fit(&solution, &varied)?;
+        solution = fit(&solution, &varied, MAX_STEPS, Slopes::Tangents)?;
     }
     // What slopes along one run do not bring to its end, differences do.
     if worth && !solution.converged {
-        let problem = ground.problem(&program, &varied, &set, None);
-        let end = problem.solve_in(&solution.values, LAST_STEPS, Slopes::Differences);
+        let end = fit(&solution, &varied, LAST_STEPS, Slopes::Differences);
         solution = end.unwrap_or(solution);
     }
     let own = stage.varied.len()..varied.len();
@@ -295,7 +276,7 @@ pub(crate) fn finish(
     // A size may be larger than any that is usual, and is found then, though not without doubt.
     let large = worth && widen(&mut varied[sizes.clone()], &solution.values[sizes.clone()]);
     if large {
-        solution = fit(&solution, &varied)?;
+        solution = fit(&solution, &varied, MAX_STEPS, Slopes::Tangents)?;
     }
     let at_bound = sizes
         .clone()

@@ -36,11 +36,7 @@ impl Carried {
         at: Point<'a>,
         room: &'a mut Vectors,
     ) -> Point<'a> {
-        let (y, yp) = self.at(row, when).split_at(self.own.len());
-        room.reach(self.positions.len() + self.own.len());
-        room.take(&self.positions, at);
-        room.take(&self.own, Point { y, yp, ..at });
-        room.in_place(at)
+        self.placed(self.at(row, when), at, room)
     }
 
     /// A part of the way to a row: what is its own goes there evenly.
@@ -58,6 +54,11 @@ impl Carried {
         let values: Vec<f64> = ends
             .map(|(begin, end)| begin + part * (end - begin))
             .collect();
+        self.placed(&values, at, room)
+    }
+
+    /// A point of the route in the vectors of the program, with its own unknowns and their rates.
+    fn placed<'a>(&self, values: &[f64], at: Point<'a>, room: &'a mut Vectors) -> Point<'a> {
         let (y, yp) = values.split_at(self.own.len());
         room.reach(self.positions.len() + self.own.len());
         room.take(&self.positions, at);
