@@ -226,8 +226,25 @@ pub(crate) fn correlation(list: &[f64]) -> f64 {
 /// By how much a sum of squares overstates what is known: the mean square where it is above one, and (1 + rho)/(1 - rho)
 /// for correlated errors (Bartlett, J. R. Stat. Soc. Suppl. 8, 1946, 27), over all channels.
 pub(crate) fn inflation(innovations: &[Innovations]) -> f64 {
+    inflation_over(innovations.iter().flat_map(|own| &own.channels))
+}
+
+/// The same of the channel where it is largest.
+fn largest_inflation(innovations: &[Innovations]) -> f64 {
+    let channels = innovations.iter().map(|own| own.channels.len()).max();
+    let each = (0..channels.unwrap_or(0)).map(|channel| {
+        inflation_over(
+            innovations
+                .iter()
+                .filter_map(move |own| own.channels.get(channel)),
+        )
+    });
+    each.fold(1.0, f64::max)
+}
+
+fn inflation_over<'a>(lists: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
-    for list in innovations.iter().flat_map(|i| &i.channels) {
+    for list in lists {
         let rho = correlation(list).clamp(0.0, 0.99);
         let squares: f64 = list.iter().map(|r| r * r).sum();
         sum += squares * (1.0 + rho) / (1.0 - rho);
@@ -240,7 +257,7 @@ pub(crate) fn inflation(innovations: &[Innovations]) -> f64 {
 /// which knows how they go with what is not explained (White, Econometrica 50, 1982, 1); at most [`inflation`], which takes
 /// them to change as slowly as they can.
 pub(crate) fn inflation_of(solution: &Solution, own: impl IntoIterator<Item = usize>) -> f64 {
-    let most = inflation(&solution.innovations);
+    let most = largest_inflation(&solution.innovations);
     let Some(bread) = solution.inverse_curvature() else {
         return most;
     };

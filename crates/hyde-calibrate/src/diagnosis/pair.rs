@@ -12,7 +12,7 @@ use super::scan::{Node, Scanner, Score};
 use super::search::Gates;
 use super::stage::Stage;
 use super::trial::{together, unseen};
-use crate::fit::inflation;
+use crate::fit::{inflation, inflation_of};
 use rayon::prelude::*;
 
 /// Pairs that are fitted.
@@ -74,8 +74,8 @@ pub(crate) fn pair(scanner: &Scanner<'_>, scores: &[Score], gates: Gates) -> Opt
         };
         let nodes = [at(first, a, both), at(second, b, Vec::new())];
         let fitted = together(ground, stage, scanner.hypotheses, &nodes, scanner.build)?;
-        let freedoms = fitted.varied.len() - stage.varied.len();
-        let gate = gates.gain(freedoms) * inflation;
+        let own = stage.varied.len()..fitted.varied.len();
+        let gate = gates.gain(own.len()) * inflation_of(&fitted.solution, own).max(inflation);
         let unseen = plain - unseen(ground, &fitted)?;
         let gain = fitted.solution.gain_over(&stage.solution);
         let passes = gain >= gate && unseen >= gate.max(gates.material());
