@@ -11,6 +11,7 @@ use crate::exponential::{Step, steps};
 use crate::leg::Instant;
 use hyde_program::{Function, Kernels, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::DMatrix;
+use std::collections::BTreeSet;
 
 /// How far from each other derivatives may be that are the same number.
 const SAME: f64 = 1e-9;
@@ -206,15 +207,14 @@ pub(crate) fn x_column(places: &Places, wrt: Wrt) -> Option<usize> {
     }
 }
 
-/// Whether dF/dv, and whether everything, is the same at points near and far, at other times and between rows.
-fn linearity(
+/// The numbers of those derivatives of the residual that are not the same at points near and far.
+pub(crate) fn uneven(
     program: &Program,
-    places: &Places,
     at: Point<'_>,
     workspace: &mut Workspace,
     here: &[f64],
-) -> (bool, bool) {
-    let (mut constant, mut affine) = (true, true);
+) -> BTreeSet<usize> {
+    let mut found = BTreeSet::new();
     for (number, size) in [1e-3, 0.3, 1.0, 30.0, 1e3].into_iter().enumerate() {
         // Any numbers without relation to each other.
         let moved = |values: &[f64], shift: usize| -> Vec<f64> {
@@ -226,27 +226,30 @@ fn linearity(
                 })
                 .collect()
         };
-        let (y, yp) = (moved(at.y, 1), moved(at.yp, 1000));
-        let there = partials(
-            program,
-            Point {
-                y: &y,
-                yp: &yp,
-                ..at
-            },
-            workspace,
-        );
-        for ((entry, &a), &b) in program
-            .partials(Function::Residual)
-            .iter()
-            .zip(here)
-            .zip(&there)
-        {
+        let (y, yp) = (&moved(at.y, 1), &moved(at.yp, 1000));
+        let there = partials(program, Point { y, yp, ..at }, workspace);
+        let pairs = here.iter().zip(&there).enumerate();
+        let other = |&(_, (&a, &b)): &(usize, (&f64, &f64))| {
             let same = (a - b).abs() <= SAME * a.abs().max(b.abs());
-            affine &= same;
-            constant &= same || v_column(places, entry.wrt).is_none();
-        }
+            !same
+        };
+        found.extend(pairs.filter(other).map(|(entry, _)| entry));
     }
+    found
+}
+
+/// Whether dF/dv, and whether everything, is the same at points near and far, at other times and between rows.
+fn linearity(
+    program: &Program,
+    places: &Places,
+    at: Point<'_>,
+    workspace: &mut Workspace,
+    here: &[f64],
+) -> (bool, bool) {
+    let entries = program.partials(Function::Residual);
+    let uneven = uneven(program, at, workspace, here);
+    let of_v = |number: &usize| v_column(places, entries[*number].wrt).is_some();
+    let (constant, affine) = (!uneven.iter().any(of_v), uneven.is_empty());
     let residual = |at: Point<'_>, workspace: &mut Workspace| {
         let mut out = vec![0.0; program.n_unknowns];
         program

@@ -118,6 +118,11 @@ impl Observer {
         }
     }
 
+    /// Whether a state of its model has a gain.
+    pub(crate) fn knows(&self, state: usize) -> bool {
+        !self.spread[state].is_infinite()
+    }
+
     /// Whether all states of another observer's model have a gain here.
     pub(crate) fn knows_states_of(&self, other: &Self) -> bool {
         let mut states = other.states.iter();

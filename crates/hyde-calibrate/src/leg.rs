@@ -7,8 +7,6 @@ use hyde_program::Point;
 pub(crate) struct Leg {
     /// Its level: a row's time over 2^level.
     pub(crate) level: usize,
-    /// The combination of modes it was taken in.
-    pub(crate) configuration: usize,
     /// What ended it, if it is an event.
     pub(crate) event: Option<Event>,
 }
@@ -17,6 +15,8 @@ pub(crate) struct Leg {
 pub(crate) struct Event {
     /// Numbers of the states that modes fix from there on, or did before or in passing.
     pub(crate) fixed: Vec<usize>,
+    /// The combination of modes from there on.
+    pub(crate) configuration: usize,
     /// Where the plant was before it.
     pub(crate) before: Instant,
     /// Where it was after it.

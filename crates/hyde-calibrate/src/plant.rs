@@ -244,11 +244,11 @@ impl<'a> Plant<'a> {
                 self.level += 1;
                 continue;
             }
-            let (level, configuration) = (self.level, self.current);
+            let level = self.level;
             match self.step(level) {
                 Outcome::Taken => {
                     self.index += size_of(level);
-                    self.keep(level, configuration, None);
+                    self.keep(level, None);
                     if self.level > LONGEST && self.index.is_multiple_of(size_of(self.level - 1)) {
                         self.level -= 1;
                     }
@@ -258,7 +258,7 @@ impl<'a> Plant<'a> {
                 Outcome::Event => {
                     self.index += size_of(level);
                     let event = self.event();
-                    self.keep(level, configuration, event);
+                    self.keep(level, event);
                 }
             }
             tried.clear();
@@ -274,19 +274,16 @@ impl<'a> Plant<'a> {
         self.forget_fixed();
         self.settle();
         before.map(|before| Event {
+            configuration: self.current,
             fixed: self.fixed_states(),
             before,
             after: Instant::of(self.here()),
         })
     }
 
-    fn keep(&mut self, level: usize, configuration: usize, event: Option<Event>) {
+    fn keep(&mut self, level: usize, event: Option<Event>) {
         if let Some(legs) = &mut self.legs {
-            legs.push(Leg {
-                level,
-                configuration,
-                event,
-            });
+            legs.push(Leg { level, event });
         }
     }
 

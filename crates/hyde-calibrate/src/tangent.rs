@@ -7,17 +7,24 @@
 //! channels by dh. Both are differences by the parameter, of kernels alone. So a direction costs a few evaluations and a
 //! column of a product a row, and no run of its own. Guards are taken to act when they do without it: for friction that is
 //! right to first order, for its force does not jump where it begins and ends to stick, and what has stuck in between forgets
-//! its speed; of contacts it is a part. Modes that begin within a row act from there on.
+//! its speed; of contacts it is a part. Modes that begin within a row act from there on, and what bends has the derivatives
+//! of where the plant is ([`splitting`]).
+
+mod known;
+mod own;
+mod splitting;
 
 use crate::dense::set_product;
-use crate::gain::{Observer, output_matrix};
+use crate::gain::Observer;
 use crate::leg::{Leg, length};
-use crate::observer::{When, measured};
+use crate::observer::When;
 use crate::plant::{Unsupported, size_of};
 use crate::recording::Recording;
 use crate::track::{Track, Vectors};
-use hyde_program::{Function, Point, Program, SomeRows, Workspace, Wrt};
+use hyde_program::Program;
+pub(crate) use known::{Known, Modes};
 use nalgebra::{DMatrix, DMatrixView};
+pub(crate) use own::Own;
 use std::collections::BTreeMap;
 
 /// A parameter by whose small change innovations are differentiated.
@@ -26,15 +33,6 @@ pub(crate) struct Direction {
     pub(crate) p: Vec<f64>,
     /// By how much.
     pub(crate) step: f64,
-}
-
-/// What a combination of modes makes of errors and forces in a row.
-pub(crate) struct Modes {
-    pub(crate) exp: DMatrix<f64>,
-    /// By the equations that a direction touches.
-    pub(crate) first: DMatrix<f64>,
-    pub(crate) second: DMatrix<f64>,
-    pub(crate) outputs: DMatrix<f64>,
 }
 
 /// A product of matrices is faster than one a column from this many columns on.
@@ -88,6 +86,8 @@ pub(crate) fn along(
     let mut by_output = DMatrix::<f64>::zeros(channels, count);
     let mut corrected = Corrected::default();
     let (mut at, mut room) = (None, Vectors::default());
+    // The combination of modes in which the last row was left, and what bends there.
+    let (mut left, mut bend) = (0, None);
     for (row, passed) in route.rows.iter().enumerate() {
         let [before_it, next] = passed.modes;
         let seen = known.modes(row, When::Before, before_it)?;
@@ -97,43 +97,73 @@ pub(crate) fn along(
         }
         let at_end = track.point(row, When::After, p, &mut room);
         own.forces(at_end, directions, &mut then);
+        let bend_next = known.bend(next, at_end);
+        // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
+        let same = next == before_it;
         let legs = track.legs(row);
         let within = legs.iter().any(|leg| leg.event.is_some());
-        if at.is_some() && within {
+        let one = [Leg {
+            level: 0,
+            event: None,
+        }];
+        let legs = if within { legs } else { &one };
+        let apart = at.is_some() && (within || known.splitting(left).is_some());
+        if apart {
             // Modes that begin within the row act from there on: the axis may ring several times in a row's time.
             // So do forces, which jump from one mode to the next, and grow evenly in each.
+            let mut configuration = left;
             for mode in legs.split_inclusive(|leg| leg.event.is_some()) {
                 let event = mode.last().and_then(|leg| leg.event.as_ref());
+                known.kick(
+                    configuration,
+                    bend.as_ref(),
+                    length(mode),
+                    &now,
+                    &mut before,
+                );
                 if let Some(event) = event {
                     let at = track.within(row, &event.before, p, &mut room);
                     own.forces(at, directions, &mut reached);
-                } else if next == before_it {
-                    reached.copy_from(&then);
+                    bend = known.bend(configuration, at);
                 } else {
-                    reached.copy_from(&now);
+                    reached.copy_from(if same { &then } else { &now });
+                    bend.clone_from(&bend_next);
+                    if next != configuration {
+                        let at = track.point(row, When::Before, p, &mut room);
+                        bend = known.bend(configuration, at);
+                    }
                 }
                 for (number, leg) in mode.iter().enumerate() {
                     put(&mut before, states, &now);
                     let part = size_of(leg.level) as f64 / length(&mode[number..]) as f64;
                     now.zip_apply(&reached, |now, end| *now += part * (end - *now));
                     put(&mut before, states + touched, &now);
-                    let errors = known.leg(leg)? * before.rows(0, states + 2 * touched);
+                    let matrix = known.leg(configuration, leg.level)?;
+                    let errors = matrix * before.rows(0, states + 2 * touched);
                     put(&mut before, 0, &errors);
                 }
+                known.kick(
+                    configuration,
+                    bend.as_ref(),
+                    length(mode),
+                    &reached,
+                    &mut before,
+                );
                 if let Some(event) = event {
                     fix(&event.fixed, &mut before);
                     let at = track.within(row, &event.after, p, &mut room);
                     own.forces(at, directions, &mut now);
+                    configuration = event.configuration;
+                    bend = known.bend(configuration, at);
                 }
             }
         } else {
-            // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
-            let end = if next == before_it { &then } else { &now };
+            let end = if same { &then } else { &now };
             put(&mut before, states, &now);
             put(&mut before, states + touched, end);
         }
         put(&mut before, states + 2 * touched, &by_output);
-        let stepped = at.filter(|_| !within);
+        let stepped = at.filter(|_| !apart);
         let matrix = corrected.of(&known.modes, stepped, seen, observer);
         if count < MANY {
             for (mut after, before) in after.column_iter_mut().zip(before.column_iter()) {
@@ -151,6 +181,7 @@ pub(crate) fn along(
         std::mem::swap(&mut before, &mut after);
         std::mem::swap(&mut now, &mut then);
         at = Some(known.modes(row, When::After, next)?);
+        (left, bend) = (next, bend_next);
     }
     Ok(())
 }
@@ -226,203 +257,9 @@ impl Corrected {
     }
 }
 
-/// What combinations of modes, and steps in them, make of errors and forces: made where they are new.
-pub(crate) struct Known<'t> {
-    track: &'t Track<'t>,
-    program: &'t Program,
-    p: &'t [f64],
-    touched: Vec<usize>,
-    workspace: Workspace,
-    pub(crate) modes: Vec<Modes>,
-    /// By the numbers of the track.
-    number_of: Vec<Option<usize>>,
-    rates: Vec<Option<DMatrix<f64>>>,
-    legs: BTreeMap<(usize, usize), DMatrix<f64>>,
-}
-
-impl<'t> Known<'t> {
-    pub(crate) fn new(
-        track: &'t Track<'t>,
-        program: &'t Program,
-        p: &'t [f64],
-        touched: &[usize],
-    ) -> Self {
-        let count = track.route.configurations.len();
-        Self {
-            track,
-            program,
-            p,
-            touched: touched.to_vec(),
-            workspace: Workspace::new(program.n_work),
-            modes: Vec::new(),
-            number_of: vec![None; count],
-            rates: vec![None; count],
-            legs: BTreeMap::new(),
-        }
-    }
-
-    /// The number of the matrices of a combination of modes, in which a row is.
-    pub(crate) fn modes(
-        &mut self,
-        row: usize,
-        when: When,
-        configuration: usize,
-    ) -> Result<usize, Unsupported> {
-        if let Some(number) = self.number_of[configuration] {
-            return Ok(number);
-        }
-        let track = self.track;
-        let own = &track.route.configurations[configuration];
-        let mut room = Vectors::default();
-        let at = track.point(row, when, self.p, &mut room);
-        let outputs = output_matrix(self.program, &track.places, own, at, &mut self.workspace);
-        let step = &own.steps[0];
-        let rates = self.rates(configuration)?;
-        let made = Modes {
-            exp: step.exp.clone(),
-            first: &step.first * rates,
-            // phi2 is that of a growth over the whole step.
-            second: &step.second * rates,
-            outputs,
-        };
-        self.modes.push(made);
-        self.number_of[configuration] = Some(self.modes.len() - 1);
-        Ok(self.modes.len() - 1)
-    }
-
-    /// Times errors, and forces at the begin and the end of a step below them, this is errors at its end.
-    fn leg(&mut self, leg: &Leg) -> Result<&DMatrix<f64>, Unsupported> {
-        let key = (leg.configuration, leg.level);
-        if !self.legs.contains_key(&key) {
-            let step = &self.track.route.configurations[leg.configuration].steps[leg.level];
-            let rates = self.rates(leg.configuration)?;
-            let n = step.exp.nrows();
-            let forces = rates.ncols();
-            let (first, second) = (&step.first * rates, &step.second * rates);
-            let mut matrix = DMatrix::zeros(n, n + 2 * forces);
-            matrix.columns_mut(0, n).copy_from(&step.exp);
-            // The second integral is that of a growth over the step.
-            matrix.columns_mut(n, forces).copy_from(&(first - &second));
-            matrix.columns_mut(n + forces, forces).copy_from(&second);
-            self.legs.insert(key, matrix);
-        }
-        Ok(&self.legs[&key])
-    }
-
-    /// The rates of the states that forces in the equations that are touched make.
-    fn rates(&mut self, configuration: usize) -> Result<&DMatrix<f64>, Unsupported> {
-        if self.rates[configuration].is_none() {
-            let track = self.track;
-            let inverse = track
-                .inverse(self.program, configuration, self.p, &mut self.workspace)
-                .ok_or_else(Unsupported::singular)?;
-            let of_states = -inverse.select_rows(&track.places.states);
-            self.rates[configuration] = Some(of_states.select_columns(&self.touched));
-        }
-        self.rates[configuration]
-            .as_ref()
-            .ok_or_else(Unsupported::singular)
-    }
-}
-
 /// States that modes fix have no error, a row a state: what the observer corrects them by is lost.
 fn fix(states: &[usize], errors: &mut DMatrix<f64>) {
     for &state in states {
         errors.row_mut(state).fill(0.0);
-    }
-}
-
-/// Evaluations of the model with other parameters where the plant is.
-pub(crate) struct Own<'p> {
-    /// The equations that some direction changes.
-    pub(crate) touched: Vec<usize>,
-    /// Their residuals.
-    residual: Box<dyn SomeRows + 'p>,
-    /// What the channels show.
-    measured: Box<dyn SomeRows + 'p>,
-    /// Whether some direction changes what is measured.
-    pub(crate) shown: bool,
-    workspace: Workspace,
-    /// What the channels show without a change.
-    values: Vec<f64>,
-    others: Vec<f64>,
-    force: Vec<f64>,
-    plain: Vec<f64>,
-}
-
-impl<'p> Own<'p> {
-    pub(crate) fn new(program: &'p Program, p: &[f64], directions: &[Direction]) -> Self {
-        let moved = |place: usize| {
-            directions
-                .iter()
-                .any(|direction| direction.p[place].to_bits() != p[place].to_bits())
-        };
-        let rows = |function: Function| -> Vec<usize> {
-            let entries = program.kernels.still_entries(function).into_iter();
-            entries
-                .filter(|entry| matches!(entry.wrt, Wrt::Parameter(place) if moved(place)))
-                .map(|entry| entry.row)
-                .collect()
-        };
-        let mut touched = rows(Function::Residual);
-        touched.sort_unstable();
-        touched.dedup();
-        let channels = program.experiment.measured.len();
-        Self {
-            residual: program.kernels.some_rows(Function::Residual, &touched),
-            measured: measured(program),
-            shown: !rows(Function::Outputs).is_empty(),
-            workspace: Workspace::new(program.n_work),
-            values: vec![0.0; channels],
-            others: vec![0.0; channels],
-            force: vec![0.0; touched.len()],
-            plain: vec![0.0; touched.len()],
-            touched,
-        }
-    }
-
-    /// What a unit of each size adds to what the channels show, where it does: a column a direction.
-    pub(crate) fn seen(&mut self, at: Point<'_>, directions: &[Direction], out: &mut DMatrix<f64>) {
-        self.measured
-            .evaluate(at, &mut self.workspace, &mut self.values);
-        for (number, direction) in directions.iter().enumerate() {
-            let with = Point {
-                p: &direction.p,
-                ..at
-            };
-            self.measured
-                .evaluate(with, &mut self.workspace, &mut self.others);
-            for (channel, (with, plain)) in self.others.iter().zip(&self.values).enumerate() {
-                out[(channel, number)] = (with - plain) / direction.step;
-            }
-        }
-    }
-
-    /// What a unit of each size adds to the residual of the equations that are touched: a column a direction.
-    pub(crate) fn forces(
-        &mut self,
-        at: Point<'_>,
-        directions: &[Direction],
-        out: &mut DMatrix<f64>,
-    ) {
-        self.residual
-            .evaluate(at, &mut self.workspace, &mut self.plain);
-        for (number, direction) in directions.iter().enumerate() {
-            let with = Point {
-                p: &direction.p,
-                ..at
-            };
-            self.residual
-                .evaluate(with, &mut self.workspace, &mut self.force);
-            for (row, (with, plain)) in self.force.iter().zip(&self.plain).enumerate() {
-                let change = with - plain;
-                // Below the rounding of the residual there is nothing.
-                out[(row, number)] = if change.abs() <= 1e-13 * plain.abs() {
-                    0.0
-                } else {
-                    change / direction.step
-                };
-            }
-        }
     }
 }

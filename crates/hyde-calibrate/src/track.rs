@@ -33,6 +33,8 @@ pub(crate) struct Track<'p> {
 /// What a run of an observer has met, whatever else is carried along it.
 pub(crate) struct Route<'p> {
     program: &'p Program,
+    /// The time of a row, s.
+    pub(crate) step_s: f64,
     pub(crate) innovations: Innovations,
     /// The observer of this very model.
     pub(crate) observer: Observer,
@@ -99,6 +101,7 @@ impl<'p> Track<'p> {
         let configurations = std::mem::take(&mut plant.configurations);
         let route = Route {
             program,
+            step_s: recording.step_s,
             innovations,
             observer,
             configurations: configurations.into_iter().map(|(_, own)| own).collect(),
@@ -190,17 +193,26 @@ impl<'p> Track<'p> {
         p: &[f64],
         workspace: &mut Workspace,
     ) -> Option<DMatrix<f64>> {
-        let known = &self.route.configurations[configuration];
-        let at = known.made.point(p);
+        if self.carried.is_none() && std::ptr::eq(program, self.route.program) {
+            return Some(self.route.configurations[configuration].inverse.clone());
+        }
         let mut room = Vectors::default();
-        let at = match &self.carried {
-            None if std::ptr::eq(program, self.route.program) => {
-                return Some(known.inverse.clone());
-            }
-            None => at,
-            Some(carried) => carried.at_rest(at, &mut room),
-        };
+        let at = self.made(configuration, p, &mut room);
         inverse(program, &self.places, at, workspace)
+    }
+
+    /// Where a combination of modes is linear, with some parameters.
+    pub(crate) fn made<'a>(
+        &'a self,
+        configuration: usize,
+        p: &'a [f64],
+        room: &'a mut Vectors,
+    ) -> Point<'a> {
+        let at = self.route.configurations[configuration].made.point(p);
+        match &self.carried {
+            None => at,
+            Some(carried) => carried.at_rest(at, room),
+        }
     }
 }
 

@@ -1,0 +1,187 @@
+//! [`Known`]: what combinations of modes, and steps in them, make of errors and forces.
+
+use super::splitting::{Bend, Splitting};
+use crate::configuration::partials;
+use crate::gain::output_matrix;
+use crate::observer::When;
+use crate::plant::Unsupported;
+use crate::track::{Track, Vectors};
+use hyde_program::{Point, Program, Workspace};
+use nalgebra::DMatrix;
+use std::collections::BTreeMap;
+
+/// Rows in which derivatives are looked at for those that are usual.
+const LOOKS: usize = 15;
+
+/// What a combination of modes makes of errors and forces in a row.
+pub(crate) struct Modes {
+    pub(crate) exp: DMatrix<f64>,
+    /// By the equations that a direction touches.
+    pub(crate) first: DMatrix<f64>,
+    pub(crate) second: DMatrix<f64>,
+    pub(crate) outputs: DMatrix<f64>,
+}
+
+/// What combinations of modes, and steps in them, make of errors and forces: made where they are new.
+pub(crate) struct Known<'t> {
+    track: &'t Track<'t>,
+    program: &'t Program,
+    p: &'t [f64],
+    touched: Vec<usize>,
+    workspace: Workspace,
+    pub(crate) modes: Vec<Modes>,
+    /// By the numbers of the track.
+    number_of: Vec<Option<usize>>,
+    rates: Vec<Option<DMatrix<f64>>>,
+    /// Of those whose equations bend.
+    splittings: Vec<Option<Option<Splitting>>>,
+    legs: BTreeMap<(usize, usize), DMatrix<f64>>,
+}
+
+impl<'t> Known<'t> {
+    pub(crate) fn new(
+        track: &'t Track<'t>,
+        program: &'t Program,
+        p: &'t [f64],
+        touched: &[usize],
+    ) -> Self {
+        let count = track.route.configurations.len();
+        Self {
+            track,
+            program,
+            p,
+            touched: touched.to_vec(),
+            workspace: Workspace::new(program.n_work),
+            modes: Vec::new(),
+            number_of: vec![None; count],
+            rates: vec![None; count],
+            splittings: (0..count).map(|_| None).collect(),
+            legs: BTreeMap::new(),
+        }
+    }
+
+    /// The number of the matrices of a combination of modes, in which a row is.
+    pub(crate) fn modes(
+        &mut self,
+        row: usize,
+        when: When,
+        configuration: usize,
+    ) -> Result<usize, Unsupported> {
+        if let Some(number) = self.number_of[configuration] {
+            return Ok(number);
+        }
+        let track = self.track;
+        let own = &track.route.configurations[configuration];
+        let mut room = Vectors::default();
+        let at = track.point(row, when, self.p, &mut room);
+        let outputs = output_matrix(self.program, &track.places, own, at, &mut self.workspace);
+        let step = &own.steps[0];
+        let rates = self.rates(configuration)?;
+        let made = Modes {
+            exp: step.exp.clone(),
+            first: &step.first * rates,
+            // phi2 is that of a growth over the whole step.
+            second: &step.second * rates,
+            outputs,
+        };
+        self.modes.push(made);
+        self.number_of[configuration] = Some(self.modes.len() - 1);
+        Ok(self.modes.len() - 1)
+    }
+
+    /// Times errors, and forces at the begin and the end of a step below them, this is errors at its end. Without what bends.
+    pub(super) fn leg(
+        &mut self,
+        configuration: usize,
+        level: usize,
+    ) -> Result<&DMatrix<f64>, Unsupported> {
+        let key = (configuration, level);
+        if !self.legs.contains_key(&key) {
+            let track = self.track;
+            let (step, rates) = if self.splitting(configuration).is_none() {
+                let step = &track.route.configurations[configuration].steps[level];
+                (step, self.rates(configuration)?)
+            } else {
+                let own = self
+                    .splitting(configuration)
+                    .ok_or_else(Unsupported::singular)?;
+                (&own.steps[level], &own.rates)
+            };
+            let n = step.exp.nrows();
+            let forces = rates.ncols();
+            let (first, second) = (&step.first * rates, &step.second * rates);
+            let mut matrix = DMatrix::zeros(n, n + 2 * forces);
+            matrix.columns_mut(0, n).copy_from(&step.exp);
+            // The second integral is that of a growth over the step.
+            matrix.columns_mut(n, forces).copy_from(&(first - &second));
+            matrix.columns_mut(n + forces, forces).copy_from(&second);
+            self.legs.insert(key, matrix);
+        }
+        Ok(&self.legs[&key])
+    }
+
+    /// How errors go where equations bend in a combination of modes; `None` where none does.
+    pub(super) fn splitting(&mut self, configuration: usize) -> Option<&Splitting> {
+        if self.splittings[configuration].is_none() {
+            let own = &self.track.route.configurations[configuration];
+            let made = (!own.affine).then(|| self.split(configuration)).flatten();
+            self.splittings[configuration] = Some(made);
+        }
+        self.splittings[configuration].as_ref()?.as_ref()
+    }
+
+    fn split(&mut self, configuration: usize) -> Option<Splitting> {
+        let (track, program) = (self.track, self.program);
+        let route = &track.route;
+        let rows = route.rows.iter().enumerate();
+        let own = rows.filter(|(_, passed)| passed.modes[1] == configuration);
+        let own: Vec<usize> = own.map(|(row, _)| row).collect();
+        let mut room = Vectors::default();
+        let mut look = |row: &usize| {
+            let at = track.point(*row, When::After, self.p, &mut room);
+            partials(program, at, &mut self.workspace)
+        };
+        let every = own.len().div_ceil(LOOKS).max(1);
+        let looks: Vec<Vec<f64>> = own.iter().step_by(every).map(&mut look).collect();
+        let mut room = Vectors::default();
+        let at = track.made(configuration, self.p, &mut room);
+        let workspace = &mut self.workspace;
+        Splitting::new(track, program, &self.touched, at, &looks, workspace)
+    }
+
+    /// What bends takes errors on by half a step of a length in shortest ones, forces being as they are.
+    pub(super) fn kick(
+        &mut self,
+        configuration: usize,
+        bend: Option<&Bend>,
+        length: usize,
+        forces: &DMatrix<f64>,
+        errors: &mut DMatrix<f64>,
+    ) {
+        if let (Some(own), Some(bend)) = (self.splitting(configuration), bend) {
+            own.kick(bend, length, forces, errors);
+        }
+    }
+
+    /// What bends at a point of a combination of modes.
+    pub(super) fn bend(&mut self, configuration: usize, at: Point<'_>) -> Option<Bend> {
+        self.splitting(configuration)?;
+        let own = self.splittings[configuration].as_ref()?.as_ref()?;
+        Some(own.bend(self.program, at, &mut self.workspace))
+    }
+
+    /// The rates of the states that forces in the equations that are touched make.
+    fn rates(&mut self, configuration: usize) -> Result<&DMatrix<f64>, Unsupported> {
+        if self.rates[configuration].is_none() {
+            let track = self.track;
+            let inverse = track
+                .inverse(self.program, configuration, self.p, &mut self.workspace)
+                .ok_or_else(Unsupported::singular)?;
+            let of_states = -inverse.select_rows(&track.places.states);
+            self.rates[configuration] = Some(of_states.select_columns(&self.touched));
+        }
+        self.rates[configuration]
+            .as_ref()
+            .ok_or_else(Unsupported::singular)
+    }
+}
