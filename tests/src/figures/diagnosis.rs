@@ -4,7 +4,7 @@
 
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::{bench_axis, root};
-use hyde_calibrate::{Observer, Recording, Varied};
+use hyde_calibrate::{Model, Observer, Recording, Varied};
 use hyde_compiler::Backend;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -136,56 +136,82 @@ fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
     let begin = Instant::now();
     let report = command("diagnose", &axis, data)?;
     let minutes = begin.elapsed().as_secs_f64() / 60.0;
-    let fitted = match answer {
-        Some(answer) => truth(data, answer)?,
-        None => command("fit", &axis, data)?,
-    };
-    let chi_of_truth = match answer {
-        Some(answer) => chi_of_truth(data, answer)?,
-        None => chi(&fitted),
-    };
+    let truth = Truth::of(data, answer)?;
     Ok(SetResult {
         right: right(&report, answer),
-        above_truth: chi(&report) - chi_of_truth,
-        windows_over_truth: over(&report, &fitted, "windows"),
-        free_run_over_truth: over(&report, &fitted, "free_run"),
+        above_truth: chi(&report) - truth.chi,
+        windows_over_truth: over(&report, "windows", &truth.windows),
+        free_run_over_truth: over(&report, "free_run", &truth.free_run),
         minutes,
     })
 }
 
-/// Mean square of whitened innovations over the records held out of the axis with the true effect, calibrated in the same way.
-/// The observer is that round the declared model, as it is before and after: with one of its own, which a play loosens, the
-/// truth would be measured by another yardstick.
-fn chi_of_truth(data: &Path, answer: &Answer) -> Result<f64, String> {
-    let declared = bench_axis::declared()?.observed();
-    let truth = bench_axis::with(answer.with)?.observed();
-    let [declared_program, program] = [&declared, &truth].map(|of| of.compile(Backend::Native));
-    let (declared_program, program) = (declared_program?.program, program?.program);
-    let fitted = records(data, "fit-")?;
-    let of = |files: &[PathBuf], program| -> Result<Vec<Recording>, String> {
-        let each = files.iter().map(|file| {
-            let tables = declared.clone().record("file", file).parse()?.tables;
-            let name = file.display().to_string();
-            Recording::new(&name, program, tables).map_err(|error| format!("{name}: {error:?}"))
-        });
-        each.collect()
-    };
-    let unsupported = |error| format!("{error:?}");
-    let observer = Observer::new(&declared_program, &of(&fitted, &declared_program)?, &[]);
-    let mut p = vec![0.0; program.n_parameters];
-    program.kernels.parameters(&[], &mut p);
-    let found = hyde_calibrate::fit(
-        &program,
-        &of(&fitted, &program)?,
-        &of(&records(data, "validate-")?, &program)?,
-        &observer.map_err(unsupported)?,
-        &Varied::uncertain(&program, &p),
-        &[],
-        1,
-    );
-    let found = found.map_err(unsupported)?;
-    let held = found.records.iter().filter(|record| record.holdout);
-    Ok(mean(held.map(|record| record.after.0)))
+/// The errors over the records held out of the axis with the true effect, calibrated in the same way. The observer is that
+/// round the declared model, as it is before and after: with one of its own, which a play loosens, the truth would be
+/// measured by another yardstick.
+struct Truth {
+    /// Mean square of whitened innovations.
+    chi: f64,
+    /// Squares of the rms, summed over records, a number a channel, SI.
+    windows: Vec<f64>,
+    free_run: Vec<f64>,
+}
+
+impl Truth {
+    fn of(data: &Path, answer: Option<&Answer>) -> Result<Self, String> {
+        let declared = bench_axis::declared()?;
+        let closed = answer.map_or_else(bench_axis::declared, |own| bench_axis::with(own.with))?;
+        let [declared_program, program, closed] = [
+            declared.clone().observed().compile(Backend::Native)?,
+            closed.clone().observed().compile(Backend::Native)?,
+            closed.compile(Backend::Native)?,
+        ]
+        .map(|compiled| compiled.program);
+        let of = |begin: &str, program| -> Result<Vec<Recording>, String> {
+            let files = records(data, begin)?;
+            let each = files.iter().map(|file| {
+                let tables = declared.clone().record("file", file).parse()?.tables;
+                let name = file.display().to_string();
+                Recording::new(&name, program, tables).map_err(|error| format!("{name}: {error:?}"))
+            });
+            each.collect()
+        };
+        let unsupported = |error| format!("{error:?}");
+        let observer = Observer::new(&declared_program, &of("fit-", &declared_program)?, &[]);
+        let observer = observer.map_err(unsupported)?;
+        let mut p = vec![0.0; program.n_parameters];
+        program.kernels.parameters(&[], &mut p);
+        let varied = Varied::uncertain(&program, &p);
+        let fitted = of("fit-", &program)?;
+        let found = hyde_calibrate::fit(&program, &fitted, &[], &observer, &varied, &[], 1);
+        let found = found.map_err(unsupported)?.parameters.into_iter();
+        let set: Vec<(String, f64)> = found.map(|own| (own.name, own.value)).collect();
+        let model = Model {
+            observed: &program,
+            closed: Some(&closed),
+            shifted: None,
+            set: &set,
+        };
+        let measured = model.measures(&of("validate-", &program)?, &observer);
+        let measured = measured.map_err(unsupported)?;
+        let (mut windows, mut free_run) = (Vec::new(), Vec::new());
+        for channel in 0..program.experiment.measured.len() {
+            let each = measured
+                .iter()
+                .map(|own| own.windows.total(channel).powi(2));
+            windows.push(each.sum());
+            let mut sum = 0.0;
+            for own in &measured {
+                sum += own.free.as_ref()?[channel].channel.rms().powi(2);
+            }
+            free_run.push(sum);
+        }
+        Ok(Self {
+            chi: mean(measured.iter().map(|own| own.chi)),
+            windows,
+            free_run,
+        })
+    }
 }
 
 /// The records of a set whose names begin so, in order.
@@ -199,21 +225,6 @@ fn records(data: &Path, begin: &str) -> Result<Vec<PathBuf>, String> {
     let mut found: Vec<PathBuf> = paths.filter(named).collect();
     found.sort();
     Ok(found)
-}
-
-/// The errors of the axis with the true effect, calibrated in the same way.
-#[allow(
-    clippy::disallowed_methods,
-    reason = "the model with the true effect is written for the command"
-)]
-fn truth(data: &Path, answer: &Answer) -> Result<Value, String> {
-    let text = bench_axis::with(answer.with)?;
-    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-    let record = root().join("examples/bench_axis/strokes.csv");
-    std::fs::copy(&record, folder.path().join("strokes.csv")).map_err(|error| error.to_string())?;
-    let file = folder.path().join("truth.hyde");
-    std::fs::write(&file, text.text()).map_err(|error| error.to_string())?;
-    command("fit", &file, data)
 }
 
 fn command(name: &str, file: &Path, data: &Path) -> Result<Value, String> {
@@ -237,16 +248,16 @@ fn held_out(report: &Value) -> impl Iterator<Item = &Value> {
     records.iter().filter(|record| record["holdout"] == true)
 }
 
-/// An error over all records held out of one model over that of another, in the channel where that is largest.
-fn over(one: &Value, other: &Value, measure: &str) -> f64 {
-    let channels = |record: &Value| record["channels"].as_array().map_or(0, Vec::len);
-    let count = held_out(one).map(channels).max().unwrap_or(0);
-    let total = |report: &Value, channel: usize| -> f64 {
+/// An error over all records held out over that of the truth, in the channel where that is largest.
+fn over(report: &Value, measure: &str, truth: &[f64]) -> f64 {
+    let of = |(channel, truth): (usize, &f64)| {
+        // What has no run is as wrong as can be.
         let each = held_out(report).map(|record| &record["channels"][channel][measure]["after"]);
-        each.filter_map(Value::as_f64).map(|rms| rms * rms).sum()
+        let each = each.map(|rms| rms.as_f64().unwrap_or(f64::INFINITY).powi(2));
+        let total: f64 = each.sum();
+        (total / truth).sqrt()
     };
-    let of = |channel| (total(one, channel) / total(other, channel)).sqrt();
-    (0..count).map(of).fold(f64::NAN, f64::max)
+    truth.iter().enumerate().map(of).fold(f64::NAN, f64::max)
 }
 
 /// Mean square of whitened innovations over the records held out.
