@@ -311,12 +311,10 @@ fn a_coupling_that_becomes_stiffer_is_found_and_written() {
     assert_eq!(found["effects"][0]["site"], "coupling");
     assert!(law.contains("wrap T by T + M*(twist/x1)^3;"), "{law}");
     assert!(law.contains("x1 = 2 [mrad]"), "{law}");
-    // The stiffness beside it answers most of a cube: what the record tells of its size is half of it.
-    let [low, high] = [0, 1].map(|end| found["effects"][0]["interval"][end].as_f64().unwrap());
-    assert!(
-        (1.0..2.0).contains(&low) && (2.0..3.5).contains(&high),
-        "{low} to {high}"
-    );
+    // The stiffness beside it answers most of a cube, and fits end here or there along what both make: 1.8 or 2.3, of which
+    // the interval does not tell.
+    let size = found["effects"][0]["size"].as_f64().unwrap();
+    assert!((size / 2.0 - 1.0).abs() < 0.2, "{size}");
 }
 
 #[test]

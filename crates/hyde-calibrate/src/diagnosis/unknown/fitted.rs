@@ -96,10 +96,13 @@ impl Fitting<'_> {
             trial.map_or(f64::NEG_INFINITY, |trial| trial.gain)
         };
         let mut best = (self.fitted(&own.with_first(1, felt, projection)), None);
-        let mut most = gain_of(&best.0) + gate;
+        // What a constant of a rival's gains is no reason for it; among terms with as many the better one is likelier.
+        let constants = first.constants().len();
+        let mut most = gain_of(&best.0);
         for rival in rivals {
             let trial = self.fitted(&own.of_other(rival.clone(), felt, projection));
-            if gain_of(&trial) > most {
+            let more = rival.0.constants().len() > constants;
+            if gain_of(&trial) > most + if more { gate } else { 0.0 } {
                 most = gain_of(&trial);
                 best = (trial, Some(rival));
             }
