@@ -96,7 +96,7 @@ impl Fitting<'_> {
             trial.map_or(f64::NEG_INFINITY, |trial| trial.gain)
         };
         let mut best = (self.fitted(&own.with_first(1, felt, projection)), None);
-        // What a constant of a rival's gains is no reason for it; among terms with as many the better one is likelier.
+        // A rival with a constant more has to be worth it; among terms with as many the better one is likelier.
         let constants = first.constants().len();
         let mut most = gain_of(&best.0);
         for rival in rivals {
