@@ -69,6 +69,11 @@ pub(crate) fn steps(a: &DMatrix<f64>, h: f64, count: usize) -> Vec<Step> {
     found
 }
 
+/// phi1 of a number.
+pub(crate) fn phi1(z: f64) -> f64 {
+    if z.abs() < 1e-8 { 1.0 } else { z.exp_m1() / z }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -216,6 +216,13 @@ pub(crate) fn mean_square(list: &[f64]) -> f64 {
     list.iter().map(|r| r * r).sum::<f64>() / (list.len() as f64).max(1.0)
 }
 
+/// The middle one of some values; `None` of none.
+pub(crate) fn median(values: &[f64]) -> Option<f64> {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.get(sorted.len() / 2).copied()
+}
+
 /// Correlation of successive values.
 pub(crate) fn correlation(list: &[f64]) -> f64 {
     let total: f64 = list.iter().map(|r| r * r).sum();
@@ -254,8 +261,8 @@ fn inflation_over<'a>(lists: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
 }
 
 /// By how much a sum of squares overstates what is known of some parameters: the scatter of gradients from second to second,
-/// which knows how they go with what is not explained (White, Econometrica 50, 1982, 1); at most [`inflation`], which takes
-/// them to change as slowly as they can.
+/// which knows how they go with what is not explained (White, Econometrica 50, 1982, 1); at most [`inflation`] of
+/// the channel where it is largest, which takes them to change as slowly as they can.
 pub(crate) fn inflation_of(solution: &Solution, own: impl IntoIterator<Item = usize>) -> f64 {
     let most = largest_inflation(&solution.innovations);
     let Some(bread) = solution.inverse_curvature() else {

@@ -3,6 +3,7 @@
 //! An axis that sticks, or is within its play, goes on from where it held. A reading that was held is at once where the axis
 //! has gone meanwhile. Nothing of the model is asked.
 
+use crate::fit::median;
 use crate::recording::Recording;
 
 /// Rows that a reading stands still, to the last bit, at least.
@@ -55,8 +56,9 @@ fn spells(values: &[f64]) -> Vec<(usize, usize)> {
         if first - start < ROWS {
             continue;
         }
-        let before = median(&steps[start.saturating_sub(ROWS)..start]);
-        let after = median(&steps[first..steps.len().min(first + ROWS)]);
+        let usual = |steps: &[f64]| median(steps).unwrap_or(0.0);
+        let before = usual(&steps[start.saturating_sub(ROWS)..start]);
+        let after = usual(&steps[first..steps.len().min(first + ROWS)]);
         let moves = before > 0.0 && after > 0.0;
         if moves && step > FURTHER * before.max(after) {
             found.push((start, row));
@@ -67,13 +69,6 @@ fn spells(values: &[f64]) -> Vec<(usize, usize)> {
         found.clear();
     }
     found
-}
-
-/// The middle one of some values; 0 of none.
-fn median(values: &[f64]) -> f64 {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied().unwrap_or(0.0)
 }
 
 #[cfg(test)]

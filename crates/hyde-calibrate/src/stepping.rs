@@ -8,6 +8,7 @@
 
 use crate::configuration::{Configuration, Places};
 use crate::dense::set_product;
+use crate::exponential::phi1;
 use crate::model::{Model, Solving};
 use crate::plant::{LEVELS, Plant, shortest_steps, size_of, truth};
 use hyde_program::{Function, Program, Workspace};
@@ -338,9 +339,9 @@ fn largest(changes: &[f64], tolerances: &[f64]) -> f64 {
     in_tolerances.fold(0.0, f64::max)
 }
 
-/// (exp(z) - 1)/z and (exp(z) - 1 - z)/z^2, of a z well below 0.
+/// phi1 and phi2 of a z well below 0.
 fn integrals(z: f64) -> (f64, f64) {
-    let first = z.exp_m1() / z;
+    let first = phi1(z);
     (first, (first - 1.0) / z)
 }
 

@@ -114,13 +114,7 @@ pub(crate) fn along(
             let mut configuration = left;
             for mode in legs.split_inclusive(|leg| leg.event.is_some()) {
                 let event = mode.last().and_then(|leg| leg.event.as_ref());
-                known.kick(
-                    configuration,
-                    bend.as_ref(),
-                    length(mode),
-                    &now,
-                    &mut before,
-                );
+                known.kick(configuration, &bend, length(mode), &now, &mut before);
                 if let Some(event) = event {
                     let at = track.within(row, &event.before, p, &mut room);
                     own.forces(at, directions, &mut reached);
@@ -142,13 +136,7 @@ pub(crate) fn along(
                     let errors = matrix * before.rows(0, states + 2 * touched);
                     put(&mut before, 0, &errors);
                 }
-                known.kick(
-                    configuration,
-                    bend.as_ref(),
-                    length(mode),
-                    &reached,
-                    &mut before,
-                );
+                known.kick(configuration, &bend, length(mode), &reached, &mut before);
                 if let Some(event) = event {
                     fix(&event.fixed, &mut before);
                     let at = track.within(row, &event.after, p, &mut room);

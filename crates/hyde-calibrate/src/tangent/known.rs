@@ -9,6 +9,7 @@ use crate::track::{Track, Vectors};
 use hyde_program::{Point, Program, Workspace};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 /// Rows in which derivatives are looked at for those that are usual.
 const LOOKS: usize = 15;
@@ -33,8 +34,8 @@ pub(crate) struct Known<'t> {
     /// By the numbers of the track.
     number_of: Vec<Option<usize>>,
     rates: Vec<Option<DMatrix<f64>>>,
-    /// Of those whose equations bend.
-    splittings: Vec<Option<Option<Splitting>>>,
+    /// Those of the ones met so far, where equations bend.
+    splittings: BTreeMap<usize, Option<Rc<Splitting>>>,
     legs: BTreeMap<(usize, usize), DMatrix<f64>>,
 }
 
@@ -55,7 +56,7 @@ impl<'t> Known<'t> {
             modes: Vec::new(),
             number_of: vec![None; count],
             rates: vec![None; count],
-            splittings: (0..count).map(|_| None).collect(),
+            splittings: BTreeMap::new(),
             legs: BTreeMap::new(),
         }
     }
@@ -97,15 +98,11 @@ impl<'t> Known<'t> {
     ) -> Result<&DMatrix<f64>, Unsupported> {
         let key = (configuration, level);
         if !self.legs.contains_key(&key) {
-            let track = self.track;
-            let (step, rates) = if self.splitting(configuration).is_none() {
-                let step = &track.route.configurations[configuration].steps[level];
-                (step, self.rates(configuration)?)
-            } else {
-                let own = self
-                    .splitting(configuration)
-                    .ok_or_else(Unsupported::singular)?;
-                (&own.steps[level], &own.rates)
+            let plain = &self.track.route.configurations[configuration].steps[level];
+            let splitting = self.splitting(configuration);
+            let (step, rates) = match &splitting {
+                Some(own) => (&own.steps[level], &own.rates),
+                None => (plain, self.rates(configuration)?),
             };
             let n = step.exp.nrows();
             let forces = rates.ncols();
@@ -121,13 +118,13 @@ impl<'t> Known<'t> {
     }
 
     /// How errors go where equations bend in a combination of modes; `None` where none does.
-    pub(super) fn splitting(&mut self, configuration: usize) -> Option<&Splitting> {
-        if self.splittings[configuration].is_none() {
+    pub(super) fn splitting(&mut self, configuration: usize) -> Option<Rc<Splitting>> {
+        if !self.splittings.contains_key(&configuration) {
             let own = &self.track.route.configurations[configuration];
             let made = (!own.affine).then(|| self.split(configuration)).flatten();
-            self.splittings[configuration] = Some(made);
+            self.splittings.insert(configuration, made.map(Rc::new));
         }
-        self.splittings[configuration].as_ref()?.as_ref()
+        self.splittings[&configuration].clone()
     }
 
     fn split(&mut self, configuration: usize) -> Option<Splitting> {
@@ -153,7 +150,7 @@ impl<'t> Known<'t> {
     pub(super) fn kick(
         &mut self,
         configuration: usize,
-        bend: Option<&Bend>,
+        bend: &Option<Rc<Bend>>,
         length: usize,
         forces: &DMatrix<f64>,
         errors: &mut DMatrix<f64>,
@@ -164,10 +161,9 @@ impl<'t> Known<'t> {
     }
 
     /// What bends at a point of a combination of modes.
-    pub(super) fn bend(&mut self, configuration: usize, at: Point<'_>) -> Option<Bend> {
-        self.splitting(configuration)?;
-        let own = self.splittings[configuration].as_ref()?.as_ref()?;
-        Some(own.bend(self.program, at, &mut self.workspace))
+    pub(super) fn bend(&mut self, configuration: usize, at: Point<'_>) -> Option<Rc<Bend>> {
+        let own = self.splitting(configuration)?;
+        Some(Rc::new(own.bend(self.program, at, &mut self.workspace)))
     }
 
     /// The rates of the states that forces in the equations that are touched make.

@@ -5,22 +5,20 @@ use crate::observer::measured;
 use hyde_program::{Function, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::DMatrix;
 
+/// A change below this part of a residual is its rounding.
+const ROUNDING: f64 = 1e-13;
+
 /// Evaluations of the model with other parameters where the plant is.
 pub(crate) struct Own<'p> {
     /// The equations that some direction changes.
     pub(crate) touched: Vec<usize>,
     /// Their residuals.
-    residual: Box<dyn SomeRows + 'p>,
+    residual: Rows<'p>,
     /// What the channels show.
-    measured: Box<dyn SomeRows + 'p>,
+    measured: Rows<'p>,
     /// Whether some direction changes what is measured.
     pub(crate) shown: bool,
     workspace: Workspace,
-    /// What the channels show without a change.
-    values: Vec<f64>,
-    others: Vec<f64>,
-    force: Vec<f64>,
-    plain: Vec<f64>,
 }
 
 impl<'p> Own<'p> {
@@ -40,35 +38,21 @@ impl<'p> Own<'p> {
         let mut touched = rows(Function::Residual);
         touched.sort_unstable();
         touched.dedup();
+        let residual = program.kernels.some_rows(Function::Residual, &touched);
         let channels = program.experiment.measured.len();
         Self {
-            residual: program.kernels.some_rows(Function::Residual, &touched),
-            measured: measured(program),
+            residual: Rows::new(residual, touched.len()),
+            measured: Rows::new(measured(program), channels),
             shown: !rows(Function::Outputs).is_empty(),
             workspace: Workspace::new(program.n_work),
-            values: vec![0.0; channels],
-            others: vec![0.0; channels],
-            force: vec![0.0; touched.len()],
-            plain: vec![0.0; touched.len()],
             touched,
         }
     }
 
     /// What a unit of each size adds to what the channels show, where it does: a column a direction.
     pub(crate) fn seen(&mut self, at: Point<'_>, directions: &[Direction], out: &mut DMatrix<f64>) {
-        self.measured
-            .evaluate(at, &mut self.workspace, &mut self.values);
-        for (number, direction) in directions.iter().enumerate() {
-            let with = Point {
-                p: &direction.p,
-                ..at
-            };
-            self.measured
-                .evaluate(with, &mut self.workspace, &mut self.others);
-            for (channel, (with, plain)) in self.others.iter().zip(&self.values).enumerate() {
-                out[(channel, number)] = (with - plain) / direction.step;
-            }
-        }
+        let workspace = &mut self.workspace;
+        self.measured.changes(at, directions, workspace, 0.0, out);
     }
 
     /// What a unit of each size adds to the residual of the equations that are touched: a column a direction.
@@ -78,19 +62,45 @@ impl<'p> Own<'p> {
         directions: &[Direction],
         out: &mut DMatrix<f64>,
     ) {
+        let workspace = &mut self.workspace;
         self.residual
-            .evaluate(at, &mut self.workspace, &mut self.plain);
+            .changes(at, directions, workspace, ROUNDING, out);
+    }
+}
+
+/// Some rows of a function, with room for their values.
+struct Rows<'p> {
+    rows: Box<dyn SomeRows + 'p>,
+    plain: Vec<f64>,
+    with: Vec<f64>,
+}
+
+impl<'p> Rows<'p> {
+    fn new(rows: Box<dyn SomeRows + 'p>, count: usize) -> Self {
+        Self {
+            rows,
+            plain: vec![0.0; count],
+            with: vec![0.0; count],
+        }
+    }
+
+    /// What a unit of each direction adds; nothing where that is a smaller part of a value than `rounding`.
+    fn changes(
+        &mut self,
+        at: Point<'_>,
+        directions: &[Direction],
+        workspace: &mut Workspace,
+        rounding: f64,
+        out: &mut DMatrix<f64>,
+    ) {
+        self.rows.evaluate(at, workspace, &mut self.plain);
         for (number, direction) in directions.iter().enumerate() {
-            let with = Point {
-                p: &direction.p,
-                ..at
-            };
-            self.residual
-                .evaluate(with, &mut self.workspace, &mut self.force);
-            for (row, (with, plain)) in self.force.iter().zip(&self.plain).enumerate() {
+            let p = &direction.p;
+            self.rows
+                .evaluate(Point { p, ..at }, workspace, &mut self.with);
+            for (row, (with, plain)) in self.with.iter().zip(&self.plain).enumerate() {
                 let change = with - plain;
-                // Below the rounding of the residual there is nothing.
-                out[(row, number)] = if change.abs() <= 1e-13 * plain.abs() {
+                out[(row, number)] = if change.abs() <= rounding * plain.abs() {
                     0.0
                 } else {
                     change / direction.step

@@ -9,7 +9,8 @@
 //! observer does not know are no part of A, and they and what a direction forces them by are all in Q.
 
 use crate::configuration::{Places, arranged, partials, uneven, v_column, x_column};
-use crate::exponential::{Step, steps};
+use crate::exponential::{Step, phi1, steps};
+use crate::fit::median;
 use crate::plant::{LEVELS, shortest_steps};
 use crate::track::Track;
 use hyde_program::{Function, Point, Program, Workspace, Wrt};
@@ -55,7 +56,6 @@ enum By {
 }
 
 /// What errors and forces do at a point beyond the linear part.
-#[derive(Clone)]
 pub(crate) struct Bend {
     by_error: DMatrix<f64>,
     by_force: DMatrix<f64>,
@@ -96,7 +96,11 @@ impl Splitting {
         let mut entries = Vec::new();
         for number in differing {
             let (row, by) = (row_of(number)?, by(places, all[number].wrt)?);
-            let usual = || median(looks.iter().map(|look| look[number]));
+            let usual = || {
+                let values = looks.iter().map(|look| look[number]);
+                let known: Vec<f64> = values.filter(|value| value.is_finite()).collect();
+                median(&known)
+            };
             base[number] = match of_bristles(row) {
                 true => 0.0,
                 false => usual().unwrap_or(base[number]),
@@ -208,8 +212,7 @@ impl Splitting {
 fn grown(a: &DMatrix<f64>, time: f64) -> Option<DMatrix<f64>> {
     if a.len() == 1 {
         let z = a[0] * time;
-        let first = if z.abs() < 1e-8 { 1.0 } else { z.exp_m1() / z };
-        return (z <= GROWTH.ln()).then(|| DMatrix::from_element(1, 1, time * first));
+        return (z <= GROWTH.ln()).then(|| DMatrix::from_element(1, 1, time * phi1(z)));
     }
     let step = steps(a, time, 1).remove(0);
     let bounded = step.exp.iter().all(|part| part.abs() <= GROWTH);
@@ -223,11 +226,4 @@ fn by(places: &Places, wrt: Wrt) -> Option<By> {
         Some(place) => number(place).map(By::State),
         None => v_column(places, wrt).map(By::Other),
     }
-}
-
-/// The median of those that are numbers.
-fn median(values: impl Iterator<Item = f64>) -> Option<f64> {
-    let mut values: Vec<f64> = values.filter(|value| value.is_finite()).collect();
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
 }

@@ -11,6 +11,7 @@
 use super::equations::{Equations, Flow};
 use super::{Track, names};
 use crate::dense::set_product;
+use crate::exponential::phi1;
 use crate::observer::When;
 use crate::plant::Plant;
 use crate::recording::Recording;
@@ -271,9 +272,7 @@ impl<'e> Solver<'e> {
                 self.solve(std::iter::repeat_n(1.0, n), &mut middle, at);
                 for ((x, g), with) in x.iter_mut().zip(&self.from).zip(&self.v) {
                     let a = with - g;
-                    let z = a * time;
-                    let grown = if z.abs() < 1e-8 { 1.0 } else { z.exp_m1() / z };
-                    *x += time * grown * (g + a * *x);
+                    *x += time * phi1(a * time) * (g + a * *x);
                 }
                 self.middle = middle;
             }
