@@ -219,9 +219,11 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
             law = places.take().map(|own| own.answer(best));
         }
     }
-    if law.is_none() && !branch.ended {
-        search.settle(&mut branch)?;
-        search.step(&mut branch)?;
+    if law.is_none() {
+        if !branch.ended {
+            search.settle(&mut branch)?;
+            search.step(&mut branch)?;
+        }
         if frozen.is_empty() && !explained(&branch.stage.solution) {
             law = beside(inquiry, &search.rounds[0], &branch.stage, search.gates)?;
         }

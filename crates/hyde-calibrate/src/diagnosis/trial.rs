@@ -89,6 +89,13 @@ impl Trial {
         matches!(self.rejected, None | Some(Rejection::Behind))
     }
 
+    /// Whether it gained too little only for what else is missing, which inflates its gate.
+    pub(super) fn would_pass(&self, gates: Gates) -> bool {
+        let by_size = [Rejection::Score, Rejection::Gain, Rejection::Folds];
+        let of_size = self.rejected.is_some_and(|own| by_size.contains(&own));
+        of_size && self.gain >= gates.gain(self.freedoms)
+    }
+
     /// What it has to gain.
     pub(super) fn gate(&self, gates: Gates) -> f64 {
         gates.gain(self.freedoms) * self.inflation

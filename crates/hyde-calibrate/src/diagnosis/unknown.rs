@@ -147,14 +147,15 @@ pub(super) fn propose(
 }
 
 /// The law of one term that explains all beside one of the effects that were best in the first round, and better than what
-/// was taken in since: a form of friction bends towards what is missing beside it, and what comes next stands on that.
+/// was taken in since: a form of friction bends towards what is missing beside it, and what comes next stands on that. The
+/// effect passed its gates, or does where nothing else is missing: the law says what had inflated them.
 pub(super) fn beside(
     inquiry: &Inquiry<'_>,
     first: &Round,
     last: &Stage,
     gates: Gates,
 ) -> Result<Option<Answer>, Unsupported> {
-    let fine = |trial: &&Trial| trial.passed();
+    let fine = |trial: &&Trial| trial.passed() || trial.would_pass(first.gates);
     let best = first.trials.iter().filter(fine).map(|trial| trial.gain);
     let least = FIRST * best.fold(0.0, f64::max);
     let ones = first.trials.iter().filter(fine);
