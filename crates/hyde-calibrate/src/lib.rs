@@ -29,6 +29,7 @@ mod gain;
 mod inputs;
 mod least_squares;
 mod leg;
+mod linearised;
 mod measures;
 mod model;
 mod observer;

@@ -311,10 +311,11 @@ fn a_coupling_that_becomes_stiffer_is_found_and_written() {
     assert_eq!(found["effects"][0]["site"], "coupling");
     assert!(law.contains("wrap T by T + M*(twist/x1)^3;"), "{law}");
     assert!(law.contains("x1 = 2 [mrad]"), "{law}");
-    // The stiffness beside it answers most of a cube, and fits end here or there along what both make: 1.8 or 2.3, of which
-    // the interval does not tell.
-    let size = found["effects"][0]["size"].as_f64().unwrap();
-    assert!((size / 2.0 - 1.0).abs() < 0.2, "{size}");
+    // The stiffness beside it answers most of a cube: the record does not tell the size further.
+    let interval = &found["effects"][0]["interval"];
+    let (low, high) = (interval[0].as_f64().unwrap(), interval[1].as_f64().unwrap());
+    assert!((1.0..2.0).contains(&low), "{interval}");
+    assert!((2.0..3.5).contains(&high), "{interval}");
 }
 
 #[test]
@@ -382,8 +383,8 @@ fn parameters_beside_a_body_on_a_spring_are_those_of_the_axis() {
     let interval = &found["effects"][0]["interval"];
     let ends = [&interval[0], &interval[1]].map(|end| end.as_f64().unwrap());
     assert!(ends[0] < 60.0 && 60.0 < ends[1], "{ends:?}");
-    // With the declared gain the body's mass is told five times worse, to 2.4 kg.
-    assert!(ends[1] - ends[0] < 1.0, "{ends:?}");
+    // As well as the saddle's mass: all masses weigh up to a common factor, which only the springs' stiffness tells.
+    assert!(ends[1] - ends[0] < 4.0, "{ends:?}");
     let parameters = found["parameters"].as_array().unwrap();
     for (name, value) in [("saddle.M", 262.0), ("guide.F", 145.0), ("rotor.J", 3.9e-3)] {
         let own = parameters.iter().find(|one| one["name"] == name).unwrap();

@@ -8,7 +8,7 @@
 
 use super::products::Products;
 use super::stage::{Stage, flat};
-use crate::least_squares::Linearised;
+use crate::linearised::Linearised;
 use crate::observer::Innovations;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 

@@ -3,7 +3,8 @@
 use super::profile::profiled;
 use crate::blocks::Fold;
 use crate::gain::Observer;
-use crate::least_squares::{Linearised, MAX_STEPS, Problem, Slopes};
+use crate::least_squares::{MAX_STEPS, Problem};
+use crate::linearised::{Linearised, Slopes};
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;

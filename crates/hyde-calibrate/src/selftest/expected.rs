@@ -8,7 +8,7 @@
 
 use crate::diagnosis::{Author, Built, Gates, Ground, Hypothesis, Projection, Stage, flat};
 use crate::gain::Observer;
-use crate::least_squares::Slopes;
+use crate::linearised::Slopes;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
