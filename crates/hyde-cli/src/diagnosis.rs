@@ -19,12 +19,16 @@ pub(crate) use page::html;
 pub(crate) use text::text;
 
 use crate::before_after::{self, RecordErrors};
+use crate::project::Project;
+use crate::records;
 use crate::study::Calibration;
+use crate::unknown;
 use hyde_calibrate::{
     Diagnosis, FittedParameter, Hypothesis, Innovations, Model, Rejection, ResidualMap, Score,
     Trial, Unsupported, Whiteness, fitted_parameters, residual_maps, whiteness,
 };
-use hyde_compiler::{Candidate, DiagnosisPlan, Written};
+use hyde_compiler::{Candidate, DiagnosisPlan, Form, Written};
+use std::collections::BTreeMap;
 
 /// A diagnosis with all that is told of it.
 pub(crate) struct Told<'a> {
@@ -39,6 +43,8 @@ pub(crate) struct Told<'a> {
     /// What innovations depend on in the records fitted, and whether they are white.
     pub(crate) maps: Vec<ResidualMap>,
     pub(crate) whiteness: Vec<Whiteness>,
+    /// Hypotheses that could not be put on the model, each with the reason.
+    pub(crate) hindered: Vec<(usize, String)>,
     /// The model that has what was missing.
     pub(crate) written: Written,
 }
@@ -125,6 +131,7 @@ impl<'a> Told<'a> {
             parameters,
             maps,
             whiteness,
+            hindered: hindered(project, candidates, found),
             written: Written {
                 text: String::new(),
                 model: String::new(),
@@ -157,6 +164,29 @@ impl<'a> Told<'a> {
             })
             .collect()
     }
+}
+
+/// The candidates that the first round could not try.
+fn hindered(
+    project: &Project,
+    candidates: &[Candidate],
+    found: &Diagnosis,
+) -> Vec<(usize, String)> {
+    let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
+    let headers = records::headers(&project.records);
+    let request = project.request(&settings, &headers, Form::Observed);
+    let scores = || {
+        found
+            .rounds
+            .first()
+            .into_iter()
+            .flat_map(|round| &round.scores)
+    };
+    let numbered = candidates.iter().enumerate();
+    numbered
+        .filter(|(number, _)| scores().all(|score| score.hypothesis != *number))
+        .map(|(number, candidate)| (number, unknown::hindrance(&request, candidate)))
+        .collect()
 }
 
 impl Tried<'_> {

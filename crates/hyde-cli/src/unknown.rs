@@ -4,7 +4,7 @@ use hyde_calibrate::{
     Built, Diagnosis, FoundLaw, Kind, Map, Panel, Site, Summand, Unknown, Written,
 };
 use hyde_compiler::{Additions, Candidate, Request};
-use hyde_diag::Diagnostics;
+use hyde_diag::{Diagnostics, Severity};
 use hyde_units::significant;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -58,6 +58,24 @@ pub(crate) fn built(
         program: compiled.program,
         paths,
     })
+}
+
+/// Why a candidate cannot be put on the model, in the compiler's words.
+pub(crate) fn hindrance(request: &Request<'_>, candidate: &Candidate) -> String {
+    let mut diagnostics = Diagnostics::new();
+    if let Some((own, _)) = request.file.files.first() {
+        let mut additions = Additions::kept();
+        additions.put(*own, candidate);
+        // Only what it says is asked for.
+        let _ = hyde_compiler::compile_with(request, &additions, &mut diagnostics);
+    }
+    let error = diagnostics
+        .iter()
+        .find(|own| own.severity == Severity::Error);
+    error.map_or_else(
+        || "its runs cannot be made".to_owned(),
+        |error| error.message.clone(),
+    )
 }
 
 /// A written effect as what a search puts on a model.

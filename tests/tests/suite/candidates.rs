@@ -1,5 +1,6 @@
 //! Candidates: every effect at every site of a model where it fits, and models with some of them put on.
 
+use crate::driven_body::{SLOW, diagnosed};
 use hyde_compiler::{Additions, Backend, Calibrated, Candidate, DiagnosisPlan, Found, write_back};
 use hyde_diag::Diagnostics;
 use hyde_experiment::Options;
@@ -230,4 +231,28 @@ fn a_diagnosis_says_which_effects_may_be_tried() {
     };
     let selected = candidates.iter().filter(|c| single.selects(c));
     assert!(selected.map(|c| c.name()).all(|name| name == "Stribeck"));
+}
+
+/// It reads what its host does not have, which only the compiler tells.
+const BROKEN: &str = "effect Broken on Rail
+  size Force F = 0 in -50 .. 50 [N];
+  add a.f = -F*sin(w*time);
+end Broken;
+";
+
+#[test]
+fn an_effect_that_cannot_be_put_on_the_model_is_told() {
+    let found = diagnosed(&[BROKEN, SLOW], |t| {
+        ((3.0 * t).cos(), (3.0 * t).sin() / 3.0)
+    });
+    assert_eq!(found["verdict"], "none");
+    let doubts: Vec<&str> = found["doubts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|own| own.as_str())
+        .collect();
+    let told = "Broken at a was not tried, for it cannot be put on the model: ";
+    assert!(doubts.iter().any(|own| own.starts_with(told)), "{doubts:?}");
+    assert!(!doubts.iter().any(|own| own.contains("Slow")), "{doubts:?}");
 }

@@ -147,6 +147,12 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
             ));
         }
     }
+    for (number, because) in &told.hindered {
+        let effect = named(&told.hypotheses[*number]);
+        doubts.push(format!(
+            "{effect} was not tried, for it cannot be put on the model: {because}"
+        ));
+    }
     if !told.found.after.converged {
         doubts.push("the last fit has not converged".to_owned());
     }
