@@ -238,8 +238,14 @@ fn innovations_change_as_differences_of_runs_do_where_equations_bend() {
             &["part", "e0"],
         ),
         ("NutBacklash(gap = 8 [um]) on screw", &["gap"]),
+        ("ScrewCompliance(part = 0.1) on screw", &["part"]),
+        (
+            "Signals.TorqueRipple(As = 0.05, N = 6, emf_part = 0.4) on motor",
+            &["As", "emf_part"],
+        ),
     ] {
         let (kind, rest) = effect.split_once('(').unwrap();
+        let kind = kind.trim_start_matches("Signals.");
         let (_, site) = rest.split_once(" on ").unwrap();
         let own: Vec<String> = own
             .iter()

@@ -43,6 +43,8 @@ pub(crate) struct Branch {
     pub(crate) taken: Vec<Taken>,
     /// Nothing more is to be taken in.
     pub(crate) ended: bool,
+    /// The effects after each step, by number, and their cost.
+    been: Vec<(Vec<usize>, f64)>,
 }
 
 impl Branch {
@@ -52,7 +54,20 @@ impl Branch {
             stage,
             taken: Vec::new(),
             ended: false,
+            been: Vec::new(),
         }
+    }
+
+    /// Ends where its effects are those that it has had before, and gain less than a gate beyond that: what is dropped again
+    /// would be taken in again.
+    fn end_in_a_circle(&mut self, gate: f64) {
+        let numbers = self.stage.effects.iter().map(|(number, _)| *number);
+        let mut numbers: Vec<usize> = numbers.collect();
+        numbers.sort_unstable();
+        let cost = self.stage.solution.data;
+        let mut been = self.been.iter();
+        self.ended |= been.any(|(own, known)| *own == numbers && cost > known - gate);
+        self.been.push((numbers, cost));
     }
 }
 
@@ -124,14 +139,14 @@ impl<'s> Forward<'s> {
         let Some(next) = next.max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
             return Ok(None);
         };
-        Ok(Some(Branch {
-            stage: next.stage.polished(self.ground)?,
-            taken: vec![Taken {
-                round: taken.round,
-                alternatives: Vec::new(),
-            }],
-            ended: false,
-        }))
+        let mut branch = Branch::of(next.stage.polished(self.ground)?);
+        let gate = self.gates.of_one(&branch.stage.solution);
+        branch.taken.push(Taken {
+            round: taken.round,
+            alternatives: Vec::new(),
+        });
+        branch.end_in_a_circle(gate);
+        Ok(Some(branch))
     }
 
     /// Follows a branch to its end.
@@ -167,6 +182,7 @@ impl<'s> Forward<'s> {
         if !explained(&branch.stage.solution) && self.exchange(branch)? {
             self.prune(branch);
         }
+        branch.end_in_a_circle(self.gates.of_one(&branch.stage.solution));
         Ok(())
     }
 
