@@ -182,10 +182,9 @@ fn hindered(
             .into_iter()
             .flat_map(|round| &round.scores)
     };
-    let numbered = candidates.iter().enumerate();
-    numbered
-        .filter(|(number, _)| scores().all(|score| score.hypothesis != *number))
-        .map(|(number, candidate)| (number, unknown::hindrance(&request, candidate)))
+    (0..candidates.len())
+        .filter(|number| scores().all(|score| score.hypothesis != *number))
+        .map(|number| (number, unknown::hindrance(&request, candidates, number)))
         .collect()
 }
 

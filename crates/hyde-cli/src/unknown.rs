@@ -35,6 +35,16 @@ pub(crate) fn built(
     known: &[usize],
     written: &[Written],
 ) -> Option<Built> {
+    put(request, candidates, known, written, &mut Diagnostics::new())
+}
+
+fn put(
+    request: &Request<'_>,
+    candidates: &[Candidate],
+    known: &[usize],
+    written: &[Written],
+    diagnostics: &mut Diagnostics,
+) -> Option<Built> {
     let texts = written.iter().map(|one| one.text.as_str());
     let (sources, file) = hyde_compiler::with_written(request.sources, request.file, texts)?;
     let own = file.files.first()?.0;
@@ -53,7 +63,7 @@ pub(crate) fn built(
         file: &file,
         ..*request
     };
-    let compiled = hyde_compiler::compile_with(&request, &additions, &mut Diagnostics::new())?;
+    let compiled = hyde_compiler::compile_with(&request, &additions, diagnostics)?;
     Some(Built {
         program: compiled.program,
         paths,
@@ -61,14 +71,9 @@ pub(crate) fn built(
 }
 
 /// Why a candidate cannot be put on the model, in the compiler's words.
-pub(crate) fn hindrance(request: &Request<'_>, candidate: &Candidate) -> String {
+pub(crate) fn hindrance(request: &Request<'_>, candidates: &[Candidate], number: usize) -> String {
     let mut diagnostics = Diagnostics::new();
-    if let Some((own, _)) = request.file.files.first() {
-        let mut additions = Additions::kept();
-        additions.put(*own, candidate);
-        // Only what it says is asked for.
-        let _ = hyde_compiler::compile_with(request, &additions, &mut diagnostics);
-    }
+    put(request, candidates, &[number], &[], &mut diagnostics);
     let error = diagnostics
         .iter()
         .find(|own| own.severity == Severity::Error);
