@@ -3,6 +3,7 @@
 
 use nalgebra::DMatrix;
 use pulp::{Arch, Simd, WithSimd};
+use std::slice::ChunksExactMut;
 use std::sync::LazyLock;
 
 /// What the processor has.
@@ -49,6 +50,84 @@ pub(crate) fn set_products<const N: usize>(
         vectors,
         products,
     });
+}
+
+/// Adds to the head `x` of each column what products of thin matrices make of it and of a column `g` of `given`:
+/// `u (v' x + w g)`.
+pub(crate) fn add_low_rank(
+    u: &DMatrix<f64>,
+    [v, w]: [&DMatrix<f64>; 2],
+    given: &DMatrix<f64>,
+    columns: &mut DMatrix<f64>,
+) {
+    let ((rows, rank), height) = (u.shape(), columns.nrows());
+    assert_eq!(v.shape(), (rows, rank), "as many rows and columns");
+    assert_eq!(w.shape(), (rank, given.nrows()), "a factor each given");
+    assert_eq!(given.ncols(), columns.ncols(), "something given a column");
+    assert!(rows <= height, "a head is no longer than its column");
+    if rows > 0 && rank > 0 {
+        ARCH.dispatch(AddLowRank {
+            u: u.as_slice(),
+            v: v.as_slice(),
+            w: w.as_slice(),
+            rows,
+            given: given.as_slice(),
+            givens: given.nrows(),
+            asked: &mut vec![0.0; rank],
+            columns: columns.as_mut_slice().chunks_exact_mut(height),
+        });
+    }
+}
+
+/// See [`add_low_rank`].
+struct AddLowRank<'a> {
+    u: &'a [f64],
+    v: &'a [f64],
+    w: &'a [f64],
+    rows: usize,
+    given: &'a [f64],
+    givens: usize,
+    /// Room for what is asked of a column.
+    asked: &'a mut [f64],
+    columns: ChunksExactMut<'a, f64>,
+}
+
+impl WithSimd for AddLowRank<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<S: Simd>(self, simd: S) {
+        for (number, column) in self.columns.enumerate() {
+            let given = &self.given[number * self.givens..][..self.givens];
+            self.asked.fill(0.0);
+            for (given, w) in given.iter().zip(self.w.chunks_exact(self.asked.len())) {
+                let each = self.asked.iter_mut().zip(w);
+                each.for_each(|(asked, w)| *asked += w * given);
+            }
+            let (x, x_rest) = S::as_mut_simd_f64s(&mut column[..self.rows]);
+            for (asked, v) in self.asked.iter_mut().zip(self.v.chunks_exact(self.rows)) {
+                let (v, v_rest) = S::as_simd_f64s(v);
+                let mut sum = simd.splat_f64s(0.0);
+                for (&x, &v) in x.iter().zip(v) {
+                    sum = simd.mul_add_e_f64s(x, v, sum);
+                }
+                *asked += simd.reduce_sum_f64s(sum);
+                for (x, v) in x_rest.iter().zip(v_rest) {
+                    *asked += x * v;
+                }
+            }
+            for (&asked, u) in self.asked.iter().zip(self.u.chunks_exact(self.rows)) {
+                let (u, u_rest) = S::as_simd_f64s(u);
+                let wide = simd.splat_f64s(asked);
+                for (x, &u) in x.iter_mut().zip(u) {
+                    *x = simd.mul_add_e_f64s(wide, u, *x);
+                }
+                for (x, &u) in x_rest.iter_mut().zip(u_rest) {
+                    *x += asked * u;
+                }
+            }
+        }
+    }
 }
 
 /// A matrix, column behind column, times vectors that stand side by side.
@@ -168,6 +247,24 @@ mod tests {
                 add_product(&matrix, vector.as_slice(), &mut product);
                 let known = (&matrix * vector).add_scalar(1.0);
                 assert_eq!(product, known.as_slice(), "{rows} x {columns}");
+            }
+        }
+    }
+
+    #[test]
+    fn heads_of_columns_get_what_thin_matrices_make_of_them() {
+        for rows in 1..20 {
+            for rank in 1..4 {
+                let u = DMatrix::from_fn(rows, rank, |i, k| (i + 2 * k) as f64 - 4.0);
+                let v = DMatrix::from_fn(rows, rank, |i, k| (3 * i + k) as f64 - 5.0);
+                let w = DMatrix::from_fn(rank, 2, |k, g| (k + 3 * g) as f64 - 1.0);
+                let given = DMatrix::from_fn(2, 3, |g, j| (g + j) as f64);
+                let mut columns = DMatrix::from_fn(rows + 2, 3, |i, j| (i * 5 + j) as f64 - 7.0);
+                let mut known = columns.clone();
+                let asked = v.tr_mul(&columns.rows(0, rows)) + &w * &given;
+                known.rows_mut(0, rows).gemm(1.0, &u, &asked, 1.0);
+                add_low_rank(&u, [&v, &w], &given, &mut columns);
+                assert_eq!(columns, known, "{rows} x {rank}");
             }
         }
     }

@@ -176,13 +176,28 @@ pub(crate) fn along(
 
 /// Copies rows to where one begins.
 fn put(into: &mut DMatrix<f64>, row: usize, rows: &DMatrix<f64>) {
-    let (height, own) = (into.nrows(), rows.nrows());
-    if own > 0 {
-        // By slices: views of matrices are copied number by number.
-        let columns = into.as_mut_slice().chunks_exact_mut(height);
-        for (into, column) in columns.zip(rows.as_slice().chunks_exact(own)) {
-            into[row..row + own].copy_from_slice(column);
+    let height = into.nrows();
+    let (into, own) = (into.as_mut_slice(), rows.as_slice());
+    // By slices: views of matrices are copied number by number. A few rows are copied in place, by no call a column.
+    match rows.nrows() {
+        0 => {}
+        1 => put_few::<1>(into, height, row, own),
+        2 => put_few::<2>(into, height, row, own),
+        3 => put_few::<3>(into, height, row, own),
+        4 => put_few::<4>(into, height, row, own),
+        many => {
+            let columns = into.chunks_exact_mut(height);
+            for (into, column) in columns.zip(own.chunks_exact(many)) {
+                into[row..row + many].copy_from_slice(column);
+            }
         }
+    }
+}
+
+fn put_few<const N: usize>(into: &mut [f64], height: usize, row: usize, rows: &[f64]) {
+    let (columns, _) = rows.as_chunks::<N>();
+    for (into, column) in into.chunks_exact_mut(height).zip(columns) {
+        into[row..row + N].copy_from_slice(column);
     }
 }
 

@@ -9,6 +9,7 @@
 //! observer does not know are no part of A, and they and what a direction forces them by are all in Q.
 
 use crate::configuration::{Places, arranged, partials, uneven, v_column, x_column};
+use crate::dense::add_low_rank;
 use crate::exponential::{Step, phi1, steps};
 use crate::fit::median;
 use crate::plant::{LEVELS, shortest_steps};
@@ -57,9 +58,10 @@ enum By {
 
 /// What errors and forces do at a point beyond the linear part.
 pub(crate) struct Bend {
+    /// What residuals ask: of errors, a column a residual, and of forces, a row a residual.
     by_error: DMatrix<f64>,
     by_force: DMatrix<f64>,
-    /// What residuals ask of themselves by the states they move, and what comes of that in half a row.
+    /// What residuals ask of themselves by the states they move, and what states answer in half a row.
     own: DMatrix<f64>,
     row: Option<DMatrix<f64>>,
 }
@@ -172,10 +174,15 @@ impl Splitting {
         let own = &by_error * &self.answers;
         Bend {
             by_force: coupled * by_force,
-            row: grown(&own, 0.5 * self.row_s),
+            row: self.answered(&own, 0.5 * self.row_s),
             own,
-            by_error,
+            by_error: by_error.transpose(),
         }
+    }
+
+    /// What states answer over some time; `None` where what was 1 grows out of measure.
+    fn answered(&self, own: &DMatrix<f64>, time: f64) -> Option<DMatrix<f64>> {
+        grown(own, time).map(|first| &self.answers * first)
     }
 
     /// What bends takes errors on by half a step of a length in shortest ones, forces being as they are.
@@ -186,25 +193,25 @@ impl Splitting {
         forces: &DMatrix<f64>,
         errors: &mut DMatrix<f64>,
     ) {
-        let mut asked = &bend.by_force * forces;
-        let mut errors = errors.rows_mut(0, self.answers.nrows());
         let known = (length == shortest_steps()).then_some(&bend.row);
-        let (step, time) = match known {
-            Some(step) => (step, 0.5 * self.row_s),
+        let (answered, time) = match known {
+            Some(answered) => (answered, 0.5 * self.row_s),
             None => {
                 let time = 0.5 * self.row_s * length as f64 / shortest_steps() as f64;
-                (&grown(&bend.own, time), time)
+                (&self.answered(&bend.own, time), time)
             }
         };
-        match step {
-            Some(first) => {
-                asked.gemm(1.0, &bend.by_error, &errors, 1.0);
-                asked = first * asked;
+        match answered {
+            Some(answered) => {
+                add_low_rank(answered, [&bend.by_error, &bend.by_force], forces, errors);
             }
             // An instant that is met in passing, as where a drag that is steepest at rest slips back, is not half a step.
-            None => asked *= time,
+            None => {
+                let asked = &bend.by_force * forces * time;
+                let mut errors = errors.rows_mut(0, self.answers.nrows());
+                errors.gemm(1.0, &self.answers, &asked, 1.0);
+            }
         }
-        errors.gemm(1.0, &self.answers, &asked, 1.0);
     }
 }
 
