@@ -16,6 +16,8 @@ use rayon::prelude::*;
 
 /// A visible change of innovations: the sum of its squares.
 const VISIBLE: f64 = 100.0;
+/// A size that would be seen only from so many times its range on is not told: slopes have no meaning there.
+const FAR: f64 = 1e6;
 /// A gain is looked at from this part of the gate on, and where it promises this part of the best.
 const PASSABLE: f64 = 0.25;
 const WORTHWHILE: f64 = 0.01;
@@ -130,7 +132,7 @@ impl Promised {
             nodes: self.nodes,
             tried: self.tried,
             linear,
-            detectable: linear.then_some(self.detectable),
+            detectable: Some(self.detectable).filter(|seen| linear && seen.is_finite()),
         }
     }
 }
@@ -242,19 +244,28 @@ impl Scanner<'_> {
                 let sizes: Vec<f64> = pairs()
                     .map(|(i, size)| inside(answer.sizes[i], size))
                     .collect();
+                let gain = answer.gain_of(&sizes);
                 let node = Node {
                     shapes: shape.clone(),
                     visible: pairs()
                         .map(|(i, size)| visible(answer.squares[i], size))
                         .collect(),
-                    gain: answer.gain_of(&sizes),
+                    // Errors that grow out of all numbers along the track promise nothing, and tell nothing.
+                    gain: if gain.is_nan() {
+                        f64::NEG_INFINITY
+                    } else {
+                        gain
+                    },
                     sizes,
                     parameters: Vec::new(),
                     linear: true,
                 };
                 nodes.push(node);
                 apart.push(products.apart(number));
-                seen = seen.min(answer.reaches(self.gate, 0));
+                let reaches = answer.reaches(self.gate, 0);
+                if reaches < FAR * largest(&hypothesis.sizes[0]).abs() {
+                    seen = seen.min(reaches);
+                }
             }
             plain = plain.or(Some(innovations));
         }
