@@ -215,6 +215,9 @@ impl Truth {
 /// Squares of the rms of free runs over the records held out, summed over them and over the encoder's origins, a number a
 /// channel, SI.
 fn free_runs(axis: &Example, set: &[(String, f64)], data: &Path) -> Result<Vec<f64>, String> {
+    let files = records(data, "validate-")?;
+    let first = files.first().ok_or("no record is held out")?;
+    let axis = axis.clone().record("file", first);
     let of = |origin: u32| -> Result<Vec<f64>, String> {
         let moved = format!(
             "(sample(encoder.phi) + {} [rev])",

@@ -82,6 +82,24 @@ fn an_effect_among_many_that_are_alike_is_fitted_as_well() {
     assert_eq!(report["planted"][0]["right"], 1, "{report:#}");
 }
 
+/// Beside a drag so steep at rest slopes along a run grow out of all numbers: runs are compared there.
+#[test]
+fn a_steep_power_of_the_speed_is_found() {
+    let wanted = [
+        "--only",
+        "planted",
+        "--seed",
+        "1",
+        "--sizes",
+        "0.05",
+        "--json",
+        "--effects",
+        "PowerDrag",
+    ];
+    let report = json(&tested_by("moves", &wanted));
+    assert_eq!(report["planted"][0]["right"], 1, "{report:#}");
+}
+
 #[test]
 fn a_report_is_the_same_from_any_number_of_threads_and_however_often_it_began_anew() {
     let kinds = ["--only", "empty", "--seed", "7", "--json", "--empties"];
