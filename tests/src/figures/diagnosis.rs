@@ -153,7 +153,7 @@ fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
     Ok(SetResult {
         right: right(&report, answer),
         above_truth: chi(&report) - truth.chi,
-        windows_over_truth: over(&report, "windows", &truth.windows),
+        windows_over_truth: windows_over(&report, &truth.windows),
         free_run_over_truth: most_over(found.iter().copied().zip(&truth.free_run)),
         minutes,
     })
@@ -218,12 +218,13 @@ fn free_runs(axis: &Example, set: &[(String, f64)], data: &Path) -> Result<Vec<f
     let files = records(data, "validate-")?;
     let first = files.first().ok_or("no record is held out")?;
     let axis = axis.clone().record("file", first);
+    let read = "sample(encoder.phi)";
+    if !axis.text().contains(read) {
+        return Err(format!("the axis has no `{read}` to move"));
+    }
     let of = |origin: u32| -> Result<Vec<f64>, String> {
-        let moved = format!(
-            "(sample(encoder.phi) + {} [rev])",
-            1e-4 * BETWEEN * f64::from(origin)
-        );
-        let moved = axis.clone().rewritten("sample(encoder.phi)", &moved);
+        let moved = format!("({read} + {} [rev])", 1e-4 * BETWEEN * f64::from(origin));
+        let moved = axis.clone().rewritten(read, &moved);
         let program = moved.compile(Backend::Native)?.program;
         let mut squares = vec![0.0; program.experiment.measured.len()];
         for recording in recordings(data, "validate-", &program)? {
@@ -296,11 +297,11 @@ fn held_out(report: &Value) -> impl Iterator<Item = &Value> {
     records.iter().filter(|record| record["holdout"] == true)
 }
 
-/// An error over all records held out over that of the truth, in the channel where that is largest.
-fn over(report: &Value, measure: &str, truth: &[f64]) -> f64 {
+/// The error of windows over all records held out over that of the truth, in the channel where that is largest.
+fn windows_over(report: &Value, truth: &[f64]) -> f64 {
     let of = |channel: usize| -> f64 {
         // What has no number is as wrong as can be.
-        let each = held_out(report).map(|record| &record["channels"][channel][measure]["after"]);
+        let each = held_out(report).map(|record| &record["channels"][channel]["windows"]["after"]);
         let each = each.map(|rms| rms.as_f64().unwrap_or(f64::INFINITY).powi(2));
         each.sum()
     };

@@ -20,6 +20,14 @@ fn json(printed: &str) -> Value {
     serde_json::from_str(printed).unwrap()
 }
 
+/// An effect, a twentieth of its range large, is named first where all are searched for.
+fn assert_found(effect: &str) {
+    let wanted = ["--only", "planted", "--seed", "1", "--sizes", "0.05"];
+    let report = [&wanted[..], &["--json", "--effects", effect]].concat();
+    let report = json(&tested_by("moves", &report));
+    assert_eq!(report["planted"][0]["right"], 1, "{report:#}");
+}
+
 #[test]
 fn planted_effects_are_found_and_nothing_where_nothing_is() {
     // Friction and a force; at a twentieth of their ranges they show clearly.
@@ -69,35 +77,13 @@ fn planted_effects_are_found_and_nothing_where_nothing_is() {
 fn an_effect_among_many_that_are_alike_is_fitted_as_well() {
     // Most of what pushes the saddle or turns the screw gains nearly all of what the planted one does, and more of them
     // than a round fits at first.
-    let wanted = [
-        "--only",
-        "planted",
-        "--sizes",
-        "0.05",
-        "--json",
-        "--effects",
-        "Counterbalance",
-    ];
-    let report = json(&tested_by("moves", &wanted));
-    assert_eq!(report["planted"][0]["right"], 1, "{report:#}");
+    assert_found("Counterbalance");
 }
 
 /// Beside a drag so steep at rest slopes along a run grow out of all numbers: runs are compared there.
 #[test]
 fn a_steep_power_of_the_speed_is_found() {
-    let wanted = [
-        "--only",
-        "planted",
-        "--seed",
-        "1",
-        "--sizes",
-        "0.05",
-        "--json",
-        "--effects",
-        "PowerDrag",
-    ];
-    let report = json(&tested_by("moves", &wanted));
-    assert_eq!(report["planted"][0]["right"], 1, "{report:#}");
+    assert_found("PowerDrag");
 }
 
 #[test]
