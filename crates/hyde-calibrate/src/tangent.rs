@@ -37,6 +37,8 @@ pub(crate) struct Direction {
 
 /// A product of matrices is faster than one a column from this many columns on.
 const MANY: usize = 8;
+/// What bends in a row is put into one matrix for all columns from this many on: that costs as much as so many do.
+const WIDE: usize = 64;
 
 /// How whitened innovations change along a track, a column a direction, channels below each other.
 pub(crate) fn changes(
@@ -85,6 +87,9 @@ pub(crate) fn along(
     let (mut then, mut reached) = (now.clone(), now.clone());
     let mut by_output = DMatrix::<f64>::zeros(channels, count);
     let mut corrected = Corrected::default();
+    // Of a row in which equations bend: errors at its end, and those with what it shows, of all there is at its start.
+    let mut errors = DMatrix::zeros(states, states + 2 * touched);
+    let mut bent = DMatrix::zeros(states + channels, states + 2 * touched + channels);
     let (mut at, mut room) = (None, Vectors::default());
     // The combination of modes in which the last row was left, and what bends there.
     let (mut left, mut bend) = (0, None);
@@ -107,7 +112,9 @@ pub(crate) fn along(
             event: None,
         }];
         let legs = if within { legs } else { &one };
-        let apart = at.is_some() && (within || known.splitting(left).is_some());
+        let bends = at.is_some() && known.splitting(left).is_some();
+        let apart = at.is_some() && (within || bends && count < WIDE);
+        let end = if same { &then } else { &now };
         if apart {
             // Modes that begin within the row act from there on: the axis may ring several times in a row's time.
             // So do forces, which jump from one mode to the next, and grow evenly in each.
@@ -146,13 +153,24 @@ pub(crate) fn along(
                 }
             }
         } else {
-            let end = if same { &then } else { &now };
             put(&mut before, states, &now);
             put(&mut before, states + touched, end);
         }
         put(&mut before, states + 2 * touched, &by_output);
-        let stepped = at.filter(|_| !apart);
-        let matrix = corrected.of(&known.modes, stepped, seen, observer);
+        let matrix = if bends && !apart {
+            // One product for all directions, of what bends at both ends of the row and the step between.
+            let turned = (next != left).then(|| {
+                let at = track.point(row, When::Before, p, &mut room);
+                known.bend(left, at)
+            });
+            let reached = turned.as_ref().unwrap_or(&bend_next);
+            known.bent(left, [&bend, reached], &mut errors)?;
+            correct(&errors, &known.modes[seen].outputs, observer, &mut bent);
+            &bent
+        } else {
+            let stepped = at.filter(|_| !apart);
+            corrected.of(&known.modes, stepped, seen, observer)
+        };
         if count < MANY {
             for (mut after, before) in after.column_iter_mut().zip(before.column_iter()) {
                 let after = &mut after.as_mut_slice()[..states + channels];
@@ -237,26 +255,48 @@ impl Corrected {
                 }
                 None => errors.fill_with_identity(),
             }
-            let inner = states + 2 * touched;
-            let mut answers = DMatrix::zeros(channels, inner + channels);
-            answers
-                .columns_mut(0, inner)
-                .copy_from(&-(outputs * &errors));
-            answers
-                .columns_mut(inner, channels)
-                .copy_from(&-DMatrix::identity(channels, channels));
-            let mut matrix = DMatrix::zeros(states + channels, inner + channels);
-            let mut kept = matrix.rows_mut(0, states);
-            kept.copy_from(&(&observer.gain * &answers));
-            let mut own = kept.columns_mut(0, inner);
-            own += errors;
-            for (channel, deviation) in observer.deviations.iter().enumerate() {
-                let whitened = answers.row(channel) / *deviation;
-                matrix.row_mut(states + channel).copy_from(&whitened);
-            }
+            let mut matrix = DMatrix::zeros(states + channels, errors.ncols() + channels);
+            correct(&errors, outputs, observer, &mut matrix);
             matrix
         };
         self.known.entry((stepped, seen)).or_insert_with(make)
+    }
+}
+
+/// What the correction at the end of a row makes of errors there, a column of `errors` each, and of what channels show beside
+/// them: corrected errors, and below them the whitened change of innovations.
+fn correct(
+    errors: &DMatrix<f64>,
+    outputs: &DMatrix<f64>,
+    observer: &Observer,
+    matrix: &mut DMatrix<f64>,
+) {
+    let ((channels, states), inner) = (outputs.shape(), errors.ncols());
+    matrix.fill(0.0);
+    let (of_errors, of_channels) = matrix
+        .as_mut_slice()
+        .split_at_mut(inner * (states + channels));
+    let columns = of_errors.chunks_exact_mut(states + channels);
+    for (column, errors) in columns.zip(errors.as_slice().chunks_exact(states.max(1))) {
+        let (kept, answers) = column.split_at_mut(states);
+        kept.copy_from_slice(errors);
+        for (outputs, error) in outputs.as_slice().chunks_exact(channels).zip(errors) {
+            let each = answers.iter_mut().zip(outputs);
+            each.for_each(|(answer, output)| *answer -= output * error);
+        }
+        for (channel, answer) in answers.iter_mut().enumerate() {
+            let gain = observer.gain.column(channel);
+            let each = kept.iter_mut().zip(gain.iter());
+            each.for_each(|(kept, gain)| *kept += gain * *answer);
+            *answer /= observer.deviations[channel];
+        }
+    }
+    let columns = of_channels.chunks_exact_mut(states + channels);
+    for (channel, column) in columns.enumerate() {
+        let gain = observer.gain.column(channel);
+        let each = column.iter_mut().zip(gain.iter());
+        each.for_each(|(kept, gain)| *kept = -gain);
+        column[states + channel] = -1.0 / observer.deviations[channel];
     }
 }
 

@@ -160,6 +160,8 @@ pub struct Delay {
     pub time_s: f64,
     /// Whether the continuous equations read it: a jump that arrives is an event.
     pub read: bool,
+    /// Whether what is delayed changes at events alone: it is made of what is held, of discrete variables and of parameters.
+    pub held: bool,
     /// Where it is written.
     pub origin: Origin,
 }

@@ -1,7 +1,8 @@
 //! [`Delays`]: the quantities that the model reads a time ago.
 //!
 //! No step is longer than the shortest delay, so what a step reads has been accepted before: a known function of the time
-//! (the method of steps; Bellen and Zennaro, Numerical Methods for Delay Differential Equations, 2003, ch. 4). Where the
+//! (the method of steps; Bellen and Zennaro, Numerical Methods for Delay Differential Equations, 2003, ch. 4). What is held
+//! between events bounds no step: it is known until the next one, and what an event makes of it arrives later. Where the
 //! quantity or its slope jumps, the same arrives later at a known instant, and the run ends a step there. At a jump it
 //! starts anew. What a delayed value does to others is seen as theirs, so chains and loops of delays need no rule.
 
@@ -27,6 +28,8 @@ struct Line {
     time_s: f64,
     /// The equations read it: where it jumps they need new consistent values.
     read: bool,
+    /// It changes at events alone.
+    held: bool,
     history: History,
 }
 
@@ -51,6 +54,7 @@ impl Delays {
         let line = |delay: &hyde_program::Delay| Line {
             time_s: delay.time_s,
             read: delay.read,
+            held: delay.held,
             history: History::constant(t, 0.0),
         };
         Self {
@@ -78,7 +82,8 @@ impl Delays {
 
     /// The longest step.
     pub(crate) fn max_step_s(&self) -> f64 {
-        let times = self.lines.iter().map(|line| line.time_s);
+        let lines = self.lines.iter().filter(|line| !line.held);
+        let times = lines.map(|line| line.time_s);
         times.fold(f64::INFINITY, f64::min)
     }
 

@@ -176,6 +176,21 @@ fn a_staircase_comes_later_as_a_staircase() {
 }
 
 #[test]
+fn what_is_held_bounds_no_step() {
+    let run = solve("delays", "brief");
+    // Steps no longer than the delay would be a quarter of a million.
+    let steps = run.run.results.statistics.steps;
+    assert!(steps < 2_000, "{steps} steps");
+    // Steps k = 1.. begin 2 us behind the ticks, the first of which is at 0.
+    let integral = |t: f64| {
+        let steps = ((t - 2e-6) / 0.01).max(0.0);
+        let whole = steps.floor();
+        0.01 * (0.5 * whole * (whole + 1.0) + (steps - whole) * (whole + 1.0))
+    };
+    follows(&run, "integral", 1e-7, integral);
+}
+
+#[test]
 fn arrays_are_delayed_element_by_element() {
     let run = solve("delays", "arrays");
     for (name, factor, by) in [

@@ -64,7 +64,7 @@ impl Forward<'_> {
     }
 
     /// Scores of some hypotheses on a stage, the best first.
-    fn scores_on(
+    pub(super) fn scores_on(
         &mut self,
         stage: &Stage,
         hypotheses: &[usize],

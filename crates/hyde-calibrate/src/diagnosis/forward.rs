@@ -43,6 +43,8 @@ pub(crate) struct Branch {
     pub(crate) taken: Vec<Taken>,
     /// Nothing more is to be taken in.
     pub(crate) ended: bool,
+    /// Scores on the stage, the best first, where it has been scanned before its round.
+    scores: Option<Vec<Score>>,
     /// The effects after each step, by number, and their cost.
     been: Vec<(Vec<usize>, f64)>,
 }
@@ -54,6 +56,7 @@ impl Branch {
             stage,
             taken: Vec::new(),
             ended: false,
+            scores: None,
             been: Vec::new(),
         }
     }
@@ -162,6 +165,18 @@ impl<'s> Forward<'s> {
         Ok(branch)
     }
 
+    /// What the best effect promises on the stage of a branch; the round to come has the scores then.
+    pub(crate) fn promise(&mut self, branch: &mut Branch) -> Result<f64, Unsupported> {
+        if branch.ended || branch.stage.effects.len() >= self.max_effects {
+            return Ok(0.0);
+        }
+        let all: Vec<usize> = (0..self.hypotheses.len()).collect();
+        let scores = self.scores_on(&branch.stage, &all)?;
+        let best = scores.first().map_or(0.0, Score::gain);
+        branch.scores = Some(scores);
+        Ok(best)
+    }
+
     /// A round on a branch, if there is room, and what follows from it.
     pub(crate) fn step(&mut self, branch: &mut Branch) -> Result<(), Unsupported> {
         if branch.stage.effects.len() < self.max_effects {
@@ -221,9 +236,12 @@ impl<'s> Forward<'s> {
         let at = stage.linearise_on(&tracks, self.ground)?;
         let projection = Projection::new(stage, &at).ok_or_else(Unsupported::singular)?;
         let scanner = self.scanner(stage, &tracks, &projection);
-        let all: Vec<usize> = (0..self.hypotheses.len()).collect();
-        let scores = scanner.scores(&all);
-        self.gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
+        let scores = branch.scores.take().unwrap_or_else(|| {
+            let all: Vec<usize> = (0..self.hypotheses.len()).collect();
+            let scores = scanner.scores(&all);
+            self.gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
+            scores
+        });
         let gates = self.gates;
         let Contest { trials, accepted } = self.fitted(stage, &scores);
         // The stage with what is taken in, and what the records cannot tell from each of that.

@@ -29,6 +29,8 @@ const MARGIN: f64 = 2.0;
 const MATERIAL: f64 = 0.002;
 /// Innovations that are explained: their mean square, and their correlation.
 const EXPLAINED: (f64, f64) = (1.05, 0.1);
+/// An effect that gains this part of what is more than noise may explain it, with what is left, once it is fitted.
+const PROMISING: f64 = 0.6;
 /// Where effects taken in explain a smaller part than this of what is more than noise, the answer is none of them.
 const MOSTLY: f64 = 0.5;
 
@@ -223,6 +225,13 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
         if !branch.ended {
             search.settle(&mut branch)?;
             search.step(&mut branch)?;
+        }
+        // A further effect that promises most of what is left is looked at before a law.
+        if !explained(&branch.stage.solution) {
+            let left = excess(&branch.stage.solution);
+            if search.promise(&mut branch)? >= PROMISING * left {
+                search.step(&mut branch)?;
+            }
         }
         if frozen.is_empty() && !explained(&branch.stage.solution) {
             law = beside(inquiry, &search.rounds[0], &branch.stage, search.gates)?;

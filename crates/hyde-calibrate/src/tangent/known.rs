@@ -160,6 +160,26 @@ impl<'t> Known<'t> {
         }
     }
 
+    /// Times errors and forces at the begin and the end of a row, all of it a step in one combination of modes, this is errors
+    /// at its end: what bends takes them on for half of it, then the leg, then what bends at its end.
+    pub(super) fn bent(
+        &mut self,
+        configuration: usize,
+        [begin, end]: [&Option<Rc<Bend>>; 2],
+        errors: &mut DMatrix<f64>,
+    ) -> Result<(), Unsupported> {
+        errors.copy_from(self.leg(configuration, 0)?);
+        if let Some(own) = self.splitting(configuration) {
+            if let Some(bend) = begin {
+                own.kick_before(bend, errors);
+            }
+            if let Some(bend) = end {
+                own.kick_behind(bend, errors);
+            }
+        }
+        Ok(())
+    }
+
     /// What bends at a point of a combination of modes.
     pub(super) fn bend(&mut self, configuration: usize, at: Point<'_>) -> Option<Rc<Bend>> {
         let own = self.splitting(configuration)?;
