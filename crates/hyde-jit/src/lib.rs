@@ -10,6 +10,7 @@
 
 mod bending;
 mod compiled;
+mod delays;
 mod emit;
 mod figures;
 mod flows;

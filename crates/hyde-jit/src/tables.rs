@@ -1,17 +1,18 @@
 //! The tables of a [`Program`], from the DAE.
 
 use crate::compiled::Compiled;
+use crate::delays::delays;
 use crate::flows::flows;
 use crate::{figures, ledger};
 use hyde_ir::dae::{self, Dae};
 use hyde_ir::flat;
-use hyde_ir::{Expr, ExprId, Id as _, Interpolation, VariableKind};
+use hyde_ir::{Id as _, Interpolation, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Bode, Clock, Column, Delay, Derivatives, Experiment, Hold,
-    InitialCondition, Measure, Measured, MeasuredResponse, Method, Output, Parameter, Pin,
-    Preparation, Prior, Program, Reaction, ReactionKind, RecordValue, RecordValueKind,
-    RecordedResponse, Reduction, ReductionKind, Relation, RelationUse, ScaledColumn, Selection,
-    Stepped, Stop, Target, UnknownBlock,
+    Assignment, Automaton, Bode, Clock, Column, Derivatives, Experiment, Hold, InitialCondition,
+    Measure, Measured, MeasuredResponse, Method, Output, Parameter, Pin, Preparation, Prior,
+    Program, Reaction, ReactionKind, RecordValue, RecordValueKind, RecordedResponse, Reduction,
+    ReductionKind, Relation, RelationUse, ScaledColumn, Selection, Stepped, Stop, Target,
+    UnknownBlock,
 };
 use std::sync::Arc;
 
@@ -205,59 +206,6 @@ fn columns(dae: &Dae) -> Vec<Column> {
             stepped,
         })
         .collect()
-}
-
-fn delays(dae: &Dae) -> Vec<Delay> {
-    let values: Vec<_> = dae
-        .residuals
-        .iter()
-        .map(|residual| residual.value)
-        .chain(dae.definitions.iter().map(|definition| definition.value))
-        .chain(dae.relations.iter().map(|relation| relation.root))
-        .collect();
-    let below = dae.exprs.below(&values);
-    let reads = |delay: &flat::Delay| {
-        let of = |id: &ExprId| matches!(dae.exprs[*id], Expr::Var(var, _) if var == delay.var);
-        below.iter().any(of)
-    };
-    let each = dae.delays.iter().flat_map(|delay| {
-        let (read, held) = (reads(delay), is_held(dae, delay.value));
-        delay.range.iter().map(move |_| Delay {
-            time_s: delay.time_s,
-            read,
-            held,
-            origin: delay.origin.clone(),
-        })
-    });
-    each.collect()
-}
-
-/// Whether an expression changes at events alone.
-fn is_held(dae: &Dae, value: ExprId) -> bool {
-    let below = dae.exprs.below(&[value]);
-    below.into_iter().all(|id| match dae.exprs[id] {
-        Expr::Time | Expr::Der(..) | Expr::NoEvent(_) => false,
-        Expr::Var(var, _) => match dae.variables[var].kind {
-            VariableKind::Discrete | VariableKind::Clocked(_) | VariableKind::Held(..) => true,
-            VariableKind::Continuous => {
-                let own = dae.definitions.iter().filter(|own| own.var == var);
-                let mut values = own.map(|own| own.value).peekable();
-                values.peek().is_some() && values.all(|value| is_held(dae, value))
-            }
-            VariableKind::Column(..) | VariableKind::Delayed(_) | VariableKind::Reduction(_) => {
-                false
-            }
-        },
-        Expr::Const(_)
-        | Expr::Counter
-        | Expr::Param(..)
-        | Expr::Pre(..)
-        | Expr::Relation(_)
-        | Expr::InMode(..)
-        | Expr::Unary(..)
-        | Expr::Binary(..)
-        | Expr::If(..) => true,
-    })
 }
 
 fn outputs(dae: &Dae) -> Vec<Output> {
