@@ -152,7 +152,7 @@ impl Consistent {
         let mut right = vec![0.0; n];
         state.directional(t, y, yp, &dy, &dyp, &mut right);
         // The explicit time derivative, by a difference: inputs and the time have no other.
-        let step = 1e-7 * (1e-3 + t.abs());
+        let step = state.inputs.difference_s(t);
         let (mut later, mut now) = (vec![0.0; n], vec![0.0; n]);
         state.evaluate(Function::Residual, t + step, y, yp, &mut later);
         state.evaluate(Function::Residual, t, y, yp, &mut now);

@@ -126,6 +126,20 @@ impl<'a> Inputs<'a> {
         jumps.chain(rows).fold(f64::INFINITY, f64::min)
     }
 
+    /// A step of time for a difference: a ten-millionth of the time, and not beyond the next row of a column that the equations
+    /// read, for there it has a kink. A row that is nearer than a thousandth of the step counts as reached.
+    pub(crate) fn difference_s(&self, t: f64) -> f64 {
+        let step = 1e-7 * (1e-3 + t.abs());
+        let left = |&number: &usize| {
+            let column = &self.columns[number];
+            let mut cursor = column.cursor;
+            Some(column.signal.next_instant(t, &mut cursor)? - t)
+        };
+        let each = self.continuous.iter().filter_map(left);
+        each.filter(|left| *left >= 1e-3 * step)
+            .fold(step, f64::min)
+    }
+
     /// A step that does not skip rows of the columns that the equations read.
     pub(crate) fn max_step_s(&self) -> f64 {
         let spacing = |&number: &usize| self.columns[number].mean_step_s;

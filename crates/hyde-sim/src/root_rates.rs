@@ -165,7 +165,7 @@ pub(crate) fn rates_at(
         };
     }
     // The time itself, and record columns and delayed values that move with it.
-    let step = 1e-7 * (1e-3 + t.abs());
+    let step = state.inputs.difference_s(t);
     let (mut later, mut now) = (vec![0.0; rates.len()], vec![0.0; rates.len()]);
     state.evaluate(function, t + step, y, yp, &mut later);
     state.evaluate(function, t, y, yp, &mut now);

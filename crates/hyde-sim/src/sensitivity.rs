@@ -214,7 +214,7 @@ fn by_time(
     (t, y, yp): (f64, &[f64], &[f64]),
 ) -> Vec<f64> {
     let rows = state.program.rows(function);
-    let step = 1e-7 * (1e-3 + t.abs());
+    let step = state.inputs.difference_s(t);
     let (mut later, mut now) = (vec![0.0; rows], vec![0.0; rows]);
     state.evaluate(function, t + step, y, yp, &mut later);
     state.evaluate(function, t, y, yp, &mut now);

@@ -64,7 +64,7 @@ impl State<'_> {
         }
         if given {
             // Record columns and delayed values move with the time, and have no other derivative.
-            let step = 1e-7 * (1e-3 + t.abs());
+            let step = self.inputs.difference_s(t);
             let (now, later) = (self.heights(t, y, yp), self.heights(t + step, y, yp));
             for (rate, (now, later)) in rates.iter_mut().zip(now.iter().zip(&later)) {
                 *rate += (later - now) / step;
