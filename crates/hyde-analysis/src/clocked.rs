@@ -267,14 +267,8 @@ fn order_clocks(dae: &mut Dae, diagnostics: &mut Diagnostics) {
 }
 
 fn holds(dae: &mut Dae) {
-    let values: Vec<_> = dae
-        .residuals
-        .iter()
-        .map(|residual| residual.value)
-        .chain(dae.definitions.iter().map(|definition| definition.value))
-        .chain(dae.relations.iter().map(|relation| relation.root))
-        .chain(dae.delays.iter().map(|delay| delay.value))
-        .collect();
+    let mut values = dae.equation_values();
+    values.extend(dae.delays.iter().map(|delay| delay.value));
     let read: Vec<VarId> = dae
         .exprs
         .below(&values)

@@ -31,8 +31,13 @@ mod unknown;
 use args::{Arguments, Command};
 use clap::Parser as _;
 use exit::Exit;
+use mimalloc::MiMalloc;
 use std::ffi::OsString;
 use std::process::ExitCode;
+
+/// A diagnosis makes and drops small matrices by the million, on every thread.
+#[global_allocator]
+static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// Runs a command line.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {

@@ -134,6 +134,15 @@ impl Dae {
         }
     }
 
+    /// The values that the continuous equations are made of: residuals, definitions, relations.
+    #[must_use]
+    pub fn equation_values(&self) -> Vec<ExprId> {
+        let residuals = self.residuals.iter().map(|residual| residual.value);
+        let definitions = self.definitions.iter().map(|definition| definition.value);
+        let relations = self.relations.iter().map(|relation| relation.root);
+        residuals.chain(definitions).chain(relations).collect()
+    }
+
     /// Number of the first delayed value of a delay.
     #[must_use]
     pub fn delay_offset(&self, delay: DelayId) -> usize {

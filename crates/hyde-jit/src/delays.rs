@@ -7,14 +7,7 @@ use hyde_program::Delay;
 
 /// The delays of a DAE, one an element.
 pub(crate) fn delays(dae: &Dae) -> Vec<Delay> {
-    let values: Vec<_> = dae
-        .residuals
-        .iter()
-        .map(|residual| residual.value)
-        .chain(dae.definitions.iter().map(|definition| definition.value))
-        .chain(dae.relations.iter().map(|relation| relation.root))
-        .collect();
-    let below = dae.exprs.below(&values);
+    let below = dae.exprs.below(&dae.equation_values());
     let reads = |delay: &flat::Delay| {
         let of = |id: &ExprId| matches!(dae.exprs[*id], Expr::Var(var, _) if var == delay.var);
         below.iter().any(of)

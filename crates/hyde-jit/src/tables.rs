@@ -176,15 +176,9 @@ fn record_values(dae: &Dae) -> Vec<RecordValue> {
 }
 
 fn columns(dae: &Dae) -> Vec<Column> {
-    let roots: Vec<_> = dae
-        .residuals
-        .iter()
-        .map(|residual| residual.value)
-        .chain(dae.definitions.iter().map(|definition| definition.value))
-        .chain(dae.relations.iter().map(|relation| relation.root))
-        .chain(dae.outputs.iter().map(|output| output.value))
-        .chain(dae.delays.iter().map(|delay| delay.value))
-        .collect();
+    let mut roots = dae.equation_values();
+    roots.extend(dae.outputs.iter().map(|output| output.value));
+    roots.extend(dae.delays.iter().map(|delay| delay.value));
     let mut read = vec![(false, false); dae.columns.len()];
     for id in dae.exprs.below(&roots) {
         if let hyde_ir::Expr::Var(var, _) = dae.exprs[id]

@@ -72,9 +72,8 @@ impl Forward<'_> {
         let tracks = stage.tracks(self.ground)?;
         let at = stage.linearise_on(&tracks, self.ground)?;
         let projection = Projection::new(stage, &at).ok_or_else(Unsupported::singular)?;
-        let scores = self.scanner(stage, &tracks, &projection).scores(hypotheses);
-        self.gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
-        Ok(scores)
+        let scanner = self.scanner(stage, &tracks, &projection);
+        Ok(self.scored(&scanner, hypotheses))
     }
 
     /// An effect and those that came near it in its round, without those that the stage has.

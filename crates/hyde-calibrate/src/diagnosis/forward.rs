@@ -165,13 +165,24 @@ impl<'s> Forward<'s> {
         Ok(branch)
     }
 
+    /// The numbers of all hypotheses.
+    fn all(&self) -> Vec<usize> {
+        (0..self.hypotheses.len()).collect()
+    }
+
+    /// Scores of some hypotheses, the best first; what was tried for them counts.
+    pub(super) fn scored(&mut self, scanner: &Scanner<'_>, hypotheses: &[usize]) -> Vec<Score> {
+        let scores = scanner.scores(hypotheses);
+        self.gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
+        scores
+    }
+
     /// What the best effect promises on the stage of a branch; the round to come has the scores then.
     pub(crate) fn promise(&mut self, branch: &mut Branch) -> Result<f64, Unsupported> {
         if branch.ended || branch.stage.effects.len() >= self.max_effects {
             return Ok(0.0);
         }
-        let all: Vec<usize> = (0..self.hypotheses.len()).collect();
-        let scores = self.scores_on(&branch.stage, &all)?;
+        let scores = self.scores_on(&branch.stage, &self.all())?;
         let best = scores.first().map_or(0.0, Score::gain);
         branch.scores = Some(scores);
         Ok(best)
@@ -236,12 +247,8 @@ impl<'s> Forward<'s> {
         let at = stage.linearise_on(&tracks, self.ground)?;
         let projection = Projection::new(stage, &at).ok_or_else(Unsupported::singular)?;
         let scanner = self.scanner(stage, &tracks, &projection);
-        let scores = branch.scores.take().unwrap_or_else(|| {
-            let all: Vec<usize> = (0..self.hypotheses.len()).collect();
-            let scores = scanner.scores(&all);
-            self.gates.tried += scores.iter().map(|score| score.tried).sum::<usize>();
-            scores
-        });
+        let known = branch.scores.take();
+        let scores = known.unwrap_or_else(|| self.scored(&scanner, &self.all()));
         let gates = self.gates;
         let Contest { trials, accepted } = self.fitted(stage, &scores);
         // The stage with what is taken in, and what the records cannot tell from each of that.

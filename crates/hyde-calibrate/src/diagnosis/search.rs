@@ -29,8 +29,8 @@ const MARGIN: f64 = 2.0;
 const MATERIAL: f64 = 0.002;
 /// Innovations that are explained: their mean square, and their correlation.
 const EXPLAINED: (f64, f64) = (1.05, 0.1);
-/// An effect that gains this part of what is more than noise may explain it, with what is left, once it is fitted.
-const PROMISING: f64 = 0.6;
+/// What gains this part of what is more than noise, in the linear answer, may explain all once it is fitted.
+pub(super) const PROMISING: f64 = 0.6;
 /// Where effects taken in explain a smaller part than this of what is more than noise, the answer is none of them.
 const MOSTLY: f64 = 0.5;
 

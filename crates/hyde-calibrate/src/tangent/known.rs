@@ -4,7 +4,7 @@ use super::splitting::{Bend, Splitting};
 use crate::configuration::partials;
 use crate::gain::output_matrix;
 use crate::observer::When;
-use crate::plant::Unsupported;
+use crate::plant::{Unsupported, shortest_steps};
 use crate::track::{Track, Vectors};
 use hyde_program::{Point, Program, Workspace};
 use nalgebra::DMatrix;
@@ -168,15 +168,15 @@ impl<'t> Known<'t> {
         [begin, end]: [&Option<Rc<Bend>>; 2],
         errors: &mut DMatrix<f64>,
     ) -> Result<(), Unsupported> {
-        errors.copy_from(self.leg(configuration, 0)?);
-        if let Some(own) = self.splitting(configuration) {
-            if let Some(bend) = begin {
-                own.kick_before(bend, errors);
-            }
-            if let Some(bend) = end {
-                own.kick_behind(bend, errors);
-            }
-        }
+        let (states, all) = errors.shape();
+        let touched = (all - states) / 2;
+        // Units of all there is: errors, and forces at both ends.
+        let mut units = DMatrix::identity(all, all);
+        let forces = |first: usize| units.rows(first, touched).into_owned();
+        let [begins, ends] = [states, states + touched].map(forces);
+        self.kick(configuration, begin, shortest_steps(), &begins, &mut units);
+        errors.gemm(1.0, self.leg(configuration, 0)?, &units, 0.0);
+        self.kick(configuration, end, shortest_steps(), &ends, errors);
         Ok(())
     }
 

@@ -66,20 +66,6 @@ pub(crate) struct Bend {
     row: Option<DMatrix<f64>>,
 }
 
-/// What states answer in half a row, a column a residual, to what errors and forces ask of residuals; of errors nothing where
-/// what was 1 grows out of measure, and forces for so long.
-struct Half<'b> {
-    answered: &'b DMatrix<f64>,
-    by_error: Option<&'b DMatrix<f64>>,
-    time: f64,
-}
-
-/// Adds a multiple of numbers to others.
-fn add_times(to: &mut [f64], factor: f64, numbers: &[f64]) {
-    let each = to.iter_mut().zip(numbers);
-    each.for_each(|(to, number)| *to += factor * number);
-}
-
 impl Splitting {
     /// That of a combination of modes, from a point of it and the derivatives at others; `None` where nothing bends there.
     /// What bends has the median of its derivatives in the linear part: where a drag is steepest it is so by orders of magnitude.
@@ -197,77 +183,6 @@ impl Splitting {
     /// What states answer over some time; `None` where what was 1 grows out of measure.
     fn answered(&self, own: &DMatrix<f64>, time: f64) -> Option<DMatrix<f64>> {
         grown(own, time).map(|first| &self.answers * first)
-    }
-
-    /// Puts what bends takes errors on by half a row before a row's step: times errors, and forces at both of its ends below
-    /// them, that is errors behind it.
-    pub(super) fn kick_before(&self, bend: &Bend, step: &mut DMatrix<f64>) {
-        let (n, touched) = (self.by_state.ncols(), bend.by_force.ncols());
-        let Half {
-            answered,
-            by_error,
-            time,
-        } = self.half_a_row(bend);
-        let mut moved = vec![0.0; n];
-        for (residual, answered) in answered.column_iter().enumerate() {
-            moved.fill(0.0);
-            let columns = step.as_slice().chunks_exact(n.max(1));
-            for (column, &answered) in columns.zip(answered.iter()) {
-                add_times(&mut moved, answered, column);
-            }
-            let mut columns = step.as_mut_slice().chunks_exact_mut(n.max(1));
-            for (state, column) in columns.by_ref().take(n).enumerate() {
-                let asked = by_error.map_or(0.0, |by_error| by_error[(state, residual)]);
-                add_times(column, asked, &moved);
-            }
-            for (force, column) in columns.take(touched).enumerate() {
-                add_times(column, time * bend.by_force[(residual, force)], &moved);
-            }
-        }
-    }
-
-    /// The same behind it.
-    pub(super) fn kick_behind(&self, bend: &Bend, step: &mut DMatrix<f64>) {
-        let (n, touched) = (self.by_state.ncols(), bend.by_force.ncols());
-        let Half {
-            answered,
-            by_error,
-            time,
-        } = self.half_a_row(bend);
-        let mut asked = vec![0.0; answered.ncols()];
-        for (number, column) in step.as_mut_slice().chunks_exact_mut(n.max(1)).enumerate() {
-            let force = number.checked_sub(n + touched);
-            for (residual, asked) in asked.iter_mut().enumerate() {
-                let own = by_error.map_or(0.0, |by_error| {
-                    let each = by_error.column(residual);
-                    each.iter()
-                        .zip(&*column)
-                        .map(|(by, error)| by * error)
-                        .sum()
-                });
-                let forced = force.map_or(0.0, |force| time * bend.by_force[(residual, force)]);
-                *asked = own + forced;
-            }
-            for (answered, &asked) in answered.column_iter().zip(&asked) {
-                add_times(column, asked, answered.as_slice());
-            }
-        }
-    }
-
-    /// What is met in half a row.
-    fn half_a_row<'b>(&'b self, bend: &'b Bend) -> Half<'b> {
-        match &bend.row {
-            Some(answered) => Half {
-                answered,
-                by_error: Some(&bend.by_error),
-                time: 1.0,
-            },
-            None => Half {
-                answered: &self.answers,
-                by_error: None,
-                time: 0.5 * self.row_s,
-            },
-        }
     }
 
     /// What bends takes errors on by half a step of a length in shortest ones, forces being as they are.

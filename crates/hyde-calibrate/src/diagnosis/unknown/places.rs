@@ -9,7 +9,7 @@ use super::site::Site;
 use super::{FoundLaw, Unknown};
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::projection::Projection;
-use crate::diagnosis::search::{Gates, excess, explained};
+use crate::diagnosis::search::{Gates, PROMISING, excess, explained};
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::trial::Trial;
 use crate::plant::Unsupported;
@@ -19,8 +19,6 @@ use rayon::prelude::*;
 /// Sites whose map gains this part of the best one's are searched for a law, so many at most.
 const NEAR: f64 = 0.8;
 const SITES: usize = 3;
-/// A term that gains this part of what is more than noise, in the linear answer, may explain all once it is fitted.
-const PROMISING: f64 = 0.6;
 
 /// The sites of a stage.
 pub(crate) struct Places<'a> {
