@@ -193,11 +193,21 @@ impl Consistent {
     }
 
     /// Consistent values while sliding, where the weights follow from the rates: those of an interpolant are less exact than
-    /// its values. Where there are none, and else, the values stay.
+    /// its values. Else the values stay.
     pub(crate) fn refine(&mut self, state: &mut State<'_>, t: f64, y: &mut [f64], yp: &mut [f64]) {
-        if state.slides.is_empty() {
-            return;
+        if !state.slides.is_empty() {
+            self.make_exact(state, t, y, yp);
         }
+    }
+
+    /// Consistent values with the states of an interpolant. Where there are none the values stay.
+    pub(crate) fn make_exact(
+        &mut self,
+        state: &mut State<'_>,
+        t: f64,
+        y: &mut [f64],
+        yp: &mut [f64],
+    ) {
         let (before, rates) = (y.to_vec(), yp.to_vec());
         if self.solve(state, t, y, yp, false).is_err() {
             y.copy_from_slice(&before);

@@ -85,7 +85,6 @@ impl Instant<'_, '_> {
                     located.extend(short);
                     known = self.truths(scheduled, &located)?;
                 }
-                self.state.in_vain = (self.t, self.crossed_in_vain(&known.truths));
                 let now = self.guards_that_became_true(&known);
                 self.remember_located(&now);
                 located.extend(now);

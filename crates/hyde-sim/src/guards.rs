@@ -2,7 +2,8 @@
 //!
 //! After each step the root functions are evaluated at the end and at a few Chebyshev points of the step's interpolant,
 //! and in between where they bend enough to reach zero; a change of sign between two of them brackets a crossing, which
-//! is located on the interpolant.
+//! is located on the interpolant. Where consistent values do not show it there, they are looked at over the whole step: if
+//! it went over a kink of a record, the interpolant of a force bends to a crossing that there is not, or later.
 
 use crate::consistent::Consistent;
 use crate::integrator::Integrator;
@@ -72,28 +73,16 @@ pub(crate) fn first_change(
         probe: Probe::new(integrator, consistent),
         watched: &watched,
     };
-    let inside = INSIDE.map(|part| start + part * (end - start));
-    let points: Vec<(f64, Vec<f64>)> = [start]
-        .into_iter()
-        .chain(inside)
-        .chain([end])
-        .map(|t| (t, search.values(integrator, t)))
-        .collect();
-    for (number, pair) in points.windows(2).enumerate() {
-        let around = &points[number.saturating_sub(1)..(number + 3).min(points.len())];
-        let depth = if search.may_reach_zero(around) {
-            0
-        } else {
-            MAX_HALVINGS + 1
-        };
-        let (a, b) = (&pair[0], &pair[1]);
-        let found = search.between(integrator, (a.0, &a.1), (b.0, &b.1), depth);
-        if found.is_some() {
-            return found;
-        }
+    let mut found = search.first(integrator, start, end);
+    if found.as_ref().is_ok_and(|it| !search.shows(integrator, it)) {
+        search.probe.exact = true;
+        found = search.first(integrator, start, end);
     }
+    let at_end = match found {
+        Ok(crossing) => return Some(crossing),
+        Err(at_end) => at_end,
+    };
     // What has left its zero is known by its sign from here on.
-    let at_end = points.last().map_or(&[][..], |(_, roots)| roots);
     let left: Vec<usize> = watched
         .iter()
         .zip(at_end)
@@ -115,6 +104,52 @@ struct Search<'s> {
 }
 
 impl Search<'_> {
+    /// The first change in a step. Without one, the root functions at its end.
+    fn first(
+        &mut self,
+        integrator: &mut Integrator<'_>,
+        start: f64,
+        end: f64,
+    ) -> Result<Crossing, Vec<f64>> {
+        let inside = INSIDE.map(|part| start + part * (end - start));
+        let points: Vec<(f64, Vec<f64>)> = [start]
+            .into_iter()
+            .chain(inside)
+            .chain([end])
+            .map(|t| (t, self.values(integrator, t)))
+            .collect();
+        for (number, pair) in points.windows(2).enumerate() {
+            let around = &points[number.saturating_sub(1)..(number + 3).min(points.len())];
+            let depth = if self.may_reach_zero(around) {
+                0
+            } else {
+                MAX_HALVINGS + 1
+            };
+            let (a, b) = (&pair[0], &pair[1]);
+            let found = self.between(integrator, (a.0, &a.1), (b.0, &b.1), depth);
+            if let Some(crossing) = found {
+                return Ok(crossing);
+            }
+        }
+        Err(points
+            .last()
+            .map_or_else(Vec::new, |(_, roots)| roots.clone()))
+    }
+
+    /// Whether consistent values show a change where it was found. What states alone decide they do not change.
+    fn shows(&mut self, integrator: &mut Integrator<'_>, found: &Crossing) -> bool {
+        let state = integrator.state();
+        let mut numbers = found.relations.iter();
+        if numbers.any(|number| state.is_of_states(*number)) {
+            return true;
+        }
+        self.probe.exact = true;
+        let roots = self.values(integrator, found.t);
+        self.probe.exact = false;
+        let mut pairs = self.watched.iter().zip(roots);
+        pairs.any(|(watched, root)| !watched.holds(root))
+    }
+
     /// The first change after `a` and up to `b`, halving where the curvature is large enough for an excursion to zero.
     fn between(
         &mut self,
@@ -255,6 +290,8 @@ fn locate(
 /// Evaluates root functions on the interpolant, and the margins of slides.
 struct Probe<'c> {
     consistent: &'c mut Consistent,
+    /// Whether on consistent values with the states of the interpolant.
+    exact: bool,
     y: Vec<f64>,
     yp: Vec<f64>,
     roots: Vec<f64>,
@@ -265,6 +302,7 @@ impl<'c> Probe<'c> {
         let program = integrator.state().program;
         Self {
             consistent,
+            exact: false,
             y: vec![0.0; program.n_unknowns],
             yp: vec![0.0; program.n_unknowns],
             roots: vec![0.0; program.relations.len()],
@@ -272,12 +310,21 @@ impl<'c> Probe<'c> {
     }
 
     fn roots(&mut self, integrator: &mut Integrator<'_>, t: f64) -> &[f64] {
-        let Self { y, yp, roots, .. } = self;
+        let Self {
+            exact,
+            y,
+            yp,
+            roots,
+            ..
+        } = self;
         integrator.interpolate(t, y, yp);
         let state = integrator.state_mut();
         let n_relations = state.program.relations.len();
         roots.truncate(n_relations);
-        self.consistent.refine(state, t, y, yp);
+        match exact {
+            true => self.consistent.make_exact(state, t, y, yp),
+            false => self.consistent.refine(state, t, y, yp),
+        }
         state.evaluate(Function::Roots, t, y, yp, roots);
         if !state.slides.is_empty() {
             let weights = state.weights(t, y, yp);

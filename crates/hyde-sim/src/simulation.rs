@@ -305,10 +305,13 @@ impl<'a> Simulation<'a> {
                 return Ok(None);
             };
             let (before, behind) = (crossing.t - from, integrator.t - crossing.t);
-            let at_an_end = before.min(behind) < 2.0 * JUST_BEHIND * (before + behind);
+            let just_behind = behind < 2.0 * JUST_BEHIND * (before + behind);
             // So near to where it began, the time itself is no more exact.
-            let at_an_end = at_an_end || same_instant(crossing.t, from);
-            if at_an_end || !integrator.step_again(crossing.t + JUST_BEHIND * before)? {
+            let at_its_start = same_instant(crossing.t, from);
+            if just_behind
+                || at_its_start
+                || !integrator.step_again(crossing.t + JUST_BEHIND * before)?
+            {
                 return Ok(found);
             }
         }

@@ -27,8 +27,6 @@ pub(crate) struct State<'a> {
     /// Relations that are at their zero since the last event, with how far from it their root functions may be: within
     /// that a sign says nothing, until they have once been farther.
     pub(crate) doubtful: Vec<(usize, f64)>,
-    /// Relations whose crossing was located last, though consistent values did not show it, and when.
-    pub(crate) in_vain: (f64, Vec<usize>),
     /// Switches that are held at their surfaces.
     pub(crate) slides: Vec<Slide>,
     pub(crate) differential: Vec<bool>,
@@ -48,7 +46,6 @@ impl<'a> State<'a> {
             pinned: Vec::new(),
             located: Vec::new(),
             doubtful: Vec::new(),
-            in_vain: (f64::NEG_INFINITY, Vec::new()),
             slides: Vec::new(),
             differential: program.differential(&vec![0.0; program.n_memory]),
         };

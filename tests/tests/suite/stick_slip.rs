@@ -4,8 +4,10 @@
 //! 2*D/(k*v0), for ever (Leine, van Campen, de Kraker, van den Steen: Stick-slip vibrations induced by alternate friction
 //! models, Nonlinear Dynamics 16 (1998) 41).
 
-use crate::models::{close, solve, solve_with};
+use crate::command::write;
+use crate::models::{close, model, solve, solve_with};
 use hyde_experiment::Options;
+use std::fmt::Write;
 
 const M: f64 = 1.0;
 const K: f64 = 100.0;
@@ -89,5 +91,38 @@ fn a_stiff_bar_breaks_away_once_however_far_it_has_turned() {
         };
         // Beside the ramp the bar swings with some 500 Hz, by a slope of at most that of the ramp: 0.3 ms.
         close(t, 0.3 / ramp, 1e-3);
+    }
+}
+
+/// A record is linear between its rows, so a step that goes over one has a kink in it, and the interpolant of a force that holds
+/// a body bends to crossings that there are not, or elsewhere. Breakaways are 10 ms to 1 ns before a row or behind it.
+#[test]
+fn what_a_record_pulls_loose_breaks_away_once_and_when_the_record_says() {
+    let (mut text, mut expected) = ("t [s],F [N]\n".to_owned(), Vec::new());
+    for pull in 0..200 {
+        let part = (0.381_966 * f64::from(pull)).fract();
+        let short = 10_f64.powf(-2.0 - 7.0 * part) * if pull % 2 == 0 { -1.0 } else { 1.0 };
+        let rows = [0.9, 0.9, 0.9, 0.9, 1.0 - short, 1.5, 0.5, 0.9, 0.9, 0.9];
+        let start = 0.2 * f64::from(pull);
+        for (row, force) in (0..).zip(rows) {
+            let _ = writeln!(text, "{:.2},{force:.12}", start + 0.02 * f64::from(row));
+        }
+        expected.push(match short < 0.0 {
+            true => start + 0.06 + 0.02 * 0.1 / (0.1 - short),
+            false => start + 0.08 + 0.02 * short / (0.5 + short),
+        });
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let record = folder.path().join("kinks.csv");
+    write(&record, &text);
+    // A one-step method looks for events on an interpolant of forces that is less exact than its states.
+    for (experiment, tolerance) in [("kinks", 1e-7), ("kinks_by_one_step", 1e-4)] {
+        let pushed = model("pushed", Some(experiment)).record("file", &record);
+        let (_, run) = pushed.run().unwrap();
+        let times: Vec<f64> = run.results.events.iter().map(|event| event.t).collect();
+        assert_eq!(times.len(), 2 * expected.len(), "{experiment}");
+        for (pair, &t) in times.chunks(2).zip(&expected) {
+            close(pair[0], t, tolerance);
+        }
     }
 }

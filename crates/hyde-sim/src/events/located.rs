@@ -19,9 +19,7 @@ impl Instant<'_, '_> {
     }
 
     /// The crossed relations of reactions whose truth is as before: consistent values may fall short of a zero by rounding
-    /// that the step to it did not show. As far as the instant can be known they are at it. One that was located in vain a
-    /// moment ago is at it however far that seems: the twist of a stiff bar is the difference of two large angles, and time
-    /// goes on by less than those can tell.
+    /// that the step to it did not show. As far as the instant can be known they are at it.
     pub(super) fn short_of_zero(&mut self, found: &Known) -> Vec<(usize, f64)> {
         let stay = self.crossed_in_vain(&found.truths);
         if stay.is_empty() {
@@ -30,15 +28,7 @@ impl Instant<'_, '_> {
         let at = (self.t, self.y.as_slice(), self.yp.as_slice());
         let rates = root_rates(self.state, self.consistent, at, &stay);
         let known = 0.5e-12 * (1.0 + self.t.abs());
-        let (before, ref in_vain) = self.state.in_vain;
-        let within = |relation: usize| {
-            let again = self.t - before <= moment(self.t) && in_vain.contains(&relation);
-            let band = match again {
-                true => found.roots[relation].abs(),
-                false => known * rates[relation].mean.abs(),
-            };
-            (relation, band)
-        };
+        let within = |relation: usize| (relation, known * rates[relation].mean.abs());
         stay.into_iter().map(within).collect()
     }
 
