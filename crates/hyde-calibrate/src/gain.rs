@@ -31,6 +31,8 @@ pub struct Observer {
     pub deviations: Vec<f64>,
     /// Standard deviation of each channel's noise and rounding, SI.
     pub noise: Vec<f64>,
+    /// The step of each channel's quantiser, SI; 0 without one.
+    pub(crate) rounding: Vec<f64>,
     /// Standard deviation of each predicted state, SI.
     pub(crate) spread: Vec<f64>,
     /// The names of the states.
@@ -59,12 +61,15 @@ impl Observer {
         let noise: Vec<f64> = (0..c.nrows())
             .map(|channel| deviation(program, channel, &p))
             .collect();
+        let rounding = (0..c.nrows()).map(|channel| rounding(program, channel, &p));
+        let rounding = rounding.collect();
         let balances = balances(configuration);
         // Rates by the model alone first, then by the model held to the records.
         let mut observer = Self {
             gain: DMatrix::zeros(c.ncols(), c.nrows()),
             deviations: vec![1.0; c.nrows()],
             noise: noise.clone(),
+            rounding,
             spread: vec![f64::NAN; c.ncols()],
             states: state_names(&plant),
         };
@@ -167,17 +172,20 @@ fn state_names(plant: &Plant<'_>) -> Vec<String> {
 
 /// Standard deviation of a channel: declared noise and rounding; without either a ten-thousandth of a unit.
 fn deviation(program: &Program, channel: usize, p: &[f64]) -> f64 {
-    let constant = |which| program.kernels.constant(which, p).unwrap_or(0.0);
-    let (noise, width) = (
-        constant(Constant::Noise(channel)),
-        constant(Constant::Rounding(channel)),
-    );
+    let noise = program.kernels.constant(Constant::Noise(channel), p);
+    let (noise, width) = (noise.unwrap_or(0.0), rounding(program, channel, p));
     let variance = noise * noise + width * width / 12.0;
     if variance > 0.0 {
         variance.sqrt()
     } else {
         1e-4
     }
+}
+
+/// The step of a channel's quantiser; 0 without one.
+fn rounding(program: &Program, channel: usize, p: &[f64]) -> f64 {
+    let width = program.kernels.constant(Constant::Rounding(channel), p);
+    width.unwrap_or(0.0)
 }
 
 /// Derivatives of the measured channels by the states, at a point of a configuration.

@@ -1,5 +1,6 @@
 //! An observer over a record: predict a row, compare, correct, on.
 
+use crate::fit::mean_square;
 use crate::gain::Observer;
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
@@ -11,6 +12,8 @@ use std::ops::ControlFlow;
 pub struct Innovations {
     /// One list a channel, rows from the first that counts.
     pub channels: Vec<Vec<f64>>,
+    /// The step of each channel's quantiser, in the same units; 0 without one.
+    pub(crate) counts: Vec<f64>,
 }
 
 impl Innovations {
@@ -27,6 +30,7 @@ impl Innovations {
         let whole = Self::within(program, recording, observer, set, f64::INFINITY)?;
         Ok(whole.unwrap_or(Self {
             channels: Vec::new(),
+            counts: Vec::new(),
         }))
     }
 
@@ -43,7 +47,7 @@ impl Innovations {
         limit: f64,
     ) -> Result<Option<Self>, Unsupported> {
         let (mut plant, observer) = observer.on(program, recording, set)?;
-        let mut found = Self::empty(recording);
+        let mut found = Self::empty(recording, &observer);
         let mut sum = 0.0;
         let end = run_while(&mut plant, &observer, |_, row, when, error| {
             if matches!(when, When::Before) && row >= recording.first_row {
@@ -59,10 +63,12 @@ impl Innovations {
     }
 
     /// None yet, with room for all rows of a record.
-    pub(crate) fn empty(recording: &Recording) -> Self {
+    pub(crate) fn empty(recording: &Recording, observer: &Observer) -> Self {
         let rows = recording.rows() - recording.first_row;
+        let counts = observer.rounding.iter().zip(&observer.deviations);
         Self {
             channels: vec![Vec::with_capacity(rows); recording.channels.len()],
+            counts: counts.map(|(step, deviation)| step / deviation).collect(),
         }
     }
 
@@ -76,6 +82,26 @@ impl Innovations {
             list.push(value);
         }
         sum
+    }
+
+    /// Each channel, with its mean square as it would be if what is measured lay evenly between the counts of a quantiser.
+    ///
+    /// It does not where an axis stands, or moves by a whole number of counts a row: rounding is the same there over and
+    /// over, of a model that is right too. How much the prediction is rounded by is the innovation but for whole counts, and
+    /// its mean square over `q^2/12` is what has to be taken out.
+    pub(crate) fn sizes(&self) -> impl Iterator<Item = (&[f64], f64)> {
+        let each = self.channels.iter().zip(&self.counts);
+        each.map(|(list, &count)| {
+            let uneven = match count > 0.0 {
+                true => {
+                    let rounded = list.iter().map(|r| r - count * (r / count).round());
+                    let rounded: Vec<f64> = rounded.collect();
+                    mean_square(&rounded) - count * count / 12.0
+                }
+                false => 0.0,
+            };
+            (list.as_slice(), mean_square(list) - uneven)
+        })
     }
 
     /// Their mean square, over all channels.
@@ -165,4 +191,51 @@ pub(crate) fn run_while(
         }
     }
     ControlFlow::Continue(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What a quantiser of a step of 1 makes of positions, seen from predictions that are off by an error, and whitened.
+    fn rounded(positions: impl Iterator<Item = f64>, off: impl Fn(usize) -> f64) -> Innovations {
+        let deviation = (1.0 / 12.0_f64).sqrt();
+        let error = |(row, place): (usize, f64)| place.floor() + 0.5 - (place + off(row));
+        let innovations = positions.enumerate().map(error);
+        Innovations {
+            channels: vec![innovations.map(|error| error / deviation).collect()],
+            counts: vec![1.0 / deviation],
+        }
+    }
+
+    fn size(innovations: &Innovations) -> f64 {
+        innovations.sizes().next().unwrap().1
+    }
+
+    #[test]
+    fn where_rounding_is_uneven_a_model_that_is_right_is_of_size_one() {
+        let rows = 0..20_000_u32;
+        let evenly = rows.clone().map(|row| 0.381_966 * f64::from(row));
+        assert!((size(&rounded(evenly, |_| 0.0)) - 1.0).abs() < 1e-3);
+        for place in [0.02, 0.3, 0.5, 0.98] {
+            // By 24 counts a row, and trembling by a fiftieth of one.
+            let trembling = |row: u32| 0.02 * (2.4 * f64::from(row)).sin();
+            let whole = rows
+                .clone()
+                .map(|row| 24.0 * f64::from(row) + place + trembling(row));
+            let own = rounded(whole, |_| 0.0);
+            assert!((size(&own) - 1.0).abs() < 1e-12);
+            assert!((own.chi() - 1.0).abs() > 0.4, "{}", own.chi());
+        }
+    }
+
+    #[test]
+    fn an_error_of_the_prediction_adds_its_mean_square() {
+        let evenly = (0..20_000_u32).map(|row| 0.381_966 * f64::from(row));
+        let off = |row: usize| 0.2 * (1.7 * row as f64).sin();
+        let expected = 1.0 + 0.02 * 12.0;
+        let found = rounded(evenly, off);
+        assert!((size(&found) - expected).abs() < 5e-3, "{}", size(&found));
+        assert!((found.chi() - expected).abs() < 5e-3);
+    }
 }

@@ -70,7 +70,7 @@ impl<'p> Track<'p> {
         let (mut plant, observer) = observer.on(program, recording, set)?;
         let width = 2 * (2 * plant.y.len() + plant.u.len());
         let mut values = Vec::with_capacity(width * recording.rows());
-        let mut innovations = Innovations::empty(recording);
+        let mut innovations = Innovations::empty(recording, &observer);
         let mut rows = Vec::with_capacity(recording.rows());
         let (mut legs, mut memories) = (Vec::new(), Vec::new());
         plant.legs = Some(Vec::new());

@@ -110,6 +110,7 @@ mod tests {
         let (first, second) = (numbers[3..].to_vec(), numbers[..2000].to_vec());
         let innovations = Innovations {
             channels: vec![first, second],
+            counts: vec![0.0; 2],
         };
         let at = |lag| crossed(&[&innovations], 0, 1, lag);
         assert!(at(3) > 0.99, "{}", at(3));

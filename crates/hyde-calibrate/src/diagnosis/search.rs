@@ -16,8 +16,9 @@ use super::stage::{Ground, Stage};
 use super::trial::Trial;
 use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
-use crate::fit::{correlation, covariance, inflation, mean_square};
+use crate::fit::{correlation, covariance, inflation};
 use crate::frozen::{Frozen, frozen};
+use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::solution::Solution;
 use crate::varied::Varied;
@@ -300,20 +301,20 @@ fn share(before: &Solution, after: &Solution) -> f64 {
 
 /// What is more than noise, of the sum of squares.
 pub(super) fn excess(solution: &Solution) -> f64 {
-    let channels = solution.innovations.iter().flat_map(|i| &i.channels);
-    let more = channels.map(|list| (mean_square(list) - 1.0).max(0.0) * list.len() as f64);
+    let channels = solution.innovations.iter().flat_map(Innovations::sizes);
+    let more = channels.map(|(list, size)| (size - 1.0).max(0.0) * list.len() as f64);
     more.sum()
 }
 
 /// Whether innovations are what the noise makes of them: no channel of a record is materially larger, or more like itself
 /// from row to row, beyond what chance makes of so many rows.
 pub(super) fn explained(solution: &Solution) -> bool {
-    let channels = || solution.innovations.iter().flat_map(|i| &i.channels);
+    let channels = || solution.innovations.iter().flat_map(Innovations::sizes);
     let chance = normal_quantile(CHANCE / channels().count().max(1) as f64);
-    channels().all(|list| {
+    channels().all(|(list, size)| {
         let rows = list.len().max(1) as f64;
-        let (size, likeness) = EXPLAINED;
-        mean_square(list) <= size + chance * (2.0 / rows).sqrt()
+        let (largest, likeness) = EXPLAINED;
+        size <= largest + chance * (2.0 / rows).sqrt()
             && correlation(list) <= likeness + chance / rows.sqrt()
     })
 }
