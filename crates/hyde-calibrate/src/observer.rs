@@ -8,7 +8,7 @@ use hyde_program::{Function, Program, SomeRows};
 use std::ops::ControlFlow;
 
 /// Whitened innovations of a record: each channel's, row by row, in standard deviations.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Innovations {
     /// One list a channel, rows from the first that counts.
     pub channels: Vec<Vec<f64>>,
@@ -28,10 +28,7 @@ impl Innovations {
         set: &[(usize, f64)],
     ) -> Result<Self, Unsupported> {
         let whole = Self::within(program, recording, observer, set, f64::INFINITY)?;
-        Ok(whole.unwrap_or(Self {
-            channels: Vec::new(),
-            counts: Vec::new(),
-        }))
+        Ok(whole.unwrap_or_default())
     }
 
     /// The same as long as the sum of their squares stays within a limit, else `None`: what is worse than that is not run

@@ -151,13 +151,9 @@ impl Consistent {
         }
         let mut right = vec![0.0; n];
         state.directional(t, y, yp, &dy, &dyp, &mut right);
-        // The explicit time derivative, by a difference: inputs and the time have no other.
-        let step = state.inputs.difference_s(t);
-        let (mut later, mut now) = (vec![0.0; n], vec![0.0; n]);
-        state.evaluate(Function::Residual, t + step, y, yp, &mut later);
-        state.evaluate(Function::Residual, t, y, yp, &mut now);
-        for index in 0..n {
-            right[index] = -(right[index] + (later[index] - now[index]) / step);
+        let by_time = state.by_time(Function::Residual, t, y, yp);
+        for (right, by_time) in right.iter_mut().zip(by_time) {
+            *right = -(*right + by_time);
         }
         state.consistent_matrix(t, y, yp, &mut self.matrix);
         let solver = self.solver.as_mut()?;

@@ -164,13 +164,9 @@ pub(crate) fn rates_at(
             Wrt::Delayed(_) | Wrt::Time | Wrt::Parameter(_) | Wrt::Memory(_) => 0.0,
         };
     }
-    // The time itself, and record columns and delayed values that move with it.
-    let step = state.inputs.difference_s(t);
-    let (mut later, mut now) = (vec![0.0; rates.len()], vec![0.0; rates.len()]);
-    state.evaluate(function, t + step, y, yp, &mut later);
-    state.evaluate(function, t, y, yp, &mut now);
-    for (rate, (later, now)) in rates.iter_mut().zip(later.iter().zip(&now)) {
-        *rate += (later - now) / step;
+    let by_time = state.by_time(function, t, y, yp);
+    for (rate, by_time) in rates.iter_mut().zip(by_time) {
+        *rate += by_time;
     }
     Some((rates, dy, dyp))
 }

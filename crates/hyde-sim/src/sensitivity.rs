@@ -140,7 +140,7 @@ impl Sensitivities {
             }
         }
         if self.moves.iter().any(|moves| *moves != 0.0) {
-            let rates = by_time(function, state, (t, y, yp));
+            let rates = state.by_time(function, t, y, yp);
             for (out, moves) in out.iter_mut().zip(&self.moves) {
                 out.iter_mut()
                     .zip(&rates)
@@ -205,21 +205,6 @@ impl Sensitivities {
             origin: Some(relation.origin.clone()),
         });
     }
-}
-
-/// The derivative of a function by the time alone, by a difference: record columns move with it and have no other.
-fn by_time(
-    function: Function,
-    state: &mut State<'_>,
-    (t, y, yp): (f64, &[f64], &[f64]),
-) -> Vec<f64> {
-    let rows = state.program.rows(function);
-    let step = state.inputs.difference_s(t);
-    let (mut later, mut now) = (vec![0.0; rows], vec![0.0; rows]);
-    state.evaluate(function, t + step, y, yp, &mut later);
-    state.evaluate(function, t, y, yp, &mut now);
-    let pairs = later.into_iter().zip(now);
-    pairs.map(|(later, now)| (later - now) / step).collect()
 }
 
 /// Refuses what no gradient goes through.

@@ -78,6 +78,24 @@ impl<'a> State<'a> {
         }
     }
 
+    /// The derivative of a function by the time alone, by a difference: the time, and record columns and delayed values that
+    /// move with it, have no other.
+    pub(crate) fn by_time(
+        &mut self,
+        function: Function,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> Vec<f64> {
+        let rows = self.program.rows(function);
+        let step = self.inputs.difference_s(t);
+        let (mut later, mut now) = (vec![0.0; rows], vec![0.0; rows]);
+        self.evaluate(function, t + step, y, yp, &mut later);
+        self.evaluate(function, t, y, yp, &mut now);
+        let pairs = later.into_iter().zip(now);
+        pairs.map(|(later, now)| (later - now) / step).collect()
+    }
+
     /// The values of a function with the memory as it is.
     pub(crate) fn evaluate_side(
         &mut self,

@@ -309,9 +309,10 @@ pub(super) fn excess(solution: &Solution) -> f64 {
 /// Whether innovations are what the noise makes of them: no channel of a record is materially larger, or more like itself
 /// from row to row, beyond what chance makes of so many rows.
 pub(super) fn explained(solution: &Solution) -> bool {
-    let channels = || solution.innovations.iter().flat_map(Innovations::sizes);
-    let chance = normal_quantile(CHANCE / channels().count().max(1) as f64);
-    channels().all(|(list, size)| {
+    let records = || solution.innovations.iter();
+    let channels: usize = records().map(|own| own.channels.len()).sum();
+    let chance = normal_quantile(CHANCE / channels.max(1) as f64);
+    records().flat_map(Innovations::sizes).all(|(list, size)| {
         let rows = list.len().max(1) as f64;
         let (largest, likeness) = EXPLAINED;
         size <= largest + chance * (2.0 / rows).sqrt()
