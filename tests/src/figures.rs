@@ -3,6 +3,7 @@
 mod backends;
 mod batches;
 mod bench;
+mod cases;
 mod clif_growth;
 mod compile;
 mod diagnosis;
@@ -60,6 +61,7 @@ pub const FIGURES: &[Figure] = &[
     compile::Y_AXIS,
     compile::GROWTH,
     fixtures::FIGURE,
+    cases::FIGURE,
     event_suite::FIGURE,
     events::P2,
     events::P3,

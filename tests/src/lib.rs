@@ -2,6 +2,7 @@
 
 pub mod batches;
 pub mod bench_axis;
+pub mod cases;
 mod closed_form;
 mod cluster;
 mod data;

@@ -21,11 +21,12 @@ pub fn engineering(si: f64, dimension: Dimension) -> String {
             return format!("{} {prefix}{unit}", significant(value.copysign(si), DIGITS));
         }
     }
-    let number = significant(si, DIGITS);
     if unit == "1" {
-        number
+        // A whole number without a unit is a count: it is not rounded.
+        let whole = si.fract() == 0.0 && si.abs() < MAX_EXACT;
+        significant(si, if whole { EXACT } else { DIGITS })
     } else {
-        format!("{number} {unit}")
+        format!("{} {unit}", significant(si, DIGITS))
     }
 }
 
@@ -74,6 +75,10 @@ pub fn significant(value: f64, digits: usize) -> String {
 }
 
 const DIGITS: usize = 4;
+
+/// Below this every whole number is a double, of no more than so many digits.
+const MAX_EXACT: f64 = 9.007_199_254_740_992e15;
+const EXACT: usize = 16;
 
 /// The nearest double with so many significant decimal digits.
 fn round_to(value: f64, digits: usize) -> f64 {
@@ -129,6 +134,8 @@ mod tests {
             (0.005, "m/s", "5 mm/s"),
             (104.719_755, "rad/s", "104.7 rad/s"),
             (5000.0, "rad/s", "5000 rad/s"),
+            (31415.0, "1", "31415"),
+            (31_415.25, "1", "31420"),
             (310.0, "kg", "310 kg"),
             (1250.0, "kg", "1250 kg"),
             (8.2e-3, "kg.m2", "0.0082 kg.m2"),

@@ -11,8 +11,11 @@ use std::process::ExitCode;
 )]
 fn main() -> ExitCode {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
-    // Figures of batches, diagnoses and self-tests run this very program as the command.
-    let commands = ["sweep", "diagnose", "fit", "selftest"];
+    // Figures of batches, diagnoses, self-tests and cases run this very program as the command.
+    let commands = [
+        "bode", "budget", "check", "diagnose", "effects", "emit", "fit", "modes", "params", "plot",
+        "run", "selftest", "sweep", "test", "trend",
+    ];
     if names
         .first()
         .is_some_and(|name| commands.contains(&name.as_str()))
