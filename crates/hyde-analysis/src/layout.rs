@@ -4,6 +4,7 @@
 //! of relations, the modes of automata, then discrete, clocked and held variables.
 
 use crate::explicit::{Order, access};
+use crate::held_speed::holds_speed;
 use crate::matching::{Matched, Node, origin};
 use crate::reduce;
 use crate::system::{Cell, System};
@@ -231,6 +232,11 @@ fn memory(system: &System, dae: &mut Dae) {
                 .modes
                 .iter()
                 .map(|mode| mode.name.clone())
+                .collect(),
+            holds_speed: automaton
+                .modes
+                .iter()
+                .map(|mode| holds_speed(&dae.exprs, &dae.variables, mode))
                 .collect(),
             initial: automaton.initial,
             place: dae.n_memory,

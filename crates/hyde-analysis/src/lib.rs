@@ -26,6 +26,7 @@ mod derivatives;
 mod events;
 mod explicit;
 pub mod graph;
+mod held_speed;
 mod hoist;
 mod initial;
 mod layout;

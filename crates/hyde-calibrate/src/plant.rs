@@ -12,6 +12,7 @@ use crate::past::Past;
 use crate::recording::Recording;
 use crate::stepping::{Outcome, Room, gather};
 use hyde_program::{Function, Point, Program, Workspace};
+use hyde_sim::{PointModes, PointTime, Setup};
 
 /// Steps of a row's time: the longest is its half, the shortest a 64th of that.
 const LONGEST: usize = 1;
@@ -116,8 +117,14 @@ impl<'a> Plant<'a> {
         modes: &[(usize, usize)],
     ) -> Result<Self, Unsupported> {
         let past = Past::new(program, recording, &p)?;
-        let start = hyde_sim::operating_point(program, &recording.tables, &p, modes)
-            .map_err(|failure| Unsupported::Start(format!("{:?}", failure.kind)))?;
+        let setup = Setup::new(p.clone(), &recording.tables, 1.0);
+        let start = hyde_sim::operating_point(
+            program,
+            &setup,
+            PointTime::Start,
+            PointModes::Sliding(modes),
+        )
+        .map_err(|failure| Unsupported::Start(format!("{:?}", failure.kind)))?;
         let places = Places::new(program, &start.z);
         let n_states = places.states.len();
         let equation =

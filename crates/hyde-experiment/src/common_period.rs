@@ -176,8 +176,13 @@ impl<'a> CommonPeriod<'a> {
         Some(total)
     }
 
+    /// The common period in s.
+    pub(crate) fn period_s(&self) -> f64 {
+        self.period
+    }
+
     /// What becomes of (xi, m, h) over the common period without an input.
-    fn transition(&self) -> DMatrix<f64> {
+    pub(crate) fn transition(&self) -> DMatrix<f64> {
         let (nx, nm) = (self.linear.a.nrows(), self.sampled.select.ncols());
         let size = nx + nm + self.sampled.select.nrows();
         let whole = DMatrix::identity(size, size);

@@ -20,6 +20,7 @@ mod mode_fit;
 mod mode_shape;
 mod modes;
 mod pencil;
+mod poles;
 mod record;
 mod reduce;
 mod rows;
@@ -34,7 +35,7 @@ pub use compare::{Channel, CompareError, prepared};
 pub use flows::{FlowLine, flows};
 pub use ledger::{EnergyLedger, LedgerEntry};
 pub use limit::{Answer, LIMIT_LEFT, LIMIT_PART, limit};
-pub use linearize::{Linear, LinearizeError, linearize};
+pub use linearize::{Linear, LinearizeError, linearize, linearize_at};
 pub use measured_response::{MeasuredCurve, curve_of_run, measured_curve};
 pub use mode_fit::{
     Combination, FoundParameter, MeasuredMode, ModeFit, ModeFitError, ModeFitRequest, PairedMode,
@@ -42,6 +43,7 @@ pub use mode_fit::{
 };
 pub use mode_shape::{ModeShape, mode_shape};
 pub use modes::{NaturalMode, modes};
+pub use poles::{Pole, Poles, poles};
 pub use record::read_record;
 pub use run::{MeasureValue, Options, Run, RunError, parameters, places, run};
 pub use sampled::{Clocked, Sampled};

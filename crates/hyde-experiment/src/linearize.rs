@@ -1,4 +1,4 @@
-//! The system linearised about its start, in chosen modes: `x' = A x + B_u u + B_h h`, outputs and samples beside it.
+//! The system linearised about an operating point, in chosen modes: `x' = A x + B_u u + B_h h`, outputs and samples beside it.
 //!
 //! With delays there are delayed values d beside the inputs, and what they are the delay of beside the outputs.
 //!
@@ -7,10 +7,11 @@
 //! the memory before it and on the samples, with quantisers as the identity (S3): [`Sampled`].
 
 use crate::common_period::common_period;
+use crate::run::setup_with;
 use crate::sampled::{Sampled, sampled};
 use hyde_program::{Function, Point, Program, Workspace, Wrt};
 use hyde_signal::Table;
-use hyde_sim::{Failure, OperatingPoint};
+use hyde_sim::{Failure, OperatingPoint, PointModes, PointTime};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
 
@@ -80,8 +81,8 @@ pub enum LinearizeError {
     Failed(Box<Failure>),
 }
 
-/// Linearises a program that was compiled with free inputs, in the modes given (automaton and mode); of automata not
-/// given, one in a mode that fixes a state leaves it for the mode of its first exit: the linearised drive slides.
+/// Linearises a program that was compiled with free inputs about its start, in the modes given (automaton and mode); of
+/// automata not given, one that holds a speed leaves its mode for that of the first exit that frees it: friction slips.
 ///
 /// # Errors
 /// See [`LinearizeError`].
@@ -90,6 +91,28 @@ pub fn linearize(
     records: &BTreeMap<String, Table>,
     parameters: &[f64],
     inputs: &[String],
+    modes: &[(usize, usize)],
+) -> Result<Linear, LinearizeError> {
+    linearize_at(
+        program,
+        records,
+        parameters,
+        inputs,
+        PointTime::Start,
+        modes,
+    )
+}
+
+/// The same about where the experiment's run is at a time.
+///
+/// # Errors
+/// See [`LinearizeError`].
+pub fn linearize_at(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    parameters: &[f64],
+    inputs: &[String],
+    time: PointTime,
     modes: &[(usize, usize)],
 ) -> Result<Linear, LinearizeError> {
     let n = program.n_unknowns;
@@ -103,19 +126,11 @@ pub fn linearize(
             .ok_or_else(|| LinearizeError::NoInput(name.clone()))?;
         places.push(parameter.place);
     }
-    let point = hyde_sim::operating_point(program, records, parameters, modes)
+    let setup = setup_with(program, records, parameters.to_vec());
+    let point = hyde_sim::operating_point(program, &setup, time, PointModes::Sliding(modes))
         .map_err(LinearizeError::Failed)?;
     let mut work = Workspace::new(program.n_work);
-    let mut u = vec![0.0; 2 * program.columns.len()];
-    u.extend(&point.delayed);
-    let at = Point {
-        t: 0.0,
-        y: &point.y,
-        yp: &point.yp,
-        z: &point.z,
-        u: &u,
-        p: parameters,
-    };
+    let at = point.at(parameters);
     let differential = program.differential(&point.z);
     let states: Vec<usize> = (0..n).filter(|&i| differential[i]).collect();
     let algebraic: Vec<usize> = (0..n).filter(|&i| !differential[i]).collect();

@@ -1,12 +1,11 @@
 //! The shape of a mode, and the parts of a drive in which its energy is.
 //!
-//! The shape is the eigenvector of the linearised system, by inverse iteration (Golub and Van Loan, *Matrix
-//! Computations*, 7.6.1). The energies are those that components declare as `stored`: over a period each swings between
+//! The shape is the eigenvector of the linearised system. The energies are those that components declare as `stored`: over a period each swings between
 //! its values at the shape's real and its imaginary part, so their mean counts. Energies are taken to the second order
 //! about the operating point.
 
 use crate::linearize::Linear;
-use crate::modes::{NaturalMode, characteristic};
+use crate::poles::{Pole, Poles};
 use hyde_program::{AccountKind, Function, Point, Program, Workspace};
 use nalgebra::{Complex, DVector};
 
@@ -22,15 +21,15 @@ pub struct ModeShape {
     pub shares: Vec<(String, String, f64)>,
 }
 
-/// The shape of a mode; `None` if the iteration fails.
+/// The shape of a pole; `None` if it is one of clocked parts alone, or the iteration for its vector fails.
 #[must_use]
 pub fn mode_shape(
     program: &Program,
     parameters: &[f64],
     linear: &Linear,
-    mode: &NaturalMode,
+    (poles, pole): (&Poles, &Pole),
 ) -> Option<ModeShape> {
-    let shape = eigenvector(linear, mode.eigenvalue)?;
+    let shape = poles.states(linear, pole)?;
     let mut energies = Energies::new(program, parameters, linear);
     let parts = [shape.map(|x| x.re), shape.map(|x| x.im)];
     // The scale is found from the first look at a unit vector.
@@ -61,24 +60,6 @@ pub fn mode_shape(
         states: shape.iter().copied().collect(),
         shares: shares.collect(),
     })
-}
-
-/// Two steps of inverse iteration from a vector that no shape is perpendicular to.
-fn eigenvector(linear: &Linear, eigenvalue: Complex<f64>) -> Option<DVector<Complex<f64>>> {
-    let n = linear.a.nrows();
-    // Not quite the eigenvalue, or the matrix would be singular.
-    let shift = eigenvalue * (1.0 + 1e-9);
-    let factors = characteristic(linear, shift)?.lu();
-    let mut vector = DVector::from_fn(n, |i, _| Complex::new(1.0, 0.1 * (1.0 + i as f64).sqrt()));
-    for _ in 0..3 {
-        vector = factors.solve(&vector)?;
-        let norm = vector.norm();
-        if !norm.is_finite() || norm <= 0.0 {
-            return None;
-        }
-        vector.unscale_mut(norm);
-    }
-    Some(vector)
 }
 
 /// Stored energies about the operating point.
@@ -122,15 +103,10 @@ impl<'a> Energies<'a> {
             yp[state] += sign * rate;
         }
         // Energies are of states: delayed values stay as they are.
-        let mut u = vec![0.0; 2 * self.program.columns.len()];
-        u.extend(&point.delayed);
         let at = Point {
-            t: 0.0,
             y: &y,
             yp: &yp,
-            z: &point.z,
-            u: &u,
-            p: self.parameters,
+            ..point.at(self.parameters)
         };
         let kernels = &self.program.kernels;
         kernels.evaluate(Function::Outputs, at, &mut self.work, &mut self.outputs);

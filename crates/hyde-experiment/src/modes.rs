@@ -5,6 +5,7 @@
 //! Vermiglio, SIAM J. Sci. Comput. 27 (2005) 482); Newton's method on the equation itself makes them exact.
 
 use crate::linearize::{Delayed, Linear};
+use crate::poles::{Pole, poles};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// Chebyshev points of the shortest past, that of now apart; longer ones have more in proportion, up to the other number.
@@ -26,52 +27,36 @@ pub struct NaturalMode {
     pub eigenvalue: Complex<f64>,
 }
 
-/// The modes that oscillate, by ascending frequency. With delays those that the points of the past lead to: without a
-/// gap up to some times the frequency 1/T of the shortest, beyond that some.
+/// The modes that oscillate, by ascending frequency: with clocks those of the closed loop. With delays those that the points
+/// of the past lead to: without a gap up to some times the frequency 1/T of the shortest, beyond that some.
 #[must_use]
 pub fn modes(linear: &Linear) -> Vec<NaturalMode> {
-    let roots = match &linear.delayed {
-        None => eigenvalues(&linear.a),
+    let poles = poles(linear).oscillating();
+    poles.iter().map(Pole::mode).collect()
+}
+
+/// The eigenvalues of a linearised system, given its balanced matrix, or with delays the roots in the upper half plane.
+pub(crate) fn continuous_roots(linear: &Linear, balanced: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    match &linear.delayed {
+        None => balanced.complex_eigenvalues().iter().copied().collect(),
         Some(delayed) => roots_with_delays(linear, delayed),
-    };
-    // A body that moves freely has two eigenvalues 0; rounding parts them by the root of what it leaves.
-    let zero = 1e-8 * balanced(&linear.a).norm();
-    let mut found: Vec<NaturalMode> = roots
-        .iter()
-        .filter(|eigenvalue| {
-            eigenvalue.im > 1e-6 * (1.0 + eigenvalue.re.abs()) && eigenvalue.norm() > zero
-        })
-        .map(|eigenvalue| NaturalMode {
-            frequency_hz: eigenvalue.norm() / std::f64::consts::TAU,
-            damping: -eigenvalue.re / eigenvalue.norm(),
-            eigenvalue: *eigenvalue,
-        })
-        .collect();
-    found.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
-    found
+    }
 }
 
-/// Eigenvalues of a matrix with rows and columns scaled by powers of two until their norms agree: angles and metres, seconds and
-/// microseconds stand side by side (Parlett and Reinsch, Numer. Math. 13 (1969) 293).
-fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
-    balanced(matrix)
-        .complex_eigenvalues()
-        .iter()
-        .copied()
-        .collect()
-}
-
-fn balanced(matrix: &DMatrix<f64>) -> DMatrix<f64> {
+/// A matrix with rows and columns scaled by powers of two until their norms agree, and the scale: angles and metres, seconds
+/// and microseconds stand side by side (Parlett and Reinsch, Numer. Math. 13 (1969) 293).
+pub(crate) fn balanced(matrix: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
     let mut balanced = matrix.clone();
-    nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced);
-    balanced
+    let scale = nalgebra::linalg::balancing::balance_parlett_reinsch(&mut balanced);
+    (balanced, scale)
 }
 
 /// The roots in the upper half plane that Newton's method reaches from the eigenvalues of the matrix with a past.
 fn roots_with_delays(linear: &Linear, delayed: &Delayed) -> Vec<Complex<f64>> {
     let mut roots: Vec<Complex<f64>> = Vec::new();
-    let candidates = eigenvalues(&with_past(linear, delayed));
-    for candidate in candidates.into_iter().filter(|root| root.im > 0.0) {
+    let (matrix, _) = balanced(&with_past(linear, delayed));
+    let candidates = matrix.complex_eigenvalues();
+    for &candidate in candidates.iter().filter(|root| root.im >= 0.0) {
         let Some(root) = polished(linear, candidate) else {
             continue;
         };

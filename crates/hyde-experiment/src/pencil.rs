@@ -6,6 +6,7 @@
 //! along v, taken as a central difference, which is exact for equations linear in the motion. The operating point is held.
 
 use crate::linearize::{Dense, Linear};
+use crate::poles::null_vector;
 use hyde_program::{Function, Point, Program, Workspace, Wrt};
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -39,16 +40,7 @@ pub(crate) struct Pencil<'a> {
 impl<'a> Pencil<'a> {
     pub(crate) fn new(program: &'a Program, parameters: &'a [f64], linear: &'a Linear) -> Self {
         let mut work = Workspace::new(program.n_work);
-        let point = &linear.point;
-        let u = inputs(program, &point.delayed);
-        let at = Point {
-            t: 0.0,
-            y: &point.y,
-            yp: &point.yp,
-            z: &point.z,
-            u: &u,
-            p: parameters,
-        };
+        let at = linear.point.at(parameters);
         Self {
             residual: Dense::of(program, Function::Residual, at, &mut work, &[], &[]),
             now: Dense::of(program, Function::Delayed, at, &mut work, &[], &[]),
@@ -200,14 +192,14 @@ impl<'a> Pencil<'a> {
         };
         let n = point.y.len();
         let (y, yp) = (add(&point.y, motion), add(&point.yp, rates));
-        let u = inputs(program, &add(&point.delayed, &motion[n..]));
+        let columns = 2 * program.columns.len();
+        let mut u = point.u[..columns].to_vec();
+        u.extend(add(&point.delayed, &motion[n..]));
         let at = Point {
-            t: 0.0,
             y: &y,
             yp: &yp,
-            z: &point.z,
             u: &u,
-            p: self.parameters,
+            ..point.at(self.parameters)
         };
         let mut work = Workspace::new(program.n_work);
         let mut found = DMatrix::zeros(program.rows(function), places.len());
@@ -221,29 +213,6 @@ impl<'a> Pencil<'a> {
         }
         found
     }
-}
-
-/// Record columns at rest, and delayed values behind them.
-fn inputs(program: &Program, delayed: &[f64]) -> Vec<f64> {
-    let mut u = vec![0.0; 2 * program.columns.len()];
-    u.extend(delayed);
-    u
-}
-
-/// Three steps of inverse iteration from a vector that no shape is perpendicular to.
-fn null_vector(matrix: Matrix) -> Option<Vector> {
-    let n = matrix.nrows();
-    let factors = matrix.lu();
-    let mut vector = Vector::from_fn(n, |i, _| Complex::new(1.0, 0.1 * (1.0 + i as f64).sqrt()));
-    for _ in 0..3 {
-        vector = factors.solve(&vector)?;
-        let norm = vector.norm();
-        if !norm.is_finite() || norm <= 0.0 {
-            return None;
-        }
-        vector.unscale_mut(norm);
-    }
-    Some(vector)
 }
 
 fn complex(matrix: &DMatrix<f64>) -> Matrix {

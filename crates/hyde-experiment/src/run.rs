@@ -10,6 +10,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
+/// The absolute tolerance as a part of the relative one, where it is not said.
+const ATOL: f64 = 1e-2;
+
 /// What the caller sets beside the experiment.
 #[derive(Clone, Debug, Default)]
 pub struct Options {
@@ -125,38 +128,50 @@ pub(crate) fn setup<'r>(
             .unwrap_or(f64::NAN),
         (None, None) => return Err(RunError::NoStop),
     };
-    let rtol = options
-        .rtol
-        .or_else(|| constant(Constant::Rtol))
-        .unwrap_or(1e-6);
-    let atol = options
-        .atol
-        .or_else(|| constant(Constant::Atol))
-        .unwrap_or(1e-2 * rtol);
     let every = options
         .every_s
         .or_else(|| constant(Constant::Every))
         .unwrap_or(stop_s / 1000.0);
-    let max_step = constant(Constant::MaxStep).unwrap_or(f64::INFINITY);
+    let atol = constant(Constant::Atol);
+    let mut setup = setup_with(program, records, parameters);
+    setup.stop_s = stop_s;
+    setup.interrupted = Arc::clone(&options.interrupted);
+    if let Some(rtol) = options.rtol {
+        (setup.rtol, setup.atol) = (rtol, atol.unwrap_or(ATOL * rtol));
+    }
+    if let Some(atol) = options.atol {
+        setup.atol = atol;
+    }
     for (what, value) in [
         ("stop", stop_s),
-        ("rtol", rtol),
-        ("atol", atol),
+        ("rtol", setup.rtol),
+        ("atol", setup.atol),
         ("the time between rows", every),
-        ("max_step", max_step),
+        ("max_step", setup.max_step_s),
     ] {
         if value.is_nan() || value <= 0.0 {
             return Err(RunError::NotPositive(what, value));
         }
     }
-    let mut setup = Setup::new(parameters, records, stop_s);
-    setup.interrupted = Arc::clone(&options.interrupted);
-    setup.method = program.experiment.method;
-    setup.rtol = rtol;
-    setup.atol = atol;
-    setup.max_step_s = max_step;
     setup.rows_s = rows(program, records, stop_s, every);
     Ok(setup)
+}
+
+/// A run with complete parameters, with the method and the tolerances that its experiment says.
+pub(crate) fn setup_with<'r>(
+    program: &Program,
+    records: &'r BTreeMap<String, Table>,
+    parameters: Vec<f64>,
+) -> Setup<'r> {
+    let constant = |which| program.kernels.constant(which, &parameters);
+    let rtol = constant(Constant::Rtol).unwrap_or(1e-6);
+    let atol = constant(Constant::Atol).unwrap_or(ATOL * rtol);
+    let max_step_s = constant(Constant::MaxStep).unwrap_or(f64::INFINITY);
+    let mut setup = Setup::new(parameters, records, 1.0);
+    setup.method = program.experiment.method;
+    (setup.rtol, setup.atol) = (rtol, atol);
+    setup.max_step_s = max_step_s;
+    setup
 }
 
 /// Positions in the parameter vector of the parameters that a run is to be differentiated by.

@@ -50,8 +50,6 @@ impl<'a> Model<'a, '_> {
         };
         for item in &experiment.items {
             match item {
-                // A linearised model is driven through its inputs themselves.
-                ExperimentItem::Stimulus(_) if self.input.free_inputs => {}
                 ExperimentItem::Stimulus(drives) => {
                     drives.iter().for_each(|drive| self.stimulus(drive, root))
                 }

@@ -77,7 +77,7 @@ pub struct Input<'a> {
     pub settings: &'a BTreeMap<String, f64>,
     /// The headers of the experiment's records by their name there.
     pub records: &'a BTreeMap<String, Header>,
-    /// Free inputs become parameters and stimuli are left out: for linearisation.
+    /// Free inputs are parameters, added to the stimulus where there is one: for linearisation.
     pub free_inputs: bool,
     /// Make the energy ledger.
     pub ledger: bool,
@@ -130,8 +130,8 @@ fn flat_model(
     model.replay_equations(false);
     model.connect();
     model.replay_equations(true);
-    model.free_inputs(root);
     model.experiment(root);
+    model.free_inputs(root);
     model.accounts();
     model.finish();
     model.ports();

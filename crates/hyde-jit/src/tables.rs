@@ -251,6 +251,7 @@ fn automata(dae: &Dae) -> Vec<Automaton> {
     list.map(|automaton| Automaton {
         name: automaton.name.clone(),
         modes: automaton.modes.clone(),
+        holds_speed: automaton.holds_speed.clone(),
         place: automaton.place,
         origin: automaton.origin.clone(),
     })

@@ -37,6 +37,8 @@ pub struct Automaton {
     pub name: String,
     /// The names of its modes.
     pub modes: Vec<String>,
+    /// Whether each mode relates speeds alone, as `w = 0` does: what it is between cannot slide.
+    pub holds_speed: Vec<bool>,
     /// Position of the number of its mode in the memory.
     pub place: usize,
     /// Where it is written.

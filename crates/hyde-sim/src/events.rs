@@ -44,6 +44,8 @@ pub(crate) struct Instant<'s, 'a> {
     pub(crate) sensitivities: Option<&'s mut Sensitivities>,
     /// The relations whose crossing this instant was located at.
     pub(crate) crossed: Vec<usize>,
+    /// Relations of equations change, and nothing else happens.
+    pub(crate) modes_are_given: bool,
 }
 
 /// What is known of the relations at an instant.
@@ -97,14 +99,17 @@ impl Instant<'_, '_> {
             switched.extend(&flipped);
             let first_at_start = at_start && seen.is_empty();
             let conditions = self.conditions_with_edges(first_at_start);
-            let mut fired = self.fired(&conditions, first_at_start)?;
+            let mut fired = match self.modes_are_given {
+                true => Vec::new(),
+                false => self.fired(&conditions, first_at_start)?,
+            };
             *self.conditions = conditions;
             // At the start the truths of relations are not known yet: guards wait until they are.
             let settles = first_at_start && !flipped.is_empty() && round < MAX_SETTLING;
             if settles {
                 fired.clear();
             }
-            let slid = self.enter_slides(&mut switched, &mut fired)?;
+            let slid = !self.modes_are_given && self.enter_slides(&mut switched, &mut fired)?;
             flipped.retain(|&relation| is_active(self.state, relation));
             if fired.is_empty() && flipped.is_empty() && !slid {
                 self.set_edges(|_, _| false);

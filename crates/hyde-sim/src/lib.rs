@@ -48,7 +48,7 @@ mod time_spent;
 
 pub use failure::{Failure, FailureKind};
 pub use inputs::InputError;
-pub use operating_point::{OperatingPoint, operating_point};
+pub use operating_point::{OperatingPoint, PointModes, PointTime, TakenMode, operating_point};
 pub use results::{
     Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Results, Statistics,
 };

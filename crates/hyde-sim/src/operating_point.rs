@@ -1,94 +1,99 @@
-//! A point to linearise about: the start of the model in chosen modes, with consistent values.
+//! [`operating_point`]: where a model is linearised: where a run comes to, with the modes that are asked for.
 
-use crate::consistent::Consistent;
 use crate::failure::Failure;
-use crate::initial;
 use crate::setup::Setup;
-use crate::start_modes::initial_pins;
-use crate::state::State;
-use hyde_program::{Program, ReactionKind};
-use hyde_signal::Table;
-use std::collections::BTreeMap;
+use crate::simulation::Simulation;
+use hyde_program::{Point, Program};
 
-/// Values of the solver's vector and the memory at a point.
+/// At which instant of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum PointTime {
+    /// At the start, events and ticks there included.
+    #[default]
+    Start,
+    /// At a time in s, events and ticks there included.
+    At(f64),
+}
+
+/// In which modes a model is taken at a point.
+#[derive(Clone, Copy, Debug)]
+pub enum PointModes<'a> {
+    /// In those of the run.
+    OfRun,
+    /// Automata and modes as given; of the others one that holds a speed is left by its first exit that frees it: friction
+    /// slips.
+    Sliding(&'a [(usize, usize)]),
+}
+
+/// An automaton that is taken in another mode than the run has it in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TakenMode {
+    /// The automaton.
+    pub automaton: usize,
+    /// Its mode in the run.
+    pub of_run: usize,
+    /// The mode it is taken in.
+    pub taken: usize,
+    /// Whether it was asked for.
+    pub asked: bool,
+}
+
+/// Values of everything at a point.
 #[derive(Clone, Debug)]
 pub struct OperatingPoint {
+    /// Time in s.
+    pub t: f64,
     /// The solver's vector.
     pub y: Vec<f64>,
     /// Its derivative.
     pub yp: Vec<f64>,
     /// The memory.
     pub z: Vec<f64>,
+    /// Record columns, two values each, then the delayed values.
+    pub u: Vec<f64>,
     /// The delayed values.
     pub delayed: Vec<f64>,
+    /// Modes that are not those of the run.
+    pub modes: Vec<TakenMode>,
+    /// The conditions of the surfaces that the run slides on there; it is taken on one side of each.
+    pub slides: Vec<String>,
 }
 
-/// The start of a program in the modes given (automaton and mode). Of the other automata, one whose first mode fixes a
-/// state is put into the mode of that mode's first exit.
+impl OperatingPoint {
+    /// The model there.
+    #[must_use]
+    pub fn at<'a>(&'a self, parameters: &'a [f64]) -> Point<'a> {
+        Point {
+            t: self.t,
+            y: &self.y,
+            yp: &self.yp,
+            z: &self.z,
+            u: &self.u,
+            p: parameters,
+        }
+    }
+}
+
+/// Values where a run comes to: relations, modes, discrete and held values are those of the run, and consistent with the
+/// modes they are taken in.
 ///
 /// # Errors
-/// No consistent values exist there.
+/// The run does not come there, or there are no consistent values in modes that are asked for.
 pub fn operating_point(
     program: &Program,
-    records: &BTreeMap<String, Table>,
-    parameters: &[f64],
-    modes: &[(usize, usize)],
+    setup: &Setup<'_>,
+    time: PointTime,
+    modes: PointModes<'_>,
 ) -> Result<OperatingPoint, Box<Failure>> {
-    let setup = Setup::new(parameters.to_vec(), records, 1.0);
-    let mut state = State::new(program, &setup)?;
-    let mut consistent = Consistent::new(&state);
-    let (mut y, mut yp) = initial::start(&mut state, 0.0);
-    state.pinned = initial_pins(&mut state, 0.0, &y, &yp);
-    initial::solve(
-        &mut state,
-        &mut consistent,
-        0.0,
-        &mut y,
-        &mut yp,
-        initial::Round::First,
-    )?;
-    for (number, automaton) in program.automata.iter().enumerate() {
-        let current = crate::guards::current_mode(program, &state.z, number);
-        let chosen = modes
-            .iter()
-            .find(|(automaton, _)| *automaton == number)
-            .map(|(_, mode)| *mode);
-        let pins = program
-            .pins
-            .iter()
-            .any(|pin| pin.automaton == number && pin.mode == current);
-        let first_exit = program
-            .reactions
-            .iter()
-            .find_map(|reaction| match reaction.kind {
-                ReactionKind::Transition {
-                    automaton,
-                    from,
-                    to,
-                    ..
-                } if automaton == number && from == current => Some(to),
-                ReactionKind::Transition { .. }
-                | ReactionKind::When { .. }
-                | ReactionKind::Edge(_)
-                | ReactionKind::Assert(_) => None,
-            });
-        let mode = chosen.or(first_exit.filter(|_| pins)).unwrap_or(current);
-        state.z[automaton.place] = mode as f64;
+    let mut setup = setup.clone();
+    if let PointTime::At(t) = time {
+        setup.stop_s = t;
     }
-    state.pinned = initial_pins(&mut state, 0.0, &y, &yp);
-    initial::solve(
-        &mut state,
-        &mut consistent,
-        0.0,
-        &mut y,
-        &mut yp,
-        initial::Round::StatesKept,
-    )?;
-    let delayed = state.delayed().to_vec();
-    Ok(OperatingPoint {
-        y,
-        yp,
-        z: state.z,
-        delayed,
-    })
+    (setup.rows_s, setup.keep) = (Vec::new(), Some(Vec::new()));
+    let mut run = Simulation::new(program, &setup)?;
+    run.settle_start()?;
+    if let PointTime::At(t) = time {
+        run.advance_to(t)?;
+    }
+    run.point(modes)
 }

@@ -1,6 +1,7 @@
 //! The run itself: start, steps, events, rows.
 
 mod instant;
+mod point;
 mod rows;
 
 use crate::clocks::Schedule;
@@ -46,6 +47,8 @@ pub(crate) struct Simulation<'a> {
     hurry: Hurry,
     meter: Option<Meter<'a>>,
     sensitivities: Option<Sensitivities>,
+    /// Events change relations alone, no modes: they are those of an operating point.
+    modes_are_given: bool,
 }
 
 impl<'a> Simulation<'a> {
@@ -115,6 +118,7 @@ impl<'a> Simulation<'a> {
             hurry: Hurry::default(),
             meter: Meter::new(&program.experiment.ledger),
             sensitivities,
+            modes_are_given: false,
         })
     }
 
@@ -134,8 +138,13 @@ impl<'a> Simulation<'a> {
     }
 
     fn advance_to_stop(&mut self) -> Result<(), Box<Failure>> {
-        self.begin()?;
-        let stop = self.setup.stop_s;
+        self.settle_start()?;
+        self.advance_to(self.setup.stop_s)
+    }
+
+    /// On to a time, events and ticks there included.
+    pub(crate) fn advance_to(&mut self, stop: f64) -> Result<(), Box<Failure>> {
+        self.restart()?;
         while self.integrator.t < stop && !same_instant(self.integrator.t, stop) {
             let t = self.integrator.t;
             let jump = self.integrator.state().inputs.next_jump(t);
@@ -166,7 +175,7 @@ impl<'a> Simulation<'a> {
     }
 
     /// The start itself: events before the first step, first ticks, first rows.
-    fn begin(&mut self) -> Result<(), Box<Failure>> {
+    pub(crate) fn settle_start(&mut self) -> Result<(), Box<Failure>> {
         let t = self.integrator.t;
         self.settle()?;
         let left = delays::limits(&mut self.integrator, None);
@@ -186,7 +195,7 @@ impl<'a> Simulation<'a> {
             self.next_row += 1;
         }
         delays::mark(&mut self.integrator, &mut self.consistent, left);
-        self.restart()
+        Ok(())
     }
 
     /// Events at the start. Relations are known only behind the first solution, so initial equations that read them are

@@ -271,6 +271,13 @@ impl<'a> State<'a> {
         }
     }
 
+    /// All record columns and delayed values at a time.
+    pub(crate) fn read_all(&mut self, t: f64) -> &[f64] {
+        self.inputs.read(t, &mut self.u);
+        self.read_delayed(t);
+        &self.u
+    }
+
     /// The delayed values at a time.
     pub(crate) fn delayed_at(&mut self, t: f64) -> &[f64] {
         self.read_delayed(t);

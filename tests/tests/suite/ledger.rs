@@ -1,7 +1,7 @@
 //! The energy ledger: every joule is told, and the modes say where theirs are.
 
 use crate::models::{Solved, close, model};
-use hyde_experiment::{EnergyLedger, LedgerEntry, linearize, mode_shape, modes, parameters};
+use hyde_experiment::{EnergyLedger, LedgerEntry, linearize, mode_shape, parameters, poles};
 use std::collections::BTreeMap;
 
 fn turned() -> Solved {
@@ -59,8 +59,9 @@ fn a_mode_tells_where_its_energy_is() {
     let program = &compiled.program;
     let p = parameters(program, &BTreeMap::new(), &[]).unwrap();
     let linear = linearize(program, &BTreeMap::new(), &p, &[], &[]).unwrap();
-    let found = modes(&linear);
-    let shape = mode_shape(program, &p, &linear, &found[0]).unwrap();
+    let poles = poles(&linear);
+    let found = poles.oscillating();
+    let shape = mode_shape(program, &p, &linear, (&poles, &found[0])).unwrap();
     let share = |component: &str, account: &str| {
         let mut shares = shape.shares.iter();
         shares

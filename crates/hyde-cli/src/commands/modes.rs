@@ -10,9 +10,7 @@ use crate::project::{self, Aim, Project, Records, complain, print_output};
 use crate::records;
 use crate::settings::Setting;
 use hyde_compiler::Compiled;
-use hyde_experiment::{
-    Linear, ModeShape, NaturalMode, linearize, mode_shape, modes as natural_modes, parameters,
-};
+use hyde_experiment::{Linear, ModeShape, NaturalMode, linearize, mode_shape, parameters, poles};
 use hyde_program::Program;
 use hyde_signal::Table;
 use hyde_units::significant;
@@ -134,14 +132,16 @@ pub(crate) fn found(
     let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
     let linear = linearize(program, &tables, &p, &[], &chosen)
         .map_err(|error| wrong(format!("the model could not be linearised: {error:?}")))?;
-    let modes: Vec<_> = natural_modes(&linear)
-        .into_iter()
-        .filter(|mode| args.below.is_none_or(|limit| mode.frequency_hz < limit))
-        .collect();
-    let shapes: Vec<_> = modes
-        .iter()
-        .map(|mode| mode_shape(program, &p, &linear, mode))
-        .collect();
+    let poles = poles(&linear);
+    let mut modes = Vec::new();
+    let mut shapes = Vec::new();
+    for pole in poles.oscillating() {
+        let mode = pole.mode();
+        if args.below.is_none_or(|limit| mode.frequency_hz < limit) {
+            modes.push(mode);
+            shapes.push(mode_shape(program, &p, &linear, (&poles, &pole)));
+        }
+    }
     let json = modes
         .iter()
         .zip(&shapes)

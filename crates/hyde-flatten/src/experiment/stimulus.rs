@@ -97,7 +97,8 @@ impl<'a> Model<'a, '_> {
         self.flat.exprs.add(parameter)
     }
 
-    /// Makes every free input a parameter of its name with the value zero: what a linearised model is driven by.
+    /// Makes every free input a parameter of its name with the value zero: what a linearised model is driven by. A stimulus
+    /// is what it is added to; one of a truth stays alone.
     pub(crate) fn free_inputs(&mut self, root: InstanceId) {
         if !self.input.free_inputs {
             return;
@@ -115,19 +116,35 @@ impl<'a> Model<'a, '_> {
             .filter(|&var| self.flat.variables[var].input && self.notes(var).binding.is_none())
             .collect();
         for var in members {
+            let stimulus = self.stimulus_of(var);
             let variable = &self.flat.variables[var];
+            if variable.boolean && stimulus.is_some() {
+                continue;
+            }
             let origin = variable.origin.clone().made_by(MadeBy::Experiment);
             let (name, quantity) = (variable.name.clone(), variable.quantity.clone());
             let zero = self.flat.exprs.constant(0.0);
-            let rhs = self.outer_parameter(name, self.dim(var), quantity, zero, &origin);
+            let free = self.outer_parameter(name, self.dim(var), quantity, zero, &origin);
+            if let Some(number) = stimulus {
+                let equation = &mut self.flat.equations[number];
+                equation.rhs = self.flat.exprs.plus(equation.rhs, free);
+                continue;
+            }
             let lhs = self.flat.exprs.var(var);
             self.flat.equations.push(Equation {
                 range: Range::SCALAR,
                 lhs,
-                rhs,
+                rhs: free,
                 origin,
             });
         }
+    }
+
+    /// The number of the equation by which a stimulus drives an input.
+    fn stimulus_of(&self, input: VarId) -> Option<usize> {
+        let target = Ir::Var(input, hyde_ir::Index::SCALAR);
+        let mut equations = self.flat.equations.iter();
+        equations.position(|equation| self.flat.exprs[equation.lhs] == target)
     }
 
     /// The free inputs of the model that nothing drives.
@@ -139,13 +156,7 @@ impl<'a> Model<'a, '_> {
             if !variable.input || !top || notes.binding.is_some() {
                 continue;
             }
-            let target = Ir::Var(id, hyde_ir::Index::SCALAR);
-            let driven = self
-                .flat
-                .equations
-                .iter()
-                .any(|equation| self.flat.exprs[equation.lhs] == target);
-            if !driven {
+            if self.stimulus_of(id).is_none() {
                 undriven.push((variable.name.clone(), variable.origin.span));
             }
         }

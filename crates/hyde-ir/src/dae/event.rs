@@ -10,6 +10,8 @@ pub struct AutomatonInfo {
     pub name: String,
     /// The names of its modes.
     pub modes: Vec<String>,
+    /// Whether each mode relates speeds alone, as `w = 0` does: what it is between cannot slide.
+    pub holds_speed: Vec<bool>,
     /// Number of the first mode.
     pub initial: usize,
     /// Position of its mode in the memory.

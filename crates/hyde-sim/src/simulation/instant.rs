@@ -110,6 +110,7 @@ impl Simulation<'_> {
             log: &mut self.results.events,
             sensitivities: self.sensitivities.as_mut(),
             crossed: std::mem::take(&mut self.crossed),
+            modes_are_given: self.modes_are_given,
         }
         .iterate(scheduled, at_start);
         self.integrator.y = y;

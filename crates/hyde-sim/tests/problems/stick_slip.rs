@@ -103,6 +103,7 @@ fn stick_slip() -> Program {
         automata: vec![Automaton {
             name: "guide".to_owned(),
             modes: vec!["stick".to_owned(), "slip".to_owned()],
+            holds_speed: vec![true, false],
             place: MODE,
             origin: origin("guide"),
         }],

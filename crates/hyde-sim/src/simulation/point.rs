@@ -1,0 +1,163 @@
+//! What a run makes an operating point of: its values, in the modes that are asked for.
+
+use super::Simulation;
+use crate::failure::Failure;
+use crate::guards::current_mode;
+use crate::initial;
+use crate::operating_point::{OperatingPoint, PointModes, TakenMode};
+use crate::setup::same_instant;
+use crate::start_modes::initial_pins;
+use hyde_program::{Function, Program, ReactionKind, Target};
+
+impl Simulation<'_> {
+    /// The values where the run is, taken in modes.
+    pub(crate) fn point(mut self, modes: PointModes<'_>) -> Result<OperatingPoint, Box<Failure>> {
+        let slides = self.leave_surfaces()?;
+        let modes = match modes {
+            PointModes::OfRun => Vec::new(),
+            PointModes::Sliding(asked) => self.take(asked)?,
+        };
+        let t = self.integrator.t;
+        let (y, yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
+        let state = self.integrator.state_mut();
+        let u = state.read_all(t).to_vec();
+        Ok(OperatingPoint {
+            delayed: u[2 * self.program.columns.len()..].to_vec(),
+            z: self.integrator.state().z.clone(),
+            t,
+            y,
+            yp,
+            u,
+            modes,
+            slides,
+        })
+    }
+
+    /// Leaves the surfaces that the run slides on for the side that the memory has; their conditions.
+    fn leave_surfaces(&mut self) -> Result<Vec<String>, Box<Failure>> {
+        let slides = std::mem::take(&mut self.integrator.state_mut().slides);
+        if slides.is_empty() {
+            return Ok(Vec::new());
+        }
+        self.make_consistent()?;
+        let text =
+            |slide: &crate::sliding::Slide| self.program.relations[slide.surface].text.clone();
+        Ok(slides.iter().map(text).collect())
+    }
+
+    /// Puts automata into modes; relations follow. Which are in another mode than before.
+    fn take(&mut self, asked: &[(usize, usize)]) -> Result<Vec<TakenMode>, Box<Failure>> {
+        let program = self.program;
+        let mut taken = Vec::new();
+        for automaton in 0..program.automata.len() {
+            let of_run = current_mode(program, &self.integrator.state().z, automaton);
+            let wanted = asked.iter().find(|(number, _)| *number == automaton);
+            let asked = wanted.is_some();
+            let mode = match wanted {
+                Some((_, mode)) => Some(*mode),
+                None => first_that_slips(program, automaton, of_run),
+            };
+            let Some(mode) = mode.filter(|mode| *mode != of_run) else {
+                continue;
+            };
+            let before = (
+                self.integrator.y.clone(),
+                self.integrator.yp.clone(),
+                self.integrator.state().z.clone(),
+                self.integrator.state().pinned.clone(),
+            );
+            match self.enter(automaton, of_run, mode) {
+                Ok(()) => taken.push(TakenMode {
+                    automaton,
+                    of_run,
+                    taken: mode,
+                    asked,
+                }),
+                Err(failure) if asked => return Err(failure),
+                // Where nothing follows if it slips, it stays as the run has it.
+                Err(_) => {
+                    (self.integrator.y, self.integrator.yp) = (before.0, before.1);
+                    let state = self.integrator.state_mut();
+                    (state.z, state.pinned) = (before.2, before.3);
+                }
+            }
+        }
+        if !taken.is_empty() {
+            self.modes_are_given = true;
+            let scheduled = self.schedule.relations_at(self.integrator.t);
+            self.iterate(&scheduled, false)?;
+        }
+        Ok(taken)
+    }
+
+    /// Puts an automaton into a mode, with what an exit sets that leads there.
+    fn enter(&mut self, automaton: usize, from: usize, mode: usize) -> Result<(), Box<Failure>> {
+        let program = self.program;
+        let leads_there = |here: Option<usize>| {
+            program.reactions.iter().find(|reaction| {
+                matches!(reaction.kind, ReactionKind::Transition { automaton: of, from, to, .. }
+                    if of == automaton && to == mode && here.is_none_or(|here| here == from))
+            })
+        };
+        let (t, y, yp) = (
+            self.integrator.t,
+            self.integrator.y.clone(),
+            self.integrator.yp.clone(),
+        );
+        let state = self.integrator.state_mut();
+        if let Some(exit) = leads_there(Some(from)).or_else(|| leads_there(None)) {
+            let mut values = vec![0.0; program.rows(Function::Assignments)];
+            state.evaluate(Function::Assignments, t, &y, &yp, &mut values);
+            for index in exit.assignments.clone() {
+                if let Target::Memory(position) = program.assignments[index].target {
+                    state.z[position] = values[index];
+                }
+            }
+        }
+        state.z[program.automata[automaton].place] = mode as f64;
+        state.pinned = initial_pins(state, t, &y, &yp);
+        self.make_consistent()
+    }
+
+    /// Consistent values in the modes as they are; at the start what is delayed was ever as it is.
+    fn make_consistent(&mut self) -> Result<(), Box<Failure>> {
+        let (t, mut y, mut yp) = (
+            self.integrator.t,
+            self.integrator.y.clone(),
+            self.integrator.yp.clone(),
+        );
+        let state = self.integrator.state_mut();
+        let consistent = &mut self.consistent;
+        if same_instant(t, self.setup.start_s) {
+            let round = initial::Round::StatesKept;
+            initial::solve(state, consistent, t, &mut y, &mut yp, round)?;
+        } else {
+            consistent.solve(state, t, &mut y, &mut yp, false)?;
+        }
+        (self.integrator.y, self.integrator.yp) = (y, yp);
+        Ok(())
+    }
+}
+
+/// The mode in which what a mode holds slides: that of its first exit to one that holds no speed.
+fn first_that_slips(program: &Program, automaton: usize, mode: usize) -> Option<usize> {
+    let holds = &program.automata[automaton].holds_speed;
+    if !holds[mode] {
+        return None;
+    }
+    program
+        .reactions
+        .iter()
+        .find_map(|reaction| match reaction.kind {
+            ReactionKind::Transition {
+                automaton: of,
+                from,
+                to,
+                ..
+            } if of == automaton && from == mode && !holds[to] => Some(to),
+            ReactionKind::Transition { .. }
+            | ReactionKind::When { .. }
+            | ReactionKind::Edge(_)
+            | ReactionKind::Assert(_) => None,
+        })
+}
