@@ -24,6 +24,10 @@ pub const PACKAGES: &[Package] = &[
         text: include_str!("../models/Blocks.hyde"),
     },
     Package {
+        name: "Clocked",
+        text: include_str!("../models/Clocked.hyde"),
+    },
+    Package {
         name: "Rotational",
         text: include_str!("../models/Rotational.hyde"),
     },

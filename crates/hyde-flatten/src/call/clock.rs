@@ -224,13 +224,13 @@ impl<'a> Model<'a, '_> {
         self.poison(span)
     }
 
-    /// `interval()`: the period of the clocked part.
+    /// `interval()`: the period of the clocked part, also in an `assert` beside its equations.
     pub(super) fn interval(&mut self, args: &[&'a Expr], scope: &Scope<'a>, span: Span) -> Typed {
         let Some([]) = self.exactly("interval", args, span) else {
             return self.poison(span);
         };
         match self.instances[scope.instance].clock {
-            Some(clock) if scope.setting == Setting::Clocked => {
+            Some(clock) if matches!(scope.setting, Setting::Clocked | Setting::Condition) => {
                 let id = self.flat.clocks[clock].period;
                 self.typed(id, Dim::known(Dimension::TIME), span)
             }
