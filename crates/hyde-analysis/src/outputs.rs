@@ -132,6 +132,11 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
         dae.outputs
             .push(single(format!("response {name}"), *value, quantity, false));
     }
+    for cut in &experiment.cuts {
+        let name = format!("cut {}", cut.signal);
+        dae.outputs
+            .push(single(name, cut.back, &Quantity::number(), false));
+    }
     for curve in experiment.figures.iter().flat_map(flat::Figure::curves) {
         let name = format!("curve {}", curve.name);
         dae.outputs

@@ -205,6 +205,9 @@ impl System {
         {
             each(arena, value);
         }
+        for cut in &mut flat.experiment.cuts {
+            each(arena, &mut cut.back);
+        }
         let figures = flat.experiment.figures.iter_mut();
         for curve in figures.flat_map(flat::Figure::curves_mut) {
             each(arena, &mut curve.value);

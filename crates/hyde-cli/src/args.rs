@@ -300,6 +300,12 @@ pub(crate) struct BodeArgs {
     /// Draw the responses of another experiment of the file in the same figures, and tell where they part (repeatable)
     #[arg(long, value_name = "EXPERIMENT")]
     pub(crate) with: Vec<String>,
+    /// The stability margins that the experiment asks for alone, without its responses and its run
+    #[arg(long)]
+    pub(crate) margins: bool,
+    /// The margins of the loop cut at a signal: `--cut cnc.control.i_ref` (repeatable)
+    #[arg(long, value_name = "SIGNAL")]
+    pub(crate) cut: Vec<String>,
     /// Title of the figures instead of what the experiment says of itself
     #[arg(long)]
     pub(crate) title: Option<String>,

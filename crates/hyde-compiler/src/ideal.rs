@@ -17,6 +17,7 @@ pub fn ideals(experiment: &Experiment) -> impl Iterator<Item = &Ideal> {
         | ExperimentItem::Every(_)
         | ExperimentItem::Skip(_)
         | ExperimentItem::Bode(_)
+        | ExperimentItem::Margins(_)
         | ExperimentItem::Figure(_) => None,
     });
     budgets.flatten()

@@ -97,6 +97,7 @@ codes! {
     BadResponse "E0811" "a measured frequency response is none";
     NoResponse "E0812" "there is no frequency response here";
     BadSweep "E0813" "a sweep cannot be planned";
+    CannotCut "E0814" "a loop cannot be cut at this signal";
     BadStudy "E0901" "a study does not say what it needs";
     NoFiles "E0902" "no file is what a study asks for";
     CannotVary "E0903" "what is to be varied cannot be";

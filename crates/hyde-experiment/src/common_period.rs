@@ -29,6 +29,8 @@ pub(crate) struct CommonPeriod<'a> {
 /// An instant at which clocks tick or held values change.
 struct Instant {
     t: f64,
+    /// The clocks that tick, by their place in the order of clocks.
+    clocks: Vec<usize>,
     /// The ticks of all clocks that tick, as one.
     tick: Option<Clocked>,
     /// The held values that change with their tick, and those of an earlier one.
@@ -94,6 +96,7 @@ impl<'a> CommonPeriod<'a> {
             {
                 instants.push(Instant {
                     t,
+                    clocks: Vec::new(),
                     tick: None,
                     prompt: Vec::new(),
                     late: Vec::new(),
@@ -112,6 +115,7 @@ impl<'a> CommonPeriod<'a> {
                 instant.late.extend(own);
                 continue;
             }
+            instant.clocks.push(number);
             if clock.delay == 0.0 {
                 instant.prompt.extend(own);
             }
@@ -150,16 +154,9 @@ impl<'a> CommonPeriod<'a> {
     /// `driven` is X, the response of the states to the input alone.
     pub(crate) fn held(&self, input: usize, driven: &Matrix, s: Complex<f64>) -> Option<Matrix> {
         let (nx, nm) = (self.linear.a.nrows(), self.sampled.select.ncols());
-        let nh = self.sampled.select.nrows();
-        let size = nx + nm + nh;
-        let mut open = Values::zeros(nx, nm, nh, 2);
-        self.through(&mut open, Some((input, driven, s)), |_, _| {});
-        let turned = (s * self.period).exp();
-        let mut matrix = Matrix::identity(size, size) * turned;
-        matrix -= self.transition().map(|value| Complex::new(value, 0.0));
-        let start = matrix.lu().solve(&open.complex())?;
+        let start = self.repeated(input, driven, s)?;
         let mut values = Values::split(&start, nx, nm);
-        let mut total = Matrix::zeros(nh, 1);
+        let mut total = Matrix::zeros(self.sampled.select.nrows(), 1);
         self.through(&mut values, Some((input, driven, s)), |k, values| {
             let from = self.instants[k].t;
             let to = self
@@ -174,6 +171,42 @@ impl<'a> CommonPeriod<'a> {
             total += columns(&values.h) * weight;
         });
         Some(total)
+    }
+
+    /// A combination of the memory behind each tick of a clock in the common period, over the input: a sine that the input's
+    /// clocked readers see alone. With `exp(st)` taken out, it is the same at every tick where the loop has but that rate.
+    pub(crate) fn at_ticks(
+        &self,
+        input: usize,
+        clock: usize,
+        row: &DMatrix<f64>,
+        s: Complex<f64>,
+    ) -> Option<Vec<Complex<f64>>> {
+        let still = Matrix::zeros(self.linear.a.nrows(), 1);
+        let start = self.repeated(input, &still, s)?;
+        let mut values = Values::split(&start, still.nrows(), self.sampled.select.ncols());
+        let mut found = Vec::new();
+        self.through(&mut values, Some((input, &still, s)), |k, values| {
+            let instant = &self.instants[k];
+            if instant.clocks.contains(&clock) {
+                let turned = (s * instant.t).exp();
+                found.push(columns(&(row * &values.m))[(0, 0)] / turned);
+            }
+        });
+        (!found.is_empty()).then_some(found)
+    }
+
+    /// The (xi, m, h) at the start of the common period that come again but for the turn of the input.
+    fn repeated(&self, input: usize, driven: &Matrix, s: Complex<f64>) -> Option<Matrix> {
+        let (nx, nm) = (self.linear.a.nrows(), self.sampled.select.ncols());
+        let nh = self.sampled.select.nrows();
+        let size = nx + nm + nh;
+        let mut open = Values::zeros(nx, nm, nh, 2);
+        self.through(&mut open, Some((input, driven, s)), |_, _| {});
+        let turned = (s * self.period).exp();
+        let mut matrix = Matrix::identity(size, size) * turned;
+        matrix -= self.transition().map(|value| Complex::new(value, 0.0));
+        matrix.lu().solve(&open.complex())
     }
 
     /// The common period in s.

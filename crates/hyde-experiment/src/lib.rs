@@ -1,6 +1,6 @@
 //! What is asked of a program beside one solution: a run with its record ([`read_record`]), measures and expectations ([`run`]); the
 //! system linearised about an operating point ([`linearize`]), its frequency response with the sampled loop closed
-//! ([`frequency_response`]) and its modes ([`modes`]); the response on the full hybrid model, swept ([`swept_response`]) and
+//! ([`frequency_response`]), the margins of a loop cut at a signal ([`margins`]) and its modes ([`modes`]); the response on the full hybrid model, swept ([`swept_response`]) and
 //! stepped ([`stepped_response`]), and measured ones ([`measured_curve`]); parameters from measured modes
 //! ([`fit_modes`]); the forces between components ([`flows`]) and the error budget ([`BudgetOf`]); the limit
 //! test of an effect ([`limit`]); many runs planned and kept as one ([`batch`]).
@@ -15,6 +15,7 @@ mod flows;
 mod ledger;
 mod limit;
 mod linearize;
+mod margins;
 mod measured_response;
 mod mode_fit;
 mod mode_shape;
@@ -36,6 +37,7 @@ pub use flows::{FlowLine, flows};
 pub use ledger::{EnergyLedger, LedgerEntry};
 pub use limit::{Answer, LIMIT_LEFT, LIMIT_PART, limit};
 pub use linearize::{Linear, LinearizeError, linearize, linearize_at};
+pub use margins::{CutError, DelayMargin, GainCrossover, Margins, PhaseCrossover, margins};
 pub use measured_response::{MeasuredCurve, curve_of_run, measured_curve};
 pub use mode_fit::{
     Combination, FoundParameter, MeasuredMode, ModeFit, ModeFitError, ModeFitRequest, PairedMode,

@@ -1,7 +1,7 @@
 //! The clocked parts of a linearised system: what each tick makes of memory, samples and inputs (S3), and when.
 
 use crate::linearize::{Dense, Parts, Through};
-use hyde_program::{Constant, Point, Program, TickWrt, Workspace};
+use hyde_program::{Constant, Function, Point, Program, TickWrt, Workspace, Wrt};
 use nalgebra::DMatrix;
 
 /// The linearised clocked parts. Of the memory only what ticks write is kept; all else does not change.
@@ -13,6 +13,8 @@ pub struct Sampled {
     pub select: DMatrix<f64>,
     /// Of each held value the clock that changes it, by its place in `clocks`.
     pub holder: Vec<usize>,
+    /// The program's outputs by memory.
+    pub outputs: DMatrix<f64>,
 }
 
 /// One clock: memory after its tick is `memory*m + by_state*x + by_input*u + by_held*h`, all just before the tick.
@@ -116,7 +118,20 @@ pub(crate) fn sampled(
             .position(|&clock| clock == hold.clock);
         std::iter::repeat_n(clock.unwrap_or(0), hold.len)
     });
+    let mut outputs = DMatrix::zeros(program.rows(Function::Outputs), size);
+    let entries = program.kernels.still_entries(Function::Outputs);
+    let mut values = vec![0.0; entries.len()];
+    let kernels = &program.kernels;
+    kernels.still_partials(Function::Outputs, at, work, &mut values);
+    for (entry, value) in entries.iter().zip(values) {
+        if let Wrt::Memory(position) = entry.wrt
+            && let Some(column) = place(position)
+        {
+            outputs[(entry.row, column)] += value;
+        }
+    }
     Some(Sampled {
+        outputs,
         holder: holder.collect(),
         clocks,
         select,

@@ -1,6 +1,7 @@
 //! The experiment: stimuli drive the free inputs, measured channels name their columns, measures reduce the run.
 
 mod bode;
+mod cut;
 mod figure;
 mod measure;
 mod measured;
@@ -95,6 +96,7 @@ impl<'a> Model<'a, '_> {
                     self.flat.experiment.skip = Some(time.id);
                 }
                 ExperimentItem::Bode(bode) => self.bode(bode, root),
+                ExperimentItem::Margins(margins) => self.margins(margins, root),
                 ExperimentItem::Figure(figure) => self.figure(figure, root),
                 ExperimentItem::Budget(_) => {} // Each of them is a run of its own, of a changed model.
             }

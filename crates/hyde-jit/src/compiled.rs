@@ -357,6 +357,8 @@ impl Compiled {
             Constant::Rounding(channel) => experiment.measured.get(channel)?.rounding?,
             Constant::BandFrom(bode) => experiment.bodes.get(bode)?.band?.0,
             Constant::BandTo(bode) => experiment.bodes.get(bode)?.band?.1,
+            Constant::SearchedFrom(cut) => experiment.cuts.get(cut)?.band?.0,
+            Constant::SearchedTo(cut) => experiment.cuts.get(cut)?.band?.1,
             Constant::Amplitude(bode) => stepped(bode)?.amplitude,
             Constant::Points(bode) => stepped(bode)?.points,
             Constant::Settle(bode) => stepped(bode)?.settle,

@@ -8,11 +8,11 @@ use hyde_ir::dae::{self, Dae};
 use hyde_ir::flat;
 use hyde_ir::{Id as _, Interpolation, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Bode, Clock, Column, Derivatives, Experiment, Hold, InitialCondition,
-    Measure, Measured, MeasuredResponse, Method, Output, Parameter, Pin, Preparation, Prior,
-    Program, Reaction, ReactionKind, RecordValue, RecordValueKind, RecordedResponse, Reduction,
-    ReductionKind, Relation, RelationUse, ScaledColumn, Selection, Stepped, Stop, Target,
-    UnknownBlock,
+    Assignment, Automaton, Bode, Clock, Column, Cut, Derivatives, Experiment, Hold,
+    InitialCondition, Measure, Measured, MeasuredResponse, Method, Output, Parameter, Pin,
+    Preparation, Prior, Program, Reaction, ReactionKind, RecordValue, RecordValueKind,
+    RecordedResponse, Reduction, ReductionKind, Relation, RelationUse, ScaledColumn, Selection,
+    Stepped, Stop, Target, UnknownBlock,
 };
 use std::sync::Arc;
 
@@ -202,6 +202,13 @@ fn columns(dae: &Dae) -> Vec<Column> {
         .collect()
 }
 
+fn chosen_modes(modes: &[(hyde_ir::AutomatonId, usize)]) -> Vec<(usize, usize)> {
+    let chosen = modes.iter();
+    chosen
+        .map(|(automaton, mode)| (automaton.index(), *mode))
+        .collect()
+}
+
 fn outputs(dae: &Dae) -> Vec<Output> {
     let auxiliary_from = dae.outputs.len()
         - dae.experiment.measured.len()
@@ -212,6 +219,7 @@ fn outputs(dae: &Dae) -> Vec<Output> {
             .iter()
             .map(|bode| bode.outputs.len())
             .sum::<usize>()
+        - dae.experiment.cuts.len()
         - figures::outputs(&dae.experiment.figures)
         - ledger::outputs(&dae.experiment.ledger);
     let mut found = Vec::new();
@@ -332,7 +340,8 @@ fn experiment(dae: &Dae) -> Experiment {
     let responses: usize = known.bodes.iter().map(|bode| bode.outputs.len()).sum();
     let first_account = columns - ledger::columns(&known.ledger);
     let first_curve = first_account - figures::outputs(&known.figures);
-    let first_measured = first_curve - known.measured.len() - known.reductions.len() - responses;
+    let first_cut = first_curve - known.cuts.len();
+    let first_measured = first_cut - known.measured.len() - known.reductions.len() - responses;
     let first_reduction = first_measured + known.measured.len();
     let mut next_response = first_reduction + known.reductions.len();
     Experiment {
@@ -418,16 +427,25 @@ fn experiment(dae: &Dae) -> Experiment {
                     input: name,
                     input_output,
                     outputs,
-                    modes: bode
-                        .modes
-                        .iter()
-                        .map(|(automaton, mode)| (automaton.index(), *mode))
-                        .collect(),
+                    modes: chosen_modes(&bode.modes),
                     stepped: bode.stepped.as_ref().map(|stepped| Stepped {
                         keep: stepped.keep.map(|(output, _)| output),
                     }),
                     origin: bode.origin.clone(),
                 }
+            })
+            .collect(),
+        cuts: known
+            .cuts
+            .iter()
+            .zip(first_cut..)
+            .map(|(cut, back)| Cut {
+                signal: cut.signal.clone(),
+                input: cut.input.clone(),
+                back,
+                clock: cut.clock.map(|clock| clock.index()),
+                modes: chosen_modes(&cut.modes),
+                origin: cut.origin.clone(),
             })
             .collect(),
         figures: figures::figures(&known.figures, first_curve),

@@ -133,6 +133,24 @@ pub struct Bode {
     pub origin: Origin,
 }
 
+/// A loop that is cut at a signal for its margins: the readers of the signal see it with a test signal added. The band that is
+/// searched is a [`crate::Constant`].
+#[derive(Clone, Debug)]
+pub struct Cut {
+    /// The signal, as it is written.
+    pub signal: String,
+    /// The parameter that is the test signal.
+    pub input: String,
+    /// The output that reports what comes back: the signal without the test signal; of a clocked signal, with it.
+    pub back: usize,
+    /// The clock by which the signal is sampled; `None` of a continuous signal.
+    pub clock: Option<usize>,
+    /// Modes of the linearised system: automaton and mode.
+    pub modes: Vec<(usize, usize)>,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
 /// Something that a figure shows over time.
 #[derive(Clone, Debug)]
 pub struct Curve {
@@ -218,6 +236,8 @@ pub struct Experiment {
     pub measures: Vec<Measure>,
     /// Frequency responses.
     pub bodes: Vec<Bode>,
+    /// Where loops are cut for their margins.
+    pub cuts: Vec<Cut>,
     /// Figures asked for.
     pub figures: Vec<Figure>,
     /// Measured frequency responses.

@@ -112,6 +112,10 @@ pub enum Constant {
     BandFrom(usize),
     /// Upper end of a frequency response in Hz.
     BandTo(usize),
+    /// Lower end of the band that is searched for a loop's crossovers, in Hz.
+    SearchedFrom(usize),
+    /// Upper end of that band in Hz.
+    SearchedTo(usize),
     /// Amplitude of a stepped response's input, at most.
     Amplitude(usize),
     /// Number of its frequencies.

@@ -28,8 +28,8 @@ pub use event::{
     Relation, RelationUse, Selection, Target,
 };
 pub use experiment::{
-    Bode, Curve, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse, Method,
-    Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped, Stop,
+    Bode, Curve, Cut, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse,
+    Method, Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped, Stop,
 };
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Constant, Function, Kernels, Point, SomeRows, TickWrt, Workspace};

@@ -1,6 +1,6 @@
 //! Figures and the run report: SVG, PNG and one self-contained HTML page.
 //!
-//! Plain data in, bytes out. A [`Figure`] is filled by hand or by [`time_plot`], [`bode_plot`], [`xy_plot`] and [`circle_plot`]. It is
+//! Plain data in, bytes out. A [`Figure`] is filled by hand or by [`time_plot`], [`bode_plot`], [`nyquist_plot`], [`nichols_plot`], [`xy_plot`] and [`circle_plot`]. It is
 //! laid out once, into a list of strokes, areas and texts measured with the font that travels in the binary, and that
 //! list is written as SVG ([`to_svg`]) or rasterised ([`to_png`]), so both look the same on every machine.
 //!
@@ -32,6 +32,7 @@ mod event_strip;
 mod figure;
 mod html;
 mod number;
+mod open_loop_plot;
 mod page;
 mod png;
 mod prefix;
@@ -55,6 +56,7 @@ pub use escape::escape;
 pub use event_strip::{EventRow, EventStrip, Span};
 pub use figure::{Band, Between, Direction, Figure, Line, LineStyle, Marker, Panel, Reference};
 pub use html::to_html;
+pub use open_loop_plot::{OpenLoop, nichols_plot, nyquist_plot};
 pub use page::{Align, Block, Column, Outcome, Page, Section, Table, Verdict};
 pub use png::to_png;
 pub use run_report::{ChannelError, Event, EventTable, KeyFigure, Parameter, RunReport};

@@ -3,7 +3,9 @@
 //! experiments.
 
 mod draw;
+mod margins;
 mod measured;
+mod open_loop;
 mod response;
 mod seen;
 mod stepped;
@@ -27,6 +29,8 @@ struct Asked {
     title: String,
     /// One list for each `bode`, one response in it for each output.
     bodes: Vec<Vec<Response>>,
+    /// One for each loop that is cut.
+    margins: Vec<margins::OfLoop>,
     text: String,
     /// Every expectation held.
     holds: bool,
@@ -63,10 +67,10 @@ fn responses(args: &BodeArgs) -> Result<(String, bool), Exit> {
             .flat_map(|asked| &asked.bodes)
             .map(|bode| json(bode))
             .collect();
-        return Ok((
-            format!("{:#}", json!({ "ok": true, "responses": found })),
-            holds,
-        ));
+        let margins = all.iter().flat_map(|asked| &asked.margins);
+        let margins: Vec<Value> = margins.map(margins::json).collect();
+        let answer = json!({ "ok": true, "responses": found, "margins": margins });
+        return Ok((format!("{answer:#}"), holds));
     }
     let mut text: String = all.iter().map(|asked| asked.text.as_str()).collect();
     let mut drawn: Vec<(&str, &str)> = Vec::new();
@@ -109,21 +113,49 @@ fn responses(args: &BodeArgs) -> Result<(String, bool), Exit> {
             let _ = writeln!(text, "{}", folder.join(format!("{stem}.svg")).display());
         }
     }
+    let loops: Vec<&margins::OfLoop> = all.iter().flat_map(|asked| &asked.margins).collect();
+    if let Some(folder) = &args.out {
+        for one in &loops {
+            let suffix = match loops.as_slice() {
+                [_] => String::new(),
+                _ => format!("-{}-{}", file_name(&one.experiment), file_name(&one.signal)),
+            };
+            let title = args.title.as_deref().unwrap_or(&all[0].title);
+            let left = open_loop::leave(folder, &suffix, title, one)
+                .map_err(|reason| complain(&args.model, Exit::CommandLine, &reason))?;
+            left.iter().for_each(|name| {
+                let _ = writeln!(text, "{name}");
+            });
+        }
+    }
     Ok((text, holds))
 }
 
 /// The responses of one experiment.
 fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     let mut project = project::load(model, Records::Needed)?;
+    margins::add_cuts(&mut project, &args.cut);
+    if project.diagnostics.has_errors() {
+        return Err(project.finish_with_errors(model));
+    }
+    let margins_alone = args.margins || !args.cut.is_empty();
     let compiled = project.compile(model, Aim::Linearize)?;
     project.print_warnings(model);
     let program = &compiled.program;
     let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
-    if program.experiment.bodes.is_empty() {
-        return Err(wrong(
-            "the experiment asks for no response: write `bode from u to y over 1 .. 50 [Hz];`"
-                .to_owned(),
-        ));
+    let no_cut = program.experiment.cuts.is_empty();
+    if no_cut && margins_alone {
+        let reason = "it is not said where the loop is cut: write `margins of SIGNAL;` in the experiment, or `--cut SIGNAL` here; what a controller puts out is one";
+        return Err(wrong(reason.to_owned()));
+    }
+    let bodes = if margins_alone {
+        &[][..]
+    } else {
+        &program.experiment.bodes[..]
+    };
+    if no_cut && bodes.is_empty() {
+        let reason = "the experiment asks for no response: write `bode from u to y over 1 .. 50 [Hz];` or `margins of SIGNAL;`";
+        return Err(wrong(reason.to_owned()));
     }
     let tables = records::tables(&project.records);
     let p = parameters(program, &tables, &project.set())
@@ -132,11 +164,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         project.diagnostics.push(*diagnostic);
         project.finish_with_errors(model)
     })?;
-    let by_stimulus = program
-        .experiment
-        .bodes
-        .iter()
-        .any(|bode| bode.stepped.is_none());
+    let by_stimulus = bodes.iter().any(|bode| bode.stepped.is_none());
     let run = if args.linear || !by_stimulus {
         None
     } else {
@@ -146,6 +174,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     let mut asked = Asked {
         title: title(&project, &name, &program.name),
         bodes: Vec::new(),
+        margins: Vec::new(),
         text: String::new(),
         holds: true,
     };
@@ -155,7 +184,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     } else if !args.with.is_empty() {
         let _ = writeln!(asked.text, "{name} of {}", program.name);
     }
-    for (number, bode) in program.experiment.bodes.iter().enumerate() {
+    for (number, bode) in bodes.iter().enumerate() {
         let band = band(program, number, &p)
             .or_else(|| measured::band(program, number, &recorded))
             .ok_or_else(|| wrong("the band of frequencies is empty".to_owned()))?;
@@ -230,6 +259,9 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         asked.text.push_str(&errors);
         asked.bodes.push(responses);
     }
+    let found = margins::all(&name, program, &tables, &p, &mut project.diagnostics);
+    asked.margins = found.ok_or_else(|| project.finish_with_errors(model))?;
+    asked.text.extend(asked.margins.iter().map(margins::text));
     Ok(asked)
 }
 

@@ -128,6 +128,7 @@ pages! {
     BadResponse "E0811";
     NoResponse "E0812";
     BadSweep "E0813";
+    CannotCut "E0814";
     BadStudy "E0901";
     NoFiles "E0902";
     CannotVary "E0903";

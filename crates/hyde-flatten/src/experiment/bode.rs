@@ -5,8 +5,8 @@ use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::lower::Resolved;
 use crate::model::{Model, listed};
 use hyde_diag::{Code, Diagnostic, MadeBy};
-use hyde_ir::Quantity;
 use hyde_ir::flat::Bode;
+use hyde_ir::{ExprId, Quantity};
 use hyde_syntax::ast::{self, Reference};
 use hyde_units::Dimension;
 
@@ -44,24 +44,9 @@ impl<'a> Model<'a, '_> {
                 Quantity::usual(dimension),
             ));
         }
-        let parameter = Scope::new(root, Setting::Parameter);
-        let (from, to) = (
-            self.value(&band.from, &parameter),
-            self.value(&band.to, &parameter),
-        );
-        let rate = Typed {
-            dim: Dim::NUMBER.divide(&Dim::known(Dimension::TIME)),
-            ..from.clone()
-        };
-        self.agree(&from, &rate, "a band of frequencies relates", root);
-        self.agree(&to, &rate, "a band of frequencies relates", root);
-        let modes = bode
-            .modes
-            .iter()
-            .filter_map(|(name, mode)| self.mode_of(name, mode))
-            .collect();
+        let band = Some(self.band(band, root));
+        let modes = self.chosen_modes(&bode.modes);
         let origin = self.origin(root, input.span).made_by(MadeBy::Experiment);
-        let band = Some((from.id, to.id));
         let names: Vec<&str> = list.iter().map(|(name, ..)| name.as_str()).collect();
         let stepped = bode
             .steps
@@ -75,6 +60,33 @@ impl<'a> Model<'a, '_> {
             modes,
             origin,
         });
+    }
+
+    /// The ends of a band of frequencies in Hz.
+    pub(super) fn band(&mut self, band: &'a ast::Range, root: InstanceId) -> (ExprId, ExprId) {
+        let parameter = Scope::new(root, Setting::Parameter);
+        let (from, to) = (
+            self.value(&band.from, &parameter),
+            self.value(&band.to, &parameter),
+        );
+        let rate = Typed {
+            dim: Dim::NUMBER.divide(&Dim::known(Dimension::TIME)),
+            ..from.clone()
+        };
+        self.agree(&from, &rate, "a band of frequencies relates", root);
+        self.agree(&to, &rate, "a band of frequencies relates", root);
+        (from.id, to.id)
+    }
+
+    /// `in guide = slip, …`: the modes in which the linearised system is taken.
+    pub(super) fn chosen_modes(
+        &mut self,
+        modes: &[(Reference, ast::Name)],
+    ) -> Vec<(hyde_ir::AutomatonId, usize)> {
+        let chosen = modes.iter();
+        chosen
+            .filter_map(|(name, mode)| self.mode_of(name, mode))
+            .collect()
     }
 
     /// An automaton by the name of its instance, and one of its modes.

@@ -107,6 +107,9 @@ impl<'a> Model<'a, '_> {
         for item in &experiment.items {
             match item {
                 ExperimentItem::Bode(bode) => asked.push(&bode.band.to),
+                ExperimentItem::Margins(margins) => {
+                    asked.extend(margins.band.as_ref().map(|band| &band.to));
+                }
                 ExperimentItem::Stimulus(drives) => {
                     drives
                         .iter()

@@ -1,7 +1,8 @@
-//! [`Bode`]: a frequency response that an experiment asks for, and [`MeasuredResponse`]: one to compare it with.
+//! [`Bode`]: a frequency response that an experiment asks for, [`MeasuredResponse`]: one to compare it with, and [`Cut`]: where it
+//! asks for stability margins.
 
 use crate::Quantity;
-use crate::id::{AutomatonId, ColumnId, ExprId, VarId};
+use crate::id::{AutomatonId, ClockId, ColumnId, ExprId, VarId};
 use hyde_diag::Origin;
 
 /// `bode from input to outputs over f1 .. f2`.
@@ -15,6 +16,25 @@ pub struct Bode {
     pub band: Option<(ExprId, ExprId)>,
     /// Measured by stepped sines as well.
     pub stepped: Option<Stepped>,
+    /// Modes of the linearised system: automaton and mode.
+    pub modes: Vec<(AutomatonId, usize)>,
+    /// Where it is written.
+    pub origin: Origin,
+}
+
+/// `margins of signal over f1 .. f2`: a loop that is cut at a signal. Readers of the signal see it with a test signal added.
+#[derive(Clone, Debug)]
+pub struct Cut {
+    /// The signal, as it is written.
+    pub signal: String,
+    /// Name of the parameter that is the test signal.
+    pub input: String,
+    /// What comes back: the signal without the test signal; of a clocked signal, with it.
+    pub back: ExprId,
+    /// The clock by which the signal is sampled; `None` of a continuous signal.
+    pub clock: Option<ClockId>,
+    /// From and to in Hz, of parameters alone.
+    pub band: Option<(ExprId, ExprId)>,
     /// Modes of the linearised system: automaton and mode.
     pub modes: Vec<(AutomatonId, usize)>,
     /// Where it is written.

@@ -373,6 +373,10 @@ impl Printer<'_> {
             });
             let _ = writeln!(out, "  bode from {input} to {}{band}", outputs.join(", "));
         }
+        for cut in &experiment.cuts {
+            let back = self.names.expr(cut.back);
+            let _ = writeln!(out, "  margins of {}: {back} comes back", cut.signal);
+        }
         for measured in &experiment.measured_responses {
             let bode = &experiment.bodes[measured.place.0];
             let input = &self.flat.variables[bode.input].name;

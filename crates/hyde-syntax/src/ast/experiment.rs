@@ -78,6 +78,8 @@ pub enum ExperimentItem {
     Skip(Expr),
     /// `bode from u to y over 1 .. 50 [Hz] in guide = slip;`
     Bode(Bode),
+    /// `margins of cnc.control.i_ref over 1 .. 500 [Hz] in guide = slip;`
+    Margins(Margins),
     /// `figure lag = r - s, {guide.a.f, screw.F} in 0.8 [s] .. 1 [s] "the reversal";`
     Figure(Figure),
     /// `budget backlash(gap = 0) "no play", belt(belt.k = 1e9 [N/m]);`
@@ -121,6 +123,17 @@ pub struct Bode {
     pub band: Range,
     /// `by stepped(…)`: the name and its arguments.
     pub steps: Option<(Name, Vec<Argument>)>,
+    /// The modes in which the linearised system is taken: instance and mode.
+    pub modes: Vec<(Reference, Name)>,
+}
+
+/// `margins of cnc.control.i_ref over 1 .. 500 [Hz] in guide = slip;`
+#[derive(Clone, Debug, PartialEq)]
+pub struct Margins {
+    /// The signals at which the loop is cut, one at a time.
+    pub signals: Vec<Reference>,
+    /// The band of frequencies that is searched; that of the loop's dynamics if left out.
+    pub band: Option<Range>,
     /// The modes in which the linearised system is taken: instance and mode.
     pub modes: Vec<(Reference, Name)>,
 }

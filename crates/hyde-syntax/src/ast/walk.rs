@@ -164,6 +164,10 @@ fn of_experiment<'a>(experiment: &'a Experiment, visit: &mut dyn FnMut(&'a Expr)
                     of_arguments(arguments, visit);
                 }
             }
+            ExperimentItem::Margins(margins) => {
+                let band = margins.band.iter();
+                band.for_each(|band| of_range(band, visit));
+            }
             ExperimentItem::Figure(figure) => {
                 figure
                     .panels

@@ -4,7 +4,7 @@ use super::declaration::{measure_text, modification};
 use super::expression::{optional_arguments, range};
 use super::name::{doc, quoted, reference};
 use super::{Printer, expression};
-use crate::ast::{Drive, Experiment, ExperimentItem};
+use crate::ast::{Drive, Experiment, ExperimentItem, Name, Reference};
 
 impl Printer {
     pub(super) fn experiment(&mut self, experiment: &Experiment) {
@@ -92,16 +92,7 @@ impl Printer {
             ExperimentItem::Skip(time) => format!("skip {};", expression(time)),
             ExperimentItem::Bode(bode) => {
                 let outputs: Vec<String> = bode.outputs.iter().map(expression).collect();
-                let modes: Vec<String> = bode
-                    .modes
-                    .iter()
-                    .map(|(name, mode)| format!("{} = {}", reference(name), mode.text))
-                    .collect();
-                let modes = if modes.is_empty() {
-                    String::new()
-                } else {
-                    format!(" in {}", modes.join(", "))
-                };
+                let modes = in_modes(&bode.modes);
                 let (input, band) = (reference(&bode.input), range(&bode.band));
                 let steps = bode
                     .steps
@@ -113,6 +104,13 @@ impl Printer {
                     "bode from {input} to {} over {band}{steps}{modes};",
                     outputs.join(", ")
                 )
+            }
+            ExperimentItem::Margins(margins) => {
+                let signals: Vec<String> = margins.signals.iter().map(reference).collect();
+                let band = margins.band.as_ref();
+                let band = band.map_or_else(String::new, |band| format!(" over {}", range(band)));
+                let modes = in_modes(&margins.modes);
+                format!("margins of {}{band}{modes};", signals.join(", "))
             }
             ExperimentItem::Figure(figure) => {
                 let panels: Vec<String> = figure.panels.iter().map(expression).collect();
@@ -143,5 +141,18 @@ impl Printer {
             }
         };
         self.line(&line);
+    }
+}
+
+/// ` in guide = slip`, or nothing.
+fn in_modes(modes: &[(Reference, Name)]) -> String {
+    let chosen = modes.iter();
+    let texts: Vec<String> = chosen
+        .map(|(name, mode)| format!("{} = {}", reference(name), mode.text))
+        .collect();
+    if texts.is_empty() {
+        String::new()
+    } else {
+        format!(" in {}", texts.join(", "))
     }
 }

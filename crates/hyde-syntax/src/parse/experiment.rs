@@ -3,8 +3,8 @@
 use super::Parser;
 use super::build::{Builder, Node, has, parts, significant};
 use crate::ast::{
-    Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, Part, RecordItem, Reference,
-    SettingValue, Study, StudyItem, StudyKind, Variation, Varied,
+    Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, Margins, Name, Part,
+    RecordItem, Reference, SettingValue, Study, StudyItem, StudyKind, Variation, Varied,
 };
 use crate::grammar::Rule;
 use crate::recover;
@@ -151,6 +151,7 @@ impl Builder<'_> {
             }
             Rule::measure => items.extend(self.measure(parts(node)).map(ExperimentItem::Measure)),
             Rule::bode => items.extend(self.bode(node)),
+            Rule::margins => items.push(self.margins(node)),
             Rule::figure => items.extend(self.figure(node)),
             Rule::budget => {
                 let ideals = parts(node).filter_map(|ideal| self.ideal(ideal)).collect();
@@ -228,13 +229,7 @@ impl Builder<'_> {
                     let arguments = words.next().map(|list| self.arguments(list));
                     steps = Some((name, arguments.unwrap_or_default()));
                 }
-                Rule::in_modes => {
-                    for mode in parts(part) {
-                        let mut words = parts(mode);
-                        let instance = self.reference(words.next()?);
-                        modes.push((instance, self.name(&words.next()?)));
-                    }
-                }
+                Rule::in_modes => modes = self.in_modes(part),
                 _ => outputs.push(self.expression(part)),
             }
         }
@@ -245,6 +240,32 @@ impl Builder<'_> {
             steps,
             modes,
         }))
+    }
+
+    fn margins(&mut self, node: Node<'_>) -> ExperimentItem {
+        let mut margins = Margins {
+            signals: Vec::new(),
+            band: None,
+            modes: Vec::new(),
+        };
+        for part in parts(node) {
+            match part.as_rule() {
+                Rule::range => margins.band = self.range(part),
+                Rule::in_modes => margins.modes = self.in_modes(part),
+                _ => margins.signals.push(self.reference(part)),
+            }
+        }
+        ExperimentItem::Margins(margins)
+    }
+
+    /// `in guide = slip, clutch = locked`
+    fn in_modes(&mut self, node: Node<'_>) -> Vec<(Reference, Name)> {
+        let pairs = parts(node).filter_map(|mode| {
+            let mut words = parts(mode);
+            let instance = self.reference(words.next()?);
+            Some((instance, self.name(&words.next()?)))
+        });
+        pairs.collect()
     }
 
     fn figure(&mut self, node: Node<'_>) -> Option<ExperimentItem> {

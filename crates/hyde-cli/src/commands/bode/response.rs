@@ -94,7 +94,7 @@ pub(crate) fn linearised(
     Ok((responses.collect(), system))
 }
 
-fn why_not(error: &LinearizeError) -> String {
+pub(crate) fn why_not(error: &LinearizeError) -> String {
     match error {
         LinearizeError::NoInput(name) => format!("`{name}` is no free input"),
         LinearizeError::TooLarge(n) => {

@@ -1,0 +1,223 @@
+//! `margins of x;`: the loop cut at a signal.
+//!
+//! ```text
+//! tau = K*i                    with  margins of tau;        is  tau = K*i + d
+//! motor.i_ref = hold(cnc.i)    with  margins of motor.i_ref;    c = cnc.i + d, ticking with cnc;  motor.i_ref = hold(c)
+//! ```
+//! The test signal d stands between what gives the signal and everything that reads it. It is a parameter of the value zero,
+//! so the model is what it was; the linearised model is driven by it. A signal that is made of held values alone gets a sampled
+//! test signal, which changes with them: so the response of the cut loop is the exact discrete one.
+
+use crate::instance::{InstanceId, Scope, Setting};
+use crate::lower::Resolved;
+use crate::model::Model;
+use hyde_diag::{Code, Diagnostic, MadeBy};
+use hyde_ir::flat::{ClockedEquation, Cut, Equation};
+use hyde_ir::{ClockId, Expr as Ir, ExprId, Index, Range, VarId, VariableKind};
+use hyde_syntax::ast::{self, Reference};
+use std::collections::HashMap;
+
+const HELP: &str = "cut at an input, an output, a clocked variable or one that is declared with its value; where there is none, let the loop read one: `Angle measured = rotor.phi;`";
+
+/// The equation that gives a signal.
+#[derive(Clone, Copy)]
+enum Giver {
+    /// A continuous equation, with the signal on its left side.
+    Left(usize),
+    /// A connection, with the signal on its right side.
+    Right(usize),
+    /// A clocked equation.
+    Clocked(usize),
+}
+
+impl<'a> Model<'a, '_> {
+    pub(super) fn margins(&mut self, margins: &'a ast::Margins, root: InstanceId) {
+        let band = margins.band.as_ref().map(|band| self.band(band, root));
+        let modes = self.chosen_modes(&margins.modes);
+        for signal in &margins.signals {
+            let Some((var, giver)) = self.giver_of(signal, root) else {
+                continue;
+            };
+            // A run has no test signal.
+            if !self.input.free_inputs {
+                continue;
+            }
+            let (input, d) = self.test_signal(signal, var, root);
+            let (back, clock) = self.cut(var, giver, d, root);
+            let origin = self.origin(root, signal.span).made_by(MadeBy::Experiment);
+            self.flat.experiment.cuts.push(Cut {
+                signal: signal.dotted(),
+                input,
+                back,
+                clock,
+                band,
+                modes: modes.clone(),
+                origin,
+            });
+        }
+    }
+
+    /// The variable that is meant, and the one equation that gives it.
+    fn giver_of(&mut self, signal: &'a Reference, root: InstanceId) -> Option<(VarId, Giver)> {
+        let scope = Scope::new(root, Setting::Report);
+        let (var, index) = match self.resolve(signal, &scope)? {
+            Resolved::Variable(var, index) => (var, index),
+            Resolved::Parameter(..)
+            | Resolved::Counter(_)
+            | Resolved::Time
+            | Resolved::Pi
+            | Resolved::Value(_)
+            | Resolved::Coordinate
+            | Resolved::Instance(_) => {
+                self.cannot_cut(signal, "is not a signal", "not a variable of the model");
+                return None;
+            }
+        };
+        let len = self.flat.variables[var].len;
+        let Some(index) = index.or(len.is_none().then_some(Index::SCALAR)) else {
+            self.cannot_cut(signal, "is an array", "name one of its elements");
+            return None;
+        };
+        let leaf = self.flat.exprs.add(Ir::Var(var, index));
+        let giver = self.given_by(var, leaf);
+        if giver.is_none() {
+            let label = "no equation of its own: `name = …`";
+            self.cannot_cut(signal, "cannot be cut", label);
+        }
+        Some((var, giver?))
+    }
+
+    fn given_by(&self, var: VarId, leaf: ExprId) -> Option<Giver> {
+        let clocked = &self.flat.clocked_equations;
+        if let Some(at) = clocked.iter().position(|e| e.equation.lhs == leaf) {
+            return Some(Giver::Clocked(at));
+        }
+        let written = |e: &Equation| e.lhs == leaf && e.origin.made_by != MadeBy::Connection;
+        if let Some(at) = self.flat.equations.iter().position(written) {
+            return Some(Giver::Left(at));
+        }
+        // A connection gives an input its value from outside the component, an output from inside.
+        let own = &self.instances[self.notes(var).instance].path;
+        let input = self.flat.variables[var].input;
+        let gives = |e: &Equation| {
+            e.origin.made_by == MadeBy::Connection && (e.origin.instance != *own) == input
+        };
+        let joined = |e: &Equation| gives(e) && (e.lhs == leaf || e.rhs == leaf);
+        let at = self.flat.equations.iter().position(joined)?;
+        let left = self.flat.equations[at].lhs == leaf;
+        Some(if left {
+            Giver::Left(at)
+        } else {
+            Giver::Right(at)
+        })
+    }
+
+    /// The parameter that is the test signal, by its name.
+    fn test_signal(
+        &mut self,
+        signal: &Reference,
+        var: VarId,
+        root: InstanceId,
+    ) -> (String, ExprId) {
+        let number = self.flat.experiment.cuts.len() + 1;
+        let name = format!("test signal {number} at {}", signal.dotted());
+        let quantity = self.flat.variables[var].quantity.clone();
+        let origin = self.origin(root, signal.span).made_by(MadeBy::Experiment);
+        let zero = self.flat.exprs.constant(0.0);
+        let d = self.outer_parameter(name.clone(), self.dim(var), quantity, zero, &origin);
+        (name, d)
+    }
+
+    /// Adds the test signal; what comes back, and the clock by which the signal is sampled.
+    fn cut(
+        &mut self,
+        var: VarId,
+        giver: Giver,
+        d: ExprId,
+        root: InstanceId,
+    ) -> (ExprId, Option<ClockId>) {
+        let (at, from) = match giver {
+            Giver::Clocked(at) => {
+                let ClockedEquation { clock, equation } = &self.flat.clocked_equations[at];
+                let (clock, lhs, rhs) = (*clock, equation.lhs, equation.rhs);
+                let cut = self.flat.exprs.plus(rhs, d);
+                self.flat.clocked_equations[at].equation.rhs = cut;
+                return (lhs, Some(clock));
+            }
+            Giver::Left(at) => (at, self.flat.equations[at].rhs),
+            Giver::Right(at) => {
+                let equation = &mut self.flat.equations[at];
+                std::mem::swap(&mut equation.lhs, &mut equation.rhs);
+                (at, equation.rhs)
+            }
+        };
+        let Some((clock, sampled)) = self.of_held_values(from) else {
+            self.flat.equations[at].rhs = self.flat.exprs.plus(from, d);
+            return (from, None);
+        };
+        let name = &self.flat.variables[var].name;
+        let (name, held) = (format!("{name}, cut"), format!("hold({name}, cut)"));
+        let (dim, span) = (self.dim(var), self.flat.equations[at].origin.span);
+        let mut variable =
+            |name, kind| self.add_variable(root, name, kind, dim.clone(), span, MadeBy::Experiment);
+        let source = variable(name, VariableKind::Clocked(clock));
+        let held = variable(held, VariableKind::Held(clock, source));
+        let (lhs, rhs) = (
+            self.flat.exprs.var(source),
+            self.flat.exprs.plus(sampled, d),
+        );
+        let origin = self.flat.equations[at].origin.clone();
+        let equation = Equation {
+            range: Range::SCALAR,
+            lhs,
+            rhs,
+            origin,
+        };
+        let clocked = ClockedEquation { clock, equation };
+        self.flat.clocked_equations.push(clocked);
+        self.flat.equations[at].rhs = self.flat.exprs.var(held);
+        (lhs, Some(clock))
+    }
+
+    /// Of an expression that is made of the held values of one clock alone: the same of what they hold, and the clock.
+    fn of_held_values(&mut self, id: ExprId) -> Option<(ClockId, ExprId)> {
+        let mut memo = HashMap::new();
+        let mut found = None;
+        for below in self.flat.exprs.below(&[id]) {
+            match self.flat.exprs[below] {
+                Ir::Var(var, Index::SCALAR) => {
+                    let VariableKind::Held(clock, source) = self.flat.variables[var].kind else {
+                        return None;
+                    };
+                    if found.is_some_and(|known| known != clock) {
+                        return None;
+                    }
+                    found = Some(clock);
+                    memo.insert(below, self.flat.exprs.var(source));
+                }
+                Ir::Const(_)
+                | Ir::Param(..)
+                | Ir::Unary(..)
+                | Ir::Binary(..)
+                | Ir::If(..)
+                | Ir::NoEvent(_) => {}
+                Ir::Var(..)
+                | Ir::Time
+                | Ir::Counter
+                | Ir::Der(..)
+                | Ir::Pre(..)
+                | Ir::Relation(_)
+                | Ir::InMode(..) => return None,
+            }
+        }
+        let clock = found?;
+        let sampled = self.flat.exprs.rewrite(id, &mut memo, |_, _, _| None);
+        Some((clock, sampled))
+    }
+
+    fn cannot_cut(&mut self, signal: &Reference, what: &str, label: &str) {
+        let message = format!("`{}` {what}: no loop is cut there", signal.dotted());
+        let diagnostic = Diagnostic::error(Code::CannotCut, message);
+        self.report(diagnostic.label(signal.span, label).help(HELP));
+    }
+}
