@@ -6,6 +6,7 @@ use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
 use crate::solution::Solution;
+use crate::standstill::{Cause, audible, standstill};
 use crate::varied::Varied;
 use hyde_program::Program;
 use nalgebra::{DMatrix, DVector};
@@ -40,6 +41,8 @@ pub struct FittedParameter {
     pub at_bound: bool,
     /// What is known of it is what was known before.
     pub untold: bool,
+    /// No innovation depends on it.
+    pub silent: bool,
 }
 
 /// Innovations of a channel in a record.
@@ -85,8 +88,18 @@ pub struct Fit {
     pub converged: bool,
     /// How many of the starts ended within a unit of the lowest sum of squares, and how many there were.
     pub agreeing_starts: (usize, usize),
+    /// Why there is nothing in it, or little, as far as its runs show it.
+    pub causes: Vec<Cause>,
     /// Where it ended.
     pub solution: Solution,
+}
+
+impl Fit {
+    /// Whether innovations depend on anything that was varied.
+    #[must_use]
+    pub fn learned(&self) -> bool {
+        self.parameters.iter().any(|parameter| !parameter.silent)
+    }
 }
 
 /// Calibrates a program on records, and looks at others.
@@ -154,6 +167,7 @@ pub fn fit(
         .collect();
     let inflation = inflation(&solution.innovations);
     let covariance = covariance(&solution, inflation);
+    let causes = standstill(program, fitted, observer, varied, set, &solution)?;
     Ok(Fit {
         parameters: parameters(varied, &solution, &covariance),
         groups: groups(&covariance),
@@ -168,6 +182,7 @@ pub fn fit(
         steps: solution.steps,
         converged: solution.converged,
         agreeing_starts: (agreeing, starts.max(1)),
+        causes,
         solution,
     })
 }
@@ -324,6 +339,7 @@ fn parameters(
     solution: &Solution,
     covariance: &DMatrix<f64>,
 ) -> Vec<FittedParameter> {
+    let audible = audible(solution);
     let each = varied.iter().zip(&solution.values).enumerate();
     each.map(|(number, (varied, &value))| {
         let deviation = covariance[(number, number)].max(0.0).sqrt() * varied.scale();
@@ -345,6 +361,7 @@ fn parameters(
             left_range: outside > width,
             at_bound: value <= low + near || value >= high - near,
             untold: varied.prior.is_some_and(|sd| deviation > UNTOLD * sd),
+            silent: !audible[number],
         }
     })
     .collect()

@@ -161,7 +161,7 @@ impl Observer {
     }
 }
 
-fn state_names(plant: &Plant<'_>) -> Vec<String> {
+pub(crate) fn state_names(plant: &Plant<'_>) -> Vec<String> {
     plant
         .places
         .states
@@ -171,7 +171,7 @@ fn state_names(plant: &Plant<'_>) -> Vec<String> {
 }
 
 /// Standard deviation of a channel: declared noise and rounding; without either a ten-thousandth of a unit.
-fn deviation(program: &Program, channel: usize, p: &[f64]) -> f64 {
+pub(crate) fn deviation(program: &Program, channel: usize, p: &[f64]) -> f64 {
     let noise = program.kernels.constant(Constant::Noise(channel), p);
     let (noise, width) = (noise.unwrap_or(0.0), rounding(program, channel, p));
     let variance = noise * noise + width * width / 12.0;

@@ -1,7 +1,8 @@
 //! Observers round a program: how far it is from records, and which parameters bring it nearer.
 //!
 //! ```text
-//! recording      a record, evenly sampled                                         recording.rs
+//! recording      a record, evenly sampled                                         recording.rs, even_rows.rs
+//! beginning      the states that its first rows show                              beginning.rs
 //! frozen         readings that were held                                          frozen.rs
 //! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, inputs.rs, stepping.rs, leg.rs, model.rs, configuration.rs, events.rs, past.rs
 //! observer       a fixed Kalman gain; whitened innovations                        gain.rs, observer.rs
@@ -10,16 +11,20 @@
 //! plan           what a `calibrate` block asks for                                 plan.rs
 //! calibration    bounded least squares on innovations and priors                  least_squares.rs, solution.rs, blocks.rs, varied.rs
 //! its worth      errors before and after, intervals, groups                       fit.rs
+//!                why it taught nothing, where it did not                           standstill.rs
 //! measures       the error in three measures, before and after, over its floor                  measures.rs, windows.rs, free_run.rs
 //! what is left   what innovations depend on, and whether they are white                        residual_map.rs, whiteness.rs
 //! diagnosis      which effect is missing                                          diagnosis.rs
 //! self-test      what a diagnosis finds in records with a known effect              selftest.rs
 //! ```
 
+mod beginning;
+mod begins_again;
 mod blocks;
 mod configuration;
 mod dense;
 mod diagnosis;
+mod even_rows;
 mod events;
 mod exponential;
 mod fit;
@@ -40,6 +45,7 @@ mod recording;
 mod residual_map;
 mod selftest;
 mod solution;
+mod standstill;
 mod stepping;
 mod tangent;
 mod track;
@@ -53,6 +59,7 @@ pub use diagnosis::{
     Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, Map, Panel, Quantity, Rejection, Round,
     Scales, Score, Seen, Site, Summand, Trial, Unknown, Variable, Verdict, Written, diagnose,
 };
+pub use even_rows::Resampled;
 pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};
 pub use frozen::{Frozen, frozen};
@@ -69,6 +76,7 @@ pub use selftest::{
     Simulated, Size, Tally, cases, simulated, tables_of, tally, try_case,
 };
 pub use solution::Solution;
+pub use standstill::{Cause, standstill};
 pub use varied::Varied;
 pub use whiteness::{Whiteness, whiteness};
 pub use windows::{WINDOW_S, Windows};

@@ -176,7 +176,7 @@ pub(crate) fn run_while(
         let (at, workspace) = plant.point();
         shown.evaluate(at, workspace, &mut outputs);
         for (channel, output) in outputs.iter().enumerate() {
-            error[channel] = recording.channels[channel][row] - output;
+            error[channel] = recording.error(channel, row, *output);
         }
         visit(plant, row, When::Before, &error)?;
         forget_missing(&mut error);

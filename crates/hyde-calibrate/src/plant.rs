@@ -12,7 +12,7 @@ use crate::past::Past;
 use crate::recording::Recording;
 use crate::stepping::{Outcome, Room, gather};
 use hyde_program::{Function, Point, Program, Workspace};
-use hyde_sim::{PointModes, PointTime, Setup};
+use hyde_sim::{Failure, PointModes, PointTime, Setup};
 
 /// Steps of a row's time: the longest is its half, the shortest a 64th of that.
 const LONGEST: usize = 1;
@@ -88,23 +88,29 @@ pub(crate) struct Plant<'a> {
 }
 
 impl<'a> Plant<'a> {
-    /// The plant at the first row, with consistent values in its first modes.
+    /// The plant at the first row, where the record shows it to be and else where the model starts.
     pub(crate) fn new(
         program: &'a Program,
         recording: &'a Recording,
         set: &[(usize, f64)],
     ) -> Result<Self, Unsupported> {
+        Self::beginning(program, recording, set, &recording.beginning)
+    }
+
+    /// The plant at the first row with some states (by name) elsewhere than the model starts, in the modes of its start that
+    /// can be there.
+    pub(crate) fn beginning(
+        program: &'a Program,
+        recording: &'a Recording,
+        set: &[(usize, f64)],
+        beginning: &[(String, f64)],
+    ) -> Result<Self, Unsupported> {
         supported(program)?;
         let p = recording.parameters(program, set);
-        let (mut y, mut z) = (vec![0.0; program.n_unknowns], vec![0.0; program.n_memory]);
-        program.kernels.start(&p, &mut y, &mut z);
-        let modes: Vec<(usize, usize)> = program
-            .automata
-            .iter()
-            .enumerate()
-            .map(|(number, automaton)| (number, z[automaton.place] as usize))
-            .collect();
-        let mut plant = Self::at(program, recording, p, &modes)?;
+        let known = crate::beginning::positions(program, beginning);
+        let (tables, t) = (&recording.tables, recording.start_s);
+        let start = hyde_sim::known_start(program, tables, &p, t, &known).map_err(no_start)?;
+        let mut plant = Self::from(program, recording, p, (start.y, start.yp, start.z))?;
         plant.settle();
         Ok(plant)
     }
@@ -116,16 +122,24 @@ impl<'a> Plant<'a> {
         p: Vec<f64>,
         modes: &[(usize, usize)],
     ) -> Result<Self, Unsupported> {
+        let setup = Setup {
+            start_s: recording.start_s,
+            ..Setup::new(p.clone(), &recording.tables, recording.start_s + 1.0)
+        };
+        let modes = PointModes::Sliding(modes);
+        let start = hyde_sim::operating_point(program, &setup, PointTime::Start, modes);
+        let start = start.map_err(no_start)?;
+        Self::from(program, recording, p, (start.y, start.yp, start.z))
+    }
+
+    fn from(
+        program: &'a Program,
+        recording: &'a Recording,
+        p: Vec<f64>,
+        (y, yp, z): (Vec<f64>, Vec<f64>, Vec<f64>),
+    ) -> Result<Self, Unsupported> {
         let past = Past::new(program, recording, &p)?;
-        let setup = Setup::new(p.clone(), &recording.tables, 1.0);
-        let start = hyde_sim::operating_point(
-            program,
-            &setup,
-            PointTime::Start,
-            PointModes::Sliding(modes),
-        )
-        .map_err(|failure| Unsupported::Start(format!("{:?}", failure.kind)))?;
-        let places = Places::new(program, &start.z);
+        let places = Places::new(program, &z);
         let n_states = places.states.len();
         let equation =
             |number: &usize| program.relations[*number].used == hyde_program::RelationUse::Equation;
@@ -146,9 +160,9 @@ impl<'a> Plant<'a> {
             none_did: [None; LEVELS],
             made: None,
             even: None,
-            y: start.y,
-            yp: start.yp,
-            z: start.z,
+            y,
+            yp,
+            z,
             u: vec![0.0; 2 * program.columns.len() + program.delays.len()],
             workspace: Workspace::new(program.n_work),
             watched: Vec::new(),
@@ -404,6 +418,11 @@ impl<'a> Plant<'a> {
         self.met
             .extend(self.pinned.iter().map(|(position, _)| *position));
     }
+}
+
+#[allow(clippy::needless_pass_by_value, reason = "a function to map errors by")]
+fn no_start(failure: Box<Failure>) -> Unsupported {
+    Unsupported::Start(format!("{:?}", failure.kind))
 }
 
 /// The truth of a relation from its root function.

@@ -1,18 +1,31 @@
 //! [`Recording`]: a record as an observer reads it: evenly sampled, what drives the model beside what was measured.
 
+use crate::begins_again::begins_again;
+use crate::even_rows::{self, Resampled};
 use hyde_program::{Constant, Program, RecordValueKind};
-use hyde_signal::{Cursor, Table};
+use hyde_signal::{Cursor, Table, wrap};
 use std::collections::BTreeMap;
 
 /// Why a record cannot be observed.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub enum RecordError {
     /// The experiment measures nothing.
     NoChannel,
     /// The record has no such column: record and column.
     NoColumn(String, String),
-    /// Its rows are not evenly spaced: record.
-    Uneven(String),
+    /// It has no row for longer than what may be read between rows.
+    Gap {
+        /// The record, as the experiment calls it.
+        record: String,
+        /// The last row before it, s.
+        from_s: f64,
+        /// The first row after it, s.
+        to_s: f64,
+        /// How far apart rows usually are, s.
+        usual_s: f64,
+    },
+    /// A channel begins again, and what the model has for it goes on: channel, how often, and what it jumps by.
+    BeginsAgain(String, usize, f64),
     /// It has fewer rows than an observer needs to settle: record and rows.
     Short(String, usize),
     /// A channel cannot be prepared as the experiment says: channel and cause.
@@ -35,12 +48,18 @@ pub struct Recording {
     pub tables: BTreeMap<String, Table>,
     /// Measured channels at the rows, SI.
     pub channels: Vec<Vec<f64>>,
+    /// The period with which each begins again, SI; infinite of most. Channels go on there.
+    pub(crate) periods: Vec<f64>,
+    /// That its own rows are not evenly spaced.
+    pub resampled: Option<Resampled>,
     /// First values of columns, by record and column.
     record_values: Vec<RecordedValue>,
     /// Driving columns at the rows.
     pub(crate) columns: Vec<Vec<f64>>,
     /// The first row that counts.
     pub first_row: usize,
+    /// States that the first rows show elsewhere than the model starts, by name, SI.
+    pub beginning: Vec<(String, f64)>,
 }
 
 /// The rows after which an observer has settled: its start is that of the model, not of the axis.
@@ -64,31 +83,41 @@ impl Recording {
         let table = tables
             .get(&base.source.0)
             .ok_or_else(|| missing(&base.source))?;
-        let time = table.time().to_vec();
-        if time.len() < 2 * SETTLING_ROWS {
-            return Err(RecordError::Short(name.to_owned(), time.len()));
+        if table.time().len() < 2 * SETTLING_ROWS {
+            return Err(RecordError::Short(name.to_owned(), table.time().len()));
         }
-        let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-        let even = |table: &Table| {
-            let pairs = table.time().windows(2);
-            pairs
-                .into_iter()
-                .all(|pair| (pair[1] - pair[0] - step_s).abs() <= 0.01 * step_s)
+        let (time, resampled) = match even_rows::evenly(&base.source.0, table)? {
+            Some((time, resampled)) => (time, Some(resampled)),
+            None => (table.time().to_vec(), None),
         };
-        if !even(table) {
-            return Err(RecordError::Uneven(base.source.0.clone()));
-        }
-        let mut channels = Vec::new();
-        for measured in &experiment.measured {
+        let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
+        let record_values = record_values(program, &tables)?;
+        let p = parameters(program, &record_values, &[]);
+        let (mut channels, mut periods) = (Vec::new(), Vec::new());
+        for (number, measured) in experiment.measured.iter().enumerate() {
             let table = tables
                 .get(&measured.source.0)
                 .ok_or_else(|| missing(&measured.source))?;
             let column = table
                 .column(&measured.source.1)
                 .ok_or_else(|| missing(&measured.source))?;
-            let prepared = hyde_experiment::prepared(measured, table, column.values())
+            let period = program.kernels.constant(Constant::Wrap(number), &p);
+            let again = period.is_none().then(|| begins_again(column.values()));
+            if let Some((times, by)) = again.flatten() {
+                let channel = measured.name.clone();
+                return Err(RecordError::BeginsAgain(channel, times, by));
+            }
+            let values = hyde_experiment::unwrapped(measured, column.values(), period);
+            let own = measured.source.0 == base.source.0 && resampled.is_some();
+            let even = own.then(|| even_rows::resample(table, &values, &time));
+            let even = even.flatten();
+            let (table, values) = even
+                .as_ref()
+                .map_or((table, &values), |(table, values)| (table, values));
+            let prepared = hyde_experiment::prepared(measured, table, values)
                 .map_err(|cause| RecordError::Preparation(measured.name.clone(), cause))?;
             channels.push(at_rows(table, &prepared, &time, false));
+            periods.push(period.unwrap_or(f64::INFINITY));
         }
         let mut columns = Vec::new();
         for column in &program.columns {
@@ -100,30 +129,25 @@ impl Recording {
                 .values();
             columns.push(at_rows(table, values, &time, column.next));
         }
-        let mut record_values = Vec::new();
-        for known in &program.record_values {
-            let source = (known.record.clone(), known.column.clone());
-            let table = tables.get(&known.record).ok_or_else(|| missing(&source))?;
-            let column = table
-                .column(&known.column)
-                .ok_or_else(|| missing(&source))?;
-            record_values.push((source, known.kind, known.kind.of(column.values())));
-        }
-        let p = parameters(program, &record_values, &[]);
         let skip_s = program.kernels.constant(Constant::Skip, &p).unwrap_or(0.0);
         let first_row = time
             .partition_point(|&t| t < skip_s - 1e-12)
             .max(SETTLING_ROWS);
-        Ok(Self {
+        let mut found = Self {
             name: name.to_owned(),
             step_s,
             start_s: time[0],
             tables,
             channels,
+            periods,
+            resampled,
             record_values,
             columns,
             first_row,
-        })
+            beginning: Vec::new(),
+        };
+        found.beginning = crate::beginning::shown(program, &found);
+        Ok(found)
     }
 
     /// Number of rows.
@@ -132,10 +156,38 @@ impl Recording {
         self.channels.first().map_or(0, Vec::len)
     }
 
+    /// What a channel shows in a row beyond what a model has for it, but for whole periods.
+    pub(crate) fn error(&self, channel: usize, row: usize, model: f64) -> f64 {
+        let (error, period) = (self.channels[channel][row] - model, self.periods[channel]);
+        if period.is_finite() {
+            wrap::nearest(error, period)
+        } else {
+            error
+        }
+    }
+
     /// The whole parameter vector with some values set (position and value).
     pub(crate) fn parameters(&self, program: &Program, set: &[(usize, f64)]) -> Vec<f64> {
         parameters(program, &self.record_values, set)
     }
+}
+
+/// The values of columns that a program reads once.
+fn record_values(
+    program: &Program,
+    tables: &BTreeMap<String, Table>,
+) -> Result<Vec<RecordedValue>, RecordError> {
+    let mut found = Vec::new();
+    for known in &program.record_values {
+        let table = tables.get(&known.record);
+        let column = table.and_then(|table| table.column(&known.column));
+        let source = (known.record.clone(), known.column.clone());
+        let Some(column) = column else {
+            return Err(RecordError::NoColumn(source.0, source.1));
+        };
+        found.push((source, known.kind, known.kind.of(column.values())));
+    }
+    Ok(found)
 }
 
 /// The whole parameter vector of a program, with the values that records give and some values set.

@@ -139,7 +139,7 @@ impl Start {
             let (at, workspace) = plant.point();
             shown.evaluate(at, workspace, &mut outputs);
             for (channel, output) in outputs.iter().enumerate() {
-                errors[channel].push(recording.channels[channel][row] - output);
+                errors[channel].push(recording.error(channel, row, *output));
             }
             plant.begin_row(&still);
         }

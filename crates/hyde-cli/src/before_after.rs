@@ -1,10 +1,11 @@
 //! Errors before and after a calibration or a diagnosis, record by record and channel by channel, over the noise floor (L1).
 
+use crate::diagnosis::wrapped;
 use crate::project::Project;
 use crate::records;
 use crate::study::Calibration;
 use crate::unknown;
-use hyde_calibrate::{FreeMeasure, Measures, Model, Unsupported, Written};
+use hyde_calibrate::{FreeMeasure, Measures, Model, Recording, Unsupported, Written};
 use hyde_compiler::{Additions, Candidate, Form, Request};
 use hyde_diag::Diagnostics;
 use hyde_program::Program;
@@ -167,6 +168,39 @@ pub(crate) fn over<'r>(
     })
 }
 
+/// The records of a calibration in the order of their errors.
+fn recordings(calibration: &Calibration) -> impl Iterator<Item = &Recording> {
+    calibration.fitted.iter().chain(&calibration.holdout)
+}
+
+/// What the observer of a record takes otherwise than it is written: that it begins elsewhere than the model, and other rows.
+fn told(recording: &Recording) -> Vec<String> {
+    let mut found = Vec::new();
+    if let [first, others @ ..] = recording.beginning.as_slice() {
+        let (name, value) = (&first.0, significant(first.1, 4));
+        let others = match others.len() {
+            0 => String::new(),
+            1 => " and another state".to_owned(),
+            count => format!(" and {count} other states"),
+        };
+        found.push(format!(
+            "its first rows are not where the model starts: the observer begins with {name} = {value} (SI){others} as they show"
+        ));
+    }
+    if let Some(own) = &recording.resampled {
+        let time = |seconds: f64| engineering(seconds, Dimension::TIME);
+        found.push(format!(
+            "the rows of `{}` are {} to {} apart, uneven from {} on: the observer reads measured columns every {}, on straight lines between rows",
+            own.record,
+            time(own.spacing_s.0),
+            time(own.spacing_s.1),
+            time(own.from_s),
+            time(own.step_s)
+        ));
+    }
+    found
+}
+
 /// The errors as JSON; numbers are SI.
 pub(crate) fn json(records: &[RecordErrors], calibration: &Calibration) -> Value {
     let measured = &calibration.compiled.program.experiment.measured;
@@ -180,7 +214,7 @@ pub(crate) fn json(records: &[RecordErrors], calibration: &Calibration) -> Value
             "after_over_floor": change.after / change.floor,
         })
     };
-    let of_record = |record: &RecordErrors| {
+    let of_record = |(record, recording): (&RecordErrors, &Recording)| {
         let channels: Vec<Value> = measured
             .iter()
             .enumerate()
@@ -206,10 +240,20 @@ pub(crate) fn json(records: &[RecordErrors], calibration: &Calibration) -> Value
             "holdout": record.holdout,
             "chi": { "before": record.before.chi, "after": record.after.chi },
             "no_free_run": record.no_free_run(),
+            "assumptions": told(recording),
+            "begins": recording.beginning.iter().cloned().collect::<BTreeMap<String, f64>>(),
+            "resampled": recording.resampled.as_ref().map(|own| json!({
+                "record": own.record,
+                "closest_s": own.spacing_s.0,
+                "widest_s": own.spacing_s.1,
+                "from_s": own.from_s,
+                "every_s": own.step_s,
+            })),
             "channels": channels,
         })
     };
-    Value::Array(records.iter().map(of_record).collect())
+    let pairs = records.iter().zip(recordings(calibration));
+    Value::Array(pairs.map(of_record).collect())
 }
 
 /// The errors in lines of at most 80 columns.
@@ -234,6 +278,11 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
             significant(record.before.chi, 4),
             significant(record.after.chi, 4)
         );
+    }
+    for recording in recordings(calibration) {
+        for sentence in told(recording) {
+            wrapped(&mut out, "  -", &format!("{}: {sentence}", recording.name));
+        }
     }
     let held_out = records.iter().any(|record| record.holdout);
     let shown = || {

@@ -16,7 +16,7 @@ mod verdict;
 
 pub(crate) use json::json;
 pub(crate) use page::html;
-pub(crate) use text::text;
+pub(crate) use text::{text, wrapped};
 
 use crate::before_after::{self, RecordErrors};
 use crate::project::Project;
@@ -24,8 +24,8 @@ use crate::records;
 use crate::study::Calibration;
 use crate::unknown;
 use hyde_calibrate::{
-    Diagnosis, FittedParameter, Hypothesis, Innovations, Model, Rejection, ResidualMap, Score,
-    Trial, Unsupported, Whiteness, fitted_parameters, residual_maps, whiteness,
+    Cause, Diagnosis, FittedParameter, Hypothesis, Innovations, Model, Rejection, ResidualMap,
+    Score, Trial, Unsupported, Whiteness, fitted_parameters, residual_maps, whiteness,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Written};
 use std::collections::BTreeMap;
@@ -43,6 +43,8 @@ pub(crate) struct Told<'a> {
     /// What innovations depend on in the records fitted, and whether they are white.
     pub(crate) maps: Vec<ResidualMap>,
     pub(crate) whiteness: Vec<Whiteness>,
+    /// Why the calibrated model does not follow the records, if it does not.
+    pub(crate) causes: Vec<Cause>,
     /// Hypotheses that could not be put on the model, each with the reason.
     pub(crate) hindered: Vec<(usize, String)>,
     /// The model that has what was missing.
@@ -131,6 +133,7 @@ impl<'a> Told<'a> {
             parameters,
             maps,
             whiteness,
+            causes: Vec::new(),
             hindered: hindered(project, candidates, found),
             written: Written {
                 text: String::new(),
@@ -140,6 +143,16 @@ impl<'a> Told<'a> {
         };
         told.written = model::written(&told, candidates, &written);
         Ok(told)
+    }
+
+    /// What was written behind the text of the user's file.
+    pub(crate) fn new_text(&self) -> &str {
+        let project = &self.calibration.project;
+        let own = project.file.files.first();
+        let own = own.map_or(0, |(file, _)| {
+            project.sources.get(*file).text.trim_end().len()
+        });
+        self.written.text[own..].trim()
     }
 
     /// What was tried and not taken in, the best first.
@@ -220,6 +233,8 @@ pub(crate) fn suspicion(parameter: &FittedParameter) -> &'static str {
         "AT ITS BOUND"
     } else if parameter.left_range {
         "LEFT ITS RANGE"
+    } else if parameter.silent {
+        "NO EFFECT"
     } else if parameter.untold {
         "not told"
     } else {

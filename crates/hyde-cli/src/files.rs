@@ -111,6 +111,9 @@ fn fits(name: &str, pattern: &str) -> bool {
     rest[0][0]
 }
 
+/// The beginning of the name of a file that is being written.
+const UNFINISHED: &str = ".hyde-";
+
 /// Makes a folder with all above it.
 pub(crate) fn make_folder(path: &Path) -> Result<(), String> {
     std::fs::create_dir_all(path).map_err(|error| {
@@ -138,7 +141,7 @@ pub(crate) fn write_with(
         .unwrap_or(Path::new("."));
     let failed = |error: std::io::Error| cannot_write(path, &error);
     let mut file = tempfile::Builder::new()
-        .prefix(".hyde-")
+        .prefix(UNFINISHED)
         .tempfile_in(folder)
         .map_err(failed)?;
     make(file.as_file_mut())
@@ -147,6 +150,21 @@ pub(crate) fn write_with(
     make_readable(&file).map_err(failed)?;
     file.persist(path).map_err(|error| failed(error.error))?;
     sync_folder(folder)
+}
+
+/// Removes what a process that was killed has left of files that it was writing, in a folder and in those below. Only who has
+/// the folder alone may do so.
+#[allow(clippy::disallowed_methods, reason = "the command line removes files")]
+pub(crate) fn remove_unfinished(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+        if is_folder {
+            remove_unfinished(&entry.path());
+        } else if entry.file_name().to_string_lossy().starts_with(UNFINISHED) {
+            // What cannot be removed does no harm.
+            drop(std::fs::remove_file(entry.path()));
+        }
+    }
 }
 
 /// Opens a file for reading.
@@ -220,7 +238,8 @@ fn make_readable(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
     Ok(())
 }
 
-fn reason(error: &std::io::Error) -> String {
+/// An error in words.
+pub(crate) fn reason(error: &std::io::Error) -> String {
     const WORDS: [(ErrorKind, &str); 4] = [
         (ErrorKind::NotFound, "no such file or folder"),
         (ErrorKind::PermissionDenied, "permission denied"),

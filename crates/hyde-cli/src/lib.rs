@@ -13,8 +13,11 @@ mod exit;
 mod figures;
 mod files;
 mod forces;
+mod interruption;
 mod ledger;
+mod left_model;
 mod limits;
+mod output;
 mod package;
 mod pages;
 mod project;
@@ -27,10 +30,12 @@ mod study;
 mod summary;
 mod tables;
 mod unknown;
+mod unobservable;
 
 use args::{Arguments, Command};
 use clap::Parser as _;
 use exit::Exit;
+use hyde_signal::parquet;
 use mimalloc::MiMalloc;
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -41,6 +46,7 @@ static ALLOCATOR: MiMalloc = MiMalloc;
 
 /// Runs a command line.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    keep_quiet_of_damaged_files();
     let arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -50,10 +56,11 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             } else {
                 Exit::Done
             };
-            drop(error.print());
-            return code.into();
+            output::note(error.print());
+            return output::ended(code).into();
         }
     };
+    interruption::watch();
     let code = match &arguments.command {
         Command::Check(args) => commands::check::check(args),
         Command::Run(args) => commands::run::run(args),
@@ -74,5 +81,15 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Doc(args) => commands::doc::doc(args),
         Command::Explain(args) => commands::explain::explain(args),
     };
-    code.into()
+    output::ended(code).into()
+}
+
+/// What panics in the reader of Parquet files is a damaged file, of which a diagnostic tells: it leaves no trace of its own.
+fn keep_quiet_of_damaged_files() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if std::thread::current().name() != Some(parquet::READER) {
+            usual(panic);
+        }
+    }));
 }

@@ -211,6 +211,14 @@ impl Roots {
         found.map(|(name, _)| name)
     }
 
+    /// The name that a file at a place without links has, or would have if it were there.
+    pub(crate) fn name_at(&self, file: &Path) -> Option<String> {
+        let root = &self.roots[0];
+        let folders = root.manifest.iter().flat_map(|manifest| &manifest.folders);
+        let mut tops = folders.filter_map(|folder| files::real(&inside(&root.folder, folder)));
+        tops.find_map(|top| file.strip_prefix(&top).ok().map(dotted))
+    }
+
     fn owner(&self, place: &str) -> usize {
         self.owners.borrow().get(place).copied().unwrap_or(0)
     }

@@ -4,6 +4,7 @@ use crate::args::ModelArgs;
 use crate::batch::inputs::Kind;
 use crate::exit::Exit;
 use crate::files;
+pub(crate) use crate::output::{print_error, print_output};
 use crate::package::{MANIFEST, Roots};
 use crate::records::{self, Record};
 use crate::render;
@@ -16,7 +17,7 @@ use hyde_syntax::ast::Experiment;
 use serde_json::json;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use std::io::{IsTerminal as _, Write as _};
+use std::io::IsTerminal as _;
 
 /// A loaded file with what was chosen of it.
 pub(crate) struct Project {
@@ -409,14 +410,4 @@ pub(crate) fn complain(args: &ModelArgs, exit: Exit, reason: &str) -> Exit {
         print_error(&format!("error: {reason}"));
     }
     exit
-}
-
-/// A line on standard output. Whoever reads it may have gone: a closed pipe is no mistake.
-pub(crate) fn print_output(text: &str) {
-    drop(writeln!(std::io::stdout().lock(), "{}", text.trim_end()));
-}
-
-/// A line on standard error.
-pub(crate) fn print_error(text: &str) {
-    drop(writeln!(std::io::stderr().lock(), "{}", text.trim_end()));
 }

@@ -5,12 +5,12 @@ use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Aim, Project, Records, complain};
 use crate::settings;
-use hyde_calibrate::{
-    CalibrationPlan, Observer, RecordError, Recording, Source, Unsupported, Varied, Vary,
-};
+use crate::unobservable::{unreadable, unsupported};
+use hyde_calibrate::{CalibrationPlan, Observer, Recording, Source, Varied, Vary};
 use hyde_compiler::Compiled;
 use hyde_diag::{Code, Diagnostic, Diagnostics, Sources, Span};
 use hyde_syntax::ast::{Experiment, Study, StudyKind};
+use hyde_units::counted;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -227,9 +227,9 @@ fn files_of(
                 Diagnostic::error(
                     Code::BadStudy,
                     format!(
-                        "`{}` has {} record(s)",
+                        "`{}` has {}",
                         source.experiment,
-                        experiment.records.len()
+                        counted(experiment.records.len(), "record")
                     ),
                 )
                 .label(pattern.span, "there is no record for this pattern")
@@ -272,8 +272,8 @@ fn files_of(
                 Diagnostic::error(
                     Code::NoFiles,
                     format!(
-                        "{} files for one record and {} for another",
-                        sets.len(),
+                        "{} for one record and {} for another",
+                        counted(sets.len(), "file"),
                         matching.len()
                     ),
                 )
@@ -407,53 +407,4 @@ fn varied(
         last.push(varied);
     }
     last
-}
-
-fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnostic {
-    let cause = match error {
-        RecordError::NoChannel => "its experiment measures nothing".to_owned(),
-        RecordError::NoColumn(record, column) => {
-            format!("the record `{record}` has no column `{column}`")
-        }
-        RecordError::Uneven(record) => {
-            format!("the rows of the record `{record}` are not evenly spaced")
-        }
-        RecordError::Short(_, rows) => {
-            format!("it has {rows} rows, and an observer settles in 150")
-        }
-        RecordError::Preparation(channel, cause) => format!("the channel `{channel}`: {cause}"),
-    };
-    Diagnostic::error(
-        Code::CannotObserve,
-        format!("`{name}` cannot be observed: {cause}"),
-    )
-    .label(span, "asked for by this study")
-}
-
-/// Why a program has no fixed-step form.
-pub(crate) fn unsupported(error: &Unsupported, span: Span) -> Diagnostic {
-    let (cause, help) = match error {
-        Unsupported::Clock(part) => (
-            format!("the clocked part `{part}` closes the loop"),
-            "replay what it puts out: `replay motor.i_ref = file.i_ref;` in the experiment",
-        ),
-        Unsupported::Delay => (
-            "it delays what depends on states".to_owned(),
-            "an observer delays only what the record drives the model with: replay what is delayed, `replay x = file.x;`",
-        ),
-        Unsupported::ChosenStates => (
-            "its states are chosen while running".to_owned(),
-            "this version observes no model whose bodies are tied by changing constraints",
-        ),
-        Unsupported::Start(cause) => (
-            format!("it has no start: {cause}"),
-            "run its experiment first: `hyde run FILE`",
-        ),
-    };
-    Diagnostic::error(
-        Code::CannotObserve,
-        format!("the model cannot be observed: {cause}"),
-    )
-    .label(span, "asked for by this study")
-    .help(help)
 }

@@ -6,7 +6,7 @@ use hyde_compiler::Compiled;
 use hyde_experiment::Run;
 use hyde_program::Method;
 use hyde_sim::{Event, EventKind, GradientEnd, GradientEndKind};
-use hyde_units::{engineering, engineering_as, significant};
+use hyde_units::{counted, engineering, engineering_as, significant};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -30,16 +30,16 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
     );
     let _ = writeln!(
         out,
-        "  {} unknowns, {} steps{}, {} events, {} ticks, {} restarts",
-        program.n_unknowns,
-        statistics.steps,
+        "  {}, {}{}, {}, {}, {}",
+        counted(program.n_unknowns, "unknown"),
+        counted(statistics.steps, "step"),
         match statistics.method {
             Method::Ida | Method::Auto => "",
             Method::Esdirk => " by esdirk",
         },
-        statistics.events,
-        statistics.ticks,
-        statistics.restarts
+        counted(statistics.events, "event"),
+        counted(statistics.ticks, "tick"),
+        counted(statistics.restarts, "restart")
     );
     if !compiled.states.filled.is_empty() {
         let list = compiled.states.filled.join(", ");

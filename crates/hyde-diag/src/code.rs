@@ -103,6 +103,7 @@ codes! {
     CannotVary "E0903" "what is to be varied cannot be";
     CannotObserve "E0904" "a model or a record cannot be observed";
     BadDiagnosis "E0905" "a diagnosis does not say what it needs";
+    NothingLearned "E0906" "a calibration learns nothing";
 }
 
 impl std::fmt::Display for Code {

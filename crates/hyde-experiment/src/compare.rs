@@ -1,10 +1,11 @@
 //! Measured channels against the model: the record prepared as the experiment says, the model at the record's rows.
 //!
-//! A continuous quantity is compared as it is before a tick at that instant, a clocked one as it is after (C4).
+//! A continuous quantity is compared as it is before a tick at that instant, a clocked one as it is after (C4). One that begins
+//! again, as an angle after a turn, is compared modulo that.
 
 use hyde_program::{Constant, Measured, Preparation, Program};
 use hyde_signal::filter::{LowPass, central_difference};
-use hyde_signal::{Table, statistics};
+use hyde_signal::{Table, statistics, wrap};
 use hyde_sim::Results;
 use hyde_units::NamedUnit;
 use std::collections::BTreeMap;
@@ -62,7 +63,9 @@ pub(crate) fn channels(
         let column = table
             .column(column)
             .ok_or_else(|| error("its record has no such column"))?;
-        let signal = prepared(measured, table, column.values()).map_err(|cause| error(&cause))?;
+        let period = program.kernels.constant(Constant::Wrap(number), parameters);
+        let values = unwrapped(measured, column.values(), period);
+        let signal = prepared(measured, table, &values).map_err(|cause| error(&cause))?;
         let simulated = results
             .column(measured.output)
             .ok_or_else(|| error("the run did not keep it"))?;
@@ -77,9 +80,12 @@ pub(crate) fn channels(
                 continue;
             };
             time.push(t);
-            of_record.push(value);
             let row = if measured.clocked { right } else { left };
             of_model.push(simulated[row]);
+            of_record.push(match period {
+                Some(period) => simulated[row] + wrap::nearest(value - simulated[row], period),
+                None => value,
+            });
             for (slopes, column) in slopes.iter_mut().zip(&by_parameter) {
                 slopes.push(column[row]);
             }
@@ -118,6 +124,20 @@ fn slopes(results: &Results, output: usize) -> Vec<&[f64]> {
         }
         (Some(_), Err(_)) | (None, _) => Vec::new(),
     }
+}
+
+/// A column that begins again after a period (of what is made of it) made to go on.
+#[must_use]
+pub fn unwrapped(measured: &Measured, values: &[f64], period: Option<f64>) -> Vec<f64> {
+    let mut values = values.to_vec();
+    let scales = measured.preparation.iter().map(|step| match step {
+        Preparation::Scale(factor) => *factor,
+        Preparation::Lowpass(_) | Preparation::Slope => 1.0,
+    });
+    if let Some(period) = period {
+        wrap::unwrap(&mut values, period / scales.product::<f64>());
+    }
+    values
 }
 
 pub(crate) fn uneven(table: &Table, what: &str) -> String {

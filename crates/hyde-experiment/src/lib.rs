@@ -32,7 +32,7 @@ mod swept;
 
 pub use bode::{BodeError, frequency_response};
 pub use budget::{BudgetOf, Share};
-pub use compare::{Channel, CompareError, prepared};
+pub use compare::{Channel, CompareError, prepared, unwrapped};
 pub use flows::{FlowLine, flows};
 pub use ledger::{EnergyLedger, LedgerEntry};
 pub use limit::{Answer, LIMIT_LEFT, LIMIT_PART, limit};

@@ -11,6 +11,7 @@ mod replay;
 mod response;
 mod stepped;
 mod stimulus;
+mod wrapped;
 
 pub(crate) use replay::Replay;
 

@@ -176,6 +176,8 @@ pub struct Measured {
     pub noise: Option<ExprId>,
     /// Width of the uniform error of its quantiser, SI, of parameters alone; known in the observed form.
     pub rounding: Option<ExprId>,
+    /// The period with which it begins again, as an angle after a turn, SI, of parameters alone: compared modulo that.
+    pub period: Option<ExprId>,
     /// Dimension and printed unit.
     pub quantity: Quantity,
     /// Where it is written.

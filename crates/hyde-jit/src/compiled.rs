@@ -355,6 +355,7 @@ impl Compiled {
             Constant::MaxStep => option("max_step")?,
             Constant::Noise(channel) => experiment.measured.get(channel)?.noise?,
             Constant::Rounding(channel) => experiment.measured.get(channel)?.rounding?,
+            Constant::Wrap(channel) => experiment.measured.get(channel)?.period?,
             Constant::BandFrom(bode) => experiment.bodes.get(bode)?.band?.0,
             Constant::BandTo(bode) => experiment.bodes.get(bode)?.band?.1,
             Constant::SearchedFrom(cut) => experiment.cuts.get(cut)?.band?.0,

@@ -108,6 +108,8 @@ pub enum Constant {
     Noise(usize),
     /// Width of the uniform error of a measured channel's quantiser, SI; known in the observed form.
     Rounding(usize),
+    /// The period with which a measured channel begins again, SI.
+    Wrap(usize),
     /// Lower end of a frequency response in Hz.
     BandFrom(usize),
     /// Upper end of a frequency response in Hz.

@@ -22,6 +22,7 @@ pub mod filter;
 pub mod parquet;
 pub mod spectrum;
 pub mod statistics;
+pub mod wrap;
 
 mod column;
 mod frame;

@@ -6,7 +6,9 @@
 //!
 //! A [`Frame`] is what a file holds: columns of numbers, integers or texts. A record is one whose columns are numbers over
 //! time: [`read`] and [`write()`]. A number that is not there (NaN) is a null. Equal frames give equal bytes.
+//! The values of what Hyde wrote are checked against their checksums.
 
+mod checksum;
 mod error;
 mod read;
 mod record;
@@ -14,7 +16,7 @@ mod write;
 
 pub use crate::frame::{Field, Frame, Kind, Values};
 pub use error::ReadError;
-pub use read::read_frame;
+pub use read::{READER, read_frame};
 pub use record::{is_parquet, read, write};
 pub use write::Writer;
 

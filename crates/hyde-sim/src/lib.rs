@@ -28,6 +28,7 @@ mod hurry;
 mod initial;
 mod inputs;
 mod integrator;
+mod known_start;
 mod meter;
 mod operating_point;
 mod results;
@@ -48,6 +49,7 @@ mod time_spent;
 
 pub use failure::{Failure, FailureKind};
 pub use inputs::InputError;
+pub use known_start::{KnownStart, known_start};
 pub use operating_point::{OperatingPoint, PointModes, PointTime, TakenMode, operating_point};
 pub use results::{
     Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Results, Statistics,

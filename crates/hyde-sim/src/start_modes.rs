@@ -36,7 +36,7 @@ pub(crate) fn leave_impossible_modes(
     yp: &[f64],
 ) -> Result<(), Box<Failure>> {
     let program: &Program = state.program;
-    let declared = |position: usize| {
+    leave_modes_against(state, t, y, yp, &|position| {
         program.initial.iter().any(|condition| match condition {
             InitialCondition::Fixed {
                 state,
@@ -45,9 +45,20 @@ pub(crate) fn leave_impossible_modes(
             } => *declared && (*state..*state + *len).contains(&position),
             InitialCondition::Equation { .. } | InitialCondition::Check { .. } => false,
         })
-    };
+    })
+}
+
+/// The same where it is known otherwise which states have their values for good.
+pub(crate) fn leave_modes_against(
+    state: &mut State<'_>,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+    declared: &dyn Fn(usize) -> bool,
+) -> Result<(), Box<Failure>> {
+    let program: &Program = state.program;
     for automaton in 0..program.automata.len() {
-        let Some((pin, value)) = violated(state, automaton, t, y, yp, &declared) else {
+        let Some((pin, value)) = violated(state, automaton, t, y, yp, declared) else {
             continue;
         };
         let here = current_mode(program, &state.z, automaton);
@@ -74,7 +85,7 @@ pub(crate) fn leave_impossible_modes(
                 }
             }
             state.z[program.automata[automaton].place] = to as f64;
-            if violated(state, automaton, t, y, yp, &declared).is_none()
+            if violated(state, automaton, t, y, yp, declared).is_none()
                 && !leaves_at_once(state, automaton, to, t, y, yp)
             {
                 found = true;

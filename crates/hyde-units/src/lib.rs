@@ -20,6 +20,7 @@
 //! # Ok::<(), hyde_units::UnitError>(())
 //! ```
 
+mod count;
 mod dimension;
 mod error;
 mod exponent;
@@ -31,6 +32,7 @@ mod suggest;
 mod symbol;
 mod unit;
 
+pub use count::counted;
 pub use dimension::{Agreement, AngleExponent, Dimension};
 pub use error::{UnitError, UnitErrorKind};
 pub use exponent::Exponent;

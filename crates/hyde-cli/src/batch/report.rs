@@ -8,7 +8,7 @@ use hyde_report::{
     BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, FailedCase, Outcome, Verdict, WorstCase,
 };
 use hyde_signal::{Field, Frame, Values};
-use hyde_units::{NamedUnit, engineering_as, significant};
+use hyde_units::{NamedUnit, counted, engineering_as, significant};
 use serde_json::Value;
 use std::path::Path;
 
@@ -100,8 +100,8 @@ fn verdicts(summary: &Value) -> Vec<Verdict> {
             Some(first) => Verdict {
                 outcome: Outcome::Failed,
                 text: format!(
-                    "{text}: not in {} cases, the first is {first}",
-                    expectation["broken"]
+                    "{text}: not in {}, the first is {first}",
+                    counted(&expectation["broken"], "case")
                 ),
             },
         }

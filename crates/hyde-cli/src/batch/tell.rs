@@ -3,7 +3,7 @@
 use super::prepare::Prepared;
 use super::work::Took;
 use hyde_experiment::batch::{QUANTILES, Summary};
-use hyde_units::{engineering_as, significant};
+use hyde_units::{counted, engineering_as, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
@@ -22,8 +22,9 @@ pub(crate) fn text(batch: &Prepared, summary: &Summary, took: Took, rerun: &str)
     );
     let _ = write!(
         out,
-        "{name} of {experiment} of {model}: {} cases, {} failed",
-        summary.cases, summary.failed
+        "{name} of {experiment} of {model}: {}, {} failed",
+        counted(summary.cases, "case"),
+        summary.failed
     );
     if took.solved > 0 {
         let seconds = took.wall.as_secs_f64();

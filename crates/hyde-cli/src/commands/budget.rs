@@ -8,12 +8,14 @@ use crate::project::{self, Project, Records, complain, print_error, print_output
 use hyde_compiler::{changed, ideals};
 use hyde_experiment::{BudgetOf, Share};
 use hyde_syntax::ast::{Experiment, Ideal};
-use hyde_units::{NamedUnit, engineering_as};
+use hyde_units::{NamedUnit, counted, engineering_as};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
 /// Parts of a measure below this are printed as nothing.
 const NOTHING: f64 = 1e-5;
+/// Stands for a number that there is not.
+const NO_VALUE: &str = "--";
 
 /// Runs the experiment as it is, with all ideal, without each imperfection and with it alone, and prints what every measure is made of.
 pub(crate) fn budget(args: &BudgetArgs) -> Exit {
@@ -177,8 +179,9 @@ fn lines<'m>(made: &'m Made, budget: &BudgetOf) -> Vec<Line<'m>> {
 }
 
 fn text(made: &Made) -> String {
-    let title = |name: &str, unit: &NamedUnit, budget: &BudgetOf| {
-        format!("{name} = {}", engineering_as(budget.value, unit))
+    let title = |name: &str, unit: &NamedUnit, budget: &BudgetOf| match budget.value.is_finite() {
+        true => format!("{name} = {}", engineering_as(budget.value, unit)),
+        false => format!("{name} has no value"),
     };
     // As wide as the names, and as the titles need, so that the heads stand above their columns.
     let names = made.ideals.iter().map(|ideal| ideal.name.text.len());
@@ -187,10 +190,12 @@ fn text(made: &Made) -> String {
     let width = names.chain(titles.map(|title| title.saturating_sub(7)));
     let width = width.max().unwrap_or(0).max("interaction".len());
     let runs = 2 * made.ideals.len() + 2;
-    let mut out = format!("budget of {}: {runs} runs\n", made.title);
+    let mut out = format!("budget of {}: {}\n", made.title, counted(runs, "run"));
     for (name, unit, budget) in &made.measures {
         let number = |value: f64| {
-            if value.abs() <= NOTHING * budget.value.abs() {
+            if !value.is_finite() {
+                NO_VALUE.to_owned()
+            } else if value.abs() <= NOTHING * budget.value.abs() {
                 "0".to_owned()
             } else {
                 engineering_as(value, unit)
@@ -206,7 +211,10 @@ fn text(made: &Made) -> String {
         for line in lines(made, budget) {
             // Adding zero makes no minus of what is rounded to nothing.
             let percent = (1000.0 * line.share / budget.value).round() / 10.0 + 0.0;
-            let percent = format!("{percent:.1} %");
+            let percent = match percent.is_finite() {
+                true => format!("{percent:.1} %"),
+                false => NO_VALUE.to_owned(),
+            };
             let (what, share) = (line.what, number(line.share));
             let alone = line.alone.map_or_else(String::new, number);
             let printed = format!(
@@ -214,6 +222,14 @@ fn text(made: &Made) -> String {
                 line.doc
             );
             let _ = writeln!(out, "{}", printed.trim_end());
+        }
+        let shares = budget.shares.iter();
+        let mut numbers = shares.flat_map(|share| [share.share, share.alone]);
+        if !budget.value.is_finite() || numbers.any(|number| !number.is_finite()) {
+            let _ = writeln!(
+                out,
+                "    {NO_VALUE}: there is no number, for a run has no value of `{name}`: a\n       `settling` that does not come to pass before the run ends has none"
+            );
         }
     }
     out
@@ -233,15 +249,22 @@ fn to_json(made: &Made) -> Value {
     json!({ "ok": true, "budget": made.title, "measures": measures.collect::<Value>() })
 }
 
+/// A number of the CSV; an empty cell where there is none.
+fn written(value: f64) -> String {
+    match value.is_finite() {
+        true => value.to_string(),
+        false => String::new(),
+    }
+}
+
 fn csv(made: &Made) -> String {
     let mut out = String::from("measure,unit,part,share,alone\n");
     for (name, unit, budget) in &made.measures {
         let unit = unit.unit().dimension.usual_unit();
         for line in lines(made, budget) {
-            let alone = line
-                .alone
-                .map_or_else(String::new, |alone| alone.to_string());
-            let _ = writeln!(out, "{name},{unit},{},{},{alone}", line.what, line.share);
+            let alone = line.alone.map_or_else(String::new, written);
+            let share = written(line.share);
+            let _ = writeln!(out, "{name},{unit},{},{share},{alone}", line.what);
         }
     }
     out

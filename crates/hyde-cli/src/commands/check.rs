@@ -13,6 +13,7 @@ use hyde_calibrate::CalibrationPlan;
 use hyde_compiler::{DiagnosisPlan, States, ideals};
 use hyde_diag::{Diagnostics, Origin, Sources};
 use hyde_syntax::ast::StudyKind;
+use hyde_units::counted;
 use serde_json::{Value, json};
 use std::sync::Arc;
 
@@ -107,8 +108,8 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
                     || format!("model {}", project.model),
                     |experiment| format!("experiment {experiment}"),
                 );
-                let unknowns = compiled.program.n_unknowns;
-                found.names.push(format!("{what} ({unknowns} unknowns)"));
+                let unknowns = counted(compiled.program.n_unknowns, "unknown");
+                found.names.push(format!("{what} ({unknowns})"));
                 if !models.contains(&project.model) {
                     let states = &compiled.states;
                     found
@@ -182,9 +183,9 @@ fn sweeps(args: &ModelArgs, project: &Project) -> Result<Vec<String>, Exit> {
         let inputs = Arc::new(Inputs::recording());
         match Prepared::new(&order, &inputs, Records::IfThere, (args.json, true)) {
             Ok(batch) => names.push(format!(
-                "sweep {} ({} cases)",
+                "sweep {} ({})",
                 order.sweep,
-                batch.plan.count()
+                counted(batch.plan.count(), "case")
             )),
             Err(Exit::Done) => {}
             Err(failed) => return Err(failed),

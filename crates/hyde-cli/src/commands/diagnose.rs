@@ -4,11 +4,13 @@ use crate::args::{DiagnoseArgs, ModelArgs, StudyArgs};
 use crate::diagnosis::{self, Told};
 use crate::exit::Exit;
 use crate::files;
+use crate::left_model;
 use crate::project::{self, complain, print_output};
 use crate::records;
-use crate::study;
+use crate::study::{self, Calibration};
 use crate::unknown;
-use hyde_calibrate::{Hypothesis, Inquiry, Knob};
+use crate::unobservable;
+use hyde_calibrate::{Cause, Hypothesis, Inquiry, Knob, Solution, Unsupported, fitted_parameters};
 use hyde_compiler::{Candidate, DiagnosisPlan, Form};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::{Study, StudyKind};
@@ -19,7 +21,8 @@ use std::path::Path;
 /// Finds and tells.
 pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
     let model_args = args.study.model_args();
-    if let Err(reason) = args.study.use_jobs() {
+    let folder = args.out.as_deref().map_or(Ok(()), left_model::check_folder);
+    if let Err(reason) = args.study.use_jobs().and(folder) {
         return complain(&model_args, Exit::CommandLine, &reason);
     }
     let plan = match plan(&args.study) {
@@ -64,6 +67,11 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
         })
     };
     let told = found.and_then(|found| {
+        let causes = causes(&calibration, &found.before)?;
+        let learned = fitted_parameters(&calibration.varied, &found.before);
+        if !causes.is_empty() && learned.iter().all(|parameter| parameter.silent) {
+            return Ok(Err(unobservable::unlearned(&calibration, &causes)));
+        }
         // A finding may be of the effect that was written.
         let own = found
             .unknown
@@ -72,23 +80,35 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
         hypotheses.extend(own.map(|own| own.hypothesis.clone()));
         // What it says borrows what was found; so it is said here.
         let told = Told::new(&plan, &calibration, &candidates, &hypotheses, &found)?;
-        Ok(tell(args, &told))
+        let told = Told { causes, ..told };
+        Ok(Ok(tell(args, &told)))
     });
-    match told {
-        Ok(exit) => exit,
-        Err(error) => {
-            let diagnostic = study::unsupported(&error, plan.span);
-            calibration.project.diagnostics.push(diagnostic);
-            calibration.project.finish_with_errors(&model_args)
-        }
-    }
+    let diagnostic = match told {
+        Ok(Ok(exit)) => return exit,
+        Ok(Err(nothing)) => nothing,
+        Err(error) => unobservable::unsupported(&error, plan.span),
+    };
+    calibration.project.diagnostics.push(diagnostic);
+    calibration.project.finish_with_errors(&model_args)
+}
+
+/// Why the calibrated model does not follow the records, if it does not.
+fn causes(calibration: &Calibration, solution: &Solution) -> Result<Vec<Cause>, Unsupported> {
+    hyde_calibrate::standstill(
+        &calibration.compiled.program,
+        &calibration.fitted,
+        &calibration.observer,
+        &calibration.varied,
+        &calibration.set,
+        solution,
+    )
 }
 
 /// Prints, and leaves the files where a folder is asked for.
 fn tell(args: &DiagnoseArgs, told: &Told<'_>) -> Exit {
     let report = diagnosis::json(told);
     if let Some(folder) = &args.out
-        && let Err(reason) = leave(folder, told, &report)
+        && let Err(reason) = leave(folder, &args.study.file, told, &report)
     {
         return complain(&args.study.model_args(), Exit::CommandLine, &reason);
     }
@@ -108,13 +128,27 @@ fn tell(args: &DiagnoseArgs, told: &Told<'_>) -> Exit {
 }
 
 /// Writes the files, each whole or not at all; the page last.
-fn leave(folder: &Path, told: &Told<'_>, report: &Value) -> Result<(), String> {
+fn leave(folder: &Path, user: &Path, told: &Told<'_>, report: &Value) -> Result<(), String> {
     files::make_folder(folder)?;
     let report = format!("{report:#}\n");
     let leave = |name: &str, content: &str| files::write(&folder.join(name), content.as_bytes());
-    leave(&model_file(told), &told.written.text)?;
+    leave(&model_file(told), &model(folder, user, told))?;
     leave("report.json", &report)?;
     leave("report.html", &diagnosis::html(told))
+}
+
+/// The new model as a file of a folder. Where it imports the user's package it stands alone: an experiment would not find
+/// its records there.
+fn model(folder: &Path, user: &Path, told: &Told<'_>) -> String {
+    let head = left_model::head(&told.calibration.project, user, folder, &told.written.model);
+    let mut text = told.new_text();
+    if let Some(name) = &told.written.experiment
+        && head.imports
+        && let Some(at) = text.find(&format!("\nexperiment {name}"))
+    {
+        text = text[..at].trim_end();
+    }
+    format!("{}\n\n{text}\n", head.text)
 }
 
 fn model_file(told: &Told<'_>) -> String {

@@ -8,6 +8,7 @@ use crate::pages::{Library, pages};
 use crate::project::{complain, print_output, report_errors};
 use hyde_diag::{Diagnostics, FileId, Sources};
 use hyde_syntax::ast;
+use hyde_units::counted;
 use std::path::Path;
 
 /// Writes a page for each package and an index of them, each file whole or not at all.
@@ -15,7 +16,11 @@ pub(crate) fn doc(args: &DocArgs) -> Exit {
     match written(args) {
         Ok(count) => {
             let index = args.out.join("index.html");
-            print_output(&format!("{}: {count} packages", index.display()));
+            print_output(&format!(
+                "{}: {}",
+                index.display(),
+                counted(count, "package")
+            ));
             Exit::Done
         }
         Err(exit) => exit,

@@ -134,4 +134,5 @@ pages! {
     CannotVary "E0903";
     CannotObserve "E0904";
     BadDiagnosis "E0905";
+    NothingLearned "E0906";
 }

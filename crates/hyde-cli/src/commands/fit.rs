@@ -2,20 +2,23 @@
 
 use crate::args::FitArgs;
 use crate::before_after::{self, RecordErrors};
-use crate::diagnosis::suspicion;
+use crate::diagnosis::{suspicion, wrapped};
 use crate::exit::Exit;
 use crate::files;
+use crate::left_model;
 use crate::project::{complain, print_output};
 use crate::study::{self, Calibration};
+use crate::unobservable;
 use hyde_calibrate::{Fit, Model, Unsupported};
-use hyde_units::{engineering, significant};
+use hyde_units::{counted, engineering, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// Calibrates and tells.
 pub(crate) fn fit(args: &FitArgs) -> Exit {
-    if let Err(reason) = args.study.use_jobs() {
+    let folder = args.out.as_deref().map_or(Ok(()), left_model::check_folder);
+    if let Err(reason) = args.study.use_jobs().and(folder) {
         return complain(&args.study.model_args(), Exit::CommandLine, &reason);
     }
     let mut calibration = match study::load(&args.study, false) {
@@ -35,13 +38,19 @@ pub(crate) fn fit(args: &FitArgs) -> Exit {
         Ok(found) => found,
         Err(error) => return cannot(&mut calibration, args, &error),
     };
+    if !found.learned() {
+        let diagnostic = unobservable::unlearned(&calibration, &found.causes);
+        calibration.project.diagnostics.push(diagnostic);
+        let model_args = args.study.model_args();
+        return calibration.project.finish_with_errors(&model_args);
+    }
     let errors = match errors(&calibration, &found) {
         Ok(errors) => errors,
         Err(error) => return cannot(&mut calibration, args, &error),
     };
     let report = report(&calibration, &found, &errors);
     if let Some(folder) = &args.out
-        && let Err(reason) = leave(folder, &calibration, &found, &report)
+        && let Err(reason) = leave(folder, &args.study.file, &calibration, &found, &report)
     {
         return complain(&args.study.model_args(), Exit::CommandLine, &reason);
     }
@@ -94,7 +103,7 @@ fn errors(calibration: &Calibration, found: &Fit) -> Result<Vec<RecordErrors>, U
 
 /// Tells why there is no calibration.
 fn cannot(calibration: &mut Calibration, args: &FitArgs, error: &Unsupported) -> Exit {
-    let diagnostic = study::unsupported(error, calibration.plan.span);
+    let diagnostic = unobservable::unsupported(error, calibration.plan.span);
     calibration.project.diagnostics.push(diagnostic);
     calibration
         .project
@@ -106,17 +115,21 @@ fn text(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> String
     let program = &calibration.compiled.program;
     let mut out = String::new();
     let end = match fit.converged {
-        true => format!("converged in {} steps", fit.steps),
-        false => format!("NOT CONVERGED in {} steps", fit.steps),
+        _ if !fit.causes.is_empty() => "WITHOUT FOLLOWING THEM".to_owned(),
+        true => format!("converged in {}", counted(fit.steps, "step")),
+        false => format!("NOT CONVERGED in {}", counted(fit.steps, "step")),
     };
     let _ = writeln!(
         out,
-        "{} of {}: {} parameters on {} records, {end}",
+        "{} of {}: {} on {}, {end}",
         calibration.plan.name,
         calibration.plan.model,
-        fit.parameters.len(),
-        calibration.fitted.len(),
+        counted(fit.parameters.len(), "parameter"),
+        counted(calibration.fitted.len(), "record"),
     );
+    for cause in &fit.causes {
+        wrapped(&mut out, "  -", &unobservable::reason(calibration, cause));
+    }
     if fit.agreeing_starts.1 > 1 {
         let (agreeing, all) = fit.agreeing_starts;
         let _ = writeln!(out, "  {agreeing} of {all} starts ended there");
@@ -174,6 +187,7 @@ fn report(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> Valu
                 "left_range": parameter.left_range,
                 "at_bound": parameter.at_bound,
                 "not_told": parameter.untold,
+                "no_effect": parameter.silent,
             })
         })
         .collect();
@@ -187,12 +201,17 @@ fn report(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> Valu
                 .collect()
         })
         .collect();
+    let causes = fit.causes.iter();
+    let causes: Vec<String> = causes
+        .map(|cause| unobservable::reason(calibration, cause))
+        .collect();
     json!({
         "ok": true,
         "calibration": calibration.plan.name,
         "model": calibration.plan.model,
         "model_hash": calibration.project.hash,
-        "converged": fit.converged,
+        "converged": fit.converged && fit.causes.is_empty(),
+        "causes": causes,
         "steps": fit.steps,
         "starts": fit.agreeing_starts.1,
         "agreeing_starts": fit.agreeing_starts.0,
@@ -206,62 +225,55 @@ fn report(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> Valu
 /// Leaves the report and the calibrated model.
 fn leave(
     folder: &Path,
+    user: &Path,
     calibration: &Calibration,
     fit: &Fit,
     report: &Value,
 ) -> Result<(), String> {
     files::make_folder(folder)?;
     files::write(&folder.join("fit.json"), format!("{report:#}\n").as_bytes())?;
-    files::write(
-        &folder.join(model_file(calibration)),
-        model(calibration, fit).as_bytes(),
-    )
+    let stem = model_name(calibration);
+    let head = left_model::head(&calibration.project, user, folder, &stem);
+    let text = format!("{}\n\n{}", head.text, model(calibration, fit));
+    files::write(&folder.join(model_file(calibration)), text.as_bytes())
 }
 
 fn model_file(calibration: &Calibration) -> String {
-    format!("{}_fitted.hyde", calibration.plan.model.replace('.', "_"))
+    format!("{}.hyde", model_name(calibration))
 }
 
-/// The model with its calibrated values, as a file that imports the other.
+fn model_name(calibration: &Calibration) -> String {
+    format!("{}_fitted", calibration.plan.model.replace('.', "_"))
+}
+
+/// The model with its calibrated values. Elements of an array are told beside it: no modification sets one.
 fn model(calibration: &Calibration, fit: &Fit) -> String {
     let program = &calibration.compiled.program;
-    let name = &calibration.plan.model;
     let mut out = String::new();
-    let package = calibration
-        .project
-        .file
-        .files
-        .first()
-        .and_then(|(_, tree)| tree.package.as_ref());
-    match package {
-        Some((path, _)) => {
-            let _ = writeln!(out, "import {}.*;\n", path.dotted());
-        }
-        None => {
-            let _ = writeln!(
-                out,
-                "// For the file of `{name}`: a file without a package cannot be imported."
-            );
+    let mut values: Vec<String> = Vec::new();
+    for parameter in &fit.parameters {
+        let unit = program
+            .parameter(&parameter.name)
+            .map(|(p, _)| p.dimension.usual_unit());
+        let unit = unit
+            .filter(|unit| unit != "1")
+            .map_or_else(String::new, |unit| format!(" [{unit}]"));
+        let value = format!("{} = {:?}{unit}", parameter.name, parameter.value);
+        if parameter.name.contains('[') {
+            let _ = writeln!(out, "// {value}");
+        } else {
+            values.push(format!("  {value}"));
         }
     }
-    let values: Vec<String> = fit
-        .parameters
-        .iter()
-        .map(|parameter| {
-            let unit = program
-                .parameter(&parameter.name)
-                .map(|(p, _)| p.dimension.usual_unit());
-            let unit = unit
-                .filter(|unit| unit != "1")
-                .map_or_else(String::new, |unit| format!(" [{unit}]"));
-            format!("  {} = {:?}{unit}", parameter.name, parameter.value)
-        })
-        .collect();
+    let values = match values.is_empty() {
+        true => String::new(),
+        false => format!("(\n{}\n)", values.join(",\n")),
+    };
     let _ = writeln!(
         out,
-        "model {}_fitted = {name}(\n{}\n) \"calibrated by `{}`\";",
-        name.replace('.', "_"),
-        values.join(",\n"),
+        "model {} = {}{values} \"calibrated by `{}`\";",
+        model_name(calibration),
+        calibration.plan.model,
         calibration.plan.name
     );
     out

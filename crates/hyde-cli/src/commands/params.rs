@@ -7,7 +7,7 @@ use crate::project::{self, Aim, Records, complain, print_output};
 use crate::records;
 use hyde_experiment::parameters;
 use hyde_program::{Parameter, Prior};
-use hyde_units::significant;
+use hyde_units::{counted, significant};
 use serde_json::json;
 use std::fmt::Write as _;
 
@@ -89,8 +89,8 @@ fn listed(args: &ParamsArgs) -> Result<String, Exit> {
         .count();
     let _ = writeln!(
         text,
-        "{} parameters, {without} without a source",
-        program.parameters.len()
+        "{}, {without} without a source",
+        counted(program.parameters.len(), "parameter")
     );
     Ok(text)
 }

@@ -69,10 +69,13 @@ fn figure(args: &PlotArgs) -> Result<Figure, String> {
         && let Some(figure) = cases::envelopes(args, batch)
     {
         figure?
-    } else if args.xy {
-        curves::over_each_other(args, &source::over_time(args, &sources)?)?
     } else {
-        curves::over_time(args, &source::over_time(args, &sources)?)?
+        let recorded = source::over_time(args, &sources)?;
+        curves::check_window(args, &recorded)?;
+        match args.xy {
+            true => curves::over_each_other(args, &recorded)?,
+            false => curves::over_time(args, &recorded)?,
+        }
     };
     Ok(Figure {
         title: title.map(str::to_owned),

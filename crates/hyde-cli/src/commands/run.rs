@@ -3,6 +3,7 @@
 use crate::args::{Format, RunArgs};
 use crate::exit::Exit;
 use crate::files;
+use crate::interruption;
 use crate::project::{self, Aim, Project, Records, complain, print_error, print_output};
 use crate::records;
 use crate::{asked_figures, forces, render, report, run_failure, summary};
@@ -15,8 +16,6 @@ use hyde_units::NamedUnit;
 use serde_json::{Map, Value, json};
 use std::io::IsTerminal as _;
 use std::path::Path;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 /// Runs an experiment, prints what happened, and leaves its files.
 pub(crate) fn run(args: &RunArgs) -> Exit {
@@ -72,7 +71,7 @@ pub(crate) fn solved_of(
         atol: args.atol,
         every_s: None,
         gradient: args.gradient.clone(),
-        interrupted: interrupted(),
+        interrupted: interruption::interrupted(),
     };
     let tables = records::tables(&project.records);
     let start = std::time::Instant::now();
@@ -83,20 +82,6 @@ pub(crate) fn solved_of(
         }
         Err(error) => Err(failed(args, project, &compiled, &error)),
     }
-}
-
-/// The flag that Ctrl-C sets; a second Ctrl-C ends the process at once.
-pub(crate) fn interrupted() -> Arc<AtomicBool> {
-    let flag = Arc::new(AtomicBool::new(false));
-    let set = Arc::clone(&flag);
-    // A process has one handler: a second run of it keeps the first one's, which ends it.
-    let handled = ctrlc::set_handler(move || {
-        if set.swap(true, Ordering::Relaxed) {
-            std::process::abort();
-        }
-    });
-    drop(handled);
-    flag
 }
 
 fn finish(

@@ -17,9 +17,10 @@ mod work;
 
 use crate::args::{CaseKind, SelftestArgs, StudyArgs};
 use crate::batch::store::Store;
-use crate::commands::{diagnose, run};
+use crate::commands::diagnose;
 use crate::exit::Exit;
 use crate::files;
+use crate::interruption;
 use crate::project::{complain, print_error, print_output};
 use crate::study::{self, Calibration};
 use crate::unknown;
@@ -29,6 +30,7 @@ use hyde_calibrate::{
 use hyde_compiler::{Candidate, DiagnosisPlan};
 use hyde_experiment::batch::{Identity, digest};
 use hyde_signal::Table;
+use hyde_units::counted;
 use models::Models;
 use serde_json::json;
 use std::collections::BTreeMap;
@@ -92,7 +94,7 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
             models.recorded(numbers, sizes, shapes)
         };
         let author = |numbers: &[usize], written: &[Written]| models.observed(numbers, written);
-        let interrupted = run::interrupted();
+        let interrupted = interruption::interrupted();
         let axis = Axis::new(
             &calibration.compiled.program,
             &records,
@@ -135,7 +137,10 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
                             }
                             None => "; with `--out DIR` they would be kept".to_owned(),
                         };
-                        print_error(&format!("interrupted after {done} of {total} cases{kept}"));
+                        print_error(&format!(
+                            "interrupted after {done} of {}{kept}",
+                            counted(total, "case")
+                        ));
                         return Ok(Exit::Interrupted);
                     }
                 }

@@ -13,9 +13,11 @@ use crate::batch::work::{Ended, How, Took, solve_missing};
 use crate::commands::run;
 use crate::exit::Exit;
 use crate::files;
+use crate::interruption;
 use crate::project::{Records, print_error, print_output};
 use crate::settings::Setting;
 use hyde_experiment::batch::{indices, shards, varied};
+use hyde_units::counted;
 use serde_json::json;
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
@@ -76,15 +78,15 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
     }
     let how = How {
         jobs: args.jobs.unwrap_or(0),
-        interrupted: run::interrupted(),
+        interrupted: interruption::interrupted(),
         json: args.json,
         quiet: args.quiet || args.shard.is_some(),
     };
-    let _lock = locked(
-        &folder,
-        args.shard.is_some() || args.engine == Engine::Slurm,
-    )
-    .map_err(failed)?;
+    let shared = args.shard.is_some() || args.engine == Engine::Slurm;
+    let lock = locked(&folder, shared).map_err(failed)?;
+    if lock.is_some() && !shared {
+        files::remove_unfinished(&folder);
+    }
     let ended = |ended: Ended| match ended {
         Ended::Store(reason) => stopped(args, &batch, open(), &folder, &reason, Exit::CommandLine),
         Ended::Interrupted => stopped(
@@ -272,8 +274,8 @@ fn stopped(
         String::new()
     };
     let reason = format!(
-        "{why}, with {done} of {} cases done{kept}",
-        batch.plan.count()
+        "{why}, with {done} of {} done{kept}",
+        counted(batch.plan.count(), "case")
     );
     complain(args, exit, &reason)
 }

@@ -12,15 +12,6 @@ use hyde_units::significant;
 /// The page as one HTML text.
 pub(crate) fn html(told: &Told<'_>) -> String {
     let calibration = told.calibration;
-    let own_text = told
-        .calibration
-        .project
-        .file
-        .files
-        .first()
-        .map_or(0, |(file, _)| {
-            calibration.project.sources.get(*file).text.trim_end().len()
-        });
     let report = DiagnosisReport {
         title: format!("{} of {}", told.plan.name, calibration.plan.model),
         facts: vec![
@@ -49,7 +40,7 @@ pub(crate) fn html(told: &Told<'_>) -> String {
         tried: tried(told),
         maps: maps(told),
         whiteness: told.whiteness.iter().map(white).collect(),
-        model: told.written.text[own_text..].trim().to_owned(),
+        model: told.new_text().to_owned(),
         footer: format!("hyde {}", env!("CARGO_PKG_VERSION")),
     };
     report.to_html()

@@ -139,7 +139,7 @@ fn tried(out: &mut String, told: &Told<'_>) {
 }
 
 /// A paragraph within the width, its later lines as far in as its first words.
-fn wrapped(out: &mut String, head: &str, words: &str) {
+pub(crate) fn wrapped(out: &mut String, head: &str, words: &str) {
     let indent = " ".repeat(if head.starts_with(' ') { head.len() } else { 2 });
     let mut line = head.trim_end().to_owned();
     let mut fresh = true;

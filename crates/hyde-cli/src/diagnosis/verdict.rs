@@ -2,6 +2,7 @@
 
 use super::{Told, named};
 use crate::before_after::{self, RecordErrors};
+use crate::unobservable::reason;
 use hyde_calibrate::{Finding, Frozen, Quantity, Verdict};
 use hyde_units::significant;
 
@@ -75,6 +76,8 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
         .iter()
         .map(|own| frozen(told, own))
         .collect();
+    let causes = told.causes.iter();
+    doubts.extend(causes.map(|cause| reason(told.calibration, cause)));
     let held_out = before_after::chi(&told.errors, true);
     let seen = before_after::chi(&told.errors, false);
     if let Some((before, after)) = held_out.or(seen) {

@@ -125,3 +125,50 @@ fn status_4_when_an_expectation_does_not_hold() {
     let summary: Value = serde_json::from_str(&text(&json)).unwrap();
     assert_eq!(summary["expectations"][0]["holds"], false);
 }
+
+/// Half an answer is none, whatever was asked for.
+#[cfg(target_os = "linux")]
+#[test]
+fn status_2_when_standard_output_is_full() {
+    for line in [
+        &["check", BENCH][..],
+        &["run", BENCH, "--stop", "0.02", "--json"],
+        &["params", BENCH],
+        &["explain", "E0503"],
+        &["--help"],
+    ] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full");
+        let output = crate::command::command(line)
+            .stdout(full.unwrap())
+            .output()
+            .unwrap();
+        assert_eq!(status(&output), 2, "{line:?}");
+        let told = errors(&output);
+        assert!(
+            told.contains("cannot write to standard output: the disk is full"),
+            "{line:?}: {told}"
+        );
+    }
+}
+
+/// What keeps nothing of what is unfinished ends at once, with the status of what was interrupted.
+#[cfg(unix)]
+#[test]
+fn status_130_when_it_was_interrupted() {
+    let cogging = "examples/bench_axis/cogging";
+    for line in [
+        &["fit", BENCH, "bench", "--data", cogging][..],
+        &["diagnose", BENCH, "bench", "--data", cogging],
+    ] {
+        let mut child = crate::command::command(line)
+            .stdout(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        std::thread::sleep(std::time::Duration::from_millis(1500));
+        let signal = std::process::Command::new("kill")
+            .args(["-INT", &child.id().to_string()])
+            .status();
+        assert!(signal.unwrap().success());
+        assert_eq!(child.wait().unwrap().code(), Some(130), "{line:?}");
+    }
+}

@@ -89,7 +89,10 @@ fn a_process_that_is_killed_loses_no_finished_case() {
             break;
         }
     }
+    // Killed while it wrote an input, it has left a part of that.
+    let unfinished = folder.file("out/inputs/.hyde-Xy12ab", "half");
     assert_eq!(status(&hyde(&line)), 0);
+    assert!(!std::path::Path::new(&unfinished).exists());
     assert_eq!(
         std::fs::read(format!("{out}/cases.parquet")).unwrap(),
         whole

@@ -44,6 +44,7 @@ impl<'a> Model<'a, '_> {
         } else {
             Quantity::usual(dimension)
         };
+        let period = self.period(value.id);
         let (id, rounding) = match self.input.form {
             Form::Run => (value.id, None),
             Form::Observed => self.observed(value.id),
@@ -69,6 +70,7 @@ impl<'a> Model<'a, '_> {
             clocked,
             noise,
             rounding,
+            period,
             quantity,
             origin,
         });

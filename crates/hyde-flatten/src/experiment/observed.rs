@@ -2,7 +2,8 @@
 //!
 //! A rounding to steps of q is the quantity itself with an error that is uniform within a step: round_to has the mean
 //! error 0, floor_to -q/2, and either the variance q^2/12. The mean is taken into the value, the width of the error is
-//! kept beside it. A clocked variable that is an assignment of samples alone is what it assigns.
+//! kept beside it. A clocked variable that is an assignment of samples alone is what it assigns. What wraps is no quantiser:
+//! see [`super::wrapped`].
 
 use crate::model::Model;
 use hyde_ir::{BinaryOp, Expr as Ir, ExprId, Index, UnaryOp, VariableKind};
@@ -12,13 +13,24 @@ use std::collections::HashMap;
 const MAX_DEPTH: usize = 40;
 
 impl Model<'_, '_> {
-    /// The value without clocks and quantisers, and the width of the error that these make, if there are any.
+    /// The value without clocks and quantisers, and the width of the error that these make, if there are any; of one that
+    /// wraps, what it is before that.
     pub(super) fn observed(&mut self, value: ExprId) -> (ExprId, Option<ExprId>) {
         let sampled = self.without_clocks(value, 0);
+        let sampled = match self.unwrapped(sampled) {
+            Some((unwrapped, _)) => unwrapped,
+            None => sampled,
+        };
         match self.width(sampled) {
             Some(width) => (self.without_quantisers(sampled), Some(width)),
             None => (sampled, None),
         }
+    }
+
+    /// The period with which a value begins again.
+    pub(super) fn period(&mut self, value: ExprId) -> Option<ExprId> {
+        let sampled = self.without_clocks(value, 0);
+        self.unwrapped(sampled).map(|(_, period)| period)
     }
 
     /// Clocked variables replaced by what is assigned to them, as far as that has no memory.

@@ -150,6 +150,7 @@ impl<'a> Model<'a, '_> {
                 clocked,
                 noise: None,
                 rounding: None,
+                period: None,
                 quantity: self.flat.variables[var].quantity.clone(),
                 origin: origin.made_by(MadeBy::Experiment),
             });

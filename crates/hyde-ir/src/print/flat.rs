@@ -314,6 +314,9 @@ impl Printer<'_> {
             let rounding = measured.rounding.map_or_else(String::new, |width| {
                 format!(", rounded within {}", self.names.expr(width))
             });
+            let period = measured.period.map_or_else(String::new, |period| {
+                format!(", modulo {}", self.names.expr(period))
+            });
             let when = if measured.clocked {
                 "after the tick"
             } else {
@@ -321,7 +324,7 @@ impl Printer<'_> {
             };
             let _ = writeln!(
                 out,
-                "  measured {}.{}{} = {}{noise}{rounding} {when}{}",
+                "  measured {}.{}{} = {}{noise}{rounding}{period} {when}{}",
                 column.record,
                 column.column,
                 steps.concat(),

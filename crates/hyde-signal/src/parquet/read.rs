@@ -1,8 +1,10 @@
 //! Reads a Parquet file whole.
 
+use super::checksum;
 use super::error::ReadError;
 use crate::csv::name_and_unit;
 use crate::frame::{Field, Frame, Kind, Values};
+use crc32fast::Hasher;
 use hyde_units::NamedUnit;
 use parquet::basic::Type as Physical;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -11,29 +13,40 @@ use parquet::file::reader::{FileReader, RowGroupReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 use std::collections::BTreeMap;
 
+/// The name of the thread that reads: what panics there is a damaged file.
+pub const READER: &str = "reader of a Parquet file";
+
 /// Reads the bytes of a file. Numbers of every width and truths become doubles, 64-bit integers stay integers.
 ///
 /// # Errors
 /// If they are no Parquet file of plain columns of numbers and texts.
 pub fn read_frame(bytes: &[u8]) -> Result<Frame, ReadError> {
-    // Of a damaged file the crate asserts what it should check: that is a mistake of the file, no end of the program.
-    std::panic::catch_unwind(|| frame(bytes)).unwrap_or_else(|_| {
-        Err(ReadError::Damaged(
-            "its parts do not fit each other".to_owned(),
-        ))
+    // Of a damaged file the crate asserts what it should check: that is a mistake of the file, no end of the program. A thread
+    // of its own keeps it, by whose name a program may pass over what it says.
+    let damaged = || ReadError::Damaged("its parts do not fit each other".to_owned());
+    std::thread::scope(|scope| {
+        let reader = std::thread::Builder::new().name(READER.to_owned());
+        let read = reader.spawn_scoped(scope, || frame(bytes));
+        let read = read.map_err(|error| ReadError::Damaged(error.to_string()))?;
+        read.join().unwrap_or_else(|_| Err(damaged()))
     })
 }
 
 fn frame(bytes: &[u8]) -> Result<Frame, ReadError> {
     let reader = SerializedFileReader::new(bytes::Bytes::copy_from_slice(bytes))?;
     let file = reader.metadata().file_metadata();
-    let mut units = BTreeMap::new();
+    // Other programs may write changed values with the notes of the file that they read.
+    let own = file.created_by().is_some_and(|by| by.starts_with("hyde "));
+    let (mut units, mut checksums) = (BTreeMap::new(), BTreeMap::new());
     let mut metadata = Vec::new();
     for note in file.key_value_metadata().into_iter().flatten() {
         let value = note.value.clone().unwrap_or_default();
-        match note.key.strip_prefix("unit:") {
-            Some(column) => drop(units.insert(column.to_owned(), value)),
-            None => metadata.push((note.key.clone(), value)),
+        if let Some(column) = note.key.strip_prefix("unit:") {
+            units.insert(column.to_owned(), value);
+        } else if let Some(column) = note.key.strip_prefix(checksum::NOTE) {
+            checksums.insert(column.to_owned(), value);
+        } else {
+            metadata.push((note.key.clone(), value));
         }
     }
     let mut fields = Vec::new();
@@ -59,6 +72,15 @@ fn frame(bytes: &[u8]) -> Result<Frame, ReadError> {
             | Physical::FIXED_LEN_BYTE_ARRAY => Kind::Number,
         };
         let all = all.unwrap_or(Values::empty(kind));
+        if let Some(known) = checksums.get(column.name()).filter(|_| own) {
+            let mut hasher = Hasher::new();
+            checksum::add(&mut hasher, &all);
+            if checksum::written(&hasher) != *known {
+                return Err(ReadError::Damaged(format!(
+                    "the values of `{name}` are not those that were written"
+                )));
+            }
+        }
         fields.push(Field {
             name,
             kind: all.kind(),

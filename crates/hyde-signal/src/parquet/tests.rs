@@ -88,6 +88,28 @@ fn groups_of_rows_with_texts_integers_and_what_is_not_there() {
     );
 }
 
+/// It is part of a value, of its place, of the length of something, or of a note.
+#[test]
+fn a_bit_that_has_flipped_is_found() {
+    let numbers: Vec<f64> = (0..200).map(|row| f64::from(row) * 0.1).collect();
+    let bytes = write(&[Column::raw("t", numbers.clone()), Column::raw("x", numbers)]).unwrap();
+    let told = read_frame(&bytes).unwrap();
+    let end = bytes.len();
+    let mut found = 0;
+    for at in (4..end).step_by(7) {
+        let mut flipped = bytes.clone();
+        flipped[at] ^= 1 << (at % 8);
+        // What a flipped bit does not change is no harm.
+        if let Ok(frame) = read_frame(&flipped) {
+            let same = frame.fields != told.fields || frame.values == told.values;
+            assert!(same, "byte {at}");
+        } else {
+            found += 1;
+        }
+    }
+    assert!(found > 100, "{found}");
+}
+
 #[test]
 fn a_frame_without_rows_keeps_its_columns() {
     let fields = [

@@ -1,6 +1,8 @@
 //! Writes frames, a group of rows at a time.
 
+use super::checksum;
 use crate::frame::{Field, Kind, Values};
+use crc32fast::Hasher;
 use parquet::basic::{Compression, LogicalType, Repetition, Type as Physical};
 use parquet::column::writer::ColumnWriter;
 use parquet::data_type::ByteArray;
@@ -15,6 +17,7 @@ use std::sync::Arc;
 /// Writes a frame to `sink`, one group of rows after the other: only the group under way is in memory.
 pub struct Writer<W: Write + Send> {
     fields: Vec<Field>,
+    checksums: Vec<Hasher>,
     inner: SerializedFileWriter<W>,
 }
 
@@ -44,6 +47,7 @@ impl<W: Write + Send> Writer<W> {
         let inner = SerializedFileWriter::new(sink, Arc::new(schema), Arc::new(properties));
         Ok(Self {
             fields: fields.to_vec(),
+            checksums: vec![Hasher::new(); fields.len()],
             inner: inner.map_err(plain)?,
         })
     }
@@ -64,6 +68,9 @@ impl<W: Write + Send> Writer<W> {
                 io::ErrorKind::InvalidInput,
                 "the columns are not as announced",
             ));
+        }
+        for (hasher, values) in self.checksums.iter_mut().zip(values) {
+            checksum::add(hasher, values);
         }
         self.group(values).map_err(plain)
     }
@@ -104,7 +111,12 @@ impl<W: Write + Send> Writer<W> {
     ///
     /// # Errors
     /// What the sink reports.
-    pub fn finish(self) -> io::Result<W> {
+    pub fn finish(mut self) -> io::Result<W> {
+        for (field, hasher) in self.fields.iter().zip(&self.checksums) {
+            let key = format!("{}{}", checksum::NOTE, field.name);
+            let note = KeyValue::new(key, checksum::written(hasher));
+            self.inner.append_key_value_metadata(note);
+        }
         self.inner.into_inner().map_err(plain)
     }
 }

@@ -3,8 +3,8 @@
 use super::response::{Response, band, frequencies};
 use super::seen;
 use crate::args::ModelArgs;
-use crate::commands::run::interrupted;
 use crate::exit::Exit;
+use crate::interruption::interrupted;
 use crate::project::{Aim, Project, complain};
 use crate::settings::Setting;
 use crate::{records, run_failure};

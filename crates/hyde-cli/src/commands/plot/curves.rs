@@ -6,6 +6,7 @@ use crate::args::PlotArgs;
 use crate::figures::shown;
 use hyde_report::{Figure, Line, time_panel, time_plot, xy_plot};
 use hyde_signal::{Column, Table};
+use hyde_units::significant;
 use std::ops::Range;
 
 /// Panels over one time, with the events of the first source below.
@@ -135,6 +136,21 @@ fn label(name: &str, names: usize, source: &str, sources: usize) -> String {
         (false, true) => source.to_owned(),
         (true, true) => format!("{name}, {source}"),
     }
+}
+
+/// Refuses a window in which there is nothing: the figure would be empty.
+pub(super) fn check_window(args: &PlotArgs, sources: &[Recorded]) -> Result<(), String> {
+    let times = || sources.iter().map(|source| source.table.time());
+    if sources.is_empty() || times().any(|time| !window(args, time).is_empty()) {
+        return Ok(());
+    }
+    let firsts = times().filter_map(|time| time.first().copied());
+    let lasts = times().filter_map(|time| time.last().copied());
+    Err(format!(
+        "no row lies within `--from` and `--to`: the rows are from {} s to {} s",
+        significant(firsts.fold(f64::INFINITY, f64::min), 6),
+        significant(lasts.fold(f64::NEG_INFINITY, f64::max), 6)
+    ))
 }
 
 /// The rows within `--from` and `--to`.

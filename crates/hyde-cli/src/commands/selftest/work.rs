@@ -3,7 +3,7 @@
 use super::kept::{self, Kept};
 use crate::batch::progress::Progress;
 use crate::batch::store::Store;
-use crate::study;
+use crate::unobservable;
 use hyde_calibrate::{Axis, Case, SelftestError, Simulated, try_case};
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_experiment::RunError;
@@ -96,7 +96,7 @@ pub(super) fn reason(error: &SelftestError) -> String {
 /// An axis that cannot be tested at all.
 pub(super) fn cannot(error: &SelftestError, span: Span) -> Diagnostic {
     if let SelftestError::Unsupported(error) = error {
-        return study::unsupported(error, span);
+        return unobservable::unsupported(error, span);
     }
     Diagnostic::error(
         Code::CannotObserve,

@@ -1,0 +1,76 @@
+//! Even rows for a record whose own are not: an observer's steps are all of one length.
+//!
+//! A drive polled over a bus stamps its rows as they come. Measured columns are then read on straight lines between the rows
+//! about the instants of an even grid as fine as the rows usually are; columns that drive the model are read there as they
+//! always are. [`Resampled`] tells of it. A gap is no straight line: such a record is refused.
+
+use crate::fit::median;
+use crate::recording::RecordError;
+use hyde_signal::{Column, Signal, Table};
+
+/// Rows are even that are this part of their spacing off at most.
+const EVEN: f64 = 0.01;
+/// So many usual spacings without a row are a gap.
+const GAP: f64 = 10.0;
+
+/// That a record was read at other instants than those of its rows.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Resampled {
+    /// The record, as the experiment calls it.
+    pub record: String,
+    /// The closest and the widest spacing of its rows, s.
+    pub spacing_s: (f64, f64),
+    /// Where they first are not evenly spaced, s.
+    pub from_s: f64,
+    /// The spacing of the rows that the observer has, s.
+    pub step_s: f64,
+}
+
+/// A record at even rows, if its own are not even.
+pub(crate) fn evenly(
+    record: &str,
+    table: &Table,
+) -> Result<Option<(Vec<f64>, Resampled)>, RecordError> {
+    let time = table.time();
+    let (first, last) = (time[0], time[time.len() - 1]);
+    let mean = (last - first) / (time.len() - 1) as f64;
+    let spacings: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let mut uneven = spacings.iter().map(|spacing| (spacing - mean).abs());
+    if uneven.all(|off| off <= EVEN * mean) {
+        return Ok(None);
+    }
+    let apart: Vec<f64> = spacings.iter().copied().filter(|s| *s > 0.0).collect();
+    let step_s = median(&apart).unwrap_or(mean);
+    let usual = |spacing: &f64| (spacing - step_s).abs() <= EVEN * step_s;
+    let place = spacings.iter().position(|s| !usual(s)).unwrap_or(0);
+    if let Some(row) = spacings.iter().position(|s| *s > GAP * step_s) {
+        return Err(RecordError::Gap {
+            record: record.to_owned(),
+            from_s: time[row],
+            to_s: time[row + 1],
+            usual_s: step_s,
+        });
+    }
+    let rows = ((last - first) / step_s * (1.0 + 1e-12)).floor() as usize;
+    let time = (0..=rows).map(|row| first + step_s * row as f64).collect();
+    let resampled = Resampled {
+        record: record.to_owned(),
+        spacing_s: (
+            spacings.iter().copied().fold(f64::INFINITY, f64::min),
+            spacings.iter().copied().fold(0.0, f64::max),
+        ),
+        from_s: table.time()[place],
+        step_s,
+    };
+    Ok(Some((time, resampled)))
+}
+
+/// Values of a table's rows at other instants, and a table of the instants.
+pub(crate) fn resample(table: &Table, values: &[f64], time: &[f64]) -> Option<(Table, Vec<f64>)> {
+    let signal = Signal::new(table.time(), values)?;
+    let mut cursor = hyde_signal::Cursor::default();
+    let read = |&t: &f64| signal.linear(t, &mut cursor);
+    let values = time.iter().map(read).collect();
+    let even = Table::new(vec![Column::raw("t", time.to_vec())]).ok()?;
+    Some((even, values))
+}

@@ -1,0 +1,27 @@
+//! Ctrl-C: a command that keeps what is finished asks for it and ends by itself; any other ends at once, with the same status.
+
+use crate::exit::Exit;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+
+/// Set by Ctrl-C, where a command has asked for it. A process has one handler of signals, and this is what it knows.
+static ASKED: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+
+/// From here on Ctrl-C ends the process with the status of an interrupted command, unless one has [asked](interrupted) for
+/// it; a second Ctrl-C ends it whatever it does.
+#[allow(
+    clippy::exit,
+    reason = "a command that did not ask is in the middle of something"
+)]
+pub(crate) fn watch() {
+    // Without a handler the signal ends the process, as ever.
+    let _handled = ctrlc::set_handler(|| match ASKED.get() {
+        Some(asked) if !asked.swap(true, Ordering::Relaxed) => {}
+        Some(_) | None => std::process::exit(i32::from(Exit::Interrupted as u8)),
+    });
+}
+
+/// The flag that Ctrl-C sets from now on.
+pub(crate) fn interrupted() -> Arc<AtomicBool> {
+    Arc::clone(ASKED.get_or_init(Arc::default))
+}
