@@ -96,6 +96,34 @@ fn packages_may_import_each_other() {
 
 #[test]
 #[cfg(unix)]
+fn a_record_that_is_a_link_out_of_its_folder_is_refused() {
+    let (folder, outside) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let far = outside.path().join("log.csv");
+    std::fs::write(&far, "t [s],u [m/s]\n0,0\n1,1\n").unwrap();
+    let model = |path: &str| {
+        format!(
+            "package m;\nimport SI.*;\n\nmodel M\n  input Velocity u;\n  Length x(start = 0, fixed = true);\nequation\n  der(x) = u;\nend M;\n\n\
+             experiment e(record log = \"{path}\") of M\n  stimulus u = log.u;\n  solve ida stop log.end;\nend e;\n"
+        )
+    };
+    let link = |target: &Path, name: &str| {
+        std::os::unix::fs::symlink(target, folder.path().join(name)).unwrap();
+    };
+    link(&far, "log.csv");
+    link(outside.path(), "logs");
+    for path in ["log.csv", "logs/log.csv"] {
+        std::fs::write(folder.path().join("m.hyde"), model(path)).unwrap();
+        let output = hyde(folder.path(), &["run", "m.hyde", "--json"]);
+        assert_eq!(json(&output)["diagnostics"][0]["code"], "E0802", "{path}");
+    }
+    // As the help says: given on the command line it is read.
+    let given = format!("log={}", far.display());
+    let output = hyde(folder.path(), &["run", "m.hyde", "--record", &given]);
+    assert!(output.status.success(), "{}", errors(&output));
+}
+
+#[test]
+#[cfg(unix)]
 fn links_that_lead_out_of_the_folder_are_refused() {
     let (folder, outside) = (book_library(), tempfile::tempdir().unwrap());
     let link = |target: &Path, name: &str| {

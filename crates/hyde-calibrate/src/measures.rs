@@ -126,6 +126,9 @@ fn reason(error: &hyde_experiment::RunError) -> String {
         RunError::CannotSet(name, why) => format!("`{name}` cannot be set: {why}"),
         RunError::NoGradientBy(name, why) => format!("no gradient by `{name}`: {why}"),
         RunError::NoStop => "nothing says when it ends".to_owned(),
+        RunError::EndsBeforeStart {
+            start_s, stop_s, ..
+        } => format!("it ends at {stop_s} s, before it starts at {start_s} s"),
         RunError::NotPositive(what, value) => format!("{what} is {value}"),
         RunError::Compare(error) => format!("the channel `{}`: {}", error.channel, error.cause),
     }

@@ -32,8 +32,8 @@ pub enum RecordError {
     Preparation(String, String),
 }
 
-/// Record and column, which number of it, and the number.
-type RecordedValue = ((String, String), RecordValueKind, f64);
+/// Record and column, none for the time, which number of it, and the number.
+type RecordedValue = ((String, Option<String>), RecordValueKind, f64);
 
 /// A record, at the rows of the first measured channel's table.
 #[derive(Clone, Debug)]
@@ -131,7 +131,7 @@ impl Recording {
         }
         let skip_s = program.kernels.constant(Constant::Skip, &p).unwrap_or(0.0);
         let first_row = time
-            .partition_point(|&t| t < skip_s - 1e-12)
+            .partition_point(|&t| t < time[0] + skip_s - 1e-12)
             .max(SETTLING_ROWS);
         let mut found = Self {
             name: name.to_owned(),
@@ -180,12 +180,12 @@ fn record_values(
     let mut found = Vec::new();
     for known in &program.record_values {
         let table = tables.get(&known.record);
-        let column = table.and_then(|table| table.column(&known.column));
-        let source = (known.record.clone(), known.column.clone());
-        let Some(column) = column else {
-            return Err(RecordError::NoColumn(source.0, source.1));
+        let value = table.and_then(|table| hyde_experiment::record_value(known, table));
+        let (record, column) = (known.record.clone(), known.column.clone());
+        let Some(value) = value else {
+            return Err(RecordError::NoColumn(record, column.unwrap_or_default()));
         };
-        found.push((source, known.kind, known.kind.of(column.values())));
+        found.push(((record, column), known.kind, value));
     }
     Ok(found)
 }

@@ -1,5 +1,6 @@
 //! Errors before and after a calibration or a diagnosis, record by record and channel by channel, over the noise floor (L1).
 
+use crate::assumptions::of_record;
 use crate::diagnosis::wrapped;
 use crate::project::Project;
 use crate::records;
@@ -173,9 +174,37 @@ fn recordings(calibration: &Calibration) -> impl Iterator<Item = &Recording> {
     calibration.fitted.iter().chain(&calibration.holdout)
 }
 
-/// What the observer of a record takes otherwise than it is written: that it begins elsewhere than the model, and other rows.
-fn told(recording: &Recording) -> Vec<String> {
-    let mut found = Vec::new();
+/// What was taken for granted of all records: each with the files of which it is true.
+pub(crate) fn assumptions(calibration: &Calibration) -> Vec<String> {
+    let count = recordings(calibration).count();
+    let mut found: Vec<(String, Vec<&str>)> = Vec::new();
+    for recording in recordings(calibration) {
+        for text in told(calibration, recording) {
+            match found.iter_mut().find(|(known, _)| *known == text) {
+                Some((_, of)) => of.push(&recording.name),
+                None => found.push((text, vec![&recording.name])),
+            }
+        }
+    }
+    let with_files = found.into_iter().map(|(text, of)| {
+        let whose = match of.as_slice() {
+            all if all.len() == count && count > 1 => "all records".to_owned(),
+            [first, rest @ ..] if rest.len() > 2 => format!("{first} and {} more", rest.len()),
+            some => some.join(", "),
+        };
+        format!("{whose}: {text}")
+    });
+    with_files.collect()
+}
+
+/// What was taken for granted of a record's files, and what its observer takes otherwise than it is written: that it begins
+/// elsewhere than the model, and other rows.
+fn told(calibration: &Calibration, recording: &Recording) -> Vec<String> {
+    let program = &calibration.compiled.program;
+    let tables = recording.tables.iter();
+    let mut found: Vec<String> = tables
+        .flat_map(|(name, table)| of_record(program, name, table))
+        .collect();
     if let [first, others @ ..] = recording.beginning.as_slice() {
         let (name, value) = (&first.0, significant(first.1, 4));
         let others = match others.len() {
@@ -240,7 +269,7 @@ pub(crate) fn json(records: &[RecordErrors], calibration: &Calibration) -> Value
             "holdout": record.holdout,
             "chi": { "before": record.before.chi, "after": record.after.chi },
             "no_free_run": record.no_free_run(),
-            "assumptions": told(recording),
+            "assumptions": told(calibration, recording),
             "begins": recording.beginning.iter().cloned().collect::<BTreeMap<String, f64>>(),
             "resampled": recording.resampled.as_ref().map(|own| json!({
                 "record": own.record,
@@ -279,10 +308,8 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
             significant(record.after.chi, 4)
         );
     }
-    for recording in recordings(calibration) {
-        for sentence in told(recording) {
-            wrapped(&mut out, "  -", &format!("{}: {sentence}", recording.name));
-        }
+    for sentence in assumptions(calibration) {
+        wrapped(&mut out, "  -", &sentence);
     }
     let held_out = records.iter().any(|record| record.holdout);
     let shown = || {

@@ -5,6 +5,7 @@
 
 mod args;
 mod asked_figures;
+mod assumptions;
 mod batch;
 mod before_after;
 mod commands;

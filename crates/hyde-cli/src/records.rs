@@ -2,6 +2,7 @@
 
 use crate::args::ModelArgs;
 use crate::batch::inputs::Kind;
+use crate::package::links_out;
 use crate::project::Records;
 use hyde_compiler::Header;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
@@ -46,6 +47,11 @@ pub(crate) fn read(
             Err(diagnostic) => diagnostics.push(diagnostic),
         }
     }
+    let mut tables: Vec<(&str, &mut Table)> = found
+        .iter_mut()
+        .map(|(name, record): (&String, &mut Record)| (name.as_str(), &mut record.table))
+        .collect();
+    hyde_signal::align(&mut tables);
     Ok(found)
 }
 
@@ -58,7 +64,14 @@ pub(crate) fn headers(records: &BTreeMap<String, Record>) -> BTreeMap<String, He
             let columns = columns
                 .map(|column| (column.name().to_owned(), column.unit().cloned()))
                 .collect();
-            (name.clone(), Header { columns })
+            let unusable = record.table.unusable().iter();
+            let unusable = unusable
+                .map(|column| {
+                    let fault = column.fault.clone();
+                    (column.name.clone(), fault.message, fault.repair)
+                })
+                .collect();
+            (name.clone(), Header { columns, unusable })
         })
         .collect()
 }
@@ -147,7 +160,22 @@ fn path_of(
         .clone()
         .or_else(|| args.file.parent().map(Path::to_path_buf))
         .unwrap_or_default();
-    Some(root.join(relative))
+    let path = root.join(relative);
+    if links_out(&root, &path) {
+        let message = format!("`{}` leads out of its folder by a link", default.text);
+        let diagnostic = Diagnostic::error(Code::NoRecord, message)
+            .label(
+                default.span,
+                "only files below the model's folder or `--data` are read",
+            )
+            .help(format!(
+                "put the file into the folder, or give it on the command line: `--record {}=PATH`",
+                item.name.text
+            ));
+        diagnostics.push(diagnostic);
+        return None;
+    }
+    Some(path)
 }
 
 fn missing(item: &RecordItem, needed: Records, reason: &str) -> Diagnostic {

@@ -2,7 +2,7 @@
 
 use crate::project::Project;
 use crate::summary;
-use crate::{figures, forces};
+use crate::{assumptions, figures, forces};
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
 use hyde_program::Method;
@@ -142,7 +142,7 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
         footer: format!(
             "Hyde {}, {} of {}",
             env!("CARGO_PKG_VERSION"),
-            format_value(run.stop_s, &stop),
+            format_value(run.stop_s - run.start.0, &stop),
             project
                 .sources
                 .iter()
@@ -151,6 +151,9 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
         ),
     }
     .page();
+    if let Some(section) = assumptions::section(&assumptions::of_run(project, program, run)) {
+        page.sections.insert(0, section);
+    }
     // Behind the figures, before the long list of events.
     let events = page
         .sections

@@ -35,6 +35,14 @@ pub(crate) fn diagnostic(
             (diagnostic.help(help), Exit::CommandLine)
         }
         RunError::NoStop => no_stop(experiment),
+        RunError::EndsBeforeStart {
+            start_s,
+            stop_s,
+            record,
+        } => (
+            ends_before_start(*start_s, *stop_s, record.as_deref(), experiment),
+            Exit::Model,
+        ),
         RunError::NotPositive(what, value) => (
             Diagnostic::error(
                 Code::BadSolve,
@@ -90,6 +98,39 @@ fn no_stop(experiment: Option<&Experiment>) -> (Diagnostic, Exit) {
             Exit::CommandLine,
         ),
     }
+}
+
+fn ends_before_start(
+    start_s: f64,
+    stop_s: f64,
+    record: Option<&str>,
+    experiment: Option<&Experiment>,
+) -> Diagnostic {
+    let (start, stop) = (instant(start_s), instant(stop_s));
+    let diagnostic = match record {
+        Some(record) => Diagnostic::error(
+            Code::BadSolve,
+            format!("the run would end at {stop}, but its record `{record}` begins at {start}"),
+        )
+        .note("a run begins where its record begins, and its time is that of the record")
+        .help(format!(
+            "write `stop {record}.begin + 1 [s]` for a run of 1 s, or `stop {record}.end` for the whole record"
+        )),
+        None => Diagnostic::error(
+            Code::BadSolve,
+            format!("the run would end at {stop}, but it starts at {start}"),
+        )
+        .help("write a `stop` that is later than the start: `stop 1 [s]`"),
+    };
+    match experiment {
+        Some(experiment) => diagnostic.label(experiment.name.span, "of this experiment"),
+        None => diagnostic,
+    }
+}
+
+/// A time in s with all digits that tell it from others.
+pub(crate) fn instant(time_s: f64) -> String {
+    format!("{} s", hyde_units::significant(time_s, 10))
 }
 
 fn failed(failure: &Failure, program: &Program) -> Diagnostic {

@@ -314,7 +314,7 @@ fn recording(
     compiled: &Compiled,
     span: Span,
 ) -> Result<Recording, Box<Diagnostic>> {
-    let mut tables = BTreeMap::new();
+    let mut tables: BTreeMap<String, hyde_signal::Table> = BTreeMap::new();
     for (record, path) in set {
         let item = experiment
             .records
@@ -333,6 +333,11 @@ fn recording(
             .map_err(Box::new)?;
         tables.insert(record.clone(), table);
     }
+    let mut all: Vec<(&str, &mut hyde_signal::Table)> = tables
+        .iter_mut()
+        .map(|(name, table)| (name.as_str(), table))
+        .collect();
+    hyde_signal::align(&mut all);
     let name = set.first().map_or_else(String::new, |(_, path)| {
         path.file_name()
             .unwrap_or_default()

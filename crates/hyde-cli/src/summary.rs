@@ -1,7 +1,8 @@
 //! What a run was, in a few lines for people and as JSON for programs.
 
-use crate::ledger;
+use crate::commands::effects::wrapped;
 use crate::project::Project;
+use crate::{assumptions, ledger};
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
 use hyde_program::Method;
@@ -20,11 +21,12 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
         |e| format!("{e} of {}", program.name),
     );
     let statistics = &run.results.statistics;
-    let factor = run.stop_s / took.as_secs_f64().max(1e-9);
+    let span_s = run.stop_s - run.start.0;
+    let factor = span_s / took.as_secs_f64().max(1e-9);
     let _ = writeln!(
         out,
         "{name}: {} s in {} s, {} times real time",
-        significant(run.stop_s, 4),
+        significant(span_s, 4),
         significant(took.as_secs_f64(), 2),
         significant(factor, 2)
     );
@@ -56,6 +58,12 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
     }
     for (cause, time) in &run.results.sliding {
         let _ = writeln!(out, "  {:<24} sliding {} s", cause, significant(*time, 3));
+    }
+    for text in assumptions::of_run(project, program, run) {
+        for (number, line) in wrapped(&text, 74).iter().enumerate() {
+            let head = if number == 0 { "  note: " } else { "    " };
+            let _ = writeln!(out, "{head}{line}");
+        }
     }
     let end = run.results.gradient.as_ref().and_then(|g| g.end.as_ref());
     if let Some(end) = end {
@@ -136,7 +144,12 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         .records
         .iter()
         .map(|(name, record)| {
-            (name.clone(), json!({ "path": record.path.to_string_lossy(), "sha256": record.hash, "rows": record.table.rows() }))
+            let assumptions = assumptions::of_record(program, name, &record.table);
+            let entry = json!({
+                "path": record.path.to_string_lossy(), "sha256": record.hash, "rows": record.table.rows(),
+                "assumptions": assumptions,
+            });
+            (name.clone(), entry)
         })
         .collect();
     let tables: Vec<Value> = project
@@ -187,6 +200,8 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         .iter()
         .map(|(cause, time)| (cause.clone(), json!(time)))
         .collect();
+    let mut notes = program.notes.clone();
+    notes.extend(assumptions::of_run(project, program, run));
     let mut summary = json!({
         "ok": true,
         "hyde": env!("CARGO_PKG_VERSION"),
@@ -196,6 +211,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         "source_sha256": project.hash,
         "records": records,
         "tables": tables,
+        "start_s": run.start.0,
         "stop_s": run.stop_s,
         "rtol": run.tolerances.0,
         "atol": run.tolerances.1,
@@ -221,7 +237,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         "measures": measures,
         "expectations": expectations,
         "parameters": parameters,
-        "notes": program.notes,
+        "notes": notes,
     });
     if let Some(ledger) = ledger::of(compiled, run) {
         summary["ledger"] = ledger::json(&ledger);

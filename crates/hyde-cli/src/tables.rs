@@ -5,6 +5,7 @@ use crate::batch::inputs::Kind;
 use crate::package::Roots;
 use hyde_compiler::{File, TableFile};
 use hyde_diag::{Code, Diagnostic, Diagnostics, Sources, Span};
+use hyde_signal::Layout;
 use sha2::{Digest, Sha256};
 use std::path::PathBuf;
 
@@ -61,10 +62,10 @@ fn of_file(
             .help("the path is relative to the manifest's folder, or to the model's without one")
             })?;
     // A table has no time: its rows are only counted.
-    let table = hyde_signal::read(&content, Some(1.0)).map_err(|error| {
+    let table = hyde_signal::read_whole(&content, &Layout::every(1.0)).map_err(|error| {
         Diagnostic::error(Code::BadRecord, format!("`{}`: {error}", path.display()))
             .label(span, "read for this table")
-            .help(error.repair())
+            .help(error.repair("file"))
     })?;
     let columns = table.columns().iter();
     let columns = columns.map(|column| {

@@ -13,6 +13,7 @@ pub fn ideals(experiment: &Experiment) -> impl Iterator<Item = &Ideal> {
         | ExperimentItem::Expect(..)
         | ExperimentItem::Measure(_)
         | ExperimentItem::Solve(..)
+        | ExperimentItem::Start(_)
         | ExperimentItem::Stop(_)
         | ExperimentItem::Every(_)
         | ExperimentItem::Skip(_)

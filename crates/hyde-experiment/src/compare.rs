@@ -42,13 +42,13 @@ pub struct CompareError {
     pub cause: String,
 }
 
-/// Compares every measured channel, rows before `skip_s` apart.
+/// Compares every measured channel, rows before `from_s` apart.
 pub(crate) fn channels(
     program: &Program,
     records: &BTreeMap<String, Table>,
     parameters: &[f64],
     results: &Results,
-    skip_s: f64,
+    from_s: f64,
 ) -> Result<Vec<Channel>, CompareError> {
     let mut found = Vec::new();
     for (number, measured) in program.experiment.measured.iter().enumerate() {
@@ -73,7 +73,7 @@ pub(crate) fn channels(
         let by_parameter = slopes(results, measured.output);
         let mut slopes = vec![Vec::new(); by_parameter.len()];
         for (&t, &value) in table.time().iter().zip(&signal) {
-            if t < skip_s - 1e-12 {
+            if t < from_s - 1e-12 {
                 continue;
             }
             let Some((left, right)) = results.rows_at(t) else {

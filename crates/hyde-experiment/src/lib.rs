@@ -47,7 +47,7 @@ pub use mode_shape::{ModeShape, mode_shape};
 pub use modes::{NaturalMode, modes};
 pub use poles::{Pole, Poles, poles};
 pub use record::read_record;
-pub use run::{MeasureValue, Options, Run, RunError, parameters, places, run};
+pub use run::{MeasureValue, Options, Run, RunError, parameters, places, record_value, run};
 pub use sampled::{Clocked, Sampled};
 pub use stepped::{Level, SteppedOutput, SteppedPoint, Steps, stepped_response};
 pub use swept::{Swept, swept_response};

@@ -77,7 +77,7 @@ fn percent(errors: impl Iterator<Item = f64>) -> f64 {
     100.0 * hyde_signal::statistics::rms(&errors.collect::<Vec<f64>>())
 }
 
-/// The measured response. Of a record over time the rows from `skip_s` on count, as many whole periods as there are.
+/// The measured response. Of a record over time the rows `skip_s` behind the first one count, as many whole periods as there are.
 ///
 /// # Errors
 /// A column is missing, frequencies are not rising and positive, rows are uneven, or nothing repeats.
@@ -190,7 +190,7 @@ impl Rows {
         }
         Ok(Self {
             // A row at that very time counts, however its number is rounded.
-            first: time.partition_point(|t| *t < skip_s - 1e-3 * step_s),
+            first: time.partition_point(|t| *t < time[0] + skip_s - 1e-3 * step_s),
             rate_hz: 1.0 / step_s,
         })
     }

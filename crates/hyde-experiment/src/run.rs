@@ -3,7 +3,7 @@
 
 use crate::compare::{self, Channel, CompareError};
 use crate::reduce::reduce;
-use hyde_program::{Constant, Parameter, Program, RecordedResponse, Stop};
+use hyde_program::{Column, Constant, Measured, Parameter, Program, RecordValue, RecordedResponse};
 use hyde_signal::Table;
 use hyde_sim::{Failure, Results, Setup};
 use std::collections::BTreeMap;
@@ -50,6 +50,8 @@ pub struct MeasureValue {
 pub struct Run {
     /// The parameter vector used.
     pub parameters: Vec<f64>,
+    /// Start in s, and the record that begins there; none where the experiment says so or nothing is recorded.
+    pub start: (f64, Option<String>),
     /// Stop in s.
     pub stop_s: f64,
     /// Relative and absolute tolerance.
@@ -73,6 +75,15 @@ pub enum RunError {
     NoGradientBy(String, &'static str),
     /// Neither the experiment nor the caller says when to stop.
     NoStop,
+    /// The run would end before it starts, at the times in s; the record that it starts with.
+    EndsBeforeStart {
+        /// Start in s.
+        start_s: f64,
+        /// Stop in s.
+        stop_s: f64,
+        /// The record that begins at the start.
+        record: Option<String>,
+    },
     /// A number that must be positive is not: which, and its value.
     NotPositive(&'static str, f64),
     /// A measured channel cannot be compared.
@@ -92,16 +103,19 @@ pub fn run(
 ) -> Result<Run, RunError> {
     let places = places(program, &options.gradient)?;
     let mut setup = setup(program, records, options)?;
+    let start = start(program, records, &setup.parameters);
     setup.sensitivities = (!places.is_empty()).then_some(places.as_slice());
     let results = hyde_sim::simulate(program, &setup).map_err(RunError::Failed)?;
     let skip_s = program
         .kernels
         .constant(Constant::Skip, &setup.parameters)
         .unwrap_or(0.0);
-    let channels = compare::channels(program, records, &setup.parameters, &results, skip_s)
+    let from_s = setup.start_s + skip_s;
+    let channels = compare::channels(program, records, &setup.parameters, &results, from_s)
         .map_err(RunError::Compare)?;
     let measures = measures(program, &setup.parameters, &results);
     Ok(Run {
+        start,
         stop_s: setup.stop_s,
         tolerances: (setup.rtol, setup.atol),
         parameters: setup.parameters,
@@ -119,19 +133,20 @@ pub(crate) fn setup<'r>(
 ) -> Result<Setup<'r>, RunError> {
     let parameters = parameters(program, records, &options.set)?;
     let constant = |which| program.kernels.constant(which, &parameters);
-    let stop_s = match (options.stop_s, &program.experiment.stop) {
-        (Some(stop), _) => stop,
-        (None, Some(Stop::At)) => constant(Constant::Stop).unwrap_or(f64::NAN),
-        (None, Some(Stop::EndOf(record))) => records
-            .get(record)
-            .and_then(|table| table.time().last().copied())
-            .unwrap_or(f64::NAN),
-        (None, None) => return Err(RunError::NoStop),
-    };
+    let stop = options.stop_s.or_else(|| constant(Constant::Stop));
+    let stop_s = stop.ok_or(RunError::NoStop)?;
+    let (start_s, record) = start(program, records, &parameters);
+    if start_s.is_nan() || stop_s.is_nan() || stop_s <= start_s {
+        return Err(RunError::EndsBeforeStart {
+            start_s,
+            stop_s,
+            record,
+        });
+    }
     let every = options
         .every_s
         .or_else(|| constant(Constant::Every))
-        .unwrap_or(stop_s / 1000.0);
+        .unwrap_or((stop_s - start_s) / 1000.0);
     let atol = constant(Constant::Atol);
     let mut setup = setup_with(program, records, parameters);
     setup.stop_s = stop_s;
@@ -143,7 +158,6 @@ pub(crate) fn setup<'r>(
         setup.atol = atol;
     }
     for (what, value) in [
-        ("stop", stop_s),
         ("rtol", setup.rtol),
         ("atol", setup.atol),
         ("the time between rows", every),
@@ -153,11 +167,11 @@ pub(crate) fn setup<'r>(
             return Err(RunError::NotPositive(what, value));
         }
     }
-    setup.rows_s = rows(program, records, stop_s, every);
+    setup.rows_s = rows(program, records, (start_s, stop_s), every);
     Ok(setup)
 }
 
-/// A run with complete parameters, with the method and the tolerances that its experiment says.
+/// A run with complete parameters from its start on, with the method and the tolerances that its experiment says.
 pub(crate) fn setup_with<'r>(
     program: &Program,
     records: &'r BTreeMap<String, Table>,
@@ -167,11 +181,42 @@ pub(crate) fn setup_with<'r>(
     let rtol = constant(Constant::Rtol).unwrap_or(1e-6);
     let atol = constant(Constant::Atol).unwrap_or(ATOL * rtol);
     let max_step_s = constant(Constant::MaxStep).unwrap_or(f64::INFINITY);
-    let mut setup = Setup::new(parameters, records, 1.0);
+    let (start_s, _) = start(program, records, &parameters);
+    let mut setup = Setup::new(parameters, records, start_s + 1.0);
+    setup.start_s = start_s;
     setup.method = program.experiment.method;
     (setup.rtol, setup.atol) = (rtol, atol);
     setup.max_step_s = max_step_s;
     setup
+}
+
+/// When a run starts in s: as the experiment says, else where the last of the records begins that drive the model, else where
+/// the first begins that it is compared with, else at 0. With it the record that begins there.
+fn start(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    parameters: &[f64],
+) -> (f64, Option<String>) {
+    if let Some(start_s) = program.kernels.constant(Constant::Start, parameters) {
+        return (start_s, None);
+    }
+    let measured = &program.experiment.measured;
+    let is_measured = |column: &Column| {
+        let own = |m: &Measured| m.source.0 == column.record && m.source.1 == column.column;
+        measured.iter().any(own)
+    };
+    let begin = |record: &String| {
+        let table = records.get(record)?;
+        Some((*table.time().first()?, record.clone()))
+    };
+    let driving = program.columns.iter();
+    let driving = driving.filter(|column| column.continuous || !is_measured(column));
+    let driving = driving.filter_map(|column| begin(&column.record));
+    let compared = || measured.iter().filter_map(|m| begin(&m.source.0));
+    let later = |a: (f64, String), b: (f64, String)| if b.0 > a.0 { b } else { a };
+    let earlier = |a: (f64, String), b: (f64, String)| if b.0 < a.0 { b } else { a };
+    let found = driving.reduce(later).or_else(|| compared().reduce(earlier));
+    found.map_or((0.0, None), |(start_s, record)| (start_s, Some(record)))
 }
 
 /// Positions in the parameter vector of the parameters that a run is to be differentiated by.
@@ -207,11 +252,9 @@ pub fn parameters(
 ) -> Result<Vec<f64>, RunError> {
     let mut values = Vec::new();
     for known in &program.record_values {
-        let column = records
-            .get(&known.record)
-            .and_then(|table| table.column(&known.column));
-        if let Some(column) = column {
-            values.push((known.place, known.kind.of(column.values())));
+        let table = records.get(&known.record);
+        if let Some(value) = table.and_then(|table| record_value(known, table)) {
+            values.push((known.place, value));
         }
     }
     for (name, value) in set {
@@ -237,14 +280,24 @@ pub fn parameters(
     Ok(parameters)
 }
 
+/// The number that a parameter takes from its record, unless the record has no such column.
+#[must_use]
+pub fn record_value(known: &RecordValue, record: &Table) -> Option<f64> {
+    let rows = match &known.column {
+        Some(column) => record.column(column)?.values(),
+        None => record.time(),
+    };
+    Some(known.kind.of(rows))
+}
+
 /// Rows every so often, and at every row of a record that something is measured in.
 fn rows(
     program: &Program,
     records: &BTreeMap<String, Table>,
-    stop_s: f64,
+    (start_s, stop_s): (f64, f64),
     every_s: f64,
 ) -> Vec<f64> {
-    let mut rows = Setup::rows_every(0.0, stop_s, every_s);
+    let mut rows = Setup::rows_every(start_s, stop_s, every_s);
     let experiment = &program.experiment;
     let compared = experiment.measured.iter().map(|m| &m.source.0);
     let responses = experiment.measured_responses.iter();
@@ -259,7 +312,7 @@ fn rows(
                     .time()
                     .iter()
                     .copied()
-                    .filter(|t| (0.0..=stop_s).contains(t)),
+                    .filter(|t| (start_s..=stop_s).contains(t)),
             );
         }
     }

@@ -20,8 +20,8 @@ use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
-use hyde_ir::flat::{Method, Stop};
-use hyde_syntax::ast::{self, ExperimentItem, Expr, ExprKind};
+use hyde_ir::flat::Method;
+use hyde_syntax::ast::{self, ExperimentItem};
 use hyde_units::Dimension;
 
 impl<'a> Model<'a, '_> {
@@ -85,7 +85,16 @@ impl<'a> Model<'a, '_> {
                     self.add_measure(measure, &at(Setting::Measure))
                 }
                 ExperimentItem::Solve(method, arguments) => self.solve(method, arguments, root),
-                ExperimentItem::Stop(expr) => self.stop(expr, &at(Setting::Parameter)),
+                ExperimentItem::Start(expr) => {
+                    let time = self.value(expr, &at(Setting::Parameter));
+                    self.agree_time(&time, "a run starts at a time, this relates", root);
+                    self.flat.experiment.start = Some(time.id);
+                }
+                ExperimentItem::Stop(expr) => {
+                    let time = self.value(expr, &at(Setting::Parameter));
+                    self.agree_time(&time, "a run stops at a time, this relates", root);
+                    self.flat.experiment.stop = Some(time.id);
+                }
                 ExperimentItem::Every(expr) => {
                     let step = self.value(expr, &at(Setting::Parameter));
                     self.agree_time(&step, "rows follow each other in time, this relates", root);
@@ -166,20 +175,6 @@ impl<'a> Model<'a, '_> {
             }
             self.flat.experiment.solve.push((name.to_owned(), value.id));
         }
-    }
-
-    fn stop(&mut self, expr: &'a Expr, scope: &Scope<'a>) {
-        if let ExprKind::Reference(reference) = &expr.kind
-            && let [record, end] = reference.parts.as_slice()
-            && end.name.text == "end"
-            && self.flat.experiment.records.contains(&record.name.text)
-        {
-            self.flat.experiment.stop = Some(Stop::EndOf(record.name.text.clone()));
-            return;
-        }
-        let time = self.value(expr, scope);
-        self.agree_time(&time, "a run stops at a time, this relates", scope.instance);
-        self.flat.experiment.stop = Some(Stop::At(time.id));
     }
 
     fn agree_time(&mut self, value: &Typed, what: &'static str, instance: InstanceId) {

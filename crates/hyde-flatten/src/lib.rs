@@ -48,6 +48,8 @@ use std::collections::BTreeMap;
 pub struct Header {
     /// Name and unit of each column; no unit where the file gives none.
     pub columns: Vec<(String, Option<NamedUnit>)>,
+    /// What else the file has and cannot be used: name, what is wrong, and what to change.
+    pub unusable: Vec<(String, String, String)>,
 }
 
 /// The columns of a table's file.

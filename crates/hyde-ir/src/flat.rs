@@ -311,15 +311,6 @@ pub enum Method {
     Auto,
 }
 
-/// When a run ends.
-#[derive(Clone, Debug)]
-pub enum Stop {
-    /// At a time in s, of parameters alone.
-    At(ExprId),
-    /// At the last row of a record.
-    EndOf(String),
-}
-
 /// What an experiment adds to its model beside equations.
 #[derive(Clone, Debug, Default)]
 pub struct Experiment {
@@ -347,8 +338,10 @@ pub struct Experiment {
     pub ledger: Ledger,
     /// The flows of the connections.
     pub flows: Vec<Flow>,
-    /// When it ends.
-    pub stop: Option<Stop>,
+    /// When it begins in s, of parameters alone; else where its records begin.
+    pub start: Option<ExprId>,
+    /// When it ends in s, of parameters alone.
+    pub stop: Option<ExprId>,
     /// Time between rows of the results in s, of parameters alone.
     pub every: Option<ExprId>,
     /// Time in s before which measured channels are not compared, of parameters alone.

@@ -344,10 +344,8 @@ impl Compiled {
             Constant::TimeEvent(relation) => {
                 dae.relations[hyde_ir::RelationId::from_index(relation)].time_event?
             }
-            Constant::Stop => match experiment.stop {
-                Some(hyde_ir::flat::Stop::At(id)) => id,
-                Some(hyde_ir::flat::Stop::EndOf(_)) | None => return None,
-            },
+            Constant::Start => experiment.start?,
+            Constant::Stop => experiment.stop?,
             Constant::Every => experiment.every?,
             Constant::Skip => experiment.skip?,
             Constant::Rtol => option("rtol")?,

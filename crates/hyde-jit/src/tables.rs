@@ -12,7 +12,7 @@ use hyde_program::{
     InitialCondition, Measure, Measured, MeasuredResponse, Method, Output, Parameter, Pin,
     Preparation, Prior, Program, Reaction, ReactionKind, RecordValue, RecordValueKind,
     RecordedResponse, Reduction, ReductionKind, Relation, RelationUse, ScaledColumn, Selection,
-    Stepped, Stop, Target, UnknownBlock,
+    Stepped, Target, UnknownBlock,
 };
 use std::sync::Arc;
 
@@ -146,13 +146,15 @@ fn parameters(dae: &Dae) -> Vec<Parameter> {
         .collect()
 }
 
-/// `file.x.first` and `file.x.mean`: parameters whose numbers the record has.
+/// `file.begin`, `file.end`, `file.x.first` and `file.x.mean`: parameters whose numbers the record has.
 fn record_values(dae: &Dae) -> Vec<RecordValue> {
     let mut found = Vec::new();
     for (id, parameter) in dae.parameters.enumerate() {
         let kinds = [
             (".first", RecordValueKind::First),
             (".mean", RecordValueKind::Mean),
+            (".begin", RecordValueKind::First),
+            (".end", RecordValueKind::Last),
         ];
         let known = kinds
             .iter()
@@ -160,14 +162,15 @@ fn record_values(dae: &Dae) -> Vec<RecordValue> {
         let Some((path, kind)) = known else {
             continue;
         };
-        let Some((record, column)) = path.split_once('.') else {
-            continue;
+        let (record, column) = match path.split_once('.') {
+            Some((record, column)) => (record, Some(column.to_owned())),
+            None => (path, None),
         };
         if dae.experiment.records.iter().any(|known| known == record) {
             found.push(RecordValue {
                 place: dae.parameter_places[id],
                 record: record.to_owned(),
-                column: column.to_owned(),
+                column,
                 kind,
             });
         }
@@ -456,10 +459,6 @@ fn experiment(dae: &Dae) -> Experiment {
             .map(|measured| measured_response(dae, measured))
             .collect(),
         ledger: ledger::ledger(&known.ledger, first_account),
-        stop: known.stop.as_ref().map(|stop| match stop {
-            flat::Stop::At(_) => Stop::At,
-            flat::Stop::EndOf(record) => Stop::EndOf(record.clone()),
-        }),
         method: match known.method {
             flat::Method::Ida => Method::Ida,
             flat::Method::Esdirk => Method::Esdirk,

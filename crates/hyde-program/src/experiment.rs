@@ -212,15 +212,6 @@ pub enum Method {
     Auto,
 }
 
-/// When a run ends.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Stop {
-    /// At [`crate::Constant::Stop`].
-    At,
-    /// At the last row of a record.
-    EndOf(String),
-}
-
 /// What an experiment asks of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Experiment {
@@ -246,8 +237,6 @@ pub struct Experiment {
     pub ledger: Ledger,
     /// The flows of the connections.
     pub flows: Vec<Flow>,
-    /// When it ends.
-    pub stop: Option<Stop>,
     /// The method asked for.
     pub method: Method,
 }

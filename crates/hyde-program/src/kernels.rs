@@ -92,11 +92,13 @@ pub enum Constant {
     Lateness(usize),
     /// Instant of a relation that is scheduled, in s.
     TimeEvent(usize),
+    /// Begin of the run in s.
+    Start,
     /// End of the run in s.
     Stop,
     /// Time between rows of the results in s.
     Every,
-    /// Time before which measured channels are not compared, in s.
+    /// Time from the begin of the run in which measured channels are not compared, in s.
     Skip,
     /// Relative tolerance.
     Rtol,

@@ -29,7 +29,7 @@ pub use event::{
 };
 pub use experiment::{
     Bode, Curve, Cut, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse,
-    Method, Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped, Stop,
+    Method, Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped,
 };
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Constant, Function, Kernels, Point, SomeRows, TickWrt, Workspace};

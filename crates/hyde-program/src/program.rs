@@ -100,6 +100,8 @@ pub struct Column {
 pub enum RecordValueKind {
     /// That of its first row.
     First,
+    /// That of its last row.
+    Last,
     /// The mean of all rows.
     Mean,
 }
@@ -110,6 +112,7 @@ impl RecordValueKind {
     pub fn of(self, rows: &[f64]) -> f64 {
         match self {
             Self::First => rows.first().copied().unwrap_or(f64::NAN),
+            Self::Last => rows.last().copied().unwrap_or(f64::NAN),
             Self::Mean => rows.iter().sum::<f64>() / rows.len() as f64,
         }
     }
@@ -122,8 +125,8 @@ pub struct RecordValue {
     pub place: usize,
     /// The record as the experiment calls it.
     pub record: String,
-    /// The column.
-    pub column: String,
+    /// The column; none for the time of the rows.
+    pub column: Option<String>,
     /// Which number of it.
     pub kind: RecordValueKind,
 }

@@ -106,6 +106,12 @@ impl Column {
         })
     }
 
+    /// The column with all values so much higher, SI.
+    pub(crate) fn raised(mut self, by: f64) -> Self {
+        self.values.iter_mut().for_each(|value| *value += by);
+        self
+    }
+
     /// The column with its raw values made SI.
     pub(crate) fn converted(mut self, named: NamedUnit) -> Self {
         let unit = named.unit();

@@ -6,18 +6,20 @@
 //! 0.001,0.35,0.02
 //! ```
 //!
-//! The separator is a comma, a semicolon or a tab, whichever the header has most of. Names may be quoted. Blank lines
-//! and lines that start with `#` are skipped. The decimal sign is the point.
+//! What separates the cells (comma, semicolon, tab, bar or blanks), the decimal sign, the encoding, a row of units below the
+//! names and a header behind `#` are found out by the file itself; what is not as above is told in a [`Note`](crate::Note).
+//! Names may be quoted. Blank lines and lines that start with `#` or `%` are skipped.
 
 mod error;
 mod frame;
-mod header;
+mod grid;
+mod number;
 mod read;
 mod rows;
+mod text;
 mod write;
 
 pub use error::ReadError;
 pub use frame::read_frame;
-pub(crate) use header::name_and_unit;
 pub use read::read;
 pub use write::write;

@@ -6,9 +6,9 @@
 //! [`statistics`] work on plain slices of equally spaced samples, unless they say otherwise.
 //!
 //! ```
-//! use hyde_signal::{Cursor, csv};
+//! use hyde_signal::{Cursor, Layout, csv};
 //!
-//! let table = csv::read(b"t [ms],x [mm]\n0,0\n1,350\n", None)?;
+//! let table = csv::read(b"t [ms],x [mm]\n0,0\n1,350\n", &Layout::default())?;
 //! let x = table.signal("x").expect("the header has x");
 //! let mut cursor = Cursor::default();
 //! assert_eq!(x.linear(0.0005, &mut cursor), 0.175);
@@ -24,14 +24,29 @@ pub mod spectrum;
 pub mod statistics;
 pub mod wrap;
 
+mod assemble;
+mod calendar;
 mod column;
+mod foreign;
 mod frame;
+mod gaps;
+mod heading;
+mod instants;
+mod layout;
+mod note;
 mod record;
 mod signal;
 mod table;
+mod time_error;
 
+pub use assemble::{Fault, Unusable, align};
+pub use calendar::{Origin, Since};
 pub use column::{Column, UnitConflict, in_unit};
+pub use foreign::Foreign;
 pub use frame::{Field, Frame, Kind, Values};
-pub use record::{RecordError, read, read_frame};
+pub use layout::{Layout, TimeColumn};
+pub use note::Note;
+pub use record::{RecordError, read, read_frame, read_whole};
 pub use signal::{Cursor, Signal};
 pub use table::{Table, TableError};
+pub use time_error::{Candidate, TimeError};

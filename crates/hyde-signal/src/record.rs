@@ -1,26 +1,46 @@
 //! A record in whichever form its file has.
 
-use crate::{Frame, Table, csv, parquet};
+use crate::foreign::{Foreign, foreign};
+use crate::{Frame, Layout, Table, Unusable, csv, parquet};
 use std::fmt;
 
 /// Why a file is no record.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RecordError {
+    /// It is a file of another kind.
+    Foreign(Foreign),
     /// A mistake in a CSV text.
     Csv(csv::ReadError),
     /// A mistake in a Parquet file.
     Parquet(parquet::ReadError),
+    /// A column cannot be used, where all of them are asked for.
+    Column(Unusable),
 }
 
-/// Reads a record: Parquet if the file begins so, else CSV. The first column is the time unless a period in s is declared.
+/// Reads a record: Parquet if the file begins so, else CSV.
 ///
 /// # Errors
 /// If the file is no record.
-pub fn read(bytes: &[u8], every: Option<f64>) -> Result<Table, RecordError> {
-    if parquet::is_parquet(bytes) {
-        return parquet::read(bytes, every).map_err(RecordError::Parquet);
+pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, RecordError> {
+    if let Some(foreign) = foreign(bytes) {
+        return Err(RecordError::Foreign(foreign));
     }
-    csv::read(bytes, every).map_err(RecordError::Csv)
+    if parquet::is_parquet(bytes) {
+        return parquet::read(bytes, layout).map_err(RecordError::Parquet);
+    }
+    csv::read(bytes, layout).map_err(RecordError::Csv)
+}
+
+/// The same for a file whose columns are all asked for.
+///
+/// # Errors
+/// If the file is no record, or a column of it cannot be used.
+pub fn read_whole(bytes: &[u8], layout: &Layout) -> Result<Table, RecordError> {
+    let table = read(bytes, layout)?;
+    match table.unusable().first() {
+        Some(unusable) => Err(RecordError::Column(unusable.clone())),
+        None => Ok(table),
+    }
 }
 
 /// Reads a table that need not be over time and may have texts in it: Parquet if the file begins so, else CSV.
@@ -28,6 +48,9 @@ pub fn read(bytes: &[u8], every: Option<f64>) -> Result<Table, RecordError> {
 /// # Errors
 /// If the file is no table.
 pub fn read_frame(bytes: &[u8]) -> Result<Frame, RecordError> {
+    if let Some(foreign) = foreign(bytes) {
+        return Err(RecordError::Foreign(foreign));
+    }
     if parquet::is_parquet(bytes) {
         return parquet::read_frame(bytes).map_err(RecordError::Parquet);
     }
@@ -35,12 +58,14 @@ pub fn read_frame(bytes: &[u8]) -> Result<Frame, RecordError> {
 }
 
 impl RecordError {
-    /// What to change in the file.
+    /// What to change, in the file or in the experiment that calls it `record`.
     #[must_use]
-    pub fn repair(&self) -> String {
+    pub fn repair(&self, record: &str) -> String {
         match self {
-            Self::Csv(error) => error.repair(),
-            Self::Parquet(error) => error.repair(),
+            Self::Foreign(foreign) => foreign.repair().to_owned(),
+            Self::Csv(error) => error.repair(record),
+            Self::Parquet(error) => error.repair(record),
+            Self::Column(unusable) => unusable.fault.repair.clone(),
         }
     }
 }
@@ -48,8 +73,10 @@ impl RecordError {
 impl fmt::Display for RecordError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
+            Self::Foreign(foreign) => foreign.fmt(f),
             Self::Csv(error) => error.fmt(f),
             Self::Parquet(error) => error.fmt(f),
+            Self::Column(unusable) => unusable.fault.fmt(f),
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Equally long columns over one time.
 
-use crate::{Column, Signal};
+use crate::{Column, Note, Origin, Signal, Unusable};
 use hyde_units::{Agreement, Dimension};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,18 +9,25 @@ use std::fmt;
 ///
 /// A measured frequency response is a table too: what is said of time is frequency then.
 ///
-/// The instants are the first column, or `k * period` if a period was declared; then all columns are ordinary ones.
-/// Time never runs back; an instant may have several rows, as results have two at an event.
+/// The instants are one of the columns, as a rule the first, or `k * period` if a period was declared; then all columns are
+/// ordinary ones. Time never runs back; an instant may have several rows, as results have two at an event.
+///
+/// What a reader found out about the file goes with it: [`notes`](Self::notes), and the columns that nobody can use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
     columns: Vec<Column>,
-    declared: Option<Declared>,
+    time: Time,
+    notes: Vec<Note>,
+    unusable: Vec<Unusable>,
+    origin: Option<Origin>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-struct Declared {
-    period_s: f64,
-    instants_s: Vec<f64>,
+enum Time {
+    /// The column of that number, from 0.
+    Column(usize),
+    /// A declared period, with the instants of all rows.
+    Every(f64, Vec<f64>),
 }
 
 /// Why columns do not make a table.
@@ -28,6 +35,8 @@ struct Declared {
 pub enum TableError {
     /// There is no column, or there are no rows.
     Empty,
+    /// None of the columns can be used: what is wrong with the first.
+    NoneUsable(String),
     /// A column has another number of rows than the first.
     UnequalLength {
         /// The column.
@@ -64,8 +73,13 @@ impl Table {
     /// # Errors
     /// If the columns do not make a table.
     pub fn new(columns: Vec<Column>) -> Result<Self, TableError> {
+        Self::with_time(columns, 0)
+    }
+
+    /// A table whose column `time` (from 0) is the time in s.
+    pub(crate) fn with_time(columns: Vec<Column>, at: usize) -> Result<Self, TableError> {
         check_columns(&columns)?;
-        let time = columns[0].values();
+        let time = columns[at].values();
         let not_a_number = time.iter().position(|instant| instant.is_nan());
         let back = || (1..time.len()).find(|&row| time[row] < time[row - 1]);
         if let Some(row) = not_a_number.or_else(back) {
@@ -74,10 +88,7 @@ impl Table {
                 time_s: time[row],
             });
         }
-        Ok(Self {
-            columns,
-            declared: None,
-        })
+        Ok(Self::of(columns, Time::Column(at)))
     }
 
     /// A table whose row k, from 0, is at `k * period_s`; all columns are ordinary ones.
@@ -91,13 +102,78 @@ impl Table {
         }
         let rows = columns[0].values().len();
         let instants_s = (0..rows).map(|k| k as f64 * period_s).collect();
-        Ok(Self {
+        Ok(Self::of(columns, Time::Every(period_s, instants_s)))
+    }
+
+    fn of(columns: Vec<Column>, time: Time) -> Self {
+        Self {
             columns,
-            declared: Some(Declared {
-                period_s,
-                instants_s,
-            }),
-        })
+            time,
+            notes: Vec::new(),
+            unusable: Vec::new(),
+            origin: None,
+        }
+    }
+
+    /// The same with what its reader found out.
+    pub(crate) fn with_findings(
+        self,
+        notes: Vec<Note>,
+        unusable: Vec<Unusable>,
+        origin: Option<Origin>,
+    ) -> Self {
+        Self {
+            notes,
+            unusable,
+            origin,
+            ..self
+        }
+    }
+
+    /// What its user should know of the file.
+    #[must_use]
+    pub fn notes(&self) -> &[Note] {
+        &self.notes
+    }
+
+    /// The columns of the file that cannot be used, with the reason; they are none of [`columns`](Self::columns).
+    #[must_use]
+    pub fn unusable(&self) -> &[Unusable] {
+        &self.unusable
+    }
+
+    /// What the clock of the file showed where the time of the table is 0, if that is its own first row.
+    #[must_use]
+    pub fn origin(&self) -> Option<&Origin> {
+        self.origin.as_ref()
+    }
+
+    /// Adds to what its user should know.
+    pub(crate) fn tell(&mut self, note: Note) {
+        self.notes.push(note);
+    }
+
+    /// Counts the time from an instant `later_s` before.
+    pub(crate) fn begin_later(&mut self, later_s: f64) {
+        if let Time::Column(at) = self.time {
+            let column = self.columns.remove(at).raised(later_s);
+            self.columns.insert(at, column);
+            self.notes.push(Note::new(format!(
+                "it begins {} behind the first of the records",
+                crate::gaps::seconds(later_s)
+            )));
+        }
+    }
+
+    /// Other columns over the same time, which stands among them where it stood.
+    ///
+    /// # Errors
+    /// If the columns do not make a table.
+    pub fn with_columns(&self, columns: Vec<Column>) -> Result<Self, TableError> {
+        match self.time {
+            Time::Every(period_s, _) => Self::every(period_s, columns),
+            Time::Column(at) => Self::with_time(columns, at),
+        }
     }
 
     /// How many rows there are; at least one.
@@ -109,16 +185,19 @@ impl Table {
     /// The instants of the rows in s, never running back.
     #[must_use]
     pub fn time(&self) -> &[f64] {
-        match &self.declared {
-            Some(declared) => &declared.instants_s,
-            None => self.columns[0].values(),
+        match &self.time {
+            Time::Every(_, instants_s) => instants_s,
+            Time::Column(at) => self.columns[*at].values(),
         }
     }
 
     /// The declared period in s, if time is not a column.
     #[must_use]
     pub fn period(&self) -> Option<f64> {
-        self.declared.as_ref().map(|declared| declared.period_s)
+        match &self.time {
+            Time::Every(period_s, _) => Some(*period_s),
+            Time::Column(_) => None,
+        }
     }
 
     /// The mean distance of rows in s: the sampling period of a record whose clock drifts. None for a single instant.
@@ -130,7 +209,7 @@ impl Table {
         (span > 0.0).then(|| self.period().unwrap_or(span / steps))
     }
 
-    /// All columns in order; the time is the first of them unless a period was declared.
+    /// All columns in order, the time among them unless a period was declared.
     #[must_use]
     pub fn columns(&self) -> &[Column] {
         &self.columns
@@ -159,6 +238,7 @@ impl fmt::Display for TableError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Empty => write!(f, "the table has no rows"),
+            Self::NoneUsable(first) => write!(f, "none of its columns can be used: {first}"),
             Self::UnequalLength {
                 name,
                 rows,

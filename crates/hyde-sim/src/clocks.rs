@@ -1,6 +1,6 @@
 //! Clocks: when they tick, and when what they hold changes (C1, C3).
 //!
-//! Tick k of a clock is at phase + k*period, computed by one multiplication: no drift. A held value changes with the
+//! Tick k of a clock is at start + phase + k*period, computed by one multiplication: no drift. A held value changes with the
 //! tick, or after the clock's delay with the value of its tick.
 
 use crate::sensitivity::{Sensitivities, Slopes};
@@ -21,6 +21,7 @@ struct Times {
     period: f64,
     delay: f64,
     phase: f64,
+    start: f64,
     next: u64,
 }
 
@@ -69,6 +70,7 @@ impl Schedule {
                 period,
                 delay,
                 phase,
+                start,
                 next: 0,
             };
             while times.at() < start && !same_instant(times.at(), start) {
@@ -202,6 +204,6 @@ impl Schedule {
 impl Times {
     fn at(&self) -> f64 {
         // Tick numbers are far below 2^53.
-        self.phase + self.next as f64 * self.period
+        self.start + self.phase + self.next as f64 * self.period
     }
 }

@@ -14,6 +14,9 @@ pub struct InputError {
     pub column: String,
 }
 
+/// The doubles between two instants of a difference of time, at least: rounding of the instants is no part of it.
+const RESOLUTIONS: f64 = 131_072.0;
+
 /// The columns of a run.
 pub(crate) struct Inputs<'a> {
     columns: Vec<Input<'a>>,
@@ -22,6 +25,7 @@ pub(crate) struct Inputs<'a> {
     /// Numbers of those of them that step at rows, and the instant that they were read at last: between events they stay.
     stepped: Vec<usize>,
     since_s: f64,
+    start_s: f64,
 }
 
 struct Input<'a> {
@@ -70,6 +74,7 @@ impl<'a> Inputs<'a> {
             continuous: numbers(&|column| column.continuous),
             stepped: numbers(&|column| column.stepped),
             since_s: setup.start_s,
+            start_s: setup.start_s,
         })
     }
 
@@ -126,10 +131,12 @@ impl<'a> Inputs<'a> {
         jumps.chain(rows).fold(f64::INFINITY, f64::min)
     }
 
-    /// A step of time for a difference: a ten-millionth of the time, and not beyond the next row of a column that the equations
+    /// A step of time for a difference: a ten-millionth of the time since the start, more where the clock does not resolve it,
+    /// and not beyond the next row of a column that the equations
     /// read, for there it has a kink. A row that is nearer than a thousandth of the step counts as reached.
     pub(crate) fn difference_s(&self, t: f64) -> f64 {
-        let step = 1e-7 * (1e-3 + t.abs());
+        let since = 1e-7 * (1e-3 + (t - self.start_s).abs());
+        let step = since.max(RESOLUTIONS * (t.abs().next_up() - t.abs()));
         let left = |&number: &usize| {
             let column = &self.columns[number];
             let mut cursor = column.cursor;

@@ -21,7 +21,8 @@ pub use class::{
 pub use declaration::{Change, Declaration, Declarator, Prefix, Prior};
 pub use equation::{Equation, EquationKind, Place};
 pub use experiment::{
-    Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, Margins, RecordItem,
+    Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, LayoutSetting, Margins,
+    RecordItem,
 };
 pub use expression::{Argument, Binary, Comprehension, Expr, ExprKind, Range, Unary};
 pub use file::{File, Import, Item, TypeItem};

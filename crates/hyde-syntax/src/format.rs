@@ -10,7 +10,7 @@ mod name;
 mod study;
 
 pub use expression::expression;
-pub use name::reference;
+pub use name::{member, reference};
 
 use crate::ast::{File, Item};
 use name::{bracketed, doc};

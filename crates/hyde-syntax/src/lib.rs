@@ -12,5 +12,7 @@ mod parse;
 mod recover;
 mod words;
 
-pub use format::{expression as format_expression, file as format, reference as format_reference};
+pub use format::{
+    expression as format_expression, file as format, member, reference as format_reference,
+};
 pub use parse::parse;

@@ -56,7 +56,8 @@ fn word(rule: Rule) -> String {
         | Rule::path
         | Rule::part
         | Rule::member
-        | Rule::member_name => "a name",
+        | Rule::member_name
+        | Rule::quoted_name => "a name",
         Rule::or
         | Rule::and
         | Rule::le

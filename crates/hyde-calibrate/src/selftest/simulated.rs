@@ -108,11 +108,7 @@ pub fn simulated(
                 (Some(values), None) => Column::raw(column.name(), values),
             }
         });
-        let columns = columns.collect();
-        let table = match table.period() {
-            Some(period) => Table::every(period, columns),
-            None => Table::new(columns),
-        };
+        let table = table.with_columns(columns.collect());
         // Columns as long as before over the same time.
         table.ok().map(|table| (name.clone(), table))
     };

@@ -187,7 +187,8 @@ fn table(args: &ModelArgs, name: &str) -> Result<hyde_signal::Table, String> {
     let path = root.unwrap_or_default().join(name);
     let bytes = args.read(Kind::Record, "", &path.to_string_lossy(), &path)?;
     // A table of cases has no time: its rows are only counted.
-    hyde_signal::read(&bytes, Some(1.0)).map_err(|error| format!("`{}`: {error}", path.display()))
+    hyde_signal::read_whole(&bytes, &hyde_signal::Layout::every(1.0))
+        .map_err(|error| format!("`{}`: {error}", path.display()))
 }
 
 /// Reads the records of every alternative, so that all that the batch reads is known.

@@ -158,6 +158,7 @@ impl Source<'_> {
             | RunError::CannotSet(..)
             | RunError::NoGradientBy(..)
             | RunError::NoStop
+            | RunError::EndsBeforeStart { .. }
             | RunError::NotPositive(..)
             | RunError::Compare(_) => f64::NAN,
         };

@@ -97,7 +97,7 @@ fn as_json(candidate: &Candidate) -> Value {
 }
 
 /// A list in lines of at most so many characters.
-pub(super) fn wrapped(text: &str, width: usize) -> Vec<String> {
+pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = vec![String::new()];
     for word in text.split(' ') {
         let last = lines.len() - 1;

@@ -1,7 +1,7 @@
 //! The page of a diagnosis.
 
 use super::{Told, named, suspicion, verdict};
-use crate::before_after::{Change, RecordErrors};
+use crate::before_after::{self, Change, RecordErrors};
 use crate::figures::shown;
 use hyde_calibrate::{FittedParameter, ResidualMap, Whiteness};
 use hyde_report::{
@@ -14,15 +14,22 @@ pub(crate) fn html(told: &Told<'_>) -> String {
     let calibration = told.calibration;
     let report = DiagnosisReport {
         title: format!("{} of {}", told.plan.name, calibration.plan.model),
-        facts: vec![
-            ("model".to_owned(), calibration.plan.model.clone()),
-            ("calibration".to_owned(), calibration.plan.name.clone()),
-            ("new model".to_owned(), told.written.model.clone()),
-            (
-                "SHA-256 of the file".to_owned(),
-                calibration.project.hash.clone(),
-            ),
-        ],
+        facts: [
+            vec![
+                ("model".to_owned(), calibration.plan.model.clone()),
+                ("calibration".to_owned(), calibration.plan.name.clone()),
+                ("new model".to_owned(), told.written.model.clone()),
+                (
+                    "SHA-256 of the file".to_owned(),
+                    calibration.project.hash.clone(),
+                ),
+            ],
+            before_after::assumptions(calibration)
+                .into_iter()
+                .map(|text| ("assumed of the records".to_owned(), text))
+                .collect(),
+        ]
+        .concat(),
         sentence: verdict::sentence(told),
         doubts: verdict::doubts(told),
         effects: effects(told),

@@ -23,7 +23,7 @@ fn results_hold_the_numbers_of_the_csv_with_their_units() {
         ]
     );
     let bytes = std::fs::read(format!("{out}/results.parquet")).unwrap();
-    let table = hyde_signal::parquet::read(&bytes, None).unwrap();
+    let table = hyde_signal::parquet::read(&bytes, &hyde_signal::Layout::default()).unwrap();
     assert_eq!(table.columns()[0].unit().unwrap().text(), "s");
     for (at, column) in table.columns().iter().enumerate() {
         let expected: Vec<f64> = csv.iter().map(|row| row[at]).collect();
@@ -111,7 +111,11 @@ fn pandas_polars_and_duckdb_read_results() {
     let line = ["run", &model, "--out", &out, "--format", "parquet"];
     assert_eq!(status(&hyde(&line)), 0);
     let path = format!("{out}/results.parquet");
-    let table = hyde_signal::parquet::read(&std::fs::read(&path).unwrap(), None).unwrap();
+    let table = hyde_signal::parquet::read(
+        &std::fs::read(&path).unwrap(),
+        &hyde_signal::Layout::default(),
+    )
+    .unwrap();
     let sum: f64 = table.column("x").unwrap().values().iter().sum();
     read_by_others(&path, "x", (51, sum, "1", 0));
 }

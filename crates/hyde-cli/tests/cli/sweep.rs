@@ -317,7 +317,11 @@ fn a_case_is_run_again_exactly() {
         .iter()
         .filter(|&&number| number == case as i64)
         .count();
-    let run = hyde_signal::csv::read(read(&format!("{one}/results.csv")).as_bytes(), None).unwrap();
+    let run = hyde_signal::csv::read(
+        read(&format!("{one}/results.csv")).as_bytes(),
+        &hyde_signal::Layout::default(),
+    )
+    .unwrap();
     assert_eq!(rows, run.rows());
 }
 

@@ -1,4 +1,4 @@
-//! Columns of records: read between rows, held, one row ahead, and their first value and mean.
+//! Columns of records: read between rows, held, one row ahead, and their first value and mean; begin and end of a record.
 
 use crate::dimension::Dim;
 use crate::instance::{Lowering, ParameterNotes, Scope, Setting};
@@ -8,10 +8,11 @@ use crate::names::nearest;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::{Column, ColumnId, Interpolation, Parameter, Quantity, VarId, VariableKind};
 use hyde_syntax::ast::Reference;
-use hyde_units::NamedUnit;
+use hyde_syntax::member;
+use hyde_units::{Dimension, NamedUnit};
 
 impl<'a> Model<'a, '_> {
-    /// `record.column`, `.next`, `.first`, `.mean`.
+    /// `record.column`, `.next`, `.first`, `.mean`; `record.begin` and `record.end`.
     pub(crate) fn record_column(
         &mut self,
         reference: &'a Reference,
@@ -33,6 +34,24 @@ impl<'a> Model<'a, '_> {
         let header = self.input.records.get(&record);
         let known =
             header.and_then(|header| header.columns.iter().find(|(name, _)| name == column));
+        if known.is_none()
+            && header.is_some()
+            && suffix.is_none()
+            && matches!(column, "begin" | "end")
+        {
+            let instant = self.record_instant(&record, column, reference.span);
+            return Some(Resolved::Parameter(instant, None));
+        }
+        let unusable =
+            header.and_then(|header| header.unusable.iter().find(|(name, ..)| name == column));
+        if let Some((_, message, repair)) = unusable {
+            let message = format!("the record `{record}`: {message}");
+            let diagnostic = Diagnostic::error(Code::BadRecord, message)
+                .label(reference.span, "read here")
+                .help(repair);
+            self.report(diagnostic);
+            return None;
+        }
         let Some((_, unit)) = known else {
             let names: Vec<&str> = header
                 .map(|header| {
@@ -58,11 +77,24 @@ impl<'a> Model<'a, '_> {
             let diagnostic = match near {
                 Some(near) => diagnostic
                     .note(format!("its columns are {}", listed(&names)))
-                    .help(format!("did you mean `{record}.{near}`?")),
+                    .help(match member(near) {
+                    name if name == near => format!("did you mean `{record}.{name}`?"),
+                    name => format!(
+                        "did you mean `{record}.{name}`? A name that is not a word is written in quotes"
+                    ),
+                }),
                 None if names.is_empty() => {
                     diagnostic.help("the record was not given: `--record NAME=PATH`")
                 }
-                None => diagnostic.help(format!("its columns are {}", listed(&names))),
+                None => {
+                    let written: Vec<_> = names.iter().map(|name| member(name)).collect();
+                    let written: Vec<&str> = written.iter().map(|name| &**name).collect();
+                    let quoted = match written == names {
+                        true => "",
+                        false => "; a name that is not a word is written in quotes",
+                    };
+                    diagnostic.help(format!("its columns are {}{quoted}", listed(&written)))
+                }
             };
             self.report(diagnostic);
             return None;
@@ -163,8 +195,34 @@ impl<'a> Model<'a, '_> {
         if let Some(&param) = self.column_values.get(&name) {
             return param;
         }
-        let (_, linear, _) = self.column(record, column, unit.clone(), false, span);
+        let (_, linear, _) = self.column(record, column, unit, false, span);
         let dim = self.dim(linear);
+        let quantity = self.flat.variables[linear].quantity.clone();
+        self.recorded_parameter(record, name, (dim, quantity), span)
+    }
+
+    /// The time of the first row of a record, or of the last one.
+    fn record_instant(&mut self, record: &str, which: &str, span: Span) -> hyde_ir::ParamId {
+        let name = format!("{record}.{which}");
+        if let Some(&param) = self.column_values.get(&name) {
+            return param;
+        }
+        let quantity = Quantity {
+            dimension: Dimension::TIME,
+            unit: NamedUnit::usual(Dimension::TIME),
+        };
+        let dim = Dim::known(Dimension::TIME);
+        self.recorded_parameter(record, name, (dim, quantity), span)
+    }
+
+    /// A parameter that the run fills in from a record.
+    fn recorded_parameter(
+        &mut self,
+        record: &str,
+        name: String,
+        (dim, quantity): (Dim, Quantity),
+        span: Span,
+    ) -> hyde_ir::ParamId {
         let zero = self.flat.exprs.constant(0.0);
         self.parameters.push(ParameterNotes {
             dim,
@@ -173,7 +231,6 @@ impl<'a> Model<'a, '_> {
             boolean: false,
             within: None,
         });
-        let quantity = self.flat.variables[linear].quantity.clone();
         let origin = self.origin(0, span).made_by(MadeBy::Experiment);
         let param = self.flat.parameters.push(Parameter {
             name: name.clone(),

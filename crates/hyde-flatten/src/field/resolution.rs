@@ -120,6 +120,7 @@ impl<'a> Model<'a, '_> {
                 | ExperimentItem::Expect(..)
                 | ExperimentItem::Measure(_)
                 | ExperimentItem::Solve(..)
+                | ExperimentItem::Start(_)
                 | ExperimentItem::Stop(_)
                 | ExperimentItem::Every(_)
                 | ExperimentItem::Skip(_)

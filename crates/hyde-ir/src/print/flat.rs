@@ -2,8 +2,7 @@
 
 use super::{Names, comment, counted};
 use crate::flat::{
-    Action, Equation, FlatModel, Method, Preparation, RecordedResponse, ReductionKind,
-    ScaledColumn, Stop,
+    Action, Equation, FlatModel, Method, Preparation, RecordedResponse, ReductionKind, ScaledColumn,
 };
 
 use crate::{Interpolation, VariableKind};
@@ -418,14 +417,11 @@ impl Printer<'_> {
         for (name, value) in &experiment.solve {
             let _ = writeln!(out, "  solve {name} = {}", self.names.expr(*value));
         }
-        match &experiment.stop {
-            Some(Stop::At(time)) => {
-                let _ = writeln!(out, "  stop {}", self.names.expr(*time));
-            }
-            Some(Stop::EndOf(record)) => {
-                let _ = writeln!(out, "  stop at the end of {record}");
-            }
-            None => {}
+        if let Some(start) = experiment.start {
+            let _ = writeln!(out, "  start {}", self.names.expr(start));
+        }
+        if let Some(stop) = experiment.stop {
+            let _ = writeln!(out, "  stop {}", self.names.expr(stop));
         }
         if let Some(every) = experiment.every {
             let _ = writeln!(out, "  every {}", self.names.expr(every));

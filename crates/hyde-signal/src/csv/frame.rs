@@ -1,9 +1,9 @@
 //! Reads a CSV table that need not be over time: event logs, responses, cases.
 
 use super::ReadError;
-use super::header::separator;
-use super::read::read_header;
+use super::grid::Grid;
 use super::rows::Rows;
+use super::text::decoded;
 use crate::{Field, Frame, Kind, Values};
 
 /// Reads a table. A column is of numbers, in the unit of its header, if every cell of it is one or empty; else of texts.
@@ -12,16 +12,14 @@ use crate::{Field, Frame, Kind, Values};
 ///
 /// # Errors
 /// The first mistake in the file, with its line and column.
-pub fn read_frame(text: &[u8]) -> Result<Frame, ReadError> {
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let mut rows = Rows::new(text, separator(text));
-    if !rows.advance()? {
-        return Err(ReadError::Empty);
-    }
-    let header = read_header(&rows)?;
+pub fn read_frame(bytes: &[u8]) -> Result<Frame, ReadError> {
+    let (text, _) = decoded(bytes).map_err(ReadError::Foreign)?;
+    let grid = Grid::of_frame(&text)?;
+    let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
+    let header = grid.headings;
     let mut cells: Vec<Vec<String>> = vec![Vec::new(); header.len()];
     while rows.advance()? {
-        let (line, found, expected) = (rows.line(), rows.cells().len(), header.len());
+        let (line, found, expected) = (rows.line(), rows.count(), header.len());
         if found != expected {
             return Err(ReadError::Ragged {
                 line,
@@ -30,12 +28,12 @@ pub fn read_frame(text: &[u8]) -> Result<Frame, ReadError> {
             });
         }
         for (cell, column) in rows.cells().zip(&mut cells) {
-            let cell = str::from_utf8(cell).map_err(|_| ReadError::Encoding { line })?;
             column.push(cell.to_owned());
         }
     }
     let (mut fields, mut values) = (Vec::new(), Vec::new());
-    for ((name, unit), cells) in header.into_iter().zip(cells) {
+    for (heading, cells) in header.into_iter().zip(cells) {
+        let (name, unit) = heading.named();
         match numbers(&cells) {
             Some(numbers) => {
                 fields.push(Field::number(name, unit));

@@ -1,81 +1,57 @@
 //! Reads a CSV record into a table.
 
 use super::ReadError;
-use super::header::{name_and_unit, separator};
+use super::grid::Grid;
+use super::number::{Numbers, not_a_number, truth};
 use super::rows::Rows;
-use crate::table::may_be_first;
-use crate::{Column, Table};
-use hyde_units::NamedUnit;
+use super::text::decoded;
+use crate::assemble::{AssembleError, Cells, Raw, assemble};
+use crate::heading::Heading;
+use crate::instants;
+use crate::layout::Layout;
+use crate::{Fault, Note, Table};
 
-/// Reads a record. Columns with a unit become SI; those without keep their values, see [`Column::with_unit`].
+/// Reads a record. Columns with a unit become SI; those without keep their values, see [`Column::with_unit`](crate::Column).
 ///
-/// The first column is the time; without a unit it is in s. In a measured response it is the frequency. With `every`, a period in s, row k is at `k * every`
-/// instead and all columns are ordinary ones. Several rows may have the same time.
+/// The time is the column that the layout says, else the first one; in a measured response that is the frequency. Several
+/// rows may have the same time. A column that cannot be read does not matter as long as nobody uses it:
+/// [`Table::unusable`].
 ///
 /// # Errors
-/// The first mistake in the file, with its line and column.
-pub fn read(text: &[u8], every: Option<f64>) -> Result<Table, ReadError> {
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let mut rows = Rows::new(text, separator(text));
-    if !rows.advance()? {
-        return Err(ReadError::Empty);
-    }
-    if rows.cells().all(|cell| number(cell).is_some()) {
-        return Err(ReadError::NoHeader { line: rows.line() });
-    }
-    let header = read_header(&rows)?;
-    if every.is_none() {
-        check_time_unit(&header[0])?;
-    }
-    let values = read_values(&mut rows, &header, every.is_none())?;
-    let columns = header
-        .into_iter()
-        .zip(values)
-        .map(|((name, unit), values)| {
-            let raw = Column::raw(name, values);
-            match unit {
-                Some(unit) => raw.converted(unit),
-                None => raw,
-            }
-        });
-    let columns = columns.collect();
-    Ok(match every {
-        Some(period) => Table::every(period, columns)?,
-        None => Table::new(columns)?,
-    })
-}
-
-pub(super) type Header = Vec<(String, Option<NamedUnit>)>;
-
-pub(super) fn read_header(rows: &Rows<'_>) -> Result<Header, ReadError> {
-    let mut header = Header::new();
-    for (cell, column) in rows.cells().zip(1..) {
-        let cell = str::from_utf8(cell).map_err(|_| ReadError::Encoding { line: rows.line() })?;
-        header.push(name_and_unit(cell, column)?);
-    }
-    Ok(header)
-}
-
-fn check_time_unit((name, unit): &(String, Option<NamedUnit>)) -> Result<(), ReadError> {
-    match unit {
-        Some(unit) if !may_be_first(unit.unit().dimension) => {
-            let (name, unit) = (name.clone(), unit.text().to_owned());
-            Err(ReadError::NoTime { name, unit })
+/// The first mistake in the file, with its line.
+pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
+    let (text, note) = decoded(bytes).map_err(ReadError::Foreign)?;
+    let grid = Grid::of(&text)?;
+    let mut notes: Vec<Note> = note.into_iter().chain(grid.notes).collect();
+    let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
+    let headings = grid.headings;
+    let time = match layout.every_s {
+        Some(_) => None,
+        None => {
+            let named: Vec<Raw> = headings.iter().cloned().map(without_cells).collect();
+            Some(instants::place(&named, layout.time.as_ref())?)
         }
-        Some(_) | None => Ok(()),
-    }
-}
-
-/// All cells below the header, by column.
-fn read_values(
-    rows: &mut Rows<'_>,
-    header: &Header,
-    has_time: bool,
-) -> Result<Vec<Vec<f64>>, ReadError> {
-    let mut values = vec![Vec::new(); header.len()];
+    };
+    let mut columns = Columns {
+        of: headings.iter().map(|_| Vec::new()).collect(),
+        faults: vec![None; headings.len()],
+        truths: vec![false; headings.len()],
+        numbers: Numbers::default(),
+        time,
+        instants: Vec::new(),
+    };
+    let mut positions = Vec::new();
     while rows.advance()? {
-        let (found, expected) = (rows.cells().len(), header.len());
-        if found != expected {
+        let (found, expected) = (rows.count(), headings.len());
+        if found < expected && rows.is_cut_off() && !positions.is_empty() {
+            notes.push(Note::new(format!(
+                "the file ends within line {}: that row is left out",
+                rows.line()
+            )));
+            break;
+        }
+        let beyond = rows.cells().skip(expected).any(|cell| !cell.is_empty());
+        if found < expected || beyond {
             let line = rows.line();
             return Err(ReadError::Ragged {
                 line,
@@ -83,51 +59,103 @@ fn read_values(
                 expected,
             });
         }
-        for (at, (cell, column)) in rows.cells().zip(&mut values).enumerate() {
-            column.push(number(cell).ok_or_else(|| bad_number(rows, at, cell, header))?);
+        let again = |(cell, heading): (&str, &Heading)| cell == heading.written;
+        if rows.cells().zip(&headings).all(again) {
+            return Err(ReadError::HeaderAgain { line: rows.line() });
         }
-        if has_time {
-            check_time(&values[0], rows)?;
-        }
+        columns.push(&rows, &headings);
+        positions.push(rows.position());
     }
-    if values[0].is_empty() {
+    if positions.is_empty() {
         return Err(ReadError::NoRows);
     }
-    Ok(values)
+    notes.extend(columns.notes(&headings));
+    let place = |row: usize| format!("line {}", rows.line_at(positions[row]));
+    let raw = columns.raw(headings);
+    assemble(raw, layout, notes, &place).map_err(|error| match error {
+        AssembleError::Time(error) => ReadError::Time(error),
+        AssembleError::Table(error) => ReadError::Table(error),
+    })
 }
 
-fn number(cell: &[u8]) -> Option<f64> {
-    let value: f64 = str::from_utf8(cell).ok()?.parse().ok()?;
-    value.is_finite().then_some(value)
+fn without_cells(heading: Heading) -> Raw {
+    let cells = Cells::Integers(Vec::new());
+    Raw { heading, cells }
 }
 
-fn bad_number(rows: &Rows<'_>, at: usize, cell: &[u8], header: &Header) -> ReadError {
-    let (line, column, name) = (rows.line(), at + 1, header[at].0.clone());
-    let text = String::from_utf8_lossy(cell).into_owned();
-    if text.parse::<f64>().is_ok() {
-        ReadError::NotFinite {
-            line,
-            column,
-            name,
-            text,
-        }
-    } else {
-        ReadError::NotANumber {
-            line,
-            column,
-            name,
-            text,
+/// The cells below the header.
+struct Columns {
+    of: Vec<Vec<f64>>,
+    faults: Vec<Option<Fault>>,
+    /// Whether a column has `TRUE` or `FALSE`.
+    truths: Vec<bool>,
+    numbers: Numbers,
+    /// Which of them is the time, with its cells.
+    time: Option<usize>,
+    instants: Vec<String>,
+}
+
+impl Columns {
+    fn push(&mut self, rows: &Rows<'_>, headings: &[Heading]) {
+        for (at, cell) in rows.cells().take(headings.len()).enumerate() {
+            if self.time == Some(at) {
+                // Dates have commas of their own; numbers have points from here on.
+                let number = self.numbers.read(cell).is_some();
+                let cell = if number {
+                    cell.replace(',', ".")
+                } else {
+                    cell.to_owned()
+                };
+                self.instants.push(cell);
+                continue;
+            }
+            let truth = || truth(cell).inspect(|_| self.truths[at] = true);
+            let value = self.numbers.read(cell).or_else(truth);
+            if value.is_none() && self.faults[at].is_none() {
+                let fault = not_a_number(rows.line(), at + 1, &headings[at].name, cell);
+                self.faults[at] = Some(fault);
+            }
+            self.of[at].push(value.unwrap_or(f64::NAN));
         }
     }
-}
 
-fn check_time(time: &[f64], rows: &Rows<'_>) -> Result<(), ReadError> {
-    match time {
-        [.., before, now] if now < before => {
-            let (line, before, time) = (rows.line(), *before, *now);
-            Err(ReadError::TimeRunsBack { line, time, before })
+    fn notes(&self, headings: &[Heading]) -> Vec<Note> {
+        let mut notes = Vec::new();
+        if self.numbers.has_comma() {
+            notes.push(Note::new(
+                "its numbers have a decimal comma: `0,5` is read as 0.5",
+            ));
         }
-        _ => Ok(()),
+        let columns = headings.iter().zip(&self.truths).zip(&self.faults);
+        let truths = columns.filter(|((_, truth), fault)| **truth && fault.is_none());
+        let names: Vec<String> = truths.map(|((h, _), _)| format!("`{}`", h.name)).collect();
+        if !names.is_empty() {
+            notes.push(Note::new(format!(
+                "TRUE and FALSE are read as 1 and 0 in {}",
+                names.join(", ")
+            )));
+        }
+        notes
+    }
+
+    fn raw(self, headings: Vec<Heading>) -> Vec<Raw> {
+        let Self {
+            of,
+            faults,
+            time,
+            mut instants,
+            ..
+        } = self;
+        let columns = headings.into_iter().zip(of).zip(faults).enumerate();
+        columns
+            .map(|(at, ((heading, values), fault))| {
+                let cells = match time == Some(at) {
+                    true => Cells::Texts(std::mem::take(&mut instants)),
+                    false => Cells::Numbers(values, fault),
+                };
+                Raw { heading, cells }
+            })
+            .collect()
     }
 }
 

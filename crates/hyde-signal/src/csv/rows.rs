@@ -1,66 +1,105 @@
 //! The rows of a CSV text, without blank lines and comments, and the line each of them is on.
 
 use super::ReadError;
-use ::csv::{ByteRecord, Reader, ReaderBuilder, Trim};
+use ::csv::{ReaderBuilder, StringRecord, Trim};
 
 /// Goes through the rows of a text.
 pub(super) struct Rows<'a> {
-    text: &'a [u8],
-    reader: Reader<&'a [u8]>,
-    record: ByteRecord,
+    text: &'a str,
+    lines_above: u64,
+    reader: ::csv::Reader<&'a [u8]>,
+    record: StringRecord,
 }
 
 impl<'a> Rows<'a> {
-    /// Before the first row.
-    pub(super) fn new(text: &'a [u8], separator: u8) -> Self {
-        let reader = ReaderBuilder::new()
-            .delimiter(separator)
-            .comment(Some(COMMENT))
-            .has_headers(false)
-            .flexible(true)
-            .trim(Trim::All)
-            .from_reader(text);
+    /// Before the first row of a text that has so many lines above it.
+    pub(super) fn new(text: &'a str, separator: u8, lines_above: u64) -> Self {
         Self {
             text,
-            reader,
-            record: ByteRecord::new(),
+            lines_above,
+            reader: reader(text, separator),
+            record: StringRecord::new(),
         }
     }
 
     /// Goes to the next row that is not blank; false if there is none.
     pub(super) fn advance(&mut self) -> Result<bool, ReadError> {
         loop {
-            // Bytes from memory, in rows of any length: the reader has nothing to refuse.
-            let more = self.reader.read_byte_record(&mut self.record);
-            if !more.map_err(|_| ReadError::Encoding { line: self.line() })? {
+            // Text from memory, in rows of any length: the reader has nothing to refuse.
+            let more = self.reader.read_record(&mut self.record);
+            if !more.map_err(|_| ReadError::Empty)? {
                 return Ok(false);
             }
-            if self.record.len() > 1 || self.record.iter().any(|cell| !cell.is_empty()) {
+            let comment = self.record.get(0).is_some_and(|cell| cell.starts_with('%'));
+            if !comment && self.record.iter().any(|cell| !cell.is_empty()) {
                 return Ok(true);
             }
         }
     }
 
     /// The cells of the row, without blanks and quotes round them.
-    pub(super) fn cells(&self) -> impl ExactSizeIterator<Item = &[u8]> {
+    pub(super) fn cells(&self) -> impl Iterator<Item = &str> {
         self.record.iter()
     }
 
-    /// The line of the row, from 1.
+    /// How many there are.
+    pub(super) fn count(&self) -> usize {
+        self.record.len()
+    }
+
+    /// Where the row begins.
+    pub(super) fn position(&self) -> u64 {
+        self.record.position().map_or(0, ::csv::Position::byte)
+    }
+
+    /// Whether the text ends within this row.
+    pub(super) fn is_cut_off(&self) -> bool {
+        let end = self.reader.position().byte();
+        usize::try_from(end).is_ok_and(|end| end >= self.text.len())
+            && !self.text.ends_with(['\n', '\r'])
+    }
+
+    /// The line of the row.
     pub(super) fn line(&self) -> u64 {
+        self.line_at(self.position())
+    }
+
+    /// The line of a row by where it begins, from 1.
+    pub(super) fn line_at(&self, start: u64) -> u64 {
         // The reader counts blank lines and comments above a row as part of it.
-        let start = self.record.position().map_or(0, ::csv::Position::byte);
         let start = usize::try_from(start)
             .unwrap_or(usize::MAX)
             .min(self.text.len());
-        let is_newline = |byte: &&u8| **byte == b'\n';
-        let above = self.text[..start].iter().filter(is_newline).count();
-        let lines = self.text[start..].split(|byte| *byte == b'\n');
+        let (before, from) = (
+            &self.text.as_bytes()[..start],
+            &self.text.as_bytes()[start..],
+        );
+        let above = before.iter().filter(|byte| **byte == b'\n').count();
+        let lines = from.split(|byte| *byte == b'\n');
         let skipped = lines
             .take_while(|line| matches!(line, [] | [b'\r'] | [COMMENT, ..]))
             .count();
-        (above + skipped + 1) as u64
+        self.lines_above + (above + skipped + 1) as u64
     }
+}
+
+/// The cells of one line.
+pub(super) fn cells_of(line: &str, separator: u8) -> Vec<String> {
+    let mut record = StringRecord::new();
+    match reader(line, separator).read_record(&mut record) {
+        Ok(true) => record.iter().map(str::to_owned).collect(),
+        Ok(false) | Err(_) => Vec::new(),
+    }
+}
+
+fn reader(text: &str, separator: u8) -> ::csv::Reader<&[u8]> {
+    ReaderBuilder::new()
+        .delimiter(separator)
+        .comment(Some(COMMENT))
+        .has_headers(false)
+        .flexible(true)
+        .trim(Trim::All)
+        .from_reader(text.as_bytes())
 }
 
 const COMMENT: u8 = b'#';

@@ -58,6 +58,7 @@ fn push_number(text: &mut String, value: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Layout;
     use crate::csv::read;
     use hyde_units::NamedUnit;
 
@@ -75,21 +76,28 @@ mod tests {
         let text = write(&columns);
         let expected = "t [s],x [mm],\"a, b\"\n0,350,1e300\n0.001,-0.00025,0.3333333333333333\n";
         assert_eq!(text, expected);
-        let table = read(text.as_bytes(), None).unwrap();
+        let table = read(text.as_bytes(), &Layout::default()).unwrap();
         assert_eq!(table.columns(), columns);
     }
 
     #[test]
     fn odd_names_survive() {
         for name in ["# t", "say \"hi\"", "a;b", "x[1]", "Größe"] {
-            let columns = [Column::raw("t", vec![0.0]), Column::raw(name, vec![1.0])];
+            let columns = [
+                Column::new("t", unit("s"), vec![0.0]),
+                Column::raw(name, vec![1.0]),
+            ];
             assert_eq!(
-                read(write(&columns).as_bytes(), None).unwrap().columns(),
+                read(write(&columns).as_bytes(), &Layout::default())
+                    .unwrap()
+                    .columns(),
                 columns
             );
-            let first = [Column::raw(name, vec![0.0])];
+            let first = [Column::new(name, unit("s"), vec![0.0])];
             assert_eq!(
-                read(write(&first).as_bytes(), None).unwrap().columns(),
+                read(write(&first).as_bytes(), &Layout::default())
+                    .unwrap()
+                    .columns(),
                 first
             );
         }
@@ -103,7 +111,7 @@ mod tests {
             .filter(|value| value.is_finite())
             .collect();
         let columns = [Column::raw("v", values)];
-        let back = read(write(&columns).as_bytes(), Some(1.0)).unwrap();
+        let back = read(write(&columns).as_bytes(), &Layout::every(1.0)).unwrap();
         assert_eq!(back.columns(), columns);
     }
 
@@ -120,7 +128,7 @@ mod tests {
                 20 + k % 50
             );
         }
-        let table = read(text.as_bytes(), None).unwrap();
+        let table = read(text.as_bytes(), &Layout::default()).unwrap();
         assert_eq!(write(table.columns()), text);
     }
 }

@@ -2,8 +2,8 @@
 
 use super::checksum;
 use super::error::ReadError;
-use crate::csv::name_and_unit;
 use crate::frame::{Field, Frame, Kind, Values};
+use crate::heading::Heading;
 use crc32fast::Hasher;
 use hyde_units::NamedUnit;
 use parquet::basic::Type as Physical;
@@ -52,7 +52,7 @@ fn frame(bytes: &[u8]) -> Result<Frame, ReadError> {
     let mut fields = Vec::new();
     let mut values = Vec::new();
     for (at, column) in file.schema_descr().columns().iter().enumerate() {
-        let (name, unit) = named(column, &units, at + 1)?;
+        let (name, unit) = named(column, &units)?;
         if column.max_rep_level() > 0 || column.path().parts().len() > 1 {
             return Err(ReadError::Kind(name, "lists or groups".to_owned()));
         }
@@ -99,15 +99,13 @@ fn frame(bytes: &[u8]) -> Result<Frame, ReadError> {
 fn named(
     column: &ColumnDescriptor,
     units: &BTreeMap<String, String>,
-    number: usize,
 ) -> Result<(String, Option<NamedUnit>), ReadError> {
     let name = column.name().to_owned();
     if let Some(unit) = units.get(&name) {
         let unit = NamedUnit::parse(unit).map_err(|error| ReadError::Unit(name.clone(), error))?;
         return Ok((name, Some(unit)));
     }
-    // What is no unit in brackets belongs to a name that Hyde did not choose.
-    Ok(name_and_unit(&name, number).unwrap_or((name, None)))
+    Ok(Heading::of(&name).named())
 }
 
 fn of_group(group: &dyn RowGroupReader, at: usize, name: &str) -> Result<Values, ReadError> {

@@ -3,9 +3,10 @@
 use super::error::ReadError;
 use super::read::read_frame;
 use super::write::Writer;
+use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::frame::{Field, Values};
-use crate::table::may_be_first;
-use crate::{Column, Table};
+use crate::heading::{Heading, Place};
+use crate::{Column, Fault, Layout, Table};
 use std::io;
 
 /// Whether a file is of this format, by its first bytes.
@@ -14,39 +15,46 @@ pub fn is_parquet(bytes: &[u8]) -> bool {
     bytes.starts_with(b"PAR1")
 }
 
-/// Reads a record; the first column is the time unless a period in s is declared.
+/// Reads a record; the time is the column that the layout says, else the first one.
 ///
 /// # Errors
 /// If it is no record: see [`ReadError`].
-pub fn read(bytes: &[u8], every: Option<f64>) -> Result<Table, ReadError> {
+pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     let frame = read_frame(bytes)?;
-    let mut columns = Vec::new();
-    for (field, values) in frame.fields.into_iter().zip(frame.values) {
-        #[allow(clippy::cast_precision_loss, reason = "a record is of doubles")]
-        let values = match values {
-            Values::Numbers(values) => values,
-            Values::Integers(values) => values.into_iter().map(|value| value as f64).collect(),
-            Values::Texts(_) => return Err(ReadError::NotNumbers(field.name)),
-        };
-        if let Some(row) = values.iter().position(|value| !value.is_finite()) {
-            return Err(ReadError::NotFinite(field.name, row + 1));
-        }
-        let raw = Column::raw(field.name, values);
-        columns.push(match field.unit {
-            Some(unit) => raw.converted(unit),
-            None => raw,
+    let raw = frame
+        .fields
+        .into_iter()
+        .zip(frame.values)
+        .map(|(field, values)| Raw {
+            cells: match values {
+                Values::Numbers(values) => {
+                    let fault = not_finite(&field.name, &values);
+                    Cells::Numbers(values, fault)
+                }
+                Values::Integers(values) => Cells::Integers(values),
+                Values::Texts(values) => Cells::Texts(values),
+            },
+            heading: Heading {
+                written: field.name.clone(),
+                name: field.name,
+                unit: field.unit.map(Ok),
+                place: Place::Usual,
+            },
         });
-    }
-    if let Some(period) = every {
-        return Ok(Table::every(period, columns)?);
-    }
-    if let Some(time) = columns.first()
-        && let Some(dimension) = time.dimension()
-        && !may_be_first(dimension)
-    {
-        return Err(ReadError::NoTime(time.name().to_owned(), dimension));
-    }
-    Ok(Table::new(columns)?)
+    let place = |row: usize| format!("row {}", row + 1);
+    assemble(raw.collect(), layout, Vec::new(), &place).map_err(|error| match error {
+        AssembleError::Time(error) => ReadError::Time(error),
+        AssembleError::Table(error) => ReadError::Table(error),
+    })
+}
+
+fn not_finite(name: &str, values: &[f64]) -> Option<Fault> {
+    let row = values.iter().position(|value| !value.is_finite())?;
+    Some(Fault {
+        message: format!("row {}, column `{name}`: no finite number", row + 1),
+        repair: "take the row out, or put the value in that belongs there: it cannot be guessed"
+            .to_owned(),
+    })
 }
 
 /// Writes columns, each in its unit; those of a table are `table.columns()`. They must be equally long.

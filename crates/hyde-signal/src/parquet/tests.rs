@@ -1,7 +1,7 @@
 //! Frames and records through the bytes of a file and back.
 
 use super::*;
-use crate::{Column, Table, csv};
+use crate::{Column, Layout, Table, csv};
 use hyde_units::NamedUnit;
 
 fn unit(text: &str) -> NamedUnit {
@@ -20,15 +20,20 @@ fn example() -> Vec<Column> {
 fn a_record_comes_back_with_its_units_to_the_bit() {
     let bytes = write(&example()).unwrap();
     assert!(is_parquet(&bytes));
-    let table = read(&bytes, None).unwrap();
+    let table = read(&bytes, &Layout::default()).unwrap();
     assert_eq!(table.columns(), example());
     // Whichever form a file has, it holds the same numbers.
     let text = csv::write(&example()[..2]);
     assert_eq!(
-        crate::read(text.as_bytes(), None).unwrap().columns(),
+        crate::read(text.as_bytes(), &Layout::default())
+            .unwrap()
+            .columns(),
         &table.columns()[..2]
     );
-    assert_eq!(crate::read(&bytes, Some(0.5)).unwrap().period(), Some(0.5));
+    assert_eq!(
+        crate::read(&bytes, &Layout::every(0.5)).unwrap().period(),
+        Some(0.5)
+    );
 }
 
 #[test]
@@ -127,25 +132,25 @@ fn a_frame_without_rows_keeps_its_columns() {
 #[test]
 fn what_is_no_record_is_told() {
     let told = |columns: &[Column]| {
-        read(&write(columns).unwrap(), None)
+        read(&write(columns).unwrap(), &Layout::default())
             .unwrap_err()
             .to_string()
     };
     let x = Column::new("x", unit("mm"), vec![0.0]);
-    assert_eq!(
-        told(&[x]),
-        "the first column, `x [m]`, is no time and no period is declared"
-    );
+    assert_eq!(told(&[x]), "the column `x [mm]` is not a time");
     let gap = Column::new("t", unit("s"), vec![0.0, f64::NAN]);
-    assert_eq!(told(&[gap]), "row 2, column `t`: no finite number");
+    assert_eq!(told(&[gap]), "row 2, time column `t`: the cell is empty");
     let back = Column::new("t", unit("s"), vec![1.0, 0.0]);
     assert!(told(&[back]).contains("row 2"));
     let mut writer = Writer::new(Vec::new(), &[Field::plain("why", Kind::Text)], &[]).unwrap();
     writer
         .rows(&[Values::Texts(vec!["no".to_owned()])])
         .unwrap();
-    let error = read(&writer.finish().unwrap(), Some(1.0)).unwrap_err();
-    assert_eq!(error.to_string(), "column `why` holds no numbers");
+    let error = read(&writer.finish().unwrap(), &Layout::every(1.0)).unwrap_err();
+    assert_eq!(
+        error.to_string(),
+        "none of its columns can be used: column `why` holds no numbers"
+    );
 }
 
 #[test]
@@ -159,14 +164,17 @@ fn columns_that_are_not_as_announced_are_refused() {
 fn a_damaged_file_is_an_error_and_no_panic() {
     let bytes = write(&example()).unwrap();
     for end in 0..bytes.len() {
-        assert!(read(&bytes[..end], None).is_err(), "cut at {end}");
+        assert!(
+            read(&bytes[..end], &Layout::default()).is_err(),
+            "cut at {end}"
+        );
     }
     for at in 0..bytes.len() {
         for flip in [0x01, 0x80, 0xff] {
             let mut broken = bytes.clone();
             broken[at] ^= flip;
             // A changed digit is a changed number; all else is refused.
-            drop::<Result<Table, _>>(read(&broken, None));
+            drop::<Result<Table, _>>(read(&broken, &Layout::default()));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Experiments.
 
-use super::{Argument, Change, Expr, Measure, Name, Range, Reference};
+use super::{Argument, Change, Expr, Measure, Name, Range, Reference, UnitText};
 use hyde_diag::Span;
 
 /// `experiment bench(record file) of Axis … end bench;`
@@ -22,15 +22,28 @@ pub struct Experiment {
     pub span: Span,
 }
 
-/// `record file every 1 [ms] = "records/strokes.csv"`
+/// `record file(time = "Timestamp" in [ms]) every 1 [ms] = "records/strokes.csv"`
 #[derive(Clone, Debug, PartialEq)]
 pub struct RecordItem {
     /// The name in the experiment.
     pub name: Name,
+    /// How the file is to be read.
+    pub layout: Vec<LayoutSetting>,
     /// Time between rows, where the record's own time is not to be used.
     pub every: Option<Expr>,
     /// The file used where no other is given, relative to the model's file.
     pub default: Option<Name>,
+}
+
+/// `time = "Timestamp" in [ms]`
+#[derive(Clone, Debug, PartialEq)]
+pub struct LayoutSetting {
+    /// What is set.
+    pub name: Name,
+    /// To what.
+    pub value: Name,
+    /// In this unit.
+    pub unit: Option<UnitText>,
 }
 
 /// `target = value`, of a stimulus or a replay.
@@ -70,6 +83,8 @@ pub enum ExperimentItem {
     Measure(Measure),
     /// `solve ida(rtol = 1e-6)`
     Solve(Name, Vec<Argument>),
+    /// `start 0 [s]`
+    Start(Expr),
     /// `stop 10 [s]`
     Stop(Expr),
     /// `every 1 [ms]`

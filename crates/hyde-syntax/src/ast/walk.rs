@@ -152,6 +152,7 @@ fn of_experiment<'a>(experiment: &'a Experiment, visit: &mut dyn FnMut(&'a Expr)
                 }
             }
             ExperimentItem::Expect(value, _)
+            | ExperimentItem::Start(value)
             | ExperimentItem::Stop(value)
             | ExperimentItem::Every(value)
             | ExperimentItem::Skip(value) => visit(value),

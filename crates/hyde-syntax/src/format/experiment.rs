@@ -20,7 +20,21 @@ impl Printer {
                     .default
                     .as_ref()
                     .map_or_else(String::new, |name| format!(" = {}", quoted(&name.text)));
-                format!("record {}{every}{default}", record.name.text)
+                let settings = record.layout.iter().map(|setting| {
+                    let unit = setting.unit.as_ref();
+                    let unit = unit.map_or_else(String::new, |unit| format!(" in [{}]", unit.text));
+                    format!(
+                        "{} = {}{unit}",
+                        setting.name.text,
+                        quoted(&setting.value.text)
+                    )
+                });
+                let layout = settings.collect::<Vec<String>>().join(", ");
+                let layout = match layout.as_str() {
+                    "" => layout,
+                    _ => format!("({layout})"),
+                };
+                format!("record {}{layout}{every}{default}", record.name.text)
             })
             .collect();
         let records = if records.is_empty() {
@@ -87,6 +101,7 @@ impl Printer {
                 let arguments = optional_arguments(arguments);
                 format!("solve {}{arguments};", method.text)
             }
+            ExperimentItem::Start(at) => format!("start {};", expression(at)),
             ExperimentItem::Stop(at) => format!("stop {};", expression(at)),
             ExperimentItem::Every(step) => format!("every {};", expression(step)),
             ExperimentItem::Skip(time) => format!("skip {};", expression(time)),

@@ -2,6 +2,7 @@
 
 use super::expression;
 use crate::ast::{Expr, Reference, UnitText};
+use std::borrow::Cow;
 
 /// A reference as written, subscripts included: `joint[2].phi`.
 #[must_use]
@@ -9,9 +10,25 @@ pub fn reference(name: &Reference) -> String {
     let parts: Vec<String> = name
         .parts
         .iter()
-        .map(|part| format!("{}{}", part.name.text, subscripts(&part.subscripts)))
+        .map(|part| {
+            format!(
+                "{}{}",
+                member(&part.name.text),
+                subscripts(&part.subscripts)
+            )
+        })
         .collect();
     parts.join(".")
+}
+
+/// A name behind a dot, in quotes if it is not a word: `log."Actual Position"`.
+#[must_use]
+pub fn member(name: &str) -> Cow<'_, str> {
+    let first = name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_');
+    match first && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_') {
+        true => Cow::Borrowed(name),
+        false => Cow::Owned(quoted(name)),
+    }
 }
 
 pub(super) fn subscripts(list: &[Expr]) -> String {

@@ -52,6 +52,14 @@ impl Builder<'_> {
             .map_or_else(String::new, |part| Self::string(&part))
     }
 
+    /// A name in quotes.
+    pub(super) fn quoted_name(&self, node: &Node<'_>) -> Name {
+        Name {
+            text: Self::string(node),
+            ..self.name(node)
+        }
+    }
+
     pub(super) fn unit(&self, node: Node<'_>) -> UnitText {
         let span = self.span(&node);
         let inner = parts(node).next();

@@ -3,8 +3,8 @@
 use super::Parser;
 use super::build::{Builder, Node, has, parts, significant};
 use crate::ast::{
-    Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, Margins, Name, Part,
-    RecordItem, Reference, SettingValue, Study, StudyItem, StudyKind, Variation, Varied,
+    Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, LayoutSetting, Margins, Name,
+    Part, RecordItem, Reference, SettingValue, Study, StudyItem, StudyKind, Variation, Varied,
 };
 use crate::grammar::Rule;
 use crate::recover;
@@ -114,19 +114,33 @@ impl Builder<'_> {
         let mut inner = parts(node);
         let mut record = RecordItem {
             name: self.name(&inner.next()?),
+            layout: Vec::new(),
             every: None,
             default: None,
         };
         for part in inner {
-            if part.as_rule() == Rule::string {
-                let mut name = self.name(&part);
-                name.text = Self::string(&part);
-                record.default = Some(name);
-            } else {
-                record.every = Some(self.expression(part));
+            match part.as_rule() {
+                Rule::string => record.default = Some(self.quoted_name(&part)),
+                Rule::layout => {
+                    let settings = parts(part);
+                    record.layout = settings
+                        .filter_map(|setting| self.layout_setting(setting))
+                        .collect();
+                }
+                _ => record.every = Some(self.expression(part)),
             }
         }
         Some(record)
+    }
+
+    fn layout_setting(&mut self, node: Node<'_>) -> Option<LayoutSetting> {
+        let mut inner = parts(node);
+        let name = self.name(&inner.next()?);
+        let value = self.quoted_name(&inner.next()?);
+        let unit = inner
+            .find(|part| part.as_rule() == Rule::unit)
+            .map(|unit| self.unit(unit));
+        Some(LayoutSetting { name, value, unit })
     }
 
     fn experiment_item(&mut self, node: Node<'_>, items: &mut Vec<ExperimentItem>) {
@@ -176,6 +190,7 @@ impl Builder<'_> {
                     .map_or_else(Vec::new, |part| self.arguments(part));
                 Some(ExperimentItem::Solve(method, arguments))
             }
+            Rule::start => self.first_expression(node).map(ExperimentItem::Start),
             Rule::stop => self.first_expression(node).map(ExperimentItem::Stop),
             Rule::skip => self.first_expression(node).map(ExperimentItem::Skip),
             _ => self.first_expression(node).map(ExperimentItem::Every),

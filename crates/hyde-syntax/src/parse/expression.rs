@@ -81,7 +81,10 @@ impl Builder<'_> {
             }
             let mut inner = parts(part);
             if let Some(name) = inner.next() {
-                let name = self.name(&name);
+                let name = match name.as_rule() {
+                    Rule::quoted_name => self.quoted_name(&name),
+                    _ => self.name(&name),
+                };
                 let subscripts = inner
                     .flat_map(|subscript| self.subscripts(subscript))
                     .collect();

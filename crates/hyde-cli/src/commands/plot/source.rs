@@ -3,8 +3,9 @@
 use super::cases;
 use crate::args::PlotArgs;
 use crate::files;
+use crate::project::print_error;
 use hyde_report::LineStyle;
-use hyde_signal::{Column, Frame, Table};
+use hyde_signal::{Column, Frame, Layout, Table};
 use hyde_units::NamedUnit;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -65,8 +66,22 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Source]) -> Result<Vec<Recor
         let table = match source.path.extension().and_then(|ending| ending.to_str()) {
             Some("json") => from_json(&source.bytes, args.every),
             Some(_) | None => {
-                let table = hyde_signal::read(&source.bytes, args.every);
-                table.map_err(|error| format!("{error}; {}", error.repair()))
+                let layout = Layout {
+                    every_s: args.every,
+                    time: None,
+                };
+                let table = hyde_signal::read(&source.bytes, &layout);
+                if let Ok(origin) = table.as_ref().map(Table::origin)
+                    && let Some(origin) = origin
+                {
+                    let name = source.path.display();
+                    let text = format!(
+                        "note: `{name}` is drawn from its first row on, at {}",
+                        origin.text
+                    );
+                    print_error(&text);
+                }
+                table.map_err(|error| format!("{error}; {}", error.repair("file")))
             }
         };
         let table = table.map_err(|reason| format!("`{}`: {reason}", source.path.display()))?;

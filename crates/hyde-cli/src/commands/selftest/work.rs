@@ -81,6 +81,9 @@ pub(super) fn reason(error: &SelftestError) -> String {
                 format!("`{name}` cannot be set: {cause}")
             }
             RunError::NoStop => "its experiment does not say when to stop".to_owned(),
+            RunError::EndsBeforeStart {
+                start_s, stop_s, ..
+            } => format!("it ends at {stop_s} s, before it starts at {start_s} s"),
             RunError::NotPositive(what, value) => format!("{what} is {value}"),
             RunError::Compare(error) => format!("the channel `{}`: {}", error.channel, error.cause),
         },

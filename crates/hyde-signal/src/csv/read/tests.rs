@@ -3,50 +3,238 @@
 #![allow(clippy::float_cmp, reason = "cells are the nearest doubles")]
 
 use super::*;
+use crate::TimeColumn;
+use hyde_units::NamedUnit;
+use proptest::prelude::*;
+
+fn table(text: &str) -> Table {
+    read(text.as_bytes(), &Layout::default()).unwrap_or_else(|error| panic!("{text:?}: {error}"))
+}
 
 fn message(text: &str) -> String {
-    read(text.as_bytes(), None).unwrap_err().to_string()
+    let error = read(text.as_bytes(), &Layout::default()).unwrap_err();
+    error.to_string()
+}
+
+fn notes(table: &Table) -> String {
+    let notes: Vec<String> = table.notes().iter().map(ToString::to_string).collect();
+    notes.join("\n")
 }
 
 #[test]
 fn a_record_becomes_si() {
-    let table = read(b"t [ms],x [mm],qg_m\n0,350,350\n1,10,1e-3\n", None).unwrap();
+    let table = table("t [ms],x [mm],qg_m\n0,350,350\n1,10,1e-3\n");
     assert_eq!(table.time(), [0.0, 0.001]);
     assert_eq!(table.column("x").unwrap().values(), [0.35, 0.01]);
     assert_eq!(table.column("x").unwrap().unit().unwrap().text(), "mm");
     assert_eq!(table.column("qg_m").unwrap().values(), [350.0, 1e-3]);
     assert_eq!(table.column("qg_m").unwrap().unit(), None);
+    assert_eq!(notes(&table), "");
 }
 
+/// Every form gives the same numbers, and tells what is not as Hyde writes it.
 #[test]
 fn the_forms_that_real_files_have() {
-    let plain = read(b"t [s],x [m]\n0,1\n1,2\n", None).unwrap();
-    for text in [
-        "t [s];x [m]\n0;1\n1;2\n",
-        "t [s]\tx [m]\r\n0\t1\r\n1\t2\r\n",
-        "\u{feff}t [s],x [m]\n0,1\n1,2",
-        "# bench\n\nt [s], x [m]\n\n0, 1\n# middle\n \n1, 2.0\n\n",
-        "\"t [s]\",\"x [m]\"\n0,1\n1,\"2\"\n",
-        "t[s],x[m]\n0,+1\n1e0,2e+0\n",
+    let plain = table("t [s],x [m]\n0.0,1.5\n0.5,2.5\n");
+    for (text, told) in [
+        ("t [s];x [m]\n0;1.5\n0.5;2.5\n", ""),
+        ("t [s]\tx [m]\r\n0\t1.5\r\n0.5\t2.5\r\n", ""),
+        ("\u{feff}t [s],x [m]\n0,1.5\n0.5,2.5", ""),
+        (
+            "# bench\n\nt [s], x [m]\n\n0, 1.5\n# middle\n \n0.5, 2.5\n\n",
+            "",
+        ),
+        ("\"t [s]\",\"x [m]\"\n0,1.5\n0.5,\"2.5\"\n", ""),
+        ("t[s],x[m]\n0,+1.5\n5e-1,2.5e+0\n", ""),
+        ("sep=;\nt [s];x [m]\n0;1.5\n0.5;2.5\n", ""),
+        ("% octave\nt [s],x [m]\n0,1.5\n% middle\n0.5,2.5\n", ""),
+        ("t [s] x [m]\n 0  1.5\n 0.5\t2.5\n", "separated by blanks"),
+        (
+            "#t [s],x [m]\n0,1.5\n0.5,2.5\n",
+            "comment in line 1 is read as the header",
+        ),
+        (
+            "# bench\n# t [s] x [m]\n0 1.5\n0.5 2.5\n",
+            "comment in line 2",
+        ),
+        (
+            "t,x\n[s],[m]\n0,1.5\n0.5,2.5\n",
+            "line 2 is read as a row of units",
+        ),
+        (
+            "t;x\n(s);(m)\n\n0;1.5\n0.5;2.5\n",
+            "line 2 is read as a row of units",
+        ),
+        (
+            "t;x\ns;m\n0;1.5\n0.5;2.5\n",
+            "line 2 is read as a row of units",
+        ),
+        (
+            "t (s),x (m)\n0,1.5\n0.5,2.5\n",
+            "units in parentheses were read: `t` in s, `x` in m",
+        ),
+        ("t [s];x [m];\n0;1.5;\n0.5;2.5;\n", "end with a separator"),
+        ("t [s];x [m]\n0;1.5;;\n0.5;2.5;;\n;;;\n", ""),
+        ("t [s];x [m]\n0,0;1,5\n0,5;2,5\n", "decimal comma"),
+        ("t [s]\tx [m]\n0\t1,5\n0,5\t2,5\n", "decimal comma"),
+        (
+            "\"t [s]\",\"x [m]\"\n\"0\",\"1,5\"\n\"0,5\",\"2,5\"\n",
+            "decimal comma",
+        ),
+        (
+            "t [s],x [m]\n0,1.5\n0.5,2.5\n0.7",
+            "the file ends within line 4",
+        ),
     ] {
-        assert_eq!(read(text.as_bytes(), None).unwrap(), plain, "{text:?}");
+        let read = table(text);
+        assert_eq!(read.columns(), plain.columns(), "{text:?}");
+        assert!(
+            notes(&read).contains(told) && notes(&read).is_empty() == told.is_empty(),
+            "{text:?}: {}",
+            notes(&read)
+        );
     }
+}
+
+/// What nobody uses may be anything; what is wrong with it is kept for whoever does.
+#[test]
+fn columns_that_cannot_be_used_are_set_apart() {
+    let table =
+        table("t [s],x [mm],raw [RAW],note,on,x,y,y\n0,1,2,ok,TRUE,1,2,3\n1,2,3,,false,2,3,4\n");
+    let sound: Vec<&str> = table.columns().iter().map(|column| column.name()).collect();
+    assert_eq!(sound, ["t", "on"]);
+    assert_eq!(table.column("on").unwrap().values(), [1.0, 0.0]);
+    assert!(notes(&table).contains("TRUE and FALSE are read as 1 and 0 in `on`"));
+    let faults: Vec<String> = table
+        .unusable()
+        .iter()
+        .map(|column| column.fault.to_string())
+        .collect();
+    assert_eq!(
+        faults,
+        [
+            "column 3 (`raw`): unknown unit `RAW`",
+            "line 2, column 4 (`note`): `ok` is not a number",
+            "columns 2 and 6 are both named `x`",
+            "columns 7 and 8 are both named `y`",
+        ]
+    );
 }
 
 #[test]
 fn a_declared_period_leaves_the_first_column_ordinary() {
-    let table = read(b"t_s,x\n5,1\n3,2\n", Some(0.5)).unwrap();
+    let every = |text: &str, period| read(text.as_bytes(), &Layout::every(period));
+    let table = every("t_s,x\n5,1\n3,2\n", 0.5).unwrap();
     assert_eq!(table.time(), [0.0, 0.5]);
     assert_eq!(table.column("t_s").unwrap().values(), [5.0, 3.0]);
-    let error = read(b"x\n1\n", Some(-1.0)).unwrap_err();
+    let error = every("x\n1\n", -1.0).unwrap_err();
     assert_eq!(error.to_string(), "a period of -1 s is not positive");
-    assert_eq!(read(b"phi [rad]\n1\n", Some(1.0)).unwrap().rows(), 1);
+    assert_eq!(every("phi [rad]\n1\n", 1.0).unwrap().rows(), 1);
+}
+
+#[test]
+fn a_declared_column_is_the_time() {
+    let unit = |text: &str| Some(NamedUnit::parse(text).unwrap());
+    let by = |name: &str, unit| {
+        let time = Some(TimeColumn {
+            name: name.to_owned(),
+            unit,
+        });
+        read(
+            b"Sample,Timestamp,Time [us],x [mm]\n0,10,100,1\n1,12,300,2\n2,14,500,3\n",
+            &Layout {
+                every_s: None,
+                time,
+            },
+        )
+    };
+    let table = by("Timestamp", unit("ms")).unwrap();
+    assert_eq!(table.time(), [0.01, 0.012, 0.014]);
+    assert_eq!(table.column("Sample").unwrap().values(), [0.0, 1.0, 2.0]);
+    let dates = Some(TimeColumn {
+        name: "Time".to_owned(),
+        unit: None,
+    });
+    let text = b"Date,Time,x\n05.03.2024,14:07:01.0,1\n05.03.2024,14:07:01.5,2\n";
+    let dates = read(
+        text,
+        &Layout {
+            every_s: None,
+            time: dates,
+        },
+    )
+    .unwrap();
+    assert_eq!(dates.time(), [0.0, 0.5]);
+    for name in ["Time", "Time [us]"] {
+        assert_eq!(by(name, None).unwrap().time()[0], 1e-4);
+    }
+    assert_eq!(by("Time", unit("us")).unwrap().time()[0], 1e-4);
+    let wrong = |name, unit| by(name, unit).unwrap_err().to_string();
+    assert!(wrong("Time", unit("ms")).contains("in us by the file and in ms by its declaration"));
+    assert!(wrong("Timestamp", unit("mm")).contains("not a time"));
+    assert!(wrong("Timestamp", None).contains("has no unit and is in whole numbers, rows 2 apart"));
+    assert!(wrong("zeit", None).contains("there is no column `zeit`"));
 }
 
 #[test]
 fn an_event_has_two_rows() {
-    let table = read(b"t,x\n0,0\n1,1\n1,5\n2,6\n", None).unwrap();
-    assert_eq!(table.time(), [0.0, 1.0, 1.0, 2.0]);
+    let table = table("t,x\n0,0\n1.5,1\n1.5,5\n2,6\n");
+    assert_eq!(table.time(), [0.0, 1.5, 1.5, 2.0]);
+    assert!(notes(&table).contains("the time `t` has no unit: it is taken in s"));
+}
+
+#[test]
+fn clocks_that_count_from_elsewhere_count_from_the_first_row() {
+    for (text, shown) in [
+        (
+            "t [s],x\n1709647621.250000,1\n1709647621.260000,2\n",
+            "2024-03-05 14:07:01.250 UTC",
+        ),
+        (
+            "t [ms],x\n1709647621250,1\n1709647621260,2\n",
+            "2024-03-05 14:07:01.250 UTC",
+        ),
+        (
+            "t [us],x\n1709647621250000,1\n1709647621260000,2\n",
+            "2024-03-05 14:07:01.250 UTC",
+        ),
+        (
+            "t [ns],x\n1709647621250000000,1\n1709647621260000000,2\n",
+            "2024-03-05 14:07:01.250 UTC",
+        ),
+        (
+            "Zeit;x\n05.03.2024 14:07:01,25;1\n05.03.2024 14:07:01,26;2\n",
+            "05.03.2024 14:07:01,25",
+        ),
+        (
+            "Datum;x\n2024-03-05 14:07:01.25;1\n2024-03-05 14:07:01.26;2\n",
+            "2024-03-05 14:07:01.25",
+        ),
+    ] {
+        let table = table(text);
+        assert_eq!(table.time(), [0.0, 0.01], "{text:?}");
+        assert!(notes(&table).contains(shown), "{text:?}: {}", notes(&table));
+    }
+    // Whole numbers without a unit can be Unix time in one unit only.
+    let bare = table("Timestamp,x\n1709647621250,1\n1709647621260,2\n1709647621270,3\n");
+    assert_eq!(bare.time(), [0.0, 0.01, 0.02]);
+    assert!(notes(&bare).contains("it is Unix time in ms"));
+    // A clock that has run for less than a day counts on.
+    assert_eq!(table("t [s],x\n-0.5,1\n0.5,2\n").time(), [-0.5, 0.5]);
+    assert_eq!(table("t [s],x\n86.4,1\n86.5,2\n").time(), [86.4, 86.5]);
+}
+
+#[test]
+fn records_with_dates_are_aligned() {
+    let mut one = table("Zeit,x\n14:07:01.5,1\n14:07:02.5,2\n");
+    let mut other = table("Zeit,x\n14:07:02.75,1\n14:07:03.75,2\n");
+    crate::align(&mut [("one", &mut one), ("other", &mut other)]);
+    assert_eq!(one.time(), [0.0, 1.0]);
+    assert_eq!(other.time(), [1.25, 2.25]);
+    assert!(notes(&other).contains("begins 1.25 s behind the first of the records"));
+    let mut plain = table("t [s],x\n0,1\n1,2\n");
+    crate::align(&mut [("one", &mut one), ("plain", &mut plain)]);
+    assert!(notes(&plain).contains("cannot be compared"));
 }
 
 #[test]
@@ -56,55 +244,111 @@ fn mistakes_are_told_with_line_and_column() {
         ("\n# only a comment\n", "the file is empty"),
         ("t,x\n", "there is a header but no row"),
         (
-            "t,x\n0,1\n\n# note\n1,abc\n",
-            "line 5, column 2 (`x`): `abc` is no number",
+            "0,1\n1,2\n",
+            "line 1: a row of numbers stands where the header belongs",
         ),
         (
-            "t;x\n0;0,5\n",
-            "line 2, column 2 (`x`): `0,5` is no number: write `0.5`",
-        ),
-        ("t,x\n0,\n", "line 2, column 2 (`x`): the cell is empty"),
-        (
-            "t,x\n0,nan\n",
-            "line 2, column 2 (`x`): `nan` is not finite",
+            "t,x\n0,1\n\n# note\nabc,1\n",
+            "line 5, time column `t`: `abc` is neither a number nor a date with a time of day",
         ),
         (
-            "t,x\n0,-inf\n",
-            "line 2, column 2 (`x`): `-inf` is not finite",
+            "t,x\n0,1\n,1\n",
+            "line 3, time column `t`: the cell is empty",
         ),
         (
-            "t,x\n0,1e999\n",
-            "line 2, column 2 (`x`): `1e999` is not finite",
+            "t,x\n0,1\n1\n2,1\n",
+            "line 3: 1 cell, the header has 2 columns",
         ),
-        ("t,x\n0,1\n1\n", "line 3: 1 cells, the header has 2 columns"),
         ("t,x\n0,1,2\n", "line 2: 3 cells, the header has 2 columns"),
         (
             "t,x\r\n0,1\r\n2,1\r\n1.5,1\r\n",
             "line 4: time runs back from 2 to 1.5",
         ),
-        ("t,x,x\n0,1,2\n", "columns 2 and 3 are both named `x`"),
-        ("t,x,\n0,1,2\n", "column 3 has no name"),
-        ("t,[mm]\n0,1\n", "column 2 has no name"),
         (
-            "t,F [Nm]\n0,1\n",
-            "column 2 (`F`): unknown unit `Nm`: write `N.m`",
+            "t,x\n0.5,1\n1.5,1\n2.5,1\n0.6,1\n",
+            "several runs are in the file: the time begins anew in line 5, from 2.5 to 0.6",
         ),
         (
-            "t,F []\n0,1\n",
-            "column 2 (`F`): a unit is missing: write `1` for a bare number",
+            "t,x\n0.5,1\n1.5,1\nt,x\n0.5,1\n",
+            "several runs are in the file: the header stands again in line 4",
+        ),
+        ("x [m],t [s]\n0,1\n", "the column `x [m]` is not a time"),
+        ("t [RAW],x\n0,1\n", "the column `t [RAW]` is not a time"),
+        (
+            "Sample,x\n0,1\n1,2\n",
+            "nothing says that the first column, `Sample`, is the time",
         ),
         (
-            "x [m],t [s]\n0,1\n",
-            "the first column, `x [m]`, is no time and no period is declared",
+            ",t [s]\n0,1\n",
+            "the first column has no name: it is not said to be the time",
+        ),
+        (
+            "time,x\n0,1\n2,1\n4,1\n",
+            "the time `time` has no unit and is in whole numbers, rows 2 apart: seconds, milliseconds, or a count?",
+        ),
+        (
+            "t [s],x\n23.4,1\n23.4,2\n",
+            "the column `t` is not a time: it does not advance, all rows are at 23.4",
         ),
     ] {
         assert_eq!(message(text), expected, "{text:?}");
     }
-    let error = read(b"t,\xff\n", None).unwrap_err();
-    assert_eq!(error.to_string(), "line 1: not UTF-8 text");
-    let error = read(b"t,x\n0,\xff\n", None).unwrap_err();
-    assert_eq!(
-        error.to_string(),
-        "line 2, column 2 (`x`): `\u{fffd}` is no number"
+}
+
+#[test]
+fn repairs_name_the_column_that_may_be_the_time() {
+    let repair = |text: &str| {
+        read(text.as_bytes(), &Layout::default())
+            .unwrap_err()
+            .repair("log")
+    };
+    assert!(
+        repair("Sample,Timestamp,x\n0,0,1\n1,2,1\n")
+            .contains("`record log(time = \"Timestamp\" in [ms])`")
     );
+    assert!(
+        repair("temp;x;motor time [ms]\n23;1;0\n23;1;1\n")
+            .contains("`record log(time = \"motor time\")`")
+    );
+    assert!(
+        repair("Date,Time,x\n05.03.2024,14:07:01.0,1\n05.03.2024,14:07:01.5,2\n")
+            .contains("(time = \"Time\" in [ms])")
+    );
+    assert!(repair("Index,x\n0,1\n1,2\n").contains("`record log(time = \"Index\" in [s])`"));
+}
+
+#[test]
+fn a_decimal_comma_stands_in_the_whole_file() {
+    let table = table("t [s];x;y\n0,5;1;1.5\n1,5;2;2.5\n");
+    assert_eq!(table.time(), [0.5, 1.5]);
+    assert_eq!(
+        table.unusable()[0].fault.to_string(),
+        "line 2, column 3 (`y`): `1.5` has another decimal sign than the cells before it"
+    );
+}
+
+const WHOLE: &str =
+    "Zeit (ms);x [mm];Freigabe;note\n0,5;1,25;TRUE;ok\n1,5;2,5;FALSE;\"a; b\"\n2,5;3,5;TRUE;\n";
+
+proptest! {
+    /// Whatever a file holds, it is read or refused.
+    #[test]
+    fn garbled_files_are_no_end_of_the_program(
+        bytes in prop::collection::vec(any::<u8>(), 0..200),
+        cut in 0..WHOLE.len(),
+        at in 0..WHOLE.len(),
+        with in any::<u8>(),
+    ) {
+        let layouts = [Layout::default(), Layout::every(1e-3)];
+        let mut changed = WHOLE.as_bytes().to_vec();
+        changed[at] = with;
+        for layout in &layouts {
+            for file in [&bytes[..], &WHOLE.as_bytes()[..cut], &changed[..]] {
+                if let Ok(table) = crate::read(file, layout) {
+                    prop_assert!(table.columns().iter().all(|c| c.values().len() == table.rows()));
+                }
+                drop(crate::read_frame(file));
+            }
+        }
+    }
 }

@@ -1,0 +1,103 @@
+//! What a run took for granted of its records: told on the console, in JSON and on the page.
+
+use crate::project::Project;
+use crate::run_failure::instant;
+use hyde_experiment::Run;
+use hyde_program::Program;
+use hyde_report::{Block, Section};
+use hyde_signal::Table;
+use std::collections::{BTreeMap, BTreeSet};
+
+/// All of it, record by record, then where the run begins.
+pub(crate) fn of_run(project: &Project, program: &Program, run: &Run) -> Vec<String> {
+    let tables = project.records.iter();
+    let tables: BTreeMap<&str, &Table> = tables
+        .map(|(name, record)| (name.as_str(), &record.table))
+        .collect();
+    let own = tables.iter().flat_map(|(name, table)| {
+        let all = of_record(program, name, table).into_iter();
+        all.map(move |text| format!("record `{name}`: {text}"))
+    });
+    let mut all: Vec<String> = own.collect();
+    all.extend(of_start(program, &tables, run));
+    all
+}
+
+/// What was taken for granted of a record, as far as the program reads it.
+pub(crate) fn of_record(program: &Program, name: &str, table: &Table) -> Vec<String> {
+    let mut all: Vec<String> = table.notes().iter().map(ToString::to_string).collect();
+    let bare = |column: &&str| table.column(column).is_some_and(|c| c.unit().is_none());
+    let used = columns(program).filter(|(record, _)| *record == name);
+    let without: BTreeSet<&str> = used.map(|(_, column)| column).filter(bare).collect();
+    if !without.is_empty() {
+        let list: Vec<String> = without.iter().map(|column| format!("`{column}`")).collect();
+        let (has, is) = match list.len() {
+            1 => ("has", "it is"),
+            _ => ("have", "they are"),
+        };
+        all.push(format!(
+            "{} {has} no unit: {is} taken in SI units of what the experiment compares or drives with",
+            list.join(", ")
+        ));
+    }
+    all
+}
+
+/// Where the run begins and how far its records reach.
+fn of_start(program: &Program, tables: &BTreeMap<&str, &Table>, run: &Run) -> Vec<String> {
+    let (start_s, record) = &run.start;
+    let mut all = Vec::new();
+    if *start_s != 0.0 {
+        all.push(match record {
+            Some(record) => format!(
+                "the run begins at {}, where its record `{record}` begins; `time` is the time of the record",
+                instant(*start_s)
+            ),
+            None => format!("the run begins at {}, as the experiment says", instant(*start_s)),
+        });
+    }
+    let driving: BTreeSet<&str> = program.columns.iter().map(|c| c.record.as_str()).collect();
+    let measured = program.experiment.measured.iter();
+    let measured: BTreeSet<&str> = measured.map(|m| m.source.0.as_str()).collect();
+    for (name, table) in tables {
+        let (Some(&begin), Some(&end)) = (table.time().first(), table.time().last()) else {
+            continue;
+        };
+        let slack = table.mean_step().unwrap_or(0.0);
+        if driving.contains(name) && begin > start_s + slack {
+            all.push(format!(
+                "record `{name}` begins at {}, later than the run: its first row is held until then",
+                instant(begin)
+            ));
+        }
+        if driving.contains(name) && end < run.stop_s - slack {
+            all.push(format!(
+                "record `{name}` ends at {}, before the run: its last row is held from then on",
+                instant(end)
+            ));
+        }
+        if measured.contains(name) && begin < start_s - slack {
+            all.push(format!(
+                "record `{name}` begins at {}, before the run: the rows before the run are not compared",
+                instant(begin)
+            ));
+        }
+    }
+    all
+}
+
+/// Record and column of everything that a program reads or compares.
+fn columns(program: &Program) -> impl Iterator<Item = (&str, &str)> {
+    let read = program.columns.iter();
+    let read = read.map(|column| (column.record.as_str(), column.column.as_str()));
+    let measured = program.experiment.measured.iter();
+    read.chain(measured.map(|m| (m.source.0.as_str(), m.source.1.as_str())))
+}
+
+/// The section of a page.
+pub(crate) fn section(texts: &[String]) -> Option<Section> {
+    (!texts.is_empty()).then(|| Section {
+        heading: "Assumptions".to_owned(),
+        blocks: texts.iter().cloned().map(Block::Text).collect(),
+    })
+}

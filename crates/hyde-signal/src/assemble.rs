@@ -1,0 +1,221 @@
+//! From the columns of a file to a table: which of them is the time, and which cannot be used.
+
+use crate::calendar::{self, Origin};
+use crate::heading::{Heading, Place};
+use crate::instants;
+use crate::layout::Layout;
+use crate::time_error::TimeError;
+use crate::{Column, Note, Table, TableError};
+use std::fmt;
+
+/// A column as a file has it.
+#[derive(Debug)]
+pub(crate) struct Raw {
+    pub(crate) heading: Heading,
+    pub(crate) cells: Cells,
+}
+
+/// The cells of a column.
+#[derive(Debug)]
+pub(crate) enum Cells {
+    /// Numbers, with what makes them unusable.
+    Numbers(Vec<f64>, Option<Fault>),
+    /// Whole numbers.
+    Integers(Vec<i64>),
+    /// Texts.
+    Texts(Vec<String>),
+}
+
+/// Why a column cannot be used, and what to change in the file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Fault {
+    /// What is wrong.
+    pub message: String,
+    /// What to change.
+    pub repair: String,
+}
+
+/// A column that a file has and nobody can use.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Unusable {
+    /// Its name.
+    pub name: String,
+    /// What is wrong with it.
+    pub fault: Fault,
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+/// Why columns are no table.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum AssembleError {
+    Time(TimeError),
+    Table(TableError),
+}
+
+/// Makes the table; `place` names a row in messages.
+pub(crate) fn assemble(
+    raw: Vec<Raw>,
+    layout: &Layout,
+    mut notes: Vec<Note>,
+    place: &dyn Fn(usize) -> String,
+) -> Result<Table, AssembleError> {
+    let mut time = match layout.every_s {
+        Some(_) => None,
+        None => {
+            let declared = layout.time.as_ref();
+            let at = instants::place(&raw, declared).map_err(AssembleError::Time)?;
+            let instants =
+                instants::read(&raw, at, declared, place).map_err(AssembleError::Time)?;
+            Some((at, instants))
+        }
+    };
+    notes.extend(in_parentheses(&raw));
+    let mut origin: Option<Origin> = None;
+    let mut columns: Vec<(bool, Column)> = Vec::new();
+    let mut unusable: Vec<Unusable> = Vec::new();
+    let names: Vec<String> = raw
+        .iter()
+        .map(|column| column.heading.name.clone())
+        .collect();
+    for (at, column) in raw.into_iter().enumerate() {
+        let name = column.heading.name.clone();
+        if let Some((_, instants)) = time.take_if(|(time, _)| *time == at) {
+            notes.extend(instants.notes);
+            origin = instants.origin;
+            let column = Column::new(name, instants.unit, instants.seconds);
+            columns.push((true, column));
+            continue;
+        }
+        let first = names[..at]
+            .iter()
+            .position(|known| *known == name && !name.is_empty());
+        let read = match first {
+            Some(first) => Err(twice(&name, first, at)),
+            None => usable(column, at + 1),
+        };
+        match read {
+            Ok(column) => columns.push((false, column)),
+            Err(fault) => unusable.push(Unusable { name, fault }),
+        }
+    }
+    // A name that two columns have means neither of them; the time is known by its place.
+    let doubled = |column: &Column| unusable.iter().any(|other| other.name == column.name());
+    columns.retain(|(is_time, column)| *is_time || !doubled(column));
+    if let (true, Some(first)) = (columns.is_empty(), unusable.first()) {
+        let error = TableError::NoneUsable(first.fault.message.clone());
+        return Err(AssembleError::Table(error));
+    }
+    let time_at = columns.iter().position(|(is_time, _)| *is_time);
+    let columns = columns.into_iter().map(|(_, column)| column).collect();
+    let table = match layout.every_s {
+        Some(period_s) => Table::every(period_s, columns),
+        None => Table::with_time(columns, time_at.unwrap_or(0)),
+    };
+    let table = table.map_err(AssembleError::Table)?;
+    Ok(table.with_findings(notes, unusable, origin))
+}
+
+fn usable(column: Raw, number: usize) -> Result<Column, Fault> {
+    let Heading { name, unit, .. } = column.heading;
+    if name.is_empty() {
+        return Err(Fault {
+            message: format!("column {number} has no name"),
+            repair: "give the column a name in the header".to_owned(),
+        });
+    }
+    let values = match column.cells {
+        Cells::Numbers(values, None) => values,
+        #[allow(clippy::cast_precision_loss, reason = "a record is of doubles")]
+        Cells::Integers(values) => values.into_iter().map(|value| value as f64).collect(),
+        Cells::Numbers(_, Some(fault)) => return Err(fault),
+        Cells::Texts(_) => {
+            return Err(Fault {
+                message: format!("column `{name}` holds no numbers"),
+                repair: "leave the column out: a record has numbers only".to_owned(),
+            });
+        }
+    };
+    let raw = Column::raw(name.clone(), values);
+    match unit {
+        None => Ok(raw),
+        Some(Ok(unit)) => Ok(raw.converted(unit)),
+        Some(Err(error)) => Err(Fault {
+            message: format!("column {number} (`{name}`): {error}"),
+            repair: format!(
+                "write the unit as in a model, `{name} [N]`, or leave the unit out and give it where the column is used"
+            ),
+        }),
+    }
+}
+
+fn twice(name: &str, first: usize, second: usize) -> Fault {
+    let error = TableError::DuplicateName {
+        name: name.to_owned(),
+        columns: (first + 1, second + 1),
+    };
+    Fault {
+        message: error.to_string(),
+        repair: "give every column a name of its own".to_owned(),
+    }
+}
+
+/// That units in parentheses were read.
+fn in_parentheses(raw: &[Raw]) -> Option<Note> {
+    let in_parentheses = raw.iter().filter(|c| c.heading.place == Place::Parentheses);
+    let list: Vec<String> = in_parentheses
+        .filter_map(|c| {
+            Some(format!(
+                "`{}` in {}",
+                c.heading.name,
+                c.heading.known_unit()?
+            ))
+        })
+        .collect();
+    (!list.is_empty()).then(|| {
+        Note::new(format!(
+            "units in parentheses were read: {}",
+            list.join(", ")
+        ))
+    })
+}
+
+/// Makes the times of tables count from one instant, where their clocks can be compared; where not, each of them says so.
+pub fn align(tables: &mut [(&str, &mut Table)]) {
+    let origins: Vec<Origin> = tables
+        .iter()
+        .filter_map(|(_, table)| table.origin().cloned())
+        .collect();
+    let Some(first) = origins
+        .iter()
+        .min_by_key(|origin| origin.nanoseconds)
+        .cloned()
+    else {
+        return;
+    };
+    if tables.len() > 1
+        && (origins.len() < tables.len() || origins.iter().any(|o| o.since != first.since))
+    {
+        let names: Vec<String> = tables.iter().map(|(name, _)| format!("`{name}`")).collect();
+        let note = Note::new(format!(
+            "the clocks of the records {} cannot be compared: each counts as it stands, or from its own first row",
+            names.join(", ")
+        ));
+        for (_, table) in tables {
+            table.tell(note.clone());
+        }
+        return;
+    }
+    for (_, table) in tables {
+        let later = table
+            .origin()
+            .map_or(0, |origin| origin.nanoseconds - first.nanoseconds);
+        if later > 0 {
+            table.begin_later(calendar::seconds(later));
+        }
+    }
+}

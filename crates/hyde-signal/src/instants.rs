@@ -1,0 +1,308 @@
+//! Which column of a record is its time, and the instants in it.
+
+use crate::assemble::{Cells, Raw};
+use crate::calendar::{self, Origin};
+use crate::heading::{Temporal, is_time_unit, temporal};
+use crate::layout::TimeColumn;
+use crate::table::may_be_first;
+use crate::time_error::{Candidate, TimeError};
+use crate::{Note, gaps};
+use hyde_units::{Dimension, NamedUnit};
+
+/// A clock that began to count longer ago, in s, counts from the first row: doubles resolve a run near 0 best.
+const LONG_AGO_S: f64 = 86_400.0;
+
+/// The time of a record.
+#[derive(Debug)]
+pub(crate) struct Instants {
+    pub(crate) unit: NamedUnit,
+    pub(crate) seconds: Vec<f64>,
+    pub(crate) origin: Option<Origin>,
+    pub(crate) notes: Vec<Note>,
+}
+
+/// Where the time is among the columns: as declared, else in front.
+pub(crate) fn place(raw: &[Raw], declared: Option<&TimeColumn>) -> Result<usize, TimeError> {
+    let Some(declared) = declared else {
+        return Ok(0);
+    };
+    let named = |column: &Raw| {
+        column.heading.name == declared.name || column.heading.written == declared.name
+    };
+    let names = || {
+        raw.iter()
+            .map(|column| column.heading.name.clone())
+            .collect()
+    };
+    raw.iter()
+        .position(named)
+        .ok_or_else(|| TimeError::NoColumn(declared.name.clone(), names()))
+}
+
+/// Reads the column at `at` as the time; `place` names a row in messages.
+pub(crate) fn read(
+    raw: &[Raw],
+    at: usize,
+    declared: Option<&TimeColumn>,
+    place: &dyn Fn(usize) -> String,
+) -> Result<Instants, TimeError> {
+    let Unit {
+        unit,
+        said,
+        mut notes,
+    } = unit(raw, at, declared)?;
+    let name = &raw[at].heading.name;
+    let factor = unit.unit().to_si(1.0);
+    let over_frequency = !is_time_unit(&unit);
+    let no_time = |row: usize, text: &str| TimeError::NoTime {
+        place: place(row),
+        name: name.clone(),
+        text: text.to_owned(),
+        instead: candidate(raw, at),
+    };
+    let is_far = |first: f64| first.abs() * factor > LONG_AGO_S && !over_frequency;
+    let (seconds, origin) = match &raw[at].cells {
+        Cells::Texts(texts) => match numbers(texts) {
+            Ok(values) => {
+                let far = values.first().is_some_and(|first| is_far(*first));
+                let exact = far.then(|| {
+                    calendar::of_digits(texts, factor)
+                        .or_else(|| calendar::of_doubles(&values, factor))
+                });
+                shifted(&values, &unit, exact.flatten())
+            }
+            Err(row) => {
+                let dates = calendar::of_texts(texts)
+                    .map_err(|wrong| no_time(wrong.max(row), &texts[wrong.max(row)]));
+                let (seconds, origin) = dates?;
+                (seconds, Some(origin))
+            }
+        },
+        Cells::Integers(values) => {
+            #[allow(clippy::cast_precision_loss, reason = "far ones are subtracted first")]
+            let doubles: Vec<f64> = values.iter().map(|value| *value as f64).collect();
+            let far = doubles.first().is_some_and(|first| is_far(*first));
+            shifted(
+                &doubles,
+                &unit,
+                far.then(|| calendar::of_integers(values, factor)).flatten(),
+            )
+        }
+        Cells::Numbers(values, _) => {
+            if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+                return Err(no_time(row, ""));
+            }
+            let far = values.first().is_some_and(|first| is_far(*first));
+            shifted(
+                values,
+                &unit,
+                far.then(|| calendar::of_doubles(values, factor)).flatten(),
+            )
+        }
+    };
+    let shown = |row: usize| match (&raw[at].cells, &origin) {
+        (Cells::Texts(texts), _) => texts[row].trim().to_owned(),
+        (_, None) => hyde_units::significant(seconds[row] / factor, 12),
+        (_, Some(_)) => gaps::seconds(seconds[row]),
+    };
+    advances(&seconds, raw, at, place, &shown)?;
+    if !said
+        && origin
+            .as_ref()
+            .is_none_or(|origin| origin.since == calendar::Since::Number)
+    {
+        let whole = match &raw[at].cells {
+            Cells::Texts(texts) => texts.iter().all(|text| text.trim().parse::<i64>().is_ok()),
+            Cells::Integers(_) => true,
+            Cells::Numbers(values, _) => values.iter().all(|value| value.fract() == 0.0),
+        };
+        if whole && seconds.len() > 2 {
+            let step = (seconds[seconds.len() - 1] - seconds[0]) / (seconds.len() - 1) as f64;
+            return Err(TimeError::NoUnit(
+                name.clone(),
+                hyde_units::significant(step, 4),
+            ));
+        }
+        notes.push(Note::new(format!(
+            "the time `{name}` has no unit: it is taken in s"
+        )));
+    }
+    if let Some(origin) = &origin {
+        notes.push(Note::new(format!(
+            "its clock shows {} in the first row: `time` counts from there, and is 0 in that row",
+            origin.text
+        )));
+    }
+    if !over_frequency {
+        notes.extend(gaps::told(&seconds));
+    }
+    Ok(Instants {
+        unit,
+        seconds,
+        origin,
+        notes,
+    })
+}
+
+fn shifted(
+    values: &[f64],
+    unit: &NamedUnit,
+    exact: Option<(Vec<f64>, Origin)>,
+) -> (Vec<f64>, Option<Origin>) {
+    match exact {
+        Some((seconds, origin)) => (seconds, Some(origin)),
+        None => (
+            values
+                .iter()
+                .map(|value| unit.unit().to_si(*value))
+                .collect(),
+            None,
+        ),
+    }
+}
+
+/// The numbers of cells; else the first that is none.
+fn numbers(texts: &[String]) -> Result<Vec<f64>, usize> {
+    let number = |(row, text): (usize, &String)| {
+        let value: Option<f64> = text.trim().parse().ok();
+        value.filter(|value| value.is_finite()).ok_or(row)
+    };
+    texts.iter().enumerate().map(number).collect()
+}
+
+/// The unit of the time, whether the file or the declaration says it, and what was taken for granted.
+struct Unit {
+    unit: NamedUnit,
+    said: bool,
+    notes: Vec<Note>,
+}
+
+fn unit(raw: &[Raw], at: usize, declared: Option<&TimeColumn>) -> Result<Unit, TimeError> {
+    let heading = &raw[at].heading;
+    let name = heading.name.clone();
+    let asked = declared.and_then(|declared| declared.unit.clone());
+    let other = |unit: &str| TimeError::OtherUnit {
+        name: name.clone(),
+        unit: unit.to_owned(),
+        instead: candidate(raw, at),
+    };
+    let said = |unit: NamedUnit, note: Option<String>| Unit {
+        unit,
+        said: true,
+        notes: note.into_iter().map(Note::new).collect(),
+    };
+    match (&heading.unit, asked) {
+        (Some(Ok(own)), Some(asked)) if own.unit() != asked.unit() => Err(TimeError::TwoUnits(
+            name,
+            own.text().to_owned(),
+            asked.text().to_owned(),
+        )),
+        (_, Some(asked)) if is_time_unit(&asked) => Ok(said(asked, None)),
+        (_, Some(asked)) => Err(other(asked.text())),
+        (Some(Ok(own)), None) if may_be_first(own.unit().dimension) => Ok(said(own.clone(), None)),
+        (Some(Ok(own)), None) => Err(other(own.text())),
+        (Some(Err(_)), None) => Err(other(&unit_text(&heading.written))),
+        (None, None) => match (temporal(&name), unix_unit(&raw[at].cells)) {
+            (Temporal::In(unit), _) => {
+                let note = format!("the time `{name}` is read in {unit}, as its name says");
+                Ok(said(unit, Some(note)))
+            }
+            (Temporal::Frequency, _) => {
+                let note = format!("the frequency `{name}` has no unit: it is taken in Hz");
+                Ok(said(NamedUnit::usual(Dimension::FREQUENCY), Some(note)))
+            }
+            (Temporal::No, _) if declared.is_none() && !is_dates(&raw[at].cells) => {
+                Err(TimeError::NotSaid {
+                    name: name.clone(),
+                    instead: candidate(raw, at),
+                })
+            }
+            (Temporal::No | Temporal::Time, Some(unit)) => {
+                let note = format!("the time `{name}` has no unit: it is Unix time in {unit}");
+                Ok(said(unit, Some(note)))
+            }
+            (Temporal::No | Temporal::Time, None) => Ok(Unit {
+                unit: NamedUnit::usual(Dimension::TIME),
+                said: false,
+                notes: Vec::new(),
+            }),
+        },
+    }
+}
+
+/// The unit in which whole numbers are Unix time, from 2001 to 2100; each unit has a range of its own.
+fn unix_unit(cells: &Cells) -> Option<NamedUnit> {
+    let first = match cells {
+        Cells::Texts(texts) => texts.first()?.trim().parse().ok()?,
+        Cells::Integers(values) => *values.first()?,
+        Cells::Numbers(..) => return None,
+    };
+    let units = [
+        ("s", 1),
+        ("ms", 1_000),
+        ("us", 1_000_000),
+        ("ns", 1_000_000_000),
+    ];
+    let is =
+        |(_, factor): &&(&str, i64)| (1_000_000_000..4_102_444_800).contains(&(first / factor));
+    let (unit, _) = units.iter().find(is)?;
+    NamedUnit::parse(unit).ok()
+}
+
+fn unit_text(written: &str) -> String {
+    let inside = written.rsplit_once('[').map_or("", |(_, inside)| inside);
+    inside.trim_end_matches(']').to_owned()
+}
+
+fn is_dates(cells: &Cells) -> bool {
+    match cells {
+        Cells::Texts(texts) => texts
+            .get(..1)
+            .is_some_and(|first| numbers(first).is_err() && calendar::of_texts(first).is_ok()),
+        Cells::Numbers(..) | Cells::Integers(_) => false,
+    }
+}
+
+/// Another column that looks like the time.
+fn candidate(raw: &[Raw], but: usize) -> Option<Candidate> {
+    let others = raw.iter().enumerate().filter(|(at, _)| *at != but);
+    let mut timed = others.filter_map(|(_, column)| {
+        let name = &column.heading.name;
+        let in_unit = column.heading.known_unit().is_some_and(is_time_unit);
+        let has_unit = match (in_unit, &column.heading.unit, temporal(name)) {
+            (true, _, _) | (_, None, Temporal::In(_)) => true,
+            (_, None, Temporal::Time) => false,
+            _ => return None,
+        };
+        let name = name.clone();
+        Some(Candidate { name, has_unit })
+    });
+    timed.next()
+}
+
+/// Time goes forward: not back, not anew, and not nowhere.
+fn advances(
+    seconds: &[f64],
+    raw: &[Raw],
+    at: usize,
+    place: &dyn Fn(usize) -> String,
+    shown: &dyn Fn(usize) -> String,
+) -> Result<(), TimeError> {
+    if let Some(row) = (1..seconds.len()).find(|&row| seconds[row] < seconds[row - 1]) {
+        let (first, before, now) = (seconds[0], seconds[row - 1], seconds[row]);
+        return Err(TimeError::RunsBack {
+            place: place(row),
+            times: (shown(row - 1), shown(row)),
+            anew: now - first < 0.5 * (before - first),
+        });
+    }
+    let (first, last) = (seconds.first(), seconds.last());
+    if seconds.len() > 1 && first == last {
+        return Err(TimeError::Stands {
+            name: raw[at].heading.name.clone(),
+            value: shown(0),
+            instead: candidate(raw, at),
+        });
+    }
+    Ok(())
+}
