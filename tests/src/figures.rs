@@ -16,6 +16,7 @@ mod fixtures;
 mod gradient;
 mod ivp;
 mod ledger;
+mod linear;
 mod mode_error;
 mod msl;
 mod paper_rows;
@@ -55,12 +56,13 @@ pub const FIGURES: &[Figure] = &[
     msl::FIGURE,
     paper_rows::FIGURE,
     mode_error::FIGURE,
+    linear::AGAINST_RUN,
+    linear::POLES,
     realtime::FIGURE,
     ivp::PROBLEMS,
     ivp::MIN_DIGITS,
     compile::Y_AXIS,
     compile::GROWTH,
-    compile::CHAIN,
     fixtures::FIGURE,
     cases::FIGURE,
     event_suite::FIGURE,

@@ -13,6 +13,7 @@ mod folder;
 pub mod gradient;
 pub mod ivp;
 pub mod library;
+pub mod linear;
 pub mod msl;
 pub mod paper;
 pub mod stored_energy;

@@ -287,10 +287,23 @@ pub(crate) struct PlotArgs {
     pub(crate) every: Option<f64>,
 }
 
+/// About what a model is linearised.
+#[derive(Debug, Args)]
+pub(crate) struct AboutArgs {
+    /// Linearise where the run is at a time, `--at '0.3 [s]'`, at `start`, or at the `steady` state
+    #[arg(long, value_name = "TIME")]
+    pub(crate) at: Option<String>,
+    /// Take an automaton in a mode: `--in guide=slip` (repeatable)
+    #[arg(long = "in", value_name = "NAME=MODE")]
+    pub(crate) in_modes: Vec<String>,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct BodeArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) about: AboutArgs,
     /// Leave bode.svg, bode.png and bode.csv in this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -318,9 +331,14 @@ pub(crate) struct BodeArgs {
 pub(crate) struct ModesArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// Take an automaton in a mode: `--in guide=slip` (repeatable)
-    #[arg(long = "in", value_name = "NAME=MODE")]
-    pub(crate) in_modes: Vec<String>,
+    #[command(flatten)]
+    pub(crate) about: AboutArgs,
+    /// The plant alone: what clocks hold stays as it is
+    #[arg(long)]
+    pub(crate) open: bool,
+    /// List the poles that do not oscillate as well
+    #[arg(long)]
+    pub(crate) real: bool,
     /// Only below this frequency in Hz
     #[arg(long, value_name = "HZ")]
     pub(crate) below: Option<f64>,
@@ -337,7 +355,12 @@ pub(crate) struct ModesArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Find parameters from measured natural frequencies: `--measured 34.7,87.8:0.02`, damping ratios behind a colon
-    #[arg(long, value_name = "HZ[:RATIO],…", value_delimiter = ',')]
+    #[arg(
+        long,
+        value_name = "HZ[:RATIO],…",
+        value_delimiter = ',',
+        conflicts_with = "at"
+    )]
     pub(crate) measured: Vec<String>,
     /// The parameters to find: `--vary belt.k,screw.contact.k`
     #[arg(

@@ -5,6 +5,7 @@
 
 mod args;
 mod asked_figures;
+mod assumed;
 mod assumptions;
 mod batch;
 mod before_after;

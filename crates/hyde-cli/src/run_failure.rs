@@ -246,6 +246,14 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             format!("no gradient passes {what}"),
             "take the differences of runs with `--set`, or leave it out of the model",
         ),
+        FailureKind::NotSteady(name, rate) => (
+            Code::SolverFailed,
+            format!(
+                "there is no steady state {at}: `{name}` still changes, by {} SI units a second",
+                hyde_units::significant(*rate, 3)
+            ),
+            "take the operating point at a time of the run: `--at '0.3 [s]'`",
+        ),
         FailureKind::Interrupted => (
             Code::SolverFailed,
             format!("the run was interrupted {at}"),
@@ -278,6 +286,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             | FailureKind::NotFinite
             | FailureKind::Impact(..)
             | FailureKind::Interrupted
+            | FailureKind::NotSteady(..)
             | FailureKind::Input(_) => "this equation",
         };
         let text = if instance.is_empty() {

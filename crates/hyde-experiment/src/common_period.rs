@@ -158,17 +158,7 @@ impl<'a> CommonPeriod<'a> {
         let mut values = Values::split(&start, nx, nm);
         let mut total = Matrix::zeros(self.sampled.select.nrows(), 1);
         self.through(&mut values, Some((input, driven, s)), |k, values| {
-            let from = self.instants[k].t;
-            let to = self
-                .instants
-                .get(k + 1)
-                .map_or(self.instants[0].t + self.period, |next| next.t);
-            let weight = if s.norm() > 0.0 {
-                ((-s * from).exp() - (-s * to).exp()) / (s * self.period)
-            } else {
-                Complex::new((to - from) / self.period, 0.0)
-            };
-            total += columns(&values.h) * weight;
+            total += columns(&values.h) * self.weight(k, s);
         });
         Some(total)
     }
@@ -207,6 +197,39 @@ impl<'a> CommonPeriod<'a> {
         let mut matrix = Matrix::identity(size, size) * turned;
         matrix -= self.transition().map(|value| Complex::new(value, 0.0));
         matrix.lu().solve(&open.complex())
+    }
+
+    /// The weight that values from an instant to the next have in a Fourier coefficient at s.
+    fn weight(&self, k: usize, s: Complex<f64>) -> Complex<f64> {
+        let from = self.instants[k].t;
+        let next = self.instants.get(k + 1).map(|next| next.t);
+        let to = next.unwrap_or(self.instants[0].t + self.period);
+        if s.norm() > 0.0 {
+            ((-s * from).exp() - (-s * to).exp()) / (s * self.period)
+        } else {
+            Complex::new((to - from) / self.period, 0.0)
+        }
+    }
+
+    /// The Fourier coefficients of the states at each of some s, in the motion that begins at a vector of (x, m, h) of which
+    /// the map makes exp(sT) times itself: of all those s.
+    pub(crate) fn coefficients(&self, start: &Matrix, all: &[Complex<f64>]) -> Vec<Matrix> {
+        let (nx, nm) = (self.linear.a.nrows(), self.sampled.select.ncols());
+        let nh = self.sampled.select.nrows();
+        let mut held = vec![Matrix::zeros(nh, 1); all.len()];
+        self.through(&mut Values::split(start, nx, nm), None, |k, values| {
+            for (held, s) in held.iter_mut().zip(all) {
+                *held += columns(&values.h) * self.weight(k, *s);
+            }
+        });
+        let complex = |matrix: &DMatrix<f64>| matrix.map(|value| Complex::new(value, 0.0));
+        let (a, b) = (complex(&self.linear.a), complex(&self.linear.b_held));
+        let states = held.iter().zip(all).map(|(held, s)| {
+            let plant = Matrix::identity(nx, nx) * *s - &a;
+            let solved = plant.lu().solve(&(&b * held));
+            solved.unwrap_or_else(|| Matrix::zeros(nx, 1))
+        });
+        states.collect()
     }
 
     /// The common period in s.

@@ -7,6 +7,7 @@
 
 pub mod batch;
 
+mod assumptions;
 mod bode;
 mod budget;
 mod common_period;
@@ -30,13 +31,14 @@ mod sampled;
 mod stepped;
 mod swept;
 
+pub use assumptions::Assumption;
 pub use bode::{BodeError, frequency_response};
 pub use budget::{BudgetOf, Share};
 pub use compare::{Channel, CompareError, prepared, unwrapped};
 pub use flows::{FlowLine, flows};
 pub use ledger::{EnergyLedger, LedgerEntry};
 pub use limit::{Answer, LIMIT_LEFT, LIMIT_PART, limit};
-pub use linearize::{Linear, LinearizeError, linearize, linearize_at};
+pub use linearize::{About, Linear, LinearizeError, linearize, linearize_about};
 pub use margins::{CutError, DelayMargin, GainCrossover, Margins, PhaseCrossover, margins};
 pub use measured_response::{MeasuredCurve, curve_of_run, measured_curve};
 pub use mode_fit::{

@@ -6,6 +6,7 @@
 //! the model, h the values that clocks hold. The clocked parts are linearised as they are: what a tick writes depends on
 //! the memory before it and on the samples, with quantisers as the identity (S3): [`Sampled`].
 
+use crate::assumptions::{Assumption, assumptions};
 use crate::common_period::common_period;
 use crate::run::setup_with;
 use crate::sampled::{Sampled, sampled};
@@ -17,6 +18,9 @@ use std::collections::BTreeMap;
 
 /// More unknowns than this are refused: the matrices are dense.
 const MAX_UNKNOWNS: usize = 2000;
+
+/// How exactly values at the start are known, relative and absolute: initial equations are solved to this.
+const START: (f64, f64) = (1e-9, 1e-11);
 
 /// A linearised system. Rows of `c` and `d` matrices are the program's outputs.
 #[derive(Clone, Debug)]
@@ -43,6 +47,8 @@ pub struct Linear {
     pub point: OperatingPoint,
     /// The delays, if there are any.
     pub delayed: Option<Delayed>,
+    /// What is taken otherwise than it is at the point, or is open there.
+    pub assumptions: Vec<Assumption>,
 }
 
 /// The linearised delays: `d(t) = now(t - time)` with `now = by_state*x + by_input*u + by_delayed*d`.
@@ -93,27 +99,34 @@ pub fn linearize(
     inputs: &[String],
     modes: &[(usize, usize)],
 ) -> Result<Linear, LinearizeError> {
-    linearize_at(
-        program,
-        records,
-        parameters,
-        inputs,
-        PointTime::Start,
+    let about = About {
         modes,
-    )
+        ..About::default()
+    };
+    linearize_about(program, records, parameters, inputs, about)
 }
 
-/// The same about where the experiment's run is at a time.
+/// About what a program is linearised, and how much of it.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct About<'a> {
+    /// The instant of the experiment's run.
+    pub time: PointTime,
+    /// Automata and the modes they are taken in.
+    pub modes: &'a [(usize, usize)],
+    /// The plant alone: what clocks hold stays as it is.
+    pub open: bool,
+}
+
+/// The same about any point of the experiment's run.
 ///
 /// # Errors
 /// See [`LinearizeError`].
-pub fn linearize_at(
+pub fn linearize_about(
     program: &Program,
     records: &BTreeMap<String, Table>,
     parameters: &[f64],
     inputs: &[String],
-    time: PointTime,
-    modes: &[(usize, usize)],
+    about: About<'_>,
 ) -> Result<Linear, LinearizeError> {
     let n = program.n_unknowns;
     if n > MAX_UNKNOWNS {
@@ -127,8 +140,14 @@ pub fn linearize_at(
         places.push(parameter.place);
     }
     let setup = setup_with(program, records, parameters.to_vec());
-    let point = hyde_sim::operating_point(program, &setup, time, PointModes::Sliding(modes))
+    let modes = PointModes::Sliding(about.modes);
+    let point = hyde_sim::operating_point(program, &setup, about.time, modes)
         .map_err(LinearizeError::Failed)?;
+    let tolerances = match about.time {
+        PointTime::Start => START,
+        PointTime::At(_) | PointTime::Steady => (setup.rtol, setup.atol),
+    };
+    let assumptions = assumptions(program, parameters, &places, &point, tolerances);
     let mut work = Workspace::new(program.n_work);
     let at = point.at(parameters);
     let differential = program.differential(&point.z);
@@ -173,7 +192,10 @@ pub fn linearize_at(
 
     let outputs = Dense::of(program, Function::Outputs, at, &mut work, &places, &held);
     let outputs = parts.through(&outputs);
-    let sampled = clocked(program, at, &mut work, &parts, (&places, &held))?;
+    let sampled = match about.open {
+        true => None,
+        false => clocked(program, at, &mut work, &parts, (&places, &held))?,
+    };
     let delayed = if nd == 0 {
         None
     } else if sampled.is_some() {
@@ -202,6 +224,7 @@ pub fn linearize_at(
         sampled,
         delayed,
         point,
+        assumptions,
     })
 }
 

@@ -2,9 +2,9 @@
 //!
 //! Over the common period T of the clocks the map takes (x, m, h), states, memory and held values, to themselves; its
 //! eigenvalues are z = exp(sT) (Franklin, Powell, Workman, Digital Control of Dynamic Systems, ch. 4). Of s the frequency
-//! is known but for multiples of 1/T: the one below half of it counts. What a tick overwrites without reading it has
-//! z = 0, as a rule several times over; rounding would make numbers of every size of that, so it is taken out first,
-//! range by range.
+//! is known but for multiples of 1/T: the one at which the states move most between ticks counts. What a tick overwrites
+//! without reading it has z = 0, as a rule several times over; rounding would make numbers of every size of that, so it
+//! is taken out first, range by range.
 
 use crate::common_period::CommonPeriod;
 use crate::linearize::Linear;
@@ -21,6 +21,10 @@ const CLOSE: f64 = 1e-3;
 const ROUNDING: f64 = 1e3 * f64::EPSILON;
 /// A part of an eigenvector below this, relative to its largest, is none of it.
 const UNMOVED: f64 = 1e-7;
+
+/// Of so many frequencies that ticks do not tell apart the one between ticks is looked for, in a plant of so many states.
+const MOST_ALIKE: usize = 8;
+const MOST_STATES: usize = 300;
 
 type Vector = DVector<Complex<f64>>;
 type Matrix = DMatrix<Complex<f64>>;
@@ -150,7 +154,7 @@ impl Poles {
 pub fn poles(linear: &Linear) -> Poles {
     let period = linear.sampled.as_ref();
     match period.and_then(|sampled| CommonPeriod::new(linear, sampled)) {
-        Some(period) => of_map(&period),
+        Some(period) => of_map(linear, &period),
         None => of_plant(linear),
     }
 }
@@ -186,7 +190,7 @@ fn of_plant(linear: &Linear) -> Poles {
     poles
 }
 
-fn of_map(period: &CommonPeriod<'_>) -> Poles {
+fn of_map(linear: &Linear, period: &CommonPeriod<'_>) -> Poles {
     let (map, scale) = balanced(&period.transition());
     let (matrix, basis) = without_what_is_over(map);
     let mut poles = Poles {
@@ -195,6 +199,12 @@ fn of_map(period: &CommonPeriod<'_>) -> Poles {
         matrix,
         basis,
         scale,
+    };
+    let (plant, own_scale) = balanced(&linear.a);
+    let own: Vec<Complex<f64>> = match plant.nrows() {
+        0 => Vec::new(),
+        rows if rows > MOST_STATES => Vec::new(),
+        _ => plant.complex_eigenvalues().iter().copied().collect(),
     };
     for &z in &poles.matrix.complex_eigenvalues() {
         if z.im < 0.0 || z.norm() < OVER {
@@ -206,13 +216,51 @@ fn of_map(period: &CommonPeriod<'_>) -> Poles {
         if close && (z - 1.0).norm() <= error {
             continue;
         }
-        poles.all.push(Pole {
+        let mut pole = Pole {
             s: z.ln() / period.period_s(),
             grows: z.norm() - 1.0 > error,
             z,
-        });
+        };
+        let alike = alike(pole.s, period.period_s(), &own);
+        if alike.len() > 1
+            && let Some(vector) = null_vector(poles.shifted(&pole))
+        {
+            let whole = complex(&poles.basis) * vector;
+            let start = Matrix::from_fn(whole.nrows(), 1, |i, _| whole[i] * poles.scale[i]);
+            let moves = period.coefficients(&start, &alike);
+            let sizes = moves.iter().map(|x| {
+                let parts = x.iter().zip(&own_scale);
+                parts.map(|(x, scale)| (x / scale).norm_sqr()).sum::<f64>()
+            });
+            let most = alike.iter().zip(sizes).max_by(|a, b| a.1.total_cmp(&b.1));
+            pole.s = most.map_or(pole.s, |(s, _)| Complex::new(s.re, s.im.abs()));
+        }
+        poles.all.push(pole);
     }
     poles
+}
+
+/// The s that have one factor over a period: the one below half its rate first, then those near poles of the plant.
+fn alike(s: Complex<f64>, period: f64, plant: &[Complex<f64>]) -> Vec<Complex<f64>> {
+    let step = std::f64::consts::TAU / period;
+    let mut found = vec![(0.0, s)];
+    // A real pole is of no pair, and so is one that alternates from tick to tick.
+    let pair = s.im > 1e-9 * step && s.im < (0.5 - 1e-9) * step;
+    for own in plant.iter().filter(|own| pair && own.im > 0.5 * step) {
+        for base in [s, s.conj()] {
+            let turns = ((own.im - base.im) / step).round();
+            let near = base + Complex::new(0.0, turns * step);
+            // Of the vector that belongs to s, not to its mirror image.
+            let same = if base.im < 0.0 { near.conj() } else { near };
+            let known = |other: &(f64, Complex<f64>)| (other.1 - same).norm() < 1e-6 * step;
+            if turns > 0.0 && !found.iter().any(known) {
+                found.push(((near - own).norm(), same));
+            }
+        }
+    }
+    found.sort_by(|a, b| a.0.total_cmp(&b.0));
+    found.truncate(MOST_ALIKE);
+    found.into_iter().map(|(_, s)| s).collect()
 }
 
 /// A matrix without the part of it that becomes 0 when it is applied again and again, in a basis of what is left.

@@ -182,7 +182,9 @@ pub(crate) fn setup_with<'r>(
     let atol = constant(Constant::Atol).unwrap_or(ATOL * rtol);
     let max_step_s = constant(Constant::MaxStep).unwrap_or(f64::INFINITY);
     let (start_s, _) = start(program, records, &parameters);
-    let mut setup = Setup::new(parameters, records, start_s + 1.0);
+    let stop_s = constant(Constant::Stop).filter(|stop| *stop > start_s);
+    let stop_s = stop_s.unwrap_or(start_s + 1.0);
+    let mut setup = Setup::new(parameters, records, stop_s);
     setup.start_s = start_s;
     setup.method = program.experiment.method;
     (setup.rtol, setup.atol) = (rtol, atol);

@@ -12,7 +12,6 @@
 //! would fire for ever.
 
 mod located;
-mod struck;
 
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
@@ -376,7 +375,6 @@ impl Instant<'_, '_> {
             slides.retain(|slide| slide.modes.is_none_or(|pair| pair.automaton != automaton));
             self.state.z[program.automata[automaton].place] = to as f64;
         }
-        self.let_go(fired, &entered)?;
         self.pin(&entered)
     }
 

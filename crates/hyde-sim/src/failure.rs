@@ -48,6 +48,8 @@ pub enum FailureKind {
     Input(String),
     /// There is no gradient of this run: what it would have to pass.
     NoGradient(String),
+    /// No steady state was reached: a state that still changes, and its rate in SI.
+    NotSteady(String, f64),
     /// It was ended from outside.
     Interrupted,
 }

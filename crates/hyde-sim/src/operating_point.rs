@@ -13,6 +13,9 @@ pub enum PointTime {
     Start,
     /// At a time in s, events and ticks there included.
     At(f64),
+    /// Where nothing changes any more, or all that does goes on evenly and nothing asks for it. It is looked for in 64 times
+    /// the time of the run at most.
+    Steady,
 }
 
 /// In which modes a model is taken at a point.
@@ -92,8 +95,10 @@ pub fn operating_point(
     (setup.rows_s, setup.keep) = (Vec::new(), Some(Vec::new()));
     let mut run = Simulation::new(program, &setup)?;
     run.settle_start()?;
-    if let PointTime::At(t) = time {
-        run.advance_to(t)?;
+    match time {
+        PointTime::Start => {}
+        PointTime::At(t) => run.advance_to(t)?,
+        PointTime::Steady => run.advance_to_steady()?,
     }
     run.point(modes)
 }

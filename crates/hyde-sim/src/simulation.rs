@@ -3,6 +3,7 @@
 mod instant;
 mod point;
 mod rows;
+mod steady;
 
 use crate::clocks::Schedule;
 use crate::consistent::Consistent;

@@ -392,8 +392,7 @@ fn connector(name: &str) -> &str {
     name.rsplit_once('.').map_or(name, |(before, _)| before)
 }
 
-/// A list of names as words.
-pub(crate) fn and(names: &[String]) -> String {
+fn and(names: &[String]) -> String {
     match names {
         [] => String::new(),
         [only] => only.clone(),
@@ -402,7 +401,7 @@ pub(crate) fn and(names: &[String]) -> String {
 }
 
 /// What a quantity is called.
-pub(crate) fn noun(dimension: Dimension) -> &'static str {
+fn noun(dimension: Dimension) -> &'static str {
     let known: [([i16; 7], i16, &str); 9] = [
         ([0, 0, 0, 0, 0, 0, 0], 1, "angle"),
         ([0, 1, 0, 0, 0, 0, 0], 0, "place"),

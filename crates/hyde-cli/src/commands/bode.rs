@@ -13,15 +13,17 @@ mod stepped;
 use self::measured::Compared;
 use self::response::{Response, band, frequencies, linearised};
 use crate::args::{BodeArgs, ModelArgs, RunArgs};
+use crate::assumed;
 use crate::commands::run;
 use crate::exit::Exit;
 use crate::project::{self, Aim, Records, complain, print_output};
 use crate::records;
 use crate::summary;
 use hyde_diag::{Code, Diagnostic};
-use hyde_experiment::{parameters, swept_response};
+use hyde_experiment::{About, LinearizeError, linearize_about, parameters, poles, swept_response};
+use hyde_program::{Bode, Program};
 use hyde_units::significant;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
 /// What one experiment asks for.
@@ -31,6 +33,8 @@ struct Asked {
     bodes: Vec<Vec<Response>>,
     /// One for each loop that is cut.
     margins: Vec<margins::OfLoop>,
+    /// Of each, about what it is linearised, what is assumed there, and the poles.
+    json: Vec<Map<String, Value>>,
     text: String,
     /// Every expectation held.
     holds: bool,
@@ -64,8 +68,8 @@ fn responses(args: &BodeArgs) -> Result<(String, bool), Exit> {
     if args.model.json {
         let found: Vec<Value> = all
             .iter()
-            .flat_map(|asked| &asked.bodes)
-            .map(|bode| json(bode))
+            .flat_map(|asked| asked.bodes.iter().zip(&asked.json))
+            .map(|(bode, about)| json(bode, about))
             .collect();
         let margins = all.iter().flat_map(|asked| &asked.margins);
         let margins: Vec<Value> = margins.map(margins::json).collect();
@@ -170,11 +174,16 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     } else {
         Some(run::solved(&RunArgs::of_model(model))?)
     };
+    let time = assumed::point_time(args.about.at.as_deref()).map_err(wrong)?;
+    let asked_modes = args.about.in_modes.iter();
+    let asked_modes = asked_modes.map(|text| assumed::in_mode(program, text));
+    let asked_modes: Vec<(usize, usize)> = asked_modes.collect::<Result<_, _>>().map_err(wrong)?;
     let name = project.experiment.clone().unwrap_or_default();
     let mut asked = Asked {
         title: title(&project, &name, &program.name),
         bodes: Vec::new(),
         margins: Vec::new(),
+        json: Vec::new(),
         text: String::new(),
         holds: true,
     };
@@ -189,8 +198,17 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
             .or_else(|| measured::band(program, number, &recorded))
             .ok_or_else(|| wrong("the band of frequencies is empty".to_owned()))?;
         let frequency = frequencies(band, args.points);
-        let found = linearised(&name, program, bode, &tables, &p, &frequency);
-        let (mut responses, system) = found.map_err(|reason| {
+        let about = About {
+            time,
+            modes: &[&asked_modes[..], &bode.modes].concat(),
+            open: false,
+        };
+        let input = std::slice::from_ref(&bode.input);
+        let system = linearize_about(program, &tables, &p, input, about)
+            .map_err(|error| no_system(&mut project, model, (program, bode), error))?;
+        let poles = poles(&system);
+        let found = linearised(&name, program, bode, (&system, &poles), &frequency);
+        let mut responses = found.map_err(|reason| {
             let diagnostic = Diagnostic::error(Code::NoResponse, reason);
             let diagnostic = diagnostic.label(bode.origin.span, "there is no response from here");
             project.diagnostics.push(diagnostic);
@@ -221,6 +239,11 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
             new.is_some_and(|new| known.input == new.input && known.output == new.output)
         });
         let stepped = bode.stepped.is_some() && !args.linear;
+        if let Some(unstable) = assumed::unstable(program, &p, &system, &poles)
+            && !asked.text.contains(&unstable)
+        {
+            asked.text.insert_str(0, &unstable);
+        }
         if stepped || !told {
             let _ = writeln!(
                 asked.text,
@@ -251,6 +274,13 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
                 seen::peaks_told(response)
             );
         }
+        let about = assumed::text(program, &system, time);
+        if !asked.text.contains(&about) {
+            asked.text.push_str(&about);
+        }
+        asked
+            .json
+            .push(assumed::json(program, &system, time, &poles));
         if stepped {
             let (text, holds) = stepped::measured(model, &mut project, number, &mut responses)?;
             asked.text.push_str(&text);
@@ -259,9 +289,19 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         asked.text.push_str(&errors);
         asked.bodes.push(responses);
     }
-    let found = margins::all(&name, program, &tables, &p, &mut project.diagnostics);
+    let about = About {
+        time,
+        modes: &asked_modes,
+        open: false,
+    };
+    let found = margins::all(&name, program, &tables, &p, about, &mut project.diagnostics);
     asked.margins = found.ok_or_else(|| project.finish_with_errors(model))?;
-    asked.text.extend(asked.margins.iter().map(margins::text));
+    for margins in &asked.margins {
+        asked.text.push_str(&margins::text(margins));
+        if !asked.text.contains(&margins.point) {
+            asked.text.push_str(&margins.point);
+        }
+    }
     Ok(asked)
 }
 
@@ -273,7 +313,7 @@ fn title(project: &project::Project, name: &str, model: &str) -> String {
         .unwrap_or_else(|| format!("{name} of {model}"))
 }
 
-fn json(bode: &[Response]) -> Value {
+fn json(bode: &[Response], about: &Map<String, Value>) -> Value {
     let outputs: Vec<Value> = bode
         .iter()
         .map(|response| {
@@ -292,13 +332,37 @@ fn json(bode: &[Response]) -> Value {
         })
         .collect();
     let first = bode.first();
-    json!({
+    let mut found = json!({
         "experiment": first.map(|response| &response.experiment),
         "input": first.map(|response| &response.input),
         "frequency_hz": first.map(|response| &response.frequency),
         "modes": first.map(|response| &response.resonances),
         "outputs": outputs,
-    })
+    });
+    for (key, value) in about {
+        found[key] = value.clone();
+    }
+    found
+}
+
+/// Reports why there is no linearised system for a response.
+fn no_system(
+    project: &mut project::Project,
+    model: &ModelArgs,
+    (program, bode): (&Program, &Bode),
+    error: LinearizeError,
+) -> Exit {
+    if let LinearizeError::Failed(failure) = error {
+        return assumed::no_point(project, model, program, failure);
+    }
+    let reason = format!(
+        "there is no linearised response: {}",
+        assumed::why_not(&error)
+    );
+    let diagnostic = Diagnostic::error(Code::NoResponse, reason);
+    let diagnostic = diagnostic.label(bode.origin.span, "there is no response from here");
+    project.diagnostics.push(diagnostic);
+    project.finish_with_errors(model)
 }
 
 fn file_name(name: &str) -> String {

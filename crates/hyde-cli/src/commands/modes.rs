@@ -5,22 +5,23 @@ mod inverse;
 mod over;
 
 use crate::args::{ModelArgs, ModesArgs};
+use crate::assumed;
 use crate::exit::Exit;
 use crate::project::{self, Aim, Project, Records, complain, print_output};
 use crate::records;
 use crate::settings::Setting;
 use hyde_compiler::Compiled;
-use hyde_experiment::{Linear, ModeShape, NaturalMode, linearize, mode_shape, parameters, poles};
+use hyde_experiment::{
+    About, Linear, LinearizeError, ModeShape, NaturalMode, Pole, Poles, linearize_about,
+    mode_shape, parameters, poles,
+};
 use hyde_program::Program;
 use hyde_signal::Table;
+use hyde_sim::PointTime;
 use hyde_units::significant;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-
-/// Shares of the energy are printed down to this, as long as there is room for them in a line.
-const LEAST_SHARE: f64 = 0.05;
-const WIDTH: usize = 54;
 
 /// Prints the modes of vibration.
 pub(crate) fn modes(args: &ModesArgs) -> Exit {
@@ -39,7 +40,12 @@ pub(crate) struct Found {
     pub(crate) name: String,
     pub(crate) modes: Vec<NaturalMode>,
     shapes: Vec<Option<ModeShape>>,
-    json: Vec<Value>,
+    real: Vec<Pole>,
+    json: Map<String, Value>,
+    /// The line that says what grows.
+    pub(crate) unstable: Option<String>,
+    /// About what it is linearised, with what is assumed.
+    pub(crate) about: String,
     /// The unit of each parameter, in SI.
     pub(crate) units: Vec<(String, String)>,
 }
@@ -63,16 +69,23 @@ fn table(args: &ModesArgs) -> Result<String, Exit> {
         .collect();
     let all = all?;
     if args.model.json {
-        let listed = |found: &Found| json!({ "experiment": found.name, "modes": found.json });
+        let listed = |found: &Found| {
+            let mut listed = found.json.clone();
+            listed.insert("experiment".to_owned(), json!(found.name));
+            Value::Object(listed)
+        };
         let (first, others) = (&all[0], &all[1..]);
-        let mut value = json!({ "ok": true, "modes": first.json });
+        let mut value = json!({ "ok": true });
+        for (key, part) in &first.json {
+            value[key] = part.clone();
+        }
         if !others.is_empty() {
             value["with"] = others.iter().map(listed).collect();
         }
         return Ok(format!("{value:#}"));
     }
     Ok(match all.as_slice() {
-        [one] => with_energy(one),
+        [one] => with_energy(one, args.real),
         several => side_by_side(several),
     })
 }
@@ -85,6 +98,8 @@ struct Prepared {
     parameters: Vec<f64>,
     /// Modes of automata.
     chosen: Vec<(usize, usize)>,
+    /// The operating point.
+    time: PointTime,
 }
 
 fn prepared(args: &ModesArgs, model: &ModelArgs, set: Option<&Setting>) -> Result<Prepared, Exit> {
@@ -103,15 +118,17 @@ fn prepared(args: &ModesArgs, model: &ModelArgs, set: Option<&Setting>) -> Resul
         .first()
         .map(|bode| bode.modes.clone())
         .unwrap_or_default();
-    for text in &args.in_modes {
-        chosen.insert(0, in_mode(program, text).map_err(wrong)?);
+    for text in &args.about.in_modes {
+        chosen.insert(0, assumed::in_mode(program, text).map_err(wrong)?);
     }
+    let time = assumed::point_time(args.about.at.as_deref()).map_err(wrong)?;
     Ok(Prepared {
         project,
         compiled,
         tables,
         parameters,
         chosen,
+        time,
     })
 }
 
@@ -122,19 +139,29 @@ pub(crate) fn found(
     set: Option<&Setting>,
 ) -> Result<Found, Exit> {
     let Prepared {
-        project,
+        mut project,
         compiled,
         tables,
         parameters: p,
         chosen,
+        time,
     } = prepared(args, model, set)?;
     let program = &compiled.program;
-    let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
-    let linear = linearize(program, &tables, &p, &[], &chosen)
-        .map_err(|error| wrong(format!("the model could not be linearised: {error:?}")))?;
+    let about = About {
+        time,
+        modes: &chosen,
+        open: args.open,
+    };
+    let linear = linearize_about(program, &tables, &p, &[], about);
+    let linear = linear.map_err(|error| {
+        if let LinearizeError::Failed(failure) = error {
+            return assumed::no_point(&mut project, model, program, failure);
+        }
+        let reason = format!("the model is not linearised: {}", assumed::why_not(&error));
+        complain(model, Exit::CommandLine, &reason)
+    })?;
     let poles = poles(&linear);
-    let mut modes = Vec::new();
-    let mut shapes = Vec::new();
+    let (mut modes, mut shapes) = (Vec::new(), Vec::new());
     for pole in poles.oscillating() {
         let mode = pole.mode();
         if args.below.is_none_or(|limit| mode.frequency_hz < limit) {
@@ -142,11 +169,12 @@ pub(crate) fn found(
             shapes.push(mode_shape(program, &p, &linear, (&poles, &pole)));
         }
     }
-    let json = modes
-        .iter()
-        .zip(&shapes)
+    let listed = modes.iter().zip(&shapes);
+    let listed: Vec<Value> = listed
         .map(|(mode, shape)| json(program, &linear, mode, shape.as_ref()))
         .collect();
+    let mut json = assumed::json(program, &linear, time, &poles);
+    json.insert("modes".to_owned(), listed.into());
     let unit = |parameter: &hyde_program::Parameter| {
         (parameter.name.clone(), parameter.dimension.usual_unit())
     };
@@ -156,26 +184,70 @@ pub(crate) fn found(
         modes,
         shapes,
         json,
+        unstable: assumed::unstable(program, &p, &linear, &poles),
+        about: loop_told(program, &linear, &poles) + &assumed::text(program, &linear, time),
+        real: poles.real(),
     })
 }
 
-fn with_energy(found: &Found) -> String {
-    let mut text = format!("{:>12} {:>10}   energy\n", "f [Hz]", "damping");
+/// Which loop the modes are those of.
+fn loop_told(program: &Program, linear: &Linear, poles: &Poles) -> String {
+    let clocks: Vec<&str> = program
+        .clocks
+        .iter()
+        .map(|clock| clock.name.as_str())
+        .collect();
+    let clocks = clocks.join("`, `");
+    match poles.period_s {
+        Some(period) => format!(
+            "closed loop of the clocks `{clocks}`, exact over their common period of {} ms:\n  \
+             of frequencies {} Hz apart, alike at its ticks, the one between ticks is listed;\n  \
+             the plant alone: `--open`\n",
+            significant(1e3 * period, 4),
+            significant(1.0 / period, 4)
+        ),
+        None if !linear.b_held.is_empty() => {
+            format!("the plant alone: what the clocks `{clocks}` hold stays as it is\n")
+        }
+        None => String::new(),
+    }
+}
+
+fn with_energy(found: &Found, real: bool) -> String {
+    let mut text = found.unstable.clone().unwrap_or_default();
+    let _ = writeln!(text, "{:>12} {:>10}   energy", "f [Hz]", "damping");
     for (mode, shape) in found.modes.iter().zip(&found.shapes) {
+        let energy = shape.as_ref().map(assumed::shares);
         let line = format!(
             "{:>12} {:>10}   {}",
             significant(mode.frequency_hz, 5),
             significant(mode.damping, 3),
-            shape.as_ref().map_or_else(String::new, shares)
+            energy.unwrap_or_else(|| "clocked parts alone".to_owned())
         );
         let _ = writeln!(text, "{}", line.trim_end());
     }
+    if found.modes.is_empty() {
+        text.push_str("no pole oscillates\n");
+    }
+    if real {
+        let _ = writeln!(text, "{:>12} {:>10}", "1/s", "T [s]");
+        for pole in &found.real {
+            let rate = significant(pole.s.re, 5);
+            let _ = writeln!(text, "{rate:>12} {:>10}", significant(-1.0 / pole.s.re, 3));
+        }
+    }
+    text.push_str(&found.about);
     text
 }
 
 /// The frequencies of several experiments in Hz, in order, and by how much each differs from that of the first.
 fn side_by_side(all: &[Found]) -> String {
     let mut text = String::new();
+    for found in all {
+        if let Some(unstable) = &found.unstable {
+            let _ = write!(text, "{}: {unstable}", found.name);
+        }
+    }
     let (first, others) = (&all[0], &all[1..]);
     let _ = write!(text, "{:>12}", format!("{} [Hz]", first.name));
     for other in others {
@@ -197,28 +269,8 @@ fn side_by_side(all: &[Found]) -> String {
         }
         let _ = writeln!(text, "{}", line.trim_end());
     }
-    text
-}
-
-/// Where the energy is, the largest shares first: `97 % table.rocking`.
-fn shares(shape: &ModeShape) -> String {
-    let mut sorted: Vec<_> = shape
-        .shares
-        .iter()
-        .filter(|share| share.2 > LEAST_SHARE)
-        .collect();
-    sorted.sort_by(|a, b| b.2.total_cmp(&a.2));
-    let mut text = String::new();
-    for (component, account, share) in sorted {
-        let dot = if component.is_empty() { "" } else { "." };
-        let percent = significant(100.0 * share, 2);
-        let part = format!("{percent} % {component}{dot}{account}");
-        let comma = if text.is_empty() { "" } else { ", " };
-        if text.len() + comma.len() + part.len() > WIDTH {
-            break;
-        }
-        text.push_str(comma);
-        text.push_str(&part);
+    for found in all {
+        let _ = write!(text, "{}: {}", found.name, found.about);
     }
     text
 }
@@ -245,35 +297,4 @@ fn json(
             .collect();
     }
     found
-}
-
-/// `guide=slip`
-fn in_mode(program: &Program, text: &str) -> Result<(usize, usize), String> {
-    let (name, mode) = text
-        .split_once('=')
-        .ok_or_else(|| format!("`--in {text}`: write `NAME=MODE`"))?;
-    let number = program
-        .automata
-        .iter()
-        .position(|automaton| automaton.name == name)
-        .ok_or_else(|| {
-            let known: Vec<&str> = program
-                .automata
-                .iter()
-                .map(|automaton| automaton.name.as_str())
-                .collect();
-            format!(
-                "`{name}` has no modes; modes are in `{}`",
-                known.join("`, `")
-            )
-        })?;
-    let modes = &program.automata[number].modes;
-    let found = modes.iter().position(|known| known == mode);
-    let found = found.ok_or_else(|| {
-        format!(
-            "`{name}` has no mode `{mode}`; it has `{}`",
-            modes.join("`, `")
-        )
-    })?;
-    Ok((number, found))
 }

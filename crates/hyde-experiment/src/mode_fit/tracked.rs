@@ -2,7 +2,7 @@
 //! they leave of the measurement with its derivatives.
 
 use super::{Combination, MeasuredMode, ModeFitError, ModeFitRequest};
-use crate::linearize::{Linear, linearize};
+use crate::linearize::{About, Linear, linearize_about};
 use crate::modes::{NaturalMode, modes};
 use crate::pencil::{Eigen, Pencil};
 use crate::run::parameters;
@@ -22,7 +22,12 @@ impl Model {
         let p = parameters(request.program, request.records, &set);
         let p = p.map_err(ModeFitError::Parameter)?;
         let (program, in_modes) = (request.program, request.in_modes);
-        let linear = linearize(program, request.records, &p, &[], in_modes);
+        let about = About {
+            modes: in_modes,
+            open: true,
+            ..About::default()
+        };
+        let linear = linearize_about(program, request.records, &p, &[], about);
         let linear = linear.map_err(ModeFitError::Linearize)?;
         Ok(Self {
             modes: modes(&linear),

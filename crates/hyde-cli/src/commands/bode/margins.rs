@@ -1,9 +1,11 @@
 //! The stability margins of the loops that an experiment cuts: computed, told, as JSON.
 
-use super::response::why_not;
+use crate::assumed;
 use crate::project::Project;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
-use hyde_experiment::{CutError, DelayMargin, Margins, Pole, linearize, margins, poles};
+use hyde_experiment::{
+    About, CutError, DelayMargin, Margins, Pole, linearize_about, margins, poles,
+};
 use hyde_program::{Constant, Cut, Program};
 use hyde_signal::Table;
 use hyde_syntax::ast::Item;
@@ -25,6 +27,9 @@ pub(crate) struct OfLoop {
     pub(crate) found: Margins,
     /// Poles of the closed loop that grow.
     pub(crate) unstable: Vec<Pole>,
+    /// About what it is linearised, with what is assumed there; and that as JSON.
+    pub(crate) point: String,
+    assumptions: Value,
     /// The band was asked for.
     given: bool,
 }
@@ -57,12 +62,13 @@ pub(crate) fn all(
     program: &Program,
     tables: &BTreeMap<String, Table>,
     p: &[f64],
+    about: About<'_>,
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<OfLoop>> {
     let cuts = program.experiment.cuts.iter().enumerate();
     let found: Vec<Option<OfLoop>> = cuts
         .map(|(number, cut)| {
-            let of = one(experiment, program, (number, cut), tables, p);
+            let of = one(experiment, program, (number, cut), tables, p, about);
             of.map_err(|diagnostic| diagnostics.push(*diagnostic)).ok()
         })
         .collect();
@@ -75,10 +81,15 @@ fn one(
     (number, cut): (usize, &Cut),
     tables: &BTreeMap<String, Table>,
     p: &[f64],
+    about: About<'_>,
 ) -> Result<OfLoop, Box<Diagnostic>> {
     let input = std::slice::from_ref(&cut.input);
-    let linear = linearize(program, tables, p, input, &cut.modes).map_err(|error| {
-        let diagnostic = Diagnostic::error(Code::NoResponse, why_not(&error));
+    let about = About {
+        modes: &[about.modes, &cut.modes].concat(),
+        ..about
+    };
+    let linear = linearize_about(program, tables, p, input, about).map_err(|error| {
+        let diagnostic = Diagnostic::error(Code::NoResponse, assumed::why_not(&error));
         Box::new(diagnostic.label(cut.origin.span, "the loop has no response here"))
     })?;
     let constant = |which| program.kernels.constant(which, p);
@@ -88,6 +99,8 @@ fn one(
         experiment: experiment.to_owned(),
         signal: cut.signal.clone(),
         unstable: poles(&linear).unstable(),
+        point: assumed::text(program, &linear, about.time),
+        assumptions: assumed::listed(program, &linear),
         found,
         given: band.is_some(),
     })
@@ -391,7 +404,7 @@ pub(crate) fn json(of: &OfLoop) -> Value {
         .unzip();
     json!({
         "experiment": of.experiment, "signal": of.signal, "stable": stable, "in_loop": found.in_loop,
-        "unstable_poles": unstable, "period_s": found.period_s, "band_hz": found.band_hz,
+        "unstable_poles": unstable, "assumptions": of.assumptions, "period_s": found.period_s, "band_hz": found.band_hz,
         "gain_margin": factor(found.gain_margin()), "gain_reduction": factor(found.gain_reduction()),
         "phase_margin": phase.map(|(angle, f)| json!({ "deg": angle.to_degrees(), "frequency_hz": f })),
         "delay_margin": delay,

@@ -1,15 +1,10 @@
 //! One response of an experiment: of the linearised model, and as measured on the hybrid one.
 
 use super::measured::Compared;
-use hyde_experiment::{
-    BodeError, Linear, LinearizeError, NaturalMode, SteppedOutput, frequency_response, linearize,
-    modes,
-};
+use hyde_experiment::{BodeError, Linear, Pole, Poles, SteppedOutput, frequency_response};
 use hyde_program::{Bode, Constant, Program};
-use hyde_signal::Table;
 use hyde_signal::spectrum::FrequencyResponse;
 use hyde_units::significant;
-use std::collections::BTreeMap;
 
 /// From an input to one output.
 pub(crate) struct Response {
@@ -49,21 +44,16 @@ pub(crate) fn frequencies(band: (f64, f64), count: usize) -> Vec<f64> {
     (0..count).map(at).collect()
 }
 
-/// The linearised responses of an experiment's request, one an output, and the system; why there are none, where there are
-/// not.
+/// The linearised responses of an experiment's request, one an output; why there are none, where there are not.
 pub(crate) fn linearised(
     experiment: &str,
     program: &Program,
     bode: &Bode,
-    tables: &BTreeMap<String, Table>,
-    p: &[f64],
+    (system, poles): (&Linear, &Poles),
     frequency: &[f64],
-) -> Result<(Vec<Response>, Linear), String> {
-    let input = std::slice::from_ref(&bode.input);
-    let system =
-        linearize(program, tables, p, input, &bode.modes).map_err(|error| why_not(&error))?;
+) -> Result<Vec<Response>, String> {
     let outputs: Vec<usize> = bode.outputs.iter().map(|(_, output)| *output).collect();
-    let all = frequency_response(&system, 0, &outputs, frequency).map_err(|error| match error {
+    let all = frequency_response(system, 0, &outputs, frequency).map_err(|error| match error {
         BodeError::AboveNyquist(f, limit) => format!(
             "{} Hz is above half the sampling rate, {} Hz: the sampled loop has no response there",
             significant(f, 3),
@@ -71,7 +61,7 @@ pub(crate) fn linearised(
         ),
         BodeError::Singular(f) => format!("the system is singular at {} Hz", significant(f, 3)),
     })?;
-    let resonances = resonances(&system, frequency);
+    let resonances = resonances(system, poles, frequency);
     let responses = bode
         .outputs
         .iter()
@@ -91,43 +81,22 @@ pub(crate) fn linearised(
             measured: Vec::new(),
             stepped: Vec::new(),
         });
-    Ok((responses.collect(), system))
+    Ok(responses.collect())
 }
 
-pub(crate) fn why_not(error: &LinearizeError) -> String {
-    match error {
-        LinearizeError::NoInput(name) => format!("`{name}` is no free input"),
-        LinearizeError::TooLarge(n) => {
-            format!("{n} unknowns are too many for a dense linearised system")
-        }
-        LinearizeError::NoCommonPeriod => {
-            "clocks that never tick together again have no common frequency response".to_owned()
-        }
-        LinearizeError::LongDelay => {
-            "a clock whose held values change more than a period later has no response".to_owned()
-        }
-        LinearizeError::DelayAndClock => {
-            "a model with both `delay` and a clocked part has no linearised response".to_owned()
-        }
-        LinearizeError::Singular => {
-            "the algebraic variables are not determined in these modes".to_owned()
-        }
-        LinearizeError::Failed(failure) => {
-            format!("no operating point was found: {:?}", failure.kind)
-        }
-    }
-}
-
-/// The modes that swing, from an octave below the band to its end.
-fn resonances(system: &Linear, frequency: &[f64]) -> Vec<(f64, f64)> {
+/// The modes that swing, from an octave below the band to its end: with clocks those of the closed loop.
+fn resonances(system: &Linear, poles: &Poles, frequency: &[f64]) -> Vec<(f64, f64)> {
     let (Some(from), Some(to)) = (frequency.first(), frequency.last()) else {
         return Vec::new();
     };
-    let swings =
-        |mode: &NaturalMode| mode.damping < 0.3 && (0.5 * from..=*to).contains(&mode.frequency_hz);
-    let found = modes(system).into_iter().filter(swings);
+    let swings = |pole: &Pole| {
+        let mode = pole.mode();
+        mode.damping < 0.3 && (0.5 * from..=*to).contains(&mode.frequency_hz)
+    };
+    let found = poles.oscillating().into_iter().filter(swings);
+    let found = found.filter(|pole| poles.states(system, pole).is_some());
     found
-        .map(|mode| (mode.frequency_hz, mode.damping))
+        .map(|pole| (pole.mode().frequency_hz, pole.mode().damping))
         .collect()
 }
 

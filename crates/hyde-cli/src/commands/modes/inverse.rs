@@ -2,6 +2,7 @@
 
 use super::{Prepared, prepared};
 use crate::args::ModesArgs;
+use crate::assumed;
 use crate::exit::Exit;
 use crate::project::complain;
 use crate::run_failure;
@@ -50,7 +51,11 @@ pub(super) fn fitted(args: &ModesArgs) -> Result<String, Exit> {
     if args.model.json {
         return Ok(format!("{:#}", found_json(args, &fit, &measured)));
     }
-    Ok(text(args, program, &fit, &measured))
+    let mut text = text(args, program, &fit, &measured);
+    if !program.holds.is_empty() {
+        text.push_str("modes are those of the plant alone, as `hyde modes --open` lists them\n");
+    }
+    Ok(text)
 }
 
 /// The measurement in rising order, and the numbers of its modes from 0.
@@ -120,7 +125,9 @@ fn reason(error: &ModeFitError, measured: &[MeasuredMode]) -> String {
             )
         }
         ModeFitError::TooFewModes(count) => format!("the model has {count} modes that oscillate"),
-        ModeFitError::Linearize(error) => format!("the model could not be linearised: {error:?}"),
+        ModeFitError::Linearize(error) => {
+            format!("the model is not linearised: {}", assumed::why_not(error))
+        }
         ModeFitError::Lost(at) => {
             let f = significant(measured[*at].frequency_hz, 4);
             format!(

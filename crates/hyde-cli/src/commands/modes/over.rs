@@ -79,6 +79,15 @@ fn unit(rows: &[Row], path: &str) -> String {
 /// One line a value; the frequencies of each experiment in Hz, lowest first.
 fn text(rows: &[Row], path: &str, unit: &str) -> String {
     let mut text = String::new();
+    let all = rows
+        .iter()
+        .flat_map(|(value, all)| all.iter().map(move |found| (value, found)));
+    let grow = all.filter_map(|(value, found)| Some((value, found.unstable.as_ref()?)));
+    let grow: Vec<_> = grow.collect();
+    if let Some((value, told)) = grow.first() {
+        let (count, value) = (grow.len(), significant(**value, 4));
+        let _ = write!(text, "at {path} = {value}, the first of {count}: {told}");
+    }
     let head = if unit.is_empty() {
         path.to_owned()
     } else {
@@ -99,6 +108,9 @@ fn text(rows: &[Row], path: &str, unit: &str) -> String {
         }
         text.push('\n');
     }
+    if let Some(found) = rows.first().and_then(|(_, all)| all.first()) {
+        text.push_str(&found.about);
+    }
     text
 }
 
@@ -110,7 +122,7 @@ fn json(rows: &[Row], path: &str) -> String {
                 let frequencies: Vec<f64> =
                     found.modes.iter().map(|mode| mode.frequency_hz).collect();
                 let damping: Vec<f64> = found.modes.iter().map(|mode| mode.damping).collect();
-                json!({ "experiment": found.name, "frequency_hz": frequencies, "damping": damping })
+                json!({ "experiment": found.name, "frequency_hz": frequencies, "damping": damping, "stable": found.unstable.is_none() })
             };
             json!({ "value": value, "experiments": all.iter().map(of).collect::<Vec<_>>() })
         })
