@@ -2,7 +2,7 @@
 //!
 //! States and their derivatives count as known, so `a.tau = J*der(w)` is explicit too. The definitions are ordered by
 //! Tarjan's algorithm; of a loop one variable after the other is torn (kept in the vector with its equation as the
-//! residual) until the rest is explicit. A variable that reads much of an array (a field at a place that moves) stays in
+//! residual) until the rest is explicit, those with a guess first. A variable that reads much of an array (a field at a place that moves) stays in
 //! the vector: in its place every equation that reads it would depend on all of that. Array variables are kept or taken
 //! whole. The unknown of a `modes` block stays in
 //! the vector where a mode fixes a state (its row changes place then) or does not give it explicitly without a division by
@@ -91,6 +91,7 @@ pub(crate) fn choose(system: &mut System, matched: &Matched) -> Order {
             let torn = component.iter().copied().max_by_key(|&node| {
                 (
                     matched.unknowns[node].len() == 1,
+                    is_guessed(system, matched.unknowns[node]),
                     readers(node),
                     usize::MAX - node,
                 )
@@ -190,6 +191,13 @@ fn solve(
             })
         }
     }
+}
+
+/// Whether the model says where to look for a variable: a solution is looked for from the values of what is in the vector.
+fn is_guessed(system: &System, unknown: Segment) -> bool {
+    let starts = system.starts.get(&(unknown.var, unknown.first));
+    let zero = |value: ExprId| system.flat.exprs.as_constant(value) == Some(0.0);
+    starts.is_some_and(|list| list.iter().any(|(value, ..)| !zero(*value)))
 }
 
 /// Whether a definition reads more than a few values.

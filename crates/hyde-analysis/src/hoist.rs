@@ -158,6 +158,7 @@ impl Hoisting {
             quantity: Quantity::number(),
             structural: false,
             is_final: true,
+            found: false,
             derived: true,
             prior: None,
             role: hyde_ir::Role::Plain,

@@ -1,83 +1,59 @@
 //! The initial system: which states start where, and which equations hold at the start (I1 to I3).
 //!
-//! One condition is needed for each state that no initial mode fixes. Fixed start values and initial equations come
-//! first; what is missing is filled from the start values of states, what is too much is reported.
+//! One condition is needed for each state that no initial mode fixes. Each has its start value; initial equations make as
+//! many of them yield, the loosest first ([`Firmness`]), and the run chooses which by numbers. Those that are fixed for this
+//! model never do: what is too much is reported.
 
 use crate::graph::{Bipartite, Matching};
 use crate::system::{Cell, System};
-use hyde_diag::{Code, Diagnostic, Diagnostics};
-use hyde_ir::dae::{Dae, InitialCondition, Reason, Space};
+use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
+use hyde_ir::dae::{Dae, Firmness, InitialCondition, Space};
 use hyde_ir::{Expr, ExprId, Range, VarId};
+
+/// A state that needs a condition, or several of one array.
+struct Condition {
+    position: usize,
+    len: usize,
+    firmness: Firmness,
+    origin: Origin,
+}
 
 /// Fills in the initial conditions of the DAE.
 pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut Diagnostics) {
     refuse_conflicts(dae, system, diagnostics);
-    let pinned: Vec<usize> = dae
-        .pins
-        .iter()
-        .filter(|pin| dae.automata[pin.automaton].initial == pin.mode)
-        .map(|pin| pin.state)
-        .collect();
-    // The states that need a condition, in blocks: position, length, whether the start value is fixed.
-    let mut fixed: Vec<(usize, usize)> = Vec::new();
-    let mut free: Vec<usize> = Vec::new();
-    for block in dae.unknowns.iter().filter(|block| block.differential) {
-        let array = dae.variables[block.var].len.is_some();
-        if array && block.len > 1 {
-            if dae.variables[block.var].fixed {
-                fixed.push((block.offset, block.len));
-            } else {
-                free.extend(block.offset..block.offset + block.len);
-            }
-            continue;
-        }
-        let given = system
-            .starts
-            .get(&(block.var, block.first))
-            .is_some_and(|list| list.iter().any(|(_, fixed, _)| *fixed));
-        let pinned = pinned.contains(&block.offset);
-        if pinned && !given {
-            continue;
-        }
-        if given || (array && dae.variables[block.var].fixed) {
-            fixed.push((block.offset, 1));
-        } else {
-            free.push(block.offset);
-        }
-    }
-    let equations: Vec<(Range, ExprId, hyde_diag::Origin)> = system
-        .flat
-        .initial_equations
-        .iter()
+    let equations = system.flat.initial_equations.iter();
+    let mut equations: Vec<(Range, ExprId, Origin)> = equations
         .map(|equation| {
             let value = dae.exprs.minus(equation.lhs, equation.rhs);
             (equation.range, value, equation.origin.clone())
         })
         .collect();
-    let mut equations = equations;
+    let conditions = conditions_of_states(dae, system);
+    // What may yield, the loosest first; parameters that are to be found are looser still.
+    let mut loose: Vec<&Condition> = conditions
+        .iter()
+        .filter(|condition| condition.firmness < Firmness::Given)
+        .collect();
+    loose.sort_by_key(|condition| condition.firmness);
+    let positions = |below: Firmness| -> Vec<usize> {
+        let below = loose.iter().filter(|c| c.firmness < below);
+        below.flat_map(|c| c.position..c.position + c.len).collect()
+    };
+    let (guesses, with_defaults) = (positions(Firmness::Default), positions(Firmness::Given));
+    let to_find = dae.parameters.iter().filter(|p| p.found);
+    let to_find: usize = to_find.map(hyde_ir::Parameter::size).sum();
     let needed: usize = equations.iter().map(|(range, ..)| range.len()).sum();
-    let open = free.len() - taken(&take(dae, &[], &free));
+    let constrained = taken(&take(dae, &[], &with_defaults));
+    let open = with_defaults.len() - constrained + to_find;
     if needed > open {
-        too_many(dae, &equations, &fixed, open, diagnostics);
+        too_many(dae, &equations, &conditions, open, diagnostics);
         return;
     }
-    // Start values given for this model come before those that parts declare for every use.
-    let in_group = |position: usize| {
-        let mut groups = dae.selections.iter();
-        groups.any(|group| group.candidates.contains(&position))
-    };
-    let weak: Vec<usize> = fixed
-        .iter()
-        .filter(|&&(position, len)| {
-            len == 1 && !in_group(position) && !given(dae, system, position)
-        })
-        .map(|&(position, _)| position)
-        .collect();
-    let with_weak: Vec<usize> = free.iter().chain(&weak).copied().collect();
     let mut checks: Vec<(VarId, ExprId, ExprId)> = Vec::new();
     for start in starts_of_algebraic(dae, system) {
+        // Start values given for this model come before those that parts declare for every use.
         let given = dae.variables[start.given_by].start_given;
-        let open: &[usize] = if given { &with_weak } else { &free };
+        let open: &[usize] = if given { &with_defaults } else { &guesses };
         let before = taken(&take(dae, &equations, open));
         let equation = (Range::SCALAR, start.condition, start.origin.clone());
         equations.push(equation);
@@ -88,57 +64,94 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
             }
         }
     }
-    let overruled: Vec<usize> = take(dae, &equations, &with_weak)
-        .of_right
-        .iter()
-        .zip(&with_weak)
-        .filter(|(taken, position)| taken.is_some() && weak.contains(position))
-        .map(|(_, position)| *position)
-        .collect();
-    fixed.retain(|(position, _)| !overruled.contains(position));
-    free.extend(overruled);
     checks.extend(starts_in_groups(dae, system));
     let known = system.known_starts.iter().copied();
     checks.extend(known.filter(|(given_by, ..)| dae.variables[*given_by].start_given));
-    let filled = fill(dae, &equations, &free);
-    for (state, len) in fixed {
-        dae.initial.push(InitialCondition::Fixed {
-            state,
-            len,
-            reason: Reason::Declared,
-        });
+    let yielding = yielding(dae, &equations, &with_defaults, to_find);
+    let mut fixed = Vec::new();
+    for condition in conditions {
+        let each = condition.position..condition.position + condition.len;
+        let whole = !each.clone().any(|position| yielding.contains(&position));
+        let pieces = match whole {
+            true => vec![(condition.position, condition.len)],
+            false => each.map(|position| (position, 1)).collect(),
+        };
+        for (state, len) in pieces {
+            fixed.push(InitialCondition::Fixed {
+                state,
+                len,
+                firmness: condition.firmness,
+                yields: yielding.contains(&state),
+                origin: condition.origin.clone(),
+            });
+        }
     }
-    for (range, value, origin) in equations {
-        dae.initial.push(InitialCondition::Equation {
-            range,
-            value,
-            origin,
-        });
-    }
-    for state in filled {
-        dae.initial.push(InitialCondition::Fixed {
-            state,
-            len: 1,
-            reason: Reason::Filled,
-        });
-    }
+    let of_equations = equations.into_iter();
+    let of_equations = of_equations.map(|(range, value, origin)| InitialCondition::Equation {
+        range,
+        value,
+        origin,
+    });
+    dae.initial.extend(fixed);
+    dae.initial.extend(of_equations);
     for (var, value, start) in checks {
         dae.initial
             .push(InitialCondition::Check { var, value, start });
     }
 }
 
-/// Whether the fixed start of a state is given for this model.
-fn given(dae: &Dae, system: &System, position: usize) -> bool {
-    let inside = |b: &&hyde_ir::dae::Unknown| (b.offset..b.offset + b.len).contains(&position);
-    let Some(block) = dae.unknowns.iter().find(inside) else {
-        return true;
-    };
-    let starts = system.starts.get(&(block.var, block.first));
-    starts.is_none_or(|list| {
-        let mut fixed = list.iter().filter(|(_, fixed, _)| *fixed);
-        fixed.any(|(.., given_by)| dae.variables[*given_by].start_given)
-    })
+/// The states that no initial mode fixes, in blocks; a state whose start is declared fixed is in any case one of them.
+fn conditions_of_states(dae: &Dae, system: &System) -> Vec<Condition> {
+    let pinned: Vec<usize> = dae
+        .pins
+        .iter()
+        .filter(|pin| dae.automata[pin.automaton].initial == pin.mode)
+        .map(|pin| pin.state)
+        .collect();
+    let blocks = dae.unknowns.iter().filter(|block| block.differential);
+    let conditions = blocks.map(|block| {
+        let variable = &dae.variables[block.var];
+        let starts = system.starts.get(&(block.var, block.first));
+        let starts = starts.map_or(&[][..], |list| list.as_slice());
+        let mut firmness = match (variable.len.is_some(), variable.fixed) {
+            (true, true) if variable.start_given => Firmness::Given,
+            (true, true) => Firmness::Default,
+            (_, false) if variable.freed => Firmness::Free,
+            (true, false) if !variable.start.is_empty() => Firmness::Guess,
+            (true, false) | (false, _) => Firmness::Open,
+        };
+        let mut said_by = block.var;
+        // An array that is in the vector in pieces has elements that components are joined to.
+        if block.len == 1 {
+            for &(_, fixed, given_by) in starts {
+                let given = &dae.variables[given_by];
+                let this = match fixed {
+                    true if given.start_given => Firmness::Given,
+                    true => Firmness::Default,
+                    false if given.freed => Firmness::Free,
+                    false => Firmness::Guess,
+                };
+                if this > firmness {
+                    (firmness, said_by) = (this, given_by);
+                }
+            }
+        }
+        let origin = dae.variables[said_by].origin.clone();
+        let span = system
+            .component(&origin)
+            .map_or(origin.span, |(_, span)| span);
+        Condition {
+            position: block.offset,
+            len: block.len,
+            firmness,
+            origin: Origin { span, ..origin },
+        }
+    });
+    conditions
+        .filter(|condition| {
+            condition.firmness >= Firmness::Default || !pinned.contains(&condition.position)
+        })
+        .collect()
 }
 
 /// Start values given for this model of variables that constraints tie: the run chooses which of them are conditions.
@@ -163,7 +176,7 @@ struct AlgebraicStart {
     value: ExprId,
     start: ExprId,
     condition: ExprId,
-    origin: hyde_diag::Origin,
+    origin: Origin,
 }
 
 /// Fixed start values of variables that are no states: each is an equation, if it determines a state that is still free.
@@ -197,19 +210,27 @@ fn starts_of_algebraic(dae: &mut Dae, system: &System) -> Vec<AlgebraicStart> {
     found
 }
 
-/// The free states that no initial equation and no constraint takes: those keep their start values.
-fn fill(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usize]) -> Vec<usize> {
+/// The states that initial equations and constraints take, by the names that these read.
+fn yielding(
+    dae: &Dae,
+    equations: &[(Range, ExprId, Origin)],
+    loose: &[usize],
+    to_find: usize,
+) -> Vec<usize> {
     let needed: usize = equations.iter().map(|(range, ..)| range.len()).sum();
-    let constraints = taken(&take(dae, &[], free));
-    let matching = take(dae, equations, free);
-    let unplaced = needed - (taken(&matching) - constraints).min(needed);
-    let mut left: Vec<usize> = (0..free.len())
-        .filter(|&number| matching.of_right[number].is_none())
-        .map(|number| free[number])
-        .collect();
-    // Equations that name no free state directly determine some through the others: take the last ones declared.
-    left.truncate(left.len().saturating_sub(unplaced));
-    left
+    let constraints = taken(&take(dae, &[], loose));
+    let matching = take(dae, equations, loose);
+    let placed = taken(&matching) - constraints;
+    let unplaced = needed.saturating_sub(placed + to_find);
+    let (taken, left): (Vec<usize>, Vec<usize>) =
+        (0..loose.len()).partition(|&number| matching.of_right[number].is_some());
+    // Equations that name no state directly determine some through the others: the loosest, and of those the last declared.
+    let also = left.into_iter().rev().take(unplaced);
+    taken
+        .into_iter()
+        .chain(also)
+        .map(|number| loose[number])
+        .collect()
 }
 
 /// How many free states are taken.
@@ -219,7 +240,7 @@ fn taken(matching: &Matching) -> usize {
 
 /// Which free state each constraint between states takes, and each initial equation, of those it reads itself or through
 /// definitions.
-fn take(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usize]) -> Matching {
+fn take(dae: &Dae, equations: &[(Range, ExprId, Origin)], free: &[usize]) -> Matching {
     let mut edges = Vec::new();
     for selection in &dae.selections {
         let own: Vec<usize> = (0..free.len())
@@ -265,8 +286,8 @@ fn take(dae: &Dae, equations: &[(Range, ExprId, hyde_diag::Origin)], free: &[usi
 
 fn too_many(
     dae: &Dae,
-    equations: &[(Range, ExprId, hyde_diag::Origin)],
-    fixed: &[(usize, usize)],
+    equations: &[(Range, ExprId, Origin)],
+    conditions: &[Condition],
     free: usize,
     diagnostics: &mut Diagnostics,
 ) {
@@ -280,14 +301,10 @@ fn too_many(
     for (_, _, origin) in equations {
         diagnostic = diagnostic.label(origin.span, "an initial equation");
     }
-    let names: Vec<String> = fixed
-        .iter()
-        .take(8)
-        .filter_map(|(offset, _)| dae.unknowns.iter().find(|block| block.offset == *offset))
-        .map(|block| format!("`{}`", dae.variables[block.var].element_name(block.first)))
-        .collect();
-    if !names.is_empty() {
-        diagnostic = diagnostic.note(format!("fixed by their declaration: {}", names.join(", ")));
+    let given = conditions.iter().filter(|c| c.firmness == Firmness::Given);
+    for condition in given.take(8) {
+        let name = &dae.unknown_name(condition.position);
+        diagnostic = diagnostic.label(condition.origin.span, format!("`{name}` is fixed here"));
     }
     diagnostics.push(
         diagnostic

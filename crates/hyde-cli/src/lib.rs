@@ -28,6 +28,7 @@ pub mod render;
 mod report;
 mod run_failure;
 mod settings;
+mod start;
 mod study;
 mod summary;
 mod tables;

@@ -1,13 +1,13 @@
 //! The report of a run as one HTML page.
 
 use crate::project::Project;
-use crate::summary;
-use crate::{assumptions, figures, forces};
+use crate::{assumptions, figures, forces, start, summary};
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
 use hyde_program::Method;
 use hyde_report::{
-    ChannelError, Event, EventTable, Outcome, Parameter, RunReport, Verdict, to_html,
+    Block, ChannelError, Event, EventTable, Outcome, Parameter, RunReport, Section, Verdict,
+    to_html,
 };
 use hyde_units::{format_value, significant};
 
@@ -162,6 +162,12 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
     let place = events.unwrap_or(page.sections.len());
     if let Some(section) = forces::section(compiled, run) {
         page.sections.insert(place, section);
+    }
+    let told = start::lines(program, &run.results.yielded);
+    if !told.is_empty() {
+        let blocks = told.into_iter().map(Block::Text).collect();
+        let heading = "Start".to_owned();
+        page.sections.insert(place, Section { heading, blocks });
     }
     to_html(&page)
 }

@@ -227,6 +227,24 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             ),
             "if the impact is meant, write `impact` behind the exit; else leave the mode at rest",
         ),
+        FailureKind::Overdetermined(fixed) => {
+            let list: Vec<String> = fixed
+                .iter()
+                .take(4)
+                .map(|name| format!("`{name}`"))
+                .collect();
+            (
+                Code::TooManyConditions,
+                match list.is_empty() {
+                    true => "nothing that may yield can meet an initial equation".to_owned(),
+                    false => format!(
+                        "an initial equation and the fixed start of {} determine the same",
+                        list.join(", ")
+                    ),
+                },
+                "leave out the initial equation, or say `fixed = false` of a state that it is to determine",
+            )
+        }
         FailureKind::Start(name, wanted, found) => (
             Code::StartContradicted,
             format!(
@@ -279,7 +297,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             | FailureKind::Zeno { .. }
             | FailureKind::TooManyEvents { .. } => "this condition",
             FailureKind::Assert(_) => "does not hold",
-            FailureKind::Start(..) => "a condition of the start",
+            FailureKind::Start(..) | FailureKind::Overdetermined(_) => "a condition of the start",
             FailureKind::NoGradient(_) => "here",
             FailureKind::Inconsistent { .. }
             | FailureKind::Solver(_)

@@ -2,7 +2,7 @@
 
 use crate::commands::effects::wrapped;
 use crate::project::Project;
-use crate::{assumptions, ledger};
+use crate::{assumptions, ledger, start};
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
 use hyde_program::Method;
@@ -43,9 +43,15 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
         counted(statistics.ticks, "tick"),
         counted(statistics.restarts, "restart")
     );
-    if !compiled.states.filled.is_empty() {
-        let list = compiled.states.filled.join(", ");
+    let found = |name: &&String| run.results.yielded.iter().any(|y| y.name == **name);
+    let filled = compiled.states.filled.iter().filter(|name| !found(name));
+    let filled: Vec<&str> = filled.map(String::as_str).collect();
+    if !filled.is_empty() {
+        let list = filled.join(", ");
         let _ = writeln!(out, "  nothing but `start` says where {list} begins");
+    }
+    for line in start::lines(program, &run.results.yielded) {
+        let _ = writeln!(out, "  {line}");
     }
     for (automaton, times) in program.automata.iter().zip(&run.results.mode_times) {
         let parts: Vec<String> = automaton
@@ -233,6 +239,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         },
         "mode_seconds": modes,
         "sliding_seconds": sliding,
+        "start": start::json(program, &run.results.yielded),
         "channels": channels,
         "measures": measures,
         "expectations": expectations,

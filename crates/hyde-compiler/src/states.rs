@@ -1,7 +1,7 @@
 //! [`States`]: what the compiler made of the variables with derivatives, for those who want to know.
 
 use hyde_diag::Origin;
-use hyde_ir::dae::{Choice, InitialCondition, Reason};
+use hyde_ir::dae::{Choice, Firmness, InitialCondition};
 use hyde_ir::{Dae, StateChoice};
 
 /// The states of a model.
@@ -13,8 +13,11 @@ pub struct States {
     pub chosen: Vec<Choice>,
     /// Variables that were meant as states (by `fixed` or `state =`) and are given by others, each with its equation.
     pub dependent: Vec<(String, Origin)>,
-    /// States that no condition of the model fixes at the start: they begin at their start values.
+    /// States that no condition of the model fixes at the start: they begin at their start values, unless one of the initial
+    /// equations determines them.
     pub filled: Vec<String>,
+    /// The number of initial equations; the run tells what each determines.
+    pub equations: usize,
 }
 
 impl States {
@@ -50,16 +53,20 @@ impl States {
             variable.fixed || variable.state != StateChoice::Open
         });
         let dependent = meant.map(|d| (dae.dependent_name(d), d.origin.clone()));
+        let equations = dae.initial.iter().map(|condition| match condition {
+            InitialCondition::Equation { range, .. } => range.len(),
+            InitialCondition::Fixed { .. } | InitialCondition::Check { .. } => 0,
+        });
+        let equations = equations.sum();
         let filled = dae.initial.iter().filter_map(|condition| match condition {
             InitialCondition::Fixed {
                 state,
                 len,
-                reason: Reason::Filled,
-            } => Some(name(*state, *len)),
-            InitialCondition::Fixed {
-                reason: Reason::Declared,
+                firmness,
+                yields: false,
                 ..
-            }
+            } if *firmness < Firmness::Default => Some(name(*state, *len)),
+            InitialCondition::Fixed { .. }
             | InitialCondition::Equation { .. }
             | InitialCondition::Check { .. } => None,
         });
@@ -72,6 +79,7 @@ impl States {
                 .collect(),
             dependent: dependent.collect(),
             filled: filled.collect(),
+            equations,
         }
     }
 }

@@ -113,12 +113,12 @@ pub fn run(
     let from_s = setup.start_s + skip_s;
     let channels = compare::channels(program, records, &setup.parameters, &results, from_s)
         .map_err(RunError::Compare)?;
-    let measures = measures(program, &setup.parameters, &results);
+    let measures = measures(program, &results.parameters, &results);
     Ok(Run {
         start,
         stop_s: setup.stop_s,
         tolerances: (setup.rtol, setup.atol),
-        parameters: setup.parameters,
+        parameters: results.parameters.clone(),
         results,
         channels,
         measures,
@@ -265,10 +265,15 @@ pub fn parameters(
         };
         let Parameter {
             is_final,
+            found,
             structural,
             place,
             ..
         } = *parameter;
+        if found {
+            let why = "it is found by an initial equation: `fixed = false`";
+            return Err(RunError::CannotSet(name.clone(), why));
+        }
         if is_final {
             return Err(RunError::CannotSet(name.clone(), "it is final"));
         }

@@ -301,6 +301,7 @@ impl<'a> Model<'a, '_> {
             quantity,
             structural: false,
             is_final: false,
+            found: false,
             derived: false,
             prior: None,
             role: Role::Plain,

@@ -265,6 +265,7 @@ impl<'a, 'd> Model<'a, 'd> {
             start: Vec::new(),
             fixed: false,
             start_given: false,
+            freed: false,
             state: hyde_ir::StateChoice::Open,
             flow: false,
             boolean: false,

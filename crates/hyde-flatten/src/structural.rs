@@ -90,7 +90,19 @@ impl<'a> Model<'a, '_> {
     }
 
     fn parameter_value(&mut self, param: ParamId, element: usize, structural: bool) -> Option<f64> {
-        self.flat.parameters[param].structural |= structural;
+        let parameter = &mut self.flat.parameters[param];
+        if structural && parameter.found {
+            let (name, span) = (parameter.name.clone(), parameter.origin.span);
+            let message =
+                format!("`{name}` is found at the start, and must be known before the run");
+            self.report(
+                Diagnostic::error(Code::NotConstant, message)
+                    .label(span, "`fixed = false`: an initial equation finds it")
+                    .help("give it a value, and leave out `fixed = false`: it decides a size, a branch or a mesh"),
+            );
+            return None;
+        }
+        parameter.structural |= structural;
         if self.parameters[param.index()].state != Lowering::Done {
             self.lower_parameter(param);
         }

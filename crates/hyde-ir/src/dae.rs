@@ -12,7 +12,7 @@ mod selection;
 pub use clock::{ClockedAssignment, Hold, Tick};
 pub use equation::{Definition, Residual};
 pub use event::{Assignment, AutomatonInfo, Pin, Reaction, ReactionKind, Target};
-pub use initial::{InitialCondition, Reason, Start};
+pub use initial::{Firmness, InitialCondition, Start};
 pub use partial::{Function, Partial, Wrt};
 pub use place::{Alias, Place, Space, Unknown};
 pub use relation::{Relation, RelationUse};
@@ -111,6 +111,18 @@ pub struct Dae {
 }
 
 impl Dae {
+    /// The name of the unknown at a position of the solver's vector.
+    #[must_use]
+    pub fn unknown_name(&self, position: usize) -> String {
+        let mut blocks = self.unknowns.iter();
+        let inside =
+            |block: &&Unknown| (block.offset..block.offset + block.len).contains(&position);
+        blocks.find(inside).map_or_else(
+            || format!("y[{position}]"),
+            |block| self.variables[block.var].element_name(block.first + position - block.offset),
+        )
+    }
+
     /// Where a variable that was kept lives.
     #[must_use]
     pub fn place(&self, var: VarId) -> Option<Place> {

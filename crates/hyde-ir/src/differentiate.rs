@@ -3,11 +3,26 @@
 //! [`ExprArena::tangent`] carries derivatives of the leaves up to the root (one direction, any leaves);
 //! [`ExprArena::gradient`] carries the root's sensitivity down to every leaf (all leaves in one pass). Both visit a
 //! shared node once. Truths, modes and counters are constant; quantisers count as the identity (S3).
+//!
+//! A function that ends upright, as a root at 0, has in the gradient the slope there that it has [`NEAR`] its end: its value
+//! is exact, and Newton's method needs a slope that is finite. The tangent, which becomes part of equations, is exact.
 
 use crate::expr::{Expr, ExprArena};
 use crate::id::ExprId;
 use crate::{BinaryOp, UnaryOp};
 use std::collections::{BTreeMap, HashMap};
+
+/// How far from the end of its domain a function has the slope that stands for the infinite one at the end.
+const NEAR: f64 = 1e-8;
+
+/// The slope of a function where it ends upright.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Ends {
+    /// As it is.
+    Exact,
+    /// Finite.
+    Finite,
+}
 
 impl ExprArena {
     /// The derivative of `root` where `leaf` gives the derivative of each leaf, `None` for zero.
@@ -38,7 +53,7 @@ impl ExprArena {
                 let mut sum: Option<ExprId> = None;
                 for (position, child) in children.iter().enumerate() {
                     let Some(dc) = known[child] else { continue };
-                    let Some(factor) = self.factor(id, position) else {
+                    let Some(factor) = self.factor(id, position, Ends::Exact) else {
                         continue;
                     };
                     let term = self.times(factor, dc);
@@ -89,7 +104,7 @@ impl ExprArena {
                         _ => continue,
                     }
                 } else {
-                    let Some(factor) = self.factor(id, position) else {
+                    let Some(factor) = self.factor(id, position, Ends::Finite) else {
                         continue;
                     };
                     self.times_in_branch(adjoint, factor)
@@ -124,11 +139,11 @@ impl ExprArena {
     }
 
     /// The partial derivative of node `id` by its child at `position`; `None` for zero.
-    fn factor(&mut self, id: ExprId, position: usize) -> Option<ExprId> {
+    fn factor(&mut self, id: ExprId, position: usize, ends: Ends) -> Option<ExprId> {
         match self[id] {
-            Expr::Unary(op, a) => self.unary_factor(op, a, id),
+            Expr::Unary(op, a) => self.unary_factor(op, a, id, ends),
             Expr::NoEvent(_) => Some(self.constant(1.0)),
-            Expr::Binary(op, a, b) => self.binary_factor(op, a, b, id, position == 0),
+            Expr::Binary(op, a, b) => self.binary_factor(op, (a, b), id, position == 0, ends),
             Expr::Const(_)
             | Expr::Time
             | Expr::Counter
@@ -142,7 +157,13 @@ impl ExprArena {
         }
     }
 
-    fn unary_factor(&mut self, op: UnaryOp, a: ExprId, value: ExprId) -> Option<ExprId> {
+    fn unary_factor(
+        &mut self,
+        op: UnaryOp,
+        a: ExprId,
+        value: ExprId,
+        ends: Ends,
+    ) -> Option<ExprId> {
         let one = self.constant(1.0);
         Some(match op {
             UnaryOp::Neg => self.constant(-1.0),
@@ -156,7 +177,8 @@ impl ExprArena {
             }
             UnaryOp::Sqrt => {
                 let half = self.constant(0.5);
-                self.over(half, value)
+                let root = self.off_zero(ends, value, NEAR.sqrt());
+                self.over(half, root)
             }
             UnaryOp::Exp => value,
             UnaryOp::Log => self.over(one, a),
@@ -177,6 +199,7 @@ impl ExprArena {
                 let square = self.times(a, a);
                 let rest = self.minus(one, square);
                 let root = self.unary(UnaryOp::Sqrt, rest);
+                let root = self.off_zero(ends, root, NEAR.sqrt());
                 let factor = self.over(one, root);
                 if op == UnaryOp::Asin {
                     factor
@@ -198,13 +221,25 @@ impl ExprArena {
         })
     }
 
+    /// An expression, and where it is exactly 0 another value if ends are to be finite.
+    fn off_zero(&mut self, ends: Ends, id: ExprId, instead: f64) -> ExprId {
+        if ends == Ends::Exact || self.as_constant(id).is_some_and(|value| value != 0.0) {
+            return id;
+        }
+        let zero = self.constant(0.0);
+        let at_zero = self.binary(BinaryOp::Eq, id, zero);
+        let instead = self.constant(instead);
+        let chosen = self.if_else(at_zero, instead, id);
+        self.no_event(chosen)
+    }
+
     fn binary_factor(
         &mut self,
         op: BinaryOp,
-        a: ExprId,
-        b: ExprId,
+        (a, b): (ExprId, ExprId),
         value: ExprId,
         by_first: bool,
+        ends: Ends,
     ) -> Option<ExprId> {
         let one = self.constant(1.0);
         Some(match op {
@@ -224,11 +259,22 @@ impl ExprArena {
             }
             BinaryOp::Pow if by_first => {
                 let less = self.minus(b, one);
-                let power = self.binary(BinaryOp::Pow, a, less);
+                let base = match self.as_constant(b) {
+                    Some(exponent) if exponent >= 1.0 => a,
+                    Some(_) => self.off_zero(ends, a, NEAR),
+                    None => {
+                        let upright = self.binary(BinaryOp::Lt, b, one);
+                        let near = self.off_zero(ends, a, NEAR);
+                        self.if_else(upright, near, a)
+                    }
+                };
+                let power = self.binary(BinaryOp::Pow, base, less);
                 self.times(b, power)
             }
             BinaryOp::Pow => {
-                let log = self.unary(UnaryOp::Log, a);
+                // At 0 the power is 0 whatever a positive exponent is.
+                let base = self.off_zero(ends, a, 1.0);
+                let log = self.unary(UnaryOp::Log, base);
                 self.times(value, log)
             }
             BinaryOp::Min | BinaryOp::Max => {
@@ -249,6 +295,7 @@ impl ExprArena {
             BinaryOp::Atan2 => {
                 let (aa, bb) = (self.times(a, a), self.times(b, b));
                 let below = self.plus(aa, bb);
+                let below = self.off_zero(ends, below, NEAR);
                 let above = if by_first { b } else { self.negative(a) };
                 self.over(above, below)
             }

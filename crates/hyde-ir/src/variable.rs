@@ -118,8 +118,10 @@ pub struct Variable {
     pub start: Vec<ExprId>,
     /// Whether the start value is a condition rather than a guess.
     pub fixed: bool,
-    /// Whether the start value is given for this model, not in the declaration of a part.
+    /// Whether the start value, or whether it is fixed, is given for this model, not in the declaration of a part.
     pub start_given: bool,
+    /// Whether `fixed = false` is said: it is the first to yield to an initial equation.
+    pub freed: bool,
     /// Whether it is to be a state.
     pub state: StateChoice,
     /// Whether it is the flow of a connector.
@@ -191,6 +193,8 @@ pub struct Parameter {
     pub structural: bool,
     /// May not be set.
     pub is_final: bool,
+    /// `fixed = false`: its value is a guess, an initial equation finds it.
+    pub found: bool,
     /// Made by the compiler from other parameters; not shown and not set.
     pub derived: bool,
     /// Its spread, if it is uncertain.

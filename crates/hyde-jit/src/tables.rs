@@ -8,7 +8,7 @@ use hyde_ir::dae::{self, Dae};
 use hyde_ir::flat;
 use hyde_ir::{Id as _, Interpolation, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Bode, Clock, Column, Cut, Derivatives, Experiment, Hold,
+    Assignment, Automaton, Bode, Clock, Column, Cut, Derivatives, Experiment, Firmness, Hold,
     InitialCondition, Measure, Measured, MeasuredResponse, Method, Output, Parameter, Pin,
     Preparation, Prior, Program, Reaction, ReactionKind, RecordValue, RecordValueKind,
     RecordedResponse, Reduction, ReductionKind, Relation, RelationUse, ScaledColumn, Selection,
@@ -134,6 +134,7 @@ fn parameters(dae: &Dae) -> Vec<Parameter> {
             unit: parameter.quantity.unit.clone(),
             structural: parameter.structural,
             is_final: parameter.is_final,
+            found: parameter.found,
             prior: parameter.prior.map(|prior| match prior {
                 hyde_ir::Prior::Relative(part) => Prior::Relative(part),
                 hyde_ir::Prior::Absolute(spread) => Prior::Absolute(spread),
@@ -295,10 +296,24 @@ fn reaction(reaction: &dae::Reaction) -> Reaction {
 
 fn initial(dae: &Dae, condition: &dae::InitialCondition) -> InitialCondition {
     match condition {
-        dae::InitialCondition::Fixed { state, len, reason } => InitialCondition::Fixed {
+        dae::InitialCondition::Fixed {
+            state,
+            len,
+            firmness,
+            yields,
+            origin,
+        } => InitialCondition::Fixed {
             state: *state,
             len: *len,
-            declared: *reason == dae::Reason::Declared,
+            firmness: match firmness {
+                dae::Firmness::Free => Firmness::Free,
+                dae::Firmness::Open => Firmness::Open,
+                dae::Firmness::Guess => Firmness::Guess,
+                dae::Firmness::Default => Firmness::Default,
+                dae::Firmness::Given => Firmness::Given,
+            },
+            yields: *yields,
+            origin: origin.clone(),
         },
         dae::InitialCondition::Equation { range, origin, .. } => InitialCondition::Equation {
             len: range.len(),

@@ -168,17 +168,36 @@ pub struct Delay {
     pub origin: Origin,
 }
 
+/// How firmly a state holds its start value. Where initial equations determine states, the loosest yield first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Firmness {
+    /// `fixed = false` is said.
+    Free,
+    /// Nothing is said.
+    Open,
+    /// `start` is said: a guess.
+    Guess,
+    /// Declared fixed by a part, for every use of it.
+    Default,
+    /// Declared fixed for this model: it never yields.
+    Given,
+}
+
 /// A condition at the start, for one or more states.
 #[derive(Clone, Debug)]
 pub enum InitialCondition {
-    /// States keep their start values: position and number. `declared` is false where the condition was filled in.
+    /// States keep their start values, unless initial equations determine them.
     Fixed {
         /// Position of the first.
         state: usize,
         /// Number of them.
         len: usize,
-        /// Whether the model asked for it.
-        declared: bool,
+        /// How firmly.
+        firmness: Firmness,
+        /// By the names that equations read, an initial equation determines it.
+        yields: bool,
+        /// Where its start is declared.
+        origin: Origin,
     },
     /// Equations: as many values of [`crate::Function::Initial`].
     Equation {

@@ -24,8 +24,8 @@ mod ledger;
 mod program;
 
 pub use event::{
-    Assignment, Automaton, Clock, Delay, Hold, InitialCondition, Pin, Reaction, ReactionKind,
-    Relation, RelationUse, Selection, Target,
+    Assignment, Automaton, Clock, Delay, Firmness, Hold, InitialCondition, Pin, Reaction,
+    ReactionKind, Relation, RelationUse, Selection, Target,
 };
 pub use experiment::{
     Bode, Curve, Cut, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse,

@@ -68,6 +68,8 @@ pub struct Parameter {
     pub structural: bool,
     /// May not be set.
     pub is_final: bool,
+    /// Its value is a guess: an initial equation finds it.
+    pub found: bool,
     /// Its spread, if it is uncertain.
     pub prior: Option<Prior>,
     /// Whether it is the `size` of an effect: at 0 the effect vanishes.

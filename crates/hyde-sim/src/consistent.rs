@@ -9,7 +9,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::singular;
 use crate::state::State;
 use hyde_ida::{LinearMethod, Pattern, SparseSolver};
-use hyde_program::Function;
+use hyde_program::{Function, Wrt};
 
 /// Newton iterations at most; halvings of a step at most.
 const MAX_ITERATIONS: usize = 50;
@@ -18,6 +18,13 @@ const MAX_HALVINGS: usize = 12;
 const TOLERANCE: f64 = 1e-12;
 const LEAST_TOLERANCE: f64 = 1e-14;
 const ROUNDING: f64 = 1e3;
+/// Rows are solved to rounding if they leave this part of what their terms amount to, whatever the units and the condition
+/// of the system are; they are not solved if they leave a million times as much, however small the step is.
+const SOLVED: f64 = 1e-12;
+const UNSOLVED: f64 = 1e6;
+/// So many small steps may follow each other where rows are not solved: before an upright slope, as of a root near 0, they
+/// grow from one to the next.
+const MAX_SMALL_STEPS: usize = 8;
 
 /// The solver of consistent values; keeps its factors from call to call.
 pub(crate) struct Consistent {
@@ -94,6 +101,7 @@ impl Consistent {
         state.apply_pins(y, yp);
         self.evaluate(state, t, y, yp)?;
         let mut last = f64::INFINITY;
+        let mut small_steps = 0;
         for _ in 0..MAX_ITERATIONS {
             self.factor(state, t, y, yp, at_start)?;
             self.correction.copy_from_slice(&self.residual);
@@ -103,9 +111,17 @@ impl Consistent {
             let size = self.take_step(state, t, y, yp)?;
             // Steps that are small and become no smaller are rounding: a small inductance turns that of volts into amperes
             // per second.
-            let rounding = size <= ROUNDING && size > 0.25 * last;
+            let smaller = size <= 0.25 * last && size.is_finite();
+            let rounding = size <= ROUNDING && !smaller;
             last = size;
-            if size <= 1.0 || rounding {
+            let mut done = size <= 1.0 || rounding;
+            if (done || !smaller) && state.slides.is_empty() {
+                let left = self.left_over_terms(state, y, yp);
+                done |= left <= SOLVED;
+                small_steps += usize::from(done);
+                done &= left <= UNSOLVED * SOLVED || small_steps > MAX_SMALL_STEPS;
+            }
+            if done {
                 // States' rows that a mode fixes hold to the last bit.
                 state.apply_pins(y, yp);
                 return Ok(());
@@ -290,6 +306,24 @@ impl Consistent {
         } else {
             f64::INFINITY
         })
+    }
+
+    /// What a row leaves, over what its terms amount to: the most of all rows. The derivatives are those of the last
+    /// factorisation.
+    fn left_over_terms(&self, state: &State<'_>, y: &[f64], yp: &[f64]) -> f64 {
+        let mut terms = vec![0.0; self.residual.len()];
+        let entries = state.program.partials(Function::Residual);
+        for (entry, value) in entries.iter().zip(&state.partials) {
+            let factor = match entry.wrt {
+                Wrt::Unknown(column) => y[column],
+                Wrt::Derivative(column) => yp[column],
+                Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => 0.0,
+            };
+            terms[entry.row] += (value * factor).abs();
+        }
+        let rows = self.residual.iter().zip(terms);
+        rows.filter(|(left, _)| left.abs() > 0.0)
+            .fold(0.0, |most: f64, (left, terms)| most.max(left.abs() / terms))
     }
 
     /// The largest correction over its tolerance.

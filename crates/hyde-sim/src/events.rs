@@ -8,9 +8,12 @@
 //! 3. all their assignments, from the values before; states that the new modes fix take their values (M3);
 //! 4. consistent values.
 //!
-//! Fifty rounds, or modes that were met before at this instant without a state having jumped, end the run: the conditions
+//! Where relations of equations lead each other in a circle, or to where there is no solution, the other branches are
+//! [searched](branches). Fifty rounds, or modes that were met before at this instant without a state having jumped, end the run: the conditions
 //! would fire for ever.
 
+mod branches;
+mod endless;
 mod located;
 
 use crate::consistent::Consistent;
@@ -20,6 +23,7 @@ use crate::results::{Event, EventKind};
 use crate::root_rates::{root_rates, rounding};
 use crate::sensitivity::Sensitivities;
 use crate::state::State;
+use branches::{Branches, Found};
 use hyde_program::{Function, ReactionKind, RelationUse, Target};
 
 const MAX_ROUNDS: usize = 50;
@@ -55,6 +59,8 @@ struct Known {
     /// Relations whose truth is that of a moment later, with how far on the other side of zero their root functions may be
     /// until then.
     doubtful: Vec<(usize, f64)>,
+    /// A relation whose root function has no finite value.
+    not_finite: Option<usize>,
 }
 
 impl Instant<'_, '_> {
@@ -78,6 +84,8 @@ impl Instant<'_, '_> {
         let (mut turned, mut looked_closer) = (Vec::new(), false);
         // Relations of equations that changed at this instant and may have to slide.
         let mut switched: Vec<usize> = Vec::new();
+        // Where the relations of equations began to settle, and what they were in the rounds since.
+        let mut branches = Branches::from(self);
         for round in 0..MAX_ROUNDS {
             changed |= self.leave_slides(&mut located)?;
             let mut known = self.truths(scheduled, &located)?;
@@ -92,7 +100,10 @@ impl Instant<'_, '_> {
                 located.extend(now);
             }
             let Known {
-                truths, doubtful, ..
+                truths,
+                doubtful,
+                not_finite,
+                ..
             } = known;
             turned.extend(self.true_guards(&truths));
             let mut flipped = self.flip(&truths);
@@ -112,6 +123,11 @@ impl Instant<'_, '_> {
             let slid = !self.modes_are_given && self.enter_slides(&mut switched, &mut fired)?;
             flipped.retain(|&relation| is_active(self.state, relation));
             if fired.is_empty() && flipped.is_empty() && !slid {
+                // As long as others turn, it may be a division in a branch that is left.
+                if let Some(relation) = not_finite {
+                    let failure = Failure::new(FailureKind::NotFinite, self.t);
+                    return Err(failure.at_origin(&program.relations[relation].origin));
+                }
                 self.set_edges(|_, _| false);
                 self.state.doubtful = doubtful;
                 return Ok(changed);
@@ -124,6 +140,9 @@ impl Instant<'_, '_> {
                 self.note(kind, &relation_info.text, &relation_info.origin, at_start);
             }
             self.apply(&fired, &flipped, &mut causes)?;
+            if !fired.is_empty() || slid {
+                branches = Branches::from(self);
+            }
             let key: Vec<u64> = self.mode_key();
             let repeats = seen.contains(&key) && fired.iter().all(|&r| self.only_changes_mode(r));
             let again = repeats && !fired.is_empty();
@@ -133,11 +152,15 @@ impl Instant<'_, '_> {
             if !settles {
                 seen.push(key);
             }
-            self.consistent
-                .solve(self.state, self.t, self.y, self.yp, at_start)?;
+            let found = self.solve_or_tip(&mut branches, scheduled, &located, at_start)?;
             if let Some(sensitivities) = &mut self.sensitivities {
                 let at = (self.t, self.y.as_slice(), self.yp.as_slice());
                 sensitivities.be_consistent(self.state, self.consistent, at);
+            }
+            if found == Found::Indifferent && fired.is_empty() {
+                self.set_edges(|_, _| false);
+                self.state.doubtful = doubtful;
+                return Ok(changed);
             }
             if again {
                 looked_closer = true;
@@ -189,15 +212,14 @@ impl Instant<'_, '_> {
             .evaluate(Function::Roots, self.t, self.y, self.yp, &mut roots);
         let rounding = rounding(self.state, self.t, self.y, self.yp, self.largest);
         let mut zeros = Vec::new();
+        let mut not_finite = None;
         for (number, &root) in roots.iter().enumerate() {
             if !is_active(self.state, number) {
                 continue;
             }
             if !root.is_finite() {
-                let relation = &program.relations[number];
-                return Err(
-                    Failure::new(FailureKind::NotFinite, self.t).at_origin(&relation.origin)
-                );
+                not_finite = Some(number);
+                continue;
             }
             let still_there = |(relation, value): &(usize, f64)| {
                 *relation == number && root.abs() <= 2.0 * value.abs()
@@ -209,7 +231,9 @@ impl Instant<'_, '_> {
                 zeros.push(number);
             }
         }
-        let sign = |(number, &root): (usize, &f64)| match is_active(self.state, number) {
+        let sign = |(number, &root): (usize, &f64)| match is_active(self.state, number)
+            && root.is_finite()
+        {
             true => root > 0.0,
             false => self.state.z[number] != 0.0,
         };
@@ -239,6 +263,7 @@ impl Instant<'_, '_> {
             truths,
             roots,
             doubtful,
+            not_finite,
         })
     }
 
@@ -435,25 +460,6 @@ impl Instant<'_, '_> {
         Ok(())
     }
 
-    /// Whether a reaction leads to another mode and no more. One that lets a state jump, as an impact does, may come back to
-    /// its mode at the same instant: the next ball in the row is struck.
-    fn only_changes_mode(&self, reaction: usize) -> bool {
-        let program = self.state.program;
-        let reaction = &program.reactions[reaction];
-        let mut targets = program.assignments[reaction.assignments.clone()].iter();
-        matches!(reaction.kind, ReactionKind::Transition { .. })
-            && !targets.any(|assignment| matches!(assignment.target, Target::State(_)))
-    }
-
-    fn mode_key(&self) -> Vec<u64> {
-        let program = self.state.program;
-        program
-            .automata
-            .iter()
-            .map(|automaton| self.state.z[automaton.place].to_bits())
-            .collect()
-    }
-
     pub(crate) fn note(
         &mut self,
         kind: EventKind,
@@ -469,27 +475,5 @@ impl Instant<'_, '_> {
                 origin: origin.clone(),
             });
         }
-    }
-
-    fn chattering(&self, causes: &[String]) -> Box<Failure> {
-        let program = self.state.program;
-        let mut distinct: Vec<String> = Vec::new();
-        for cause in causes.iter().rev() {
-            if !distinct.contains(cause) {
-                distinct.push(cause.clone());
-            }
-        }
-        distinct.truncate(4);
-        let mut failure = Failure::new(FailureKind::Chattering(distinct.clone()), self.t);
-        for reaction in program
-            .reactions
-            .iter()
-            .filter(|reaction| distinct.contains(&reaction.text))
-        {
-            if !failure.origins.contains(&reaction.origin) {
-                failure = failure.at_origin(&reaction.origin);
-            }
-        }
-        failure
     }
 }

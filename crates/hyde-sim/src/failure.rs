@@ -40,6 +40,8 @@ pub enum FailureKind {
     },
     /// A state jumps as a mode fixes it: its name, its value, and the value it is fixed to.
     Impact(String, f64, f64),
+    /// Initial equations that nothing which may yield can meet: the fixed states that stand against them.
+    Overdetermined(Vec<String>),
     /// A variable's start value, as given and as the other conditions make it.
     Start(String, f64, f64),
     /// An `assert` does not hold: its message.

@@ -32,13 +32,13 @@ pub(crate) fn active(state: &State<'_>) -> Vec<usize> {
         .collect()
 }
 
-/// Whether a relation matters in the current modes, and is not held at its zero.
+/// Whether a relation matters in the current modes, and is neither held at its zero nor followed.
 pub(crate) fn is_active(state: &State<'_>, relation: usize) -> bool {
     let in_mode = match state.program.relations[relation].used {
         RelationUse::Exit(automaton, mode) => state.in_mode(automaton, mode),
         RelationUse::Equation | RelationUse::When | RelationUse::Assert => true,
     };
-    in_mode && !state.slides.iter().any(|slide| slide.holds(relation))
+    in_mode && !state.is_loose(relation) && !state.slides.iter().any(|slide| slide.holds(relation))
 }
 
 /// The number of an automaton's mode.

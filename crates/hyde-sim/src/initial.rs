@@ -6,6 +6,7 @@
 
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
+use crate::released::{self, by_parameter};
 use crate::selection;
 use crate::state::State;
 use hyde_ida::{LinearMethod, Pattern, SparseSolver};
@@ -58,6 +59,9 @@ pub(crate) fn solve(
     };
     let delays = program.delays.len();
     if count == 0 && delays == 0 {
+        if round == Round::First {
+            guess_relations(state, t, y, yp, Known::Guesses);
+        }
         consistent.solve(state, t, y, yp, true)?;
         return check(state, t, y, yp, round);
     }
@@ -71,13 +75,15 @@ pub(crate) fn solve(
         yp.copy_from_slice(&guess_yp);
     }
     if round == Round::First && count > 0 {
-        guess_relations(state, t, y, yp);
+        guess_relations(state, t, y, yp, Known::All);
+        released::choose(state, consistent, (t, y, yp), count)?;
     }
     let Shape {
         n,
         states,
         column_of_rate,
         fixed,
+        found,
         size,
         pattern,
         positions,
@@ -121,9 +127,15 @@ pub(crate) fn solve(
     };
     let norm = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>().sqrt();
     let mut r = residual(state, y, yp, &past);
-    for _ in 0..MAX_ITERATIONS {
-        let values = values(state, t, y, yp, &positions);
-        if let Err(singular) = solver.factor(&values) {
+    for iteration in 0..MAX_ITERATIONS {
+        let mut values_now = values(state, (t, y, yp), &positions, &found, count);
+        if solver.factor(&values_now).is_err() && iteration == 0 {
+            // A product of unknowns that both start at 0 says nothing there: look from elsewhere once.
+            released::move_released(state, y);
+            r = residual(state, y, yp, &past);
+            values_now = values(state, (t, y, yp), &positions, &found, count);
+        }
+        if let Err(singular) = solver.factor(&values_now) {
             let column = singular.unknown;
             let position = match column.checked_sub(n) {
                 None => Some(column),
@@ -136,6 +148,7 @@ pub(crate) fn solve(
         solver.solve(&mut step);
         let (old_y, old_yp, before) = (y.to_vec(), yp.to_vec(), norm(&r));
         let old_past = past.clone();
+        let old_found: Vec<f64> = found.iter().map(|&place| state.p[place]).collect();
         let mut factor = 1.0;
         let mut whole = false;
         for halving in 0..=MAX_HALVINGS {
@@ -146,8 +159,11 @@ pub(crate) fn solve(
                 }
             }
             for (number, past) in past.iter_mut().enumerate() {
-                *past = old_past[number] - factor * step[n + states.len() + number];
+                *past = old_past[number] - factor * step[size - delays + number];
             }
+            let each = found.iter().zip(&old_found).zip(&step[n + states.len()..]);
+            let each = each.map(|((&place, old), step)| (place, old - factor * step));
+            state.set_parameters(&each.collect::<Vec<_>>());
             r = residual(state, y, yp, &past);
             let after = norm(&r);
             if after.is_finite() && (after <= before || halving == MAX_HALVINGS || after < 1e-12) {
@@ -157,7 +173,10 @@ pub(crate) fn solve(
             factor *= 0.5;
         }
         let size_of = |v: &[f64]| v.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        if whole && size_of(&step) <= 1e-11 * (1.0 + size_of(&old_y).max(size_of(&old_yp))) {
+        let most = size_of(&old_y)
+            .max(size_of(&old_yp))
+            .max(size_of(&old_found));
+        if whole && size_of(&step) <= 1e-11 * (1.0 + most) {
             consistent.solve(state, t, y, yp, true)?;
             return check(state, t, y, yp, round);
         }
@@ -176,6 +195,8 @@ pub(crate) struct Shape {
     pub(crate) column_of_rate: Vec<Option<usize>>,
     /// States with a fixed start value.
     pub(crate) fixed: Vec<usize>,
+    /// The places of the parameters that are found; their columns stand behind the rates.
+    found: Vec<usize>,
     pub(crate) size: usize,
     pattern: Pattern,
     positions: Vec<Vec<Option<usize>>>,
@@ -193,14 +214,19 @@ impl Shape {
         for (number, &i) in states.iter().enumerate() {
             column_of_rate[i] = Some(n + number);
         }
-        let size = n + states.len() + delays;
+        let found = match count {
+            0 => Vec::new(),
+            _ => state.released.parameters(),
+        };
+        let size = n + states.len() + found.len() + delays;
         let mut fixed: Vec<usize> = state.pinned.iter().map(|(position, _)| *position).collect();
         for condition in &program.initial {
             if let InitialCondition::Fixed {
                 state: first, len, ..
             } = condition
             {
-                fixed.extend((*first..*first + *len).filter(|&i| state.differential[i]));
+                let holds = |&i: &usize| state.differential[i] && !state.released.has_state(i);
+                fixed.extend((*first..*first + *len).filter(holds));
             }
         }
         if count == 0 {
@@ -215,13 +241,19 @@ impl Shape {
             };
             return Err(Failure::new(kind, t));
         }
-        let (pattern, positions) = pattern(state, size, n, count, &fixed, &column_of_rate);
+        let first_found = n + states.len();
+        let columns = (
+            column_of_rate.as_slice(),
+            first_found..first_found + found.len(),
+        );
+        let (pattern, positions) = pattern(state, size, n, count, &fixed, columns);
         Ok(Self {
             n,
             count,
             states,
             column_of_rate,
             fixed,
+            found,
             size,
             pattern,
             positions,
@@ -235,7 +267,7 @@ impl Shape {
         (t, y, yp): (f64, &[f64], &[f64]),
         rights: &mut [Vec<f64>],
     ) -> bool {
-        let values = values(state, t, y, yp, &self.positions);
+        let values = values(state, (t, y, yp), &self.positions, &self.found, self.count);
         let Ok(mut solver) = SparseSolver::new(self.pattern, LinearMethod::Auto) else {
             return false;
         };
@@ -285,14 +317,35 @@ fn check(
     Ok(())
 }
 
-/// The relations of equations as they are at the first guess: a limiter that is at no limit there must not begin at one,
-/// where its input determines nothing. Events at the start then settle them.
-fn guess_relations(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) {
-    let relations = &state.program.relations;
+/// What is known where relations are guessed.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Known {
+    /// States, and algebraic variables that have a guess.
+    Guesses,
+    /// Everything, from a first solution.
+    All,
+}
+
+/// The relations of equations as they are at the first guess: of the solutions that an equation with a switch may have it
+/// chooses one, and a limiter that is at no limit there must not begin at one, where its input determines nothing. Events
+/// at the start then settle them.
+fn guess_relations(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64], known: Known) {
+    let program = state.program;
+    let relations = &program.relations;
     let mut roots = vec![0.0; relations.len()];
     state.evaluate(Function::Roots, t, y, yp, &mut roots);
+    let mut open = vec![false; relations.len()];
+    if known == Known::Guesses {
+        for entry in program.partials(Function::Roots) {
+            open[entry.row] |= match entry.wrt {
+                Wrt::Unknown(column) => !state.differential[column] && y[column] == 0.0,
+                Wrt::Derivative(_) => true,
+                Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => false,
+            };
+        }
+    }
     for (number, (relation, root)) in relations.iter().zip(roots).enumerate() {
-        if relation.used == RelationUse::Equation && root.is_finite() {
+        if relation.used == RelationUse::Equation && root.is_finite() && !open[number] {
             let truth = root > 0.0 || (root == 0.0 && relation.inclusive);
             state.z[number] = f64::from(u8::from(truth));
         }
@@ -307,7 +360,7 @@ fn pattern(
     n: usize,
     count: usize,
     fixed: &[usize],
-    column_of_rate: &[Option<usize>],
+    (column_of_rate, found): (&[Option<usize>], std::ops::Range<usize>),
 ) -> (Pattern, Vec<Vec<Option<usize>>>) {
     let program = state.program;
     let first_delayed = size - program.delays.len();
@@ -339,6 +392,12 @@ fn pattern(
             .iter()
             .map(|e| Some((column(e.wrt)?, first_delayed + e.row)))
             .collect(),
+        found
+            .flat_map(|column| {
+                let rows = (0..n + count).chain(first_delayed..size);
+                rows.map(move |row| Some((column, row)))
+            })
+            .collect(),
     ];
     let mut cells: Vec<(usize, usize)> = lists.iter().flatten().flatten().copied().collect();
     cells.sort_unstable();
@@ -366,10 +425,10 @@ fn pattern(
 
 fn values(
     state: &mut State<'_>,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
+    (t, y, yp): (f64, &[f64], &[f64]),
     positions: &[Vec<Option<usize>>],
+    found: &[usize],
+    count: usize,
 ) -> Vec<f64> {
     let size = positions
         .iter()
@@ -384,7 +443,16 @@ fn values(
     let (fixed, past) = (ones(&positions[2]), ones(&positions[3]));
     let delayed = state.partials(Function::Delayed, t, y, yp);
     let delayed = delayed.into_iter().map(|value| -value).collect();
-    let lists = [residual, initial, fixed, past, delayed];
+    let mut by_found = Vec::new();
+    for &place in found {
+        let at = (t, y, yp);
+        by_found.extend(by_parameter(state, place, Function::Residual, at));
+        let initial = by_parameter(state, place, Function::Initial, at);
+        by_found.extend(initial.into_iter().take(count));
+        let delayed = by_parameter(state, place, Function::Delayed, at);
+        by_found.extend(delayed.into_iter().map(|value| -value));
+    }
+    let lists = [residual, initial, fixed, past, delayed, by_found];
     for (list, numbers) in positions.iter().zip(lists) {
         for (position, number) in list.iter().zip(numbers) {
             if let Some(position) = position {

@@ -188,6 +188,17 @@ impl<'a> Integrator<'a> {
         set.map_err(|error| self.failure(&error))
     }
 
+    /// Whether relations are followed; those that are far from their zeros by now are no longer.
+    pub(crate) fn follows(&mut self) -> bool {
+        let Self {
+            solver, t, y, yp, ..
+        } = self;
+        let state = solver.state_mut();
+        let follows = !state.loose.is_empty();
+        state.follow_no_longer(*t, y, yp);
+        follows
+    }
+
     /// Exact values where modes fix states, and on the surfaces that the run slides on.
     fn apply_pins(&mut self) {
         let Self {

@@ -29,8 +29,10 @@ mod initial;
 mod inputs;
 mod integrator;
 mod known_start;
+mod loose;
 mod meter;
 mod operating_point;
+mod released;
 mod results;
 mod root_rates;
 mod runge_kutta;
@@ -53,6 +55,7 @@ pub use known_start::{KnownStart, known_start};
 pub use operating_point::{OperatingPoint, PointModes, PointTime, TakenMode, operating_point};
 pub use results::{
     Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Results, Statistics,
+    Yielded,
 };
 pub use setup::Setup;
 

@@ -1,7 +1,7 @@
 //! [`Results`]: rows over time, the event log, and what the solver did.
 
 use hyde_diag::Origin;
-use hyde_program::Method;
+use hyde_program::{Firmness, Method};
 
 /// What happened.
 #[derive(Clone, Debug, PartialEq)]
@@ -68,6 +68,21 @@ pub struct Statistics {
     pub ticks: u64,
 }
 
+/// A state or a parameter that initial equations determine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Yielded {
+    /// Its name.
+    pub name: String,
+    /// How firm its start value was.
+    pub firmness: Firmness,
+    /// Its start value, SI.
+    pub start: f64,
+    /// What was found, SI.
+    pub value: f64,
+    /// Whether an equation determines it; a parameter that is to be found keeps its guess if none does.
+    pub determined: bool,
+}
+
 /// What the energy ledger adds up, in J.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Energies {
@@ -131,6 +146,10 @@ pub struct Results {
     pub events: Vec<Event>,
     /// What the solver did.
     pub statistics: Statistics,
+    /// What initial equations determined at the start.
+    pub yielded: Vec<Yielded>,
+    /// The parameter vector, with what initial equations found.
+    pub parameters: Vec<f64>,
     /// Surfaces that the run slid on, by the condition that is zero there, and the time it did in s.
     pub sliding: Vec<(String, f64)>,
     /// Time each automaton spent in each mode, in s; while it slides between two, each has its share.

@@ -5,7 +5,7 @@
 //! QR factorisation with column pivoting takes first (Golub and Van Loan, Matrix Computations, §5.4).
 
 use crate::state::State;
-use hyde_program::{Function, InitialCondition, Selection, Wrt};
+use hyde_program::{Firmness, Function, InitialCondition, Selection, Wrt};
 use nalgebra::{DMatrix, DVector};
 
 /// The choice is changed when another one is better by this factor.
@@ -22,7 +22,8 @@ pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &mut [f64], yp: 
         if let InitialCondition::Fixed {
             state: first,
             len,
-            declared: true,
+            firmness: Firmness::Default | Firmness::Given,
+            ..
         } = condition
         {
             fixed[*first..*first + *len]

@@ -210,6 +210,13 @@ impl Sensitivities {
 /// Refuses what no gradient goes through.
 fn refuse(state: &State<'_>, directions: &[Vec<f64>], t: f64) -> Result<(), Box<Failure>> {
     let program = state.program;
+    if let Some(found) = program.parameters.iter().find(|parameter| parameter.found) {
+        let what = format!(
+            "the parameter `{}`, which an initial equation finds",
+            found.name
+        );
+        return Err(Failure::new(FailureKind::NoGradient(what), t).at_origin(&found.origin));
+    }
     if let Some(delay) = program.delays.first() {
         let what = format!("a delay of {} s", delay.time_s);
         return Err(Failure::new(FailureKind::NoGradient(what), t).at_origin(&delay.origin));

@@ -59,13 +59,6 @@ impl<'a> Simulation<'a> {
         let mut state = State::new(program, setup)?;
         let mut consistent = Consistent::new(&state);
         let (mut y, mut yp) = initial::start(&mut state, t);
-        let schedule = Schedule::new(&state, t).map_err(|clock| {
-            let message = format!(
-                "the clock `{}` has no positive period",
-                program.clocks[clock].name
-            );
-            Failure::new(FailureKind::Solver(message), t).at_origin(&program.clocks[clock].origin)
-        })?;
         leave_impossible_modes(&mut state, t, &y, &yp)?;
         state.pinned = initial_pins(&mut state, t, &y, &yp);
         initial::solve(
@@ -76,6 +69,14 @@ impl<'a> Simulation<'a> {
             &mut yp,
             initial::Round::First,
         )?;
+        // Instants may depend on a parameter that an initial equation finds.
+        let schedule = Schedule::new(&state, t).map_err(|clock| {
+            let message = format!(
+                "the clock `{}` has no positive period",
+                program.clocks[clock].name
+            );
+            Failure::new(FailureKind::Solver(message), t).at_origin(&program.clocks[clock].origin)
+        })?;
         let mut sensitivities = match setup.sensitivities {
             Some(chosen) => Some(Sensitivities::new(&state, chosen, t)?),
             None => None,
@@ -179,6 +180,9 @@ impl<'a> Simulation<'a> {
     pub(crate) fn settle_start(&mut self) -> Result<(), Box<Failure>> {
         let t = self.integrator.t;
         self.settle()?;
+        let state = self.integrator.state();
+        self.results.yielded = state.released.told(state, &self.integrator.y);
+        self.results.parameters.clone_from(&state.p);
         let left = delays::limits(&mut self.integrator, None);
         self.row();
         if self.schedule.due(t) {
@@ -242,7 +246,7 @@ impl<'a> Simulation<'a> {
     /// Steps until `target` or the first crossing; rows on the way are taken. Returns what there is to work on before the
     /// target; the values there are consistent.
     fn advance(&mut self, target: f64) -> Result<Option<Cause>, Box<Failure>> {
-        let watched = guards::active(self.integrator.state());
+        let mut watched = guards::active(self.integrator.state());
         loop {
             if self.setup.interrupted.load(Ordering::Relaxed) {
                 return Err(Failure::new(FailureKind::Interrupted, self.integrator.t));
@@ -284,6 +288,9 @@ impl<'a> Simulation<'a> {
                 let relation = crossing.relations[0];
                 self.crossed = crossing.relations;
                 return Ok(Some(Cause::Crossing { relation, from }));
+            }
+            if self.integrator.follows() {
+                watched = guards::active(self.integrator.state());
             }
             if let Some(sensitivities) = &mut self.sensitivities {
                 sensitivities.remember_heights(&mut self.integrator);

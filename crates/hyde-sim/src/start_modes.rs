@@ -3,7 +3,7 @@
 use crate::failure::{Failure, FailureKind};
 use crate::guards::{current_mode, is_active};
 use crate::state::State;
-use hyde_program::{Function, InitialCondition, Program, ReactionKind, Target};
+use hyde_program::{Firmness, Function, InitialCondition, Program, ReactionKind, Target};
 
 /// The states that the modes in the memory fix, with their values.
 pub(crate) fn initial_pins(
@@ -41,9 +41,13 @@ pub(crate) fn leave_impossible_modes(
             InitialCondition::Fixed {
                 state,
                 len,
-                declared,
-            } => *declared && (*state..*state + *len).contains(&position),
-            InitialCondition::Equation { .. } | InitialCondition::Check { .. } => false,
+                firmness: Firmness::Default | Firmness::Given,
+                yields: false,
+                ..
+            } => (*state..*state + *len).contains(&position),
+            InitialCondition::Fixed { .. }
+            | InitialCondition::Equation { .. }
+            | InitialCondition::Check { .. } => false,
         })
     })
 }

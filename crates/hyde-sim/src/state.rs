@@ -3,6 +3,7 @@
 use crate::delays::Delays;
 use crate::failure::Failure;
 use crate::inputs::Inputs;
+use crate::released::Released;
 use crate::setup::Setup;
 use crate::sliding::{Slide, Surface};
 use hyde_ida::{Recoverable, System};
@@ -27,6 +28,12 @@ pub(crate) struct State<'a> {
     /// Relations that are at their zero since the last event, with how far from it their root functions may be: within
     /// that a sign says nothing, until they have once been farther.
     pub(crate) doubtful: Vec<(usize, f64)>,
+    /// What initial equations determine.
+    pub(crate) released: Released,
+    /// The parameters that do not follow from those that initial equations find.
+    pub(crate) said: Option<Vec<(usize, f64)>>,
+    /// Relations that are evaluated with the equations, with how far from zero they are until then.
+    pub(crate) loose: Vec<(usize, f64)>,
     /// Switches that are held at their surfaces.
     pub(crate) slides: Vec<Slide>,
     pub(crate) differential: Vec<bool>,
@@ -46,6 +53,9 @@ impl<'a> State<'a> {
             pinned: Vec::new(),
             located: Vec::new(),
             doubtful: Vec::new(),
+            released: Released::default(),
+            said: None,
+            loose: Vec::new(),
             slides: Vec::new(),
             differential: program.differential(&vec![0.0; program.n_memory]),
         };
@@ -106,9 +116,16 @@ impl<'a> State<'a> {
         out: &mut [f64],
     ) {
         self.read_continuous(t);
+        self.read_loose(t, y, yp);
         let program = self.program;
         let (at, workspace) = self.at(t, y, yp);
         program.kernels.evaluate(function, at, workspace, out);
+        if function == Function::Residual && !all_finite(out) {
+            self.with_own_truths(t, y, yp, |state| {
+                let (at, workspace) = state.at(t, y, yp);
+                program.kernels.evaluate(function, at, workspace, out);
+            });
+        }
     }
 
     /// The derivatives of a function, in the program's order; while sliding the mean of the sides.
@@ -137,6 +154,7 @@ impl<'a> State<'a> {
         yp: &[f64],
     ) -> Vec<f64> {
         self.read_continuous(t);
+        self.read_loose(t, y, yp);
         let mut out = vec![0.0; self.program.partials(function).len()];
         let program = self.program;
         let (at, workspace) = self.at(t, y, yp);
@@ -324,17 +342,30 @@ impl<'a> State<'a> {
 
     pub(crate) fn residual_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) {
         self.read_continuous(t);
+        self.read_loose(t, y, yp);
         let program = self.program;
         let mut values = std::mem::take(&mut self.partials);
         let (at, workspace) = self.at(t, y, yp);
         program
             .kernels
             .partials(Function::Residual, at, workspace, &mut values);
+        if !all_finite(&values) {
+            self.with_own_truths(t, y, yp, |state| {
+                let (at, workspace) = state.at(t, y, yp);
+                let kernels = &program.kernels;
+                kernels.partials(Function::Residual, at, workspace, &mut values);
+            });
+        }
         self.partials = values;
     }
 
     /// The model at a point, with the room that kernels work in.
-    fn at<'s>(&'s mut self, t: f64, y: &'s [f64], yp: &'s [f64]) -> (Point<'s>, &'s mut Workspace) {
+    pub(crate) fn at<'s>(
+        &'s mut self,
+        t: f64,
+        y: &'s [f64],
+        yp: &'s [f64],
+    ) -> (Point<'s>, &'s mut Workspace) {
         let at = Point {
             t,
             y,
@@ -345,6 +376,10 @@ impl<'a> State<'a> {
         };
         (at, &mut self.workspace)
     }
+}
+
+fn all_finite(values: &[f64]) -> bool {
+    values.iter().all(|value| value.is_finite())
 }
 
 impl System for State<'_> {

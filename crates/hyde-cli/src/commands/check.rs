@@ -242,8 +242,13 @@ fn choices(model: &str, states: &States, project: &Project) -> Vec<String> {
     }
     if !states.filled.is_empty() {
         let list = states.filled.join(", ");
+        let equations = match states.equations {
+            0 => String::new(),
+            1 => ", or the initial equation,".to_owned(),
+            count => format!(", or one of {count} initial equations,"),
+        };
         lines.push(format!(
-            "  {model}: nothing but `start` says where {list} begins"
+            "  {model}: nothing but `start`{equations} says where {list} begins"
         ));
     }
     // Eighty columns: what does not fit goes on below, deeper in.

@@ -86,6 +86,7 @@ impl<'a> Model<'a, '_> {
             quantity,
             structural: false,
             is_final: false,
+            found: false,
             derived: false,
             prior: None,
             role: hyde_ir::Role::Plain,

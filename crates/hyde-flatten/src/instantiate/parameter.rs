@@ -57,7 +57,12 @@ impl<'a> Model<'a, '_> {
             let source = outermost
                 .and_then(|m| m.change.source.clone())
                 .or_else(|| declarator.source.clone());
-            let binding = self.binding(id, declarator, &modifiers);
+            let fixed = self.attribute(id, declarator, &modifiers, "fixed");
+            let found = fixed.is_some_and(|fixed| !self.is_true(&fixed));
+            let mut binding = self.binding(id, declarator, &modifiers);
+            if found && binding.is_none() {
+                binding = self.attribute(id, declarator, &modifiers, "start");
+            }
             self.check_attributes(declarator, &modifiers);
             let (dim, quantity) = self.quantity(kind, binding.as_ref().map(|binding| binding.expr));
             let len = self.length(id, &declaration.dims, &declarator.dims);
@@ -86,7 +91,8 @@ impl<'a> Model<'a, '_> {
                 value: Vec::new(),
                 quantity,
                 structural: false,
-                is_final,
+                is_final: is_final || found,
+                found,
                 derived: false,
                 prior,
                 role,

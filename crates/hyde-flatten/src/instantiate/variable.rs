@@ -1,7 +1,7 @@
 //! Variables with their kind, length and attributes.
 
 use super::Collected;
-use crate::instance::{InstanceId, Member, Setting, VariableNotes};
+use crate::instance::{Binding, InstanceId, Member, Setting, VariableNotes};
 use crate::model::Model;
 use crate::names::TypeName;
 use hyde_diag::{Code, Diagnostic};
@@ -28,13 +28,12 @@ impl<'a> Model<'a, '_> {
         let fixed = attribute(self, "fixed");
         let state = attribute(self, "state");
         self.check_attributes(declarator, &modifiers);
-        let fixed = fixed.is_some_and(|fixed| {
-            let (picked, ..) = self.picked(&fixed, Setting::Parameter);
-            matches!(picked.kind, ExprKind::Boolean(true))
-        });
         // At the top, and in a modification, the author means this model; in a part's own declaration every use of it.
-        let start_given = start.as_ref().is_some_and(|start| start.scope != id)
+        let given = [&start, &fixed].into_iter().flatten();
+        let start_given = given.into_iter().any(|attribute| attribute.scope != id)
             || self.instances[id].parent.is_none();
+        let said = fixed.map(|fixed| self.is_true(&fixed));
+        let (fixed, freed) = (said == Some(true), said == Some(false));
         let state = state.map_or(StateChoice::Open, |state| self.state_choice(state.expr));
         let (dim, quantity) = self.quantity(kind, binding.as_ref().map(|binding| binding.expr));
         let clock = self.instances[id].clock;
@@ -90,6 +89,7 @@ impl<'a> Model<'a, '_> {
             start: Vec::new(),
             fixed,
             start_given,
+            freed,
             state,
             flow,
             boolean: matches!(kind, TypeName::Boolean),
@@ -100,6 +100,12 @@ impl<'a> Model<'a, '_> {
         self.instances[id]
             .members
             .insert(name, Member::Variable(var));
+    }
+
+    /// Whether `fixed` is `true`.
+    pub(super) fn is_true(&mut self, fixed: &Binding<'a>) -> bool {
+        let (picked, ..) = self.picked(fixed, Setting::Parameter);
+        matches!(picked.kind, ExprKind::Boolean(true))
     }
 
     /// The word behind `state =`.

@@ -5,26 +5,36 @@ use crate::id::{ExprId, VarId};
 use crate::{Index, Range};
 use hyde_diag::Origin;
 
-/// Why a condition is part of the initial system (I3).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Reason {
-    /// `fixed = true` or an `initial equation`.
-    Declared,
-    /// Taken from the start value of a state because conditions were missing.
-    Filled,
+/// How firmly a state holds its start value. Where initial equations determine states, the loosest yield first.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Firmness {
+    /// `fixed = false` is said.
+    Free,
+    /// Nothing is said.
+    Open,
+    /// `start` is said: a guess.
+    Guess,
+    /// Declared fixed by a part, for every use of it.
+    Default,
+    /// Declared fixed for this model: it never yields.
+    Given,
 }
 
 /// A condition at the start.
 #[derive(Clone, Debug)]
 pub enum InitialCondition {
-    /// States take their start values.
+    /// States take their start values, unless initial equations determine them.
     Fixed {
         /// Position of the first in the solver's vector.
         state: usize,
         /// Number of them.
         len: usize,
-        /// Why.
-        reason: Reason,
+        /// How firmly.
+        firmness: Firmness,
+        /// By the names that equations read, an initial equation determines it.
+        yields: bool,
+        /// Where its start is declared.
+        origin: Origin,
     },
     /// `0 = value`.
     Equation {

@@ -42,17 +42,6 @@ impl<'a> Labels<'a> {
     }
 }
 
-/// The name of an element of the solver's vector.
-pub(super) fn unknown_name(dae: &Dae, position: usize) -> String {
-    dae.unknowns
-        .iter()
-        .find(|block| (block.offset..block.offset + block.len).contains(&position))
-        .map_or_else(
-            || format!("y[{position}]"),
-            |block| dae.variables[block.var].element_name(block.first + position - block.offset),
-        )
-}
-
 /// The whole system as text: derived parameters, definitions, residuals, derivatives, events, clocks, starts, outputs.
 #[must_use]
 pub fn print_dae(dae: &Dae, sources: &Sources) -> String {
@@ -235,7 +224,7 @@ fn events(out: &mut String, dae: &Dae, names: &Names<'_>, sources: &Sources) {
         let mut text = format!("  {what} on {}", names.expr(reaction.condition));
         for assignment in &dae.assignments[reaction.assignments.clone()] {
             let target = match assignment.target {
-                Target::State(position) => unknown_name(dae, position),
+                Target::State(position) => dae.unknown_name(position),
                 Target::Memory(position) => format!("z[{position}]"),
             };
             let _ = write!(text, " {target} := {}", names.expr(assignment.value));
@@ -247,7 +236,7 @@ fn events(out: &mut String, dae: &Dae, names: &Names<'_>, sources: &Sources) {
 fn by_unknown(dae: &Dae, index: Index, lead: &str) -> String {
     if index.stride == 0 {
         let position = usize::try_from(index.offset).unwrap_or(usize::MAX);
-        return format!("{lead}{}", unknown_name(dae, position));
+        return format!("{lead}{}", dae.unknown_name(position));
     }
     format!("{lead}y[{}]", subscript(index, 0))
 }

@@ -1,7 +1,7 @@
 //! Prints the structure of a [`Dae`]: what became of every variable, and in which order the rest is solved.
 
 use super::{comment, dae};
-use crate::dae::{Alias, Dae, InitialCondition, Reason};
+use crate::dae::{Alias, Dae, Firmness, InitialCondition};
 use hyde_diag::Sources;
 use std::fmt::Write as _;
 
@@ -106,7 +106,7 @@ pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
     }
     for pin in &dae.pins {
         let automaton = &dae.automata[pin.automaton];
-        let state = dae::unknown_name(dae, pin.state);
+        let state = dae.unknown_name(pin.state);
         let value = names.expr(pin.value);
         let mode = &automaton.modes[pin.mode];
         let _ = writeln!(out, "  {}.{mode}: {state} = {value}", automaton.name);
@@ -114,17 +114,22 @@ pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
     let _ = writeln!(out, "initial conditions");
     for condition in &dae.initial {
         let text = match condition {
-            InitialCondition::Fixed { state, len, reason } => {
-                let mut name = dae::unknown_name(dae, *state);
+            InitialCondition::Fixed {
+                state,
+                len,
+                firmness,
+                yields,
+                ..
+            } => {
+                let mut name = dae.unknown_name(*state);
                 if *len > 1 {
-                    let _ = write!(name, " .. {}", dae::unknown_name(dae, state + len - 1));
+                    let _ = write!(name, " .. {}", dae.unknown_name(state + len - 1));
                 }
-                let why = if *reason == Reason::Filled {
-                    " (not declared fixed)"
-                } else {
-                    ""
-                };
-                format!("{name} = start{why}")
+                match (yields, *firmness < Firmness::Default) {
+                    (true, _) => format!("{name} by an equation"),
+                    (false, true) => format!("{name} = start (not declared fixed)"),
+                    (false, false) => format!("{name} = start"),
+                }
             }
             InitialCondition::Equation {
                 range,

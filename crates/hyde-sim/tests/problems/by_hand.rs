@@ -80,7 +80,9 @@ pub(crate) fn program(
     let initial = states.map(|block| InitialCondition::Fixed {
         state: block.offset,
         len: block.len,
-        declared: true,
+        firmness: hyde_program::Firmness::Given,
+        yields: false,
+        origin: crate::by_hand::origin("start"),
     });
     let n_unknowns = unknowns.iter().map(|block| block.len).sum();
     Program {

@@ -116,7 +116,9 @@ fn pendulum() -> Program {
     let starts_at = |state: usize| InitialCondition::Fixed {
         state,
         len: 1,
-        declared: true,
+        firmness: hyde_program::Firmness::Given,
+        yields: false,
+        origin: crate::by_hand::origin("start"),
     };
     Program {
         selections: vec![choice(0), choice(2)],

@@ -1,0 +1,92 @@
+//! Relations that are followed instead of located: beyond the end of a branch, and near a zero where their truth changes
+//! nothing.
+//!
+//! The `abs(x)` in `sqrt(abs(x))` is x as long as x > 0; a trial step to x < 0, which finds that x crosses, has no root. There
+//! the equations are those of the other branch.
+//!
+//! `sign(p - 10)*sqrt(abs(p - 10))` is 0 at p = 10 with either sign, and upright: a moment beyond, the branch that was left
+//! drives p away from its zero, the one that is entered drives it back, and each crossing would lead to the next. Until its
+//! root function has left rounding far behind, such a relation is evaluated with the equations, as below `noEvent`.
+
+use crate::root_rates::rounding;
+use crate::state::State;
+use hyde_program::{Function, RelationUse};
+
+/// How many times rounding a root function goes until its relation is located again.
+const FAR: f64 = 1e3;
+
+impl State<'_> {
+    /// Follows relations from here on.
+    pub(crate) fn follow(&mut self, relations: &[usize], (t, y, yp): (f64, &[f64], &[f64])) {
+        let rounding = rounding(self, t, y, yp, &[]);
+        for &relation in relations {
+            if !self.is_loose(relation) {
+                self.loose.push((relation, FAR * rounding[relation]));
+            }
+        }
+    }
+
+    /// Whether a relation is followed.
+    pub(crate) fn is_loose(&self, relation: usize) -> bool {
+        self.loose.iter().any(|(loose, _)| *loose == relation)
+    }
+
+    /// Relations that are far from their zeros are located again; their truths stay what they are here.
+    pub(crate) fn follow_no_longer(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        if self.loose.is_empty() {
+            return;
+        }
+        self.read_loose(t, y, yp);
+        let mut roots = vec![0.0; self.program.relations.len()];
+        self.evaluate(Function::Roots, t, y, yp, &mut roots);
+        self.loose
+            .retain(|(relation, far)| roots[*relation].abs() <= *far);
+    }
+
+    /// Evaluates with the truths that relations of equations have at a point, as they are behind the end of a branch.
+    pub(crate) fn with_own_truths(
+        &mut self,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        evaluate: impl FnOnce(&mut Self),
+    ) {
+        let before = self.z.clone();
+        let of_equations = |&number: &usize| {
+            let relation = &self.program.relations[number];
+            relation.used == RelationUse::Equation && !relation.scheduled
+        };
+        let relations: Vec<usize> = (0..self.program.relations.len())
+            .filter(of_equations)
+            .collect();
+        if relations.is_empty() {
+            return;
+        }
+        self.read_truths(t, y, yp, &relations);
+        evaluate(self);
+        self.z = before;
+    }
+
+    /// Takes the truths of followed relations from a point.
+    pub(crate) fn read_loose(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+        if self.loose.is_empty() {
+            return;
+        }
+        let loose: Vec<usize> = self.loose.iter().map(|(relation, _)| *relation).collect();
+        self.read_truths(t, y, yp, &loose);
+    }
+
+    fn read_truths(&mut self, t: f64, y: &[f64], yp: &[f64], relations: &[usize]) {
+        let program = self.program;
+        let mut roots = vec![0.0; program.relations.len()];
+        let (at, workspace) = self.at(t, y, yp);
+        let kernels = &program.kernels;
+        kernels.evaluate(Function::Roots, at, workspace, &mut roots);
+        for &relation in relations {
+            let inclusive = program.relations[relation].inclusive;
+            let root = roots[relation];
+            let truth = root > 0.0 || (root == 0.0 && inclusive);
+            self.z[relation] = f64::from(u8::from(truth));
+        }
+    }
+}
