@@ -132,7 +132,7 @@ pub(crate) enum Temporal {
     No,
     /// It is one.
     Time,
-    /// It is one and has the unit in it: `time_ms`, `Time/us`, `millis`.
+    /// It is one, or that of a frequency, and has the unit in it: `time_ms`, `Time/us`, `millis`, `f_Hz`.
     In(NamedUnit),
     /// It is the name of a frequency.
     Frequency,
@@ -145,8 +145,13 @@ pub(crate) fn temporal(name: &str) -> Temporal {
     }
     let words = words(name);
     let all: Vec<&str> = words.iter().map(String::as_str).collect();
-    if let ["f" | "freq" | "frequency" | "frequenz"] = all.as_slice() {
-        return Temporal::Frequency;
+    if let ["f" | "freq" | "frequency" | "frequenz", unit @ ..] = all.as_slice() {
+        let unit = match unit {
+            [] => return Temporal::Frequency,
+            ["hz"] | ["in", "hz"] => NamedUnit::parse("Hz"),
+            _ => return Temporal::No,
+        };
+        return unit.map_or(Temporal::No, Temporal::In);
     }
     let (time, unit) = match all.as_slice() {
         [] => return Temporal::No,
@@ -267,6 +272,8 @@ mod tests {
             ("t_s", "s"),
             ("seconds", "s"),
             ("freq", "frequency"),
+            ("f_Hz", "Hz"),
+            ("Frequency in Hz", "Hz"),
             ("Sample", "no"),
             ("Index", "no"),
             ("temp_1", "no"),

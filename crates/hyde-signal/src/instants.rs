@@ -204,7 +204,7 @@ fn unit(raw: &[Raw], at: usize, declared: Option<&TimeColumn>) -> Result<Unit, T
         (Some(Err(_)), None) => Err(other(&unit_text(&heading.written))),
         (None, None) => match (temporal(&name), unix_unit(&raw[at].cells)) {
             (Temporal::In(unit), _) => {
-                let note = format!("the time `{name}` is read in {unit}, as its name says");
+                let note = format!("`{name}` is read in {unit}, as its name says");
                 Ok(said(unit, Some(note)))
             }
             (Temporal::Frequency, _) => {

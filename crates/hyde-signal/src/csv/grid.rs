@@ -194,7 +194,10 @@ fn plain(text: &str, from: usize, above: u64) -> impl Iterator<Item = Line<'_>> 
 /// What separates the cells of a header, by the first row where there is one.
 fn separator(header: &str, row: Option<&str>) -> Separator {
     let all = [b',', b';', b'\t', b'|'].map(Separator::Byte);
-    let count = |line: &str, separator| split(line, separator).len();
+    let count = |line: &str, separator| match separator {
+        Separator::Byte(byte) => 1 + outside_quotes(line, byte),
+        Separator::Blanks => by_blanks(line).len(),
+    };
     if let Some(row) = row {
         let fits = |separator: &Separator| {
             count(header, *separator) > 1 && count(header, *separator) == count(row, *separator)
@@ -225,6 +228,16 @@ fn separator(header: &str, row: Option<&str>) -> Separator {
         .rev()
         .max_by_key(|separator| count(header, **separator));
     most.copied().unwrap_or(Separator::Byte(b','))
+}
+
+/// How often a byte stands in a line outside quotes.
+fn outside_quotes(line: &str, separator: u8) -> usize {
+    let mut quoted = false;
+    let mut own = |byte: u8| {
+        quoted ^= byte == b'"';
+        byte == separator && !quoted
+    };
+    line.bytes().filter(|byte| own(*byte)).count()
 }
 
 /// The cells of a line.
