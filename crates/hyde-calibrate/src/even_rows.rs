@@ -74,3 +74,46 @@ pub(crate) fn resample(table: &Table, values: &[f64], time: &[f64]) -> Option<(T
     let even = Table::new(vec![Column::raw("t", time.to_vec())]).ok()?;
     Some((even, values))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn table(time: &[f64]) -> Table {
+        let way = time.iter().map(|t| 3.0 * t).collect();
+        Table::new(vec![Column::raw("t", time.to_vec()), Column::raw("x", way)]).unwrap()
+    }
+
+    #[test]
+    fn rows_as_they_come_are_read_on_straight_lines() {
+        let time: Vec<f64> = (0..200)
+            .map(|row| 0.01 * f64::from(row) + 0.002 * f64::from(row % 3))
+            .collect();
+        let table = table(&time);
+        let (even, told) = evenly("log", &table).unwrap().unwrap();
+        assert!((told.spacing_s.0 - 0.006).abs() < 1e-9, "{told:?}");
+        assert!((told.spacing_s.1 - 0.012).abs() < 1e-9, "{told:?}");
+        let pairs = even.windows(2);
+        assert!(
+            pairs
+                .into_iter()
+                .all(|pair| (pair[1] - pair[0] - told.step_s).abs() < 1e-12)
+        );
+        assert!(*even.last().unwrap() <= *time.last().unwrap() + 1e-12);
+        let (_, values) = resample(&table, table.columns()[1].values(), &even).unwrap();
+        let off = values.iter().zip(&even).map(|(x, t)| (x - 3.0 * t).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-12);
+    }
+
+    #[test]
+    fn even_rows_stay_and_a_gap_is_told_with_its_place() {
+        let mut time: Vec<f64> = (0..200).map(|row| 0.01 * f64::from(row)).collect();
+        assert_eq!(evenly("log", &table(&time)), Ok(None));
+        time[120..].iter_mut().for_each(|t| *t += 0.3);
+        let gap = evenly("log", &table(&time)).unwrap_err();
+        let RecordError::Gap { from_s, to_s, .. } = gap else {
+            panic!("{gap:?}");
+        };
+        assert!((from_s - 1.19).abs() < 1e-9 && (to_s - 1.5).abs() < 1e-9);
+    }
+}

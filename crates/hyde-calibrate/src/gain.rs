@@ -37,6 +37,49 @@ pub struct Observer {
     pub(crate) spread: Vec<f64>,
     /// The names of the states.
     states: Vec<String>,
+    /// Modes in which the model was linearised although the record begins in others.
+    pub taken: Vec<Taken>,
+}
+
+/// An automaton that is taken in another mode than it begins in.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Taken {
+    /// Its name.
+    pub automaton: String,
+    /// The mode that it begins in.
+    pub begins: String,
+    /// The mode in which the model was linearised.
+    pub taken: String,
+}
+
+/// Where the gain is made: where the record begins, relations and modes as they are there, but that friction slips.
+fn linearised<'a>(
+    program: &'a Program,
+    recording: &'a Recording,
+    set: &[(usize, f64)],
+) -> Result<(Plant<'a>, Vec<Taken>), Unsupported> {
+    let begun = Plant::new(program, recording, set)?;
+    let p = recording.parameters(program, set);
+    let slipping = Plant::at(program, recording, p, &[])?;
+    let moves = begun.pinned.is_empty() && !recording.beginning.is_empty();
+    if moves && begun.combination() != slipping.combination() {
+        return Ok((begun, Vec::new()));
+    }
+    let name = |automaton: usize, mode: f64| {
+        let modes = &program.automata[automaton].modes;
+        modes.get(mode as usize).cloned().unwrap_or_default()
+    };
+    let automata = program.automata.iter().enumerate();
+    let taken = automata.filter_map(|(number, automaton)| {
+        let modes = (begun.z[automaton.place], slipping.z[automaton.place]);
+        (modes.0.to_bits() != modes.1.to_bits()).then(|| Taken {
+            automaton: automaton.name.clone(),
+            begins: name(number, modes.0),
+            taken: name(number, modes.1),
+        })
+    });
+    let taken = taken.collect();
+    Ok((slipping, taken))
 }
 
 impl Observer {
@@ -53,7 +96,7 @@ impl Observer {
             return Err(Unsupported::Start("there is no record".to_owned()));
         };
         let p = first.parameters(program, set);
-        let plant = Plant::at(program, first, p.clone(), &[])?;
+        let (plant, taken) = linearised(program, first, set)?;
         let mut workspace = Workspace::new(program.n_work);
         let (places, configuration) = (&plant.places, plant.configuration());
         let c = output_matrix(program, places, configuration, plant.here(), &mut workspace);
@@ -72,6 +115,7 @@ impl Observer {
             rounding,
             spread: vec![f64::NAN; c.ncols()],
             states: state_names(&plant),
+            taken,
         };
         for _ in 0..2 {
             let rates = usual_rates(program, recordings, set, &observer)?;

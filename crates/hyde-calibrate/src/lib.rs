@@ -63,7 +63,7 @@ pub use even_rows::Resampled;
 pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};
 pub use frozen::{Frozen, frozen};
-pub use gain::Observer;
+pub use gain::{Observer, Taken};
 pub use least_squares::Problem;
 pub use measures::{FreeMeasure, Measures, Model};
 pub use observer::Innovations;

@@ -190,6 +190,11 @@ impl<'a> Plant<'a> {
         &self.configurations[self.current].1
     }
 
+    /// What tells the combination of modes it is in from others.
+    pub(crate) fn combination(&self) -> &[u64] {
+        &self.configurations[self.current].0
+    }
+
     /// The numbers of the states that modes fix, or did where the last events began, or in passing.
     pub(crate) fn fixed_states(&self) -> Vec<usize> {
         let states = self.places.states.iter().enumerate();

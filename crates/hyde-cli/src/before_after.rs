@@ -6,7 +6,7 @@ use crate::project::Project;
 use crate::records;
 use crate::study::Calibration;
 use crate::unknown;
-use hyde_calibrate::{FreeMeasure, Measures, Model, Recording, Unsupported, Written};
+use hyde_calibrate::{FreeMeasure, Measures, Model, Observer, Recording, Unsupported, Written};
 use hyde_compiler::{Additions, Candidate, Form, Request};
 use hyde_diag::Diagnostics;
 use hyde_program::Program;
@@ -227,7 +227,20 @@ fn told(calibration: &Calibration, recording: &Recording) -> Vec<String> {
             time(own.step_s)
         ));
     }
+    found.extend(linearised(&calibration.observer));
     found
+}
+
+/// The modes in which the model was linearised for the gain, where it begins in others.
+fn linearised(observer: &Observer) -> Option<String> {
+    let each = observer.taken.iter().map(|own| {
+        format!(
+            "`{}` in `{}` (begins in `{}`)",
+            own.automaton, own.taken, own.begins
+        )
+    });
+    let each: Vec<String> = each.collect();
+    (!each.is_empty()).then(|| format!("the gain of the observer is that of {}", each.join(", ")))
 }
 
 /// The errors as JSON; numbers are SI.

@@ -61,8 +61,11 @@ fn figure(args: &PlotArgs) -> Result<Figure, String> {
     let title = args.title.as_deref();
     let responses: Vec<_> = sources.iter().filter_map(response::of).collect();
     let figure = if responses.len() == sources.len() {
-        if args.xy || !args.panels.is_empty() {
-            return Err("a frequency response is drawn whole: name no columns".to_owned());
+        let part = args.from.is_some() || args.to.is_some();
+        if args.xy || !args.panels.is_empty() || part {
+            return Err(
+                "a frequency response is drawn whole: name no columns and no times".to_owned(),
+            );
         }
         response::figure(title, &responses)
     } else if let [batch] = sources.as_slice()

@@ -53,6 +53,10 @@ pub(super) fn envelopes(args: &PlotArgs, source: &Source) -> Option<Result<Figur
     if !args.cases.is_empty() || args.xy || over.cases().len() <= LINES {
         return None;
     }
+    if args.from.is_some() || args.to.is_some() {
+        let reason = "so many cases are drawn over their whole time: `--cases 3,7` draws lines within `--from` and `--to`";
+        return Some(Err(reason.to_owned()));
+    }
     let names: Vec<String> = if args.panels.is_empty() {
         let names = over.variables().map(|(field, _)| field.name.clone());
         names.take(4).collect()
