@@ -24,6 +24,8 @@ use nalgebra::{DMatrix, DVector};
 const ROWS: usize = 30;
 /// What is fewer standard deviations off may be noise.
 const CLEAR: f64 = 6.0;
+/// The observer itself finds a start whose first rows are off by less than so many standard deviations in each channel.
+const FOUND: f64 = 5.0;
 /// Directions that channels show less than this part of the clearest are not known.
 const SHOWN: f64 = 1e-3;
 /// How often it is looked from what was found: a gap that closes is a spring from there on.
@@ -61,6 +63,13 @@ fn look(
     let slipping = Plant::at(program, recording, p, &[])?;
     let mut columns = shares(&slipping, &noise);
     let mut here = Errors::of(program, recording, &noise, found)?;
+    let rms = |channel: usize| {
+        let own = here.errors.iter().skip(channel).step_by(noise.len());
+        (own.map(|error| error * error).sum::<f64>() / ROWS as f64).sqrt()
+    };
+    if (0..noise.len()).all(|channel| rms(channel) < FOUND) {
+        return Ok(());
+    }
     for _ in 0..ROUNDS {
         let change = clear(&columns, &here.errors, noise.len());
         if change.iter().all(|change| *change == 0.0) {
