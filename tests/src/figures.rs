@@ -63,6 +63,7 @@ pub const FIGURES: &[Figure] = &[
     ivp::MIN_DIGITS,
     compile::Y_AXIS,
     compile::GROWTH,
+    compile::CHAIN,
     fixtures::FIGURE,
     cases::FIGURE,
     event_suite::FIGURE,

@@ -17,208 +17,61 @@ use crate::system::{Cell, Equation, System};
 use crate::whole_arrays;
 use hyde_diag::Diagnostics;
 use hyde_ir::dae::Dependent;
-use hyde_ir::{Expr, ExprId, Index, Range, StateChoice, VarId, VariableKind};
-use std::collections::{BTreeMap, BTreeSet};
+use hyde_ir::{Expr, ExprArena, ExprId, Range, VariableKind};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
+mod fixed;
 mod inline;
 mod inputs;
+mod rates;
 mod wanted;
 
-/// `target[j + shift] = der(var[j])` for the elements j in `first..=last`.
-#[derive(Clone, Copy, Debug)]
-struct Rate {
-    first: usize,
-    last: usize,
-    target: VarId,
-    shift: i32,
-    equation: usize,
-}
+pub(crate) use wanted::kept as fixed_by_modes;
 
 /// Eliminates aliases and derivatives of explicit variables.
 pub(crate) fn simplify(system: &mut System, diagnostics: &mut Diagnostics) {
-    let declared = system.declared_values();
-    // Each round eliminates at least one variable or derivative.
-    for _ in 0..10_000 {
-        let aliased = alias::eliminate(system);
-        let named = name_derivatives(system);
-        let expanded = whole_arrays::expand_one(system, &declared) || expand_one(system, &declared);
-        if !aliased && !named && !expanded {
-            break;
+    fixed::name_rates(system);
+    let before = (!system.slots.is_empty()).then(|| system.clone());
+    settle(system);
+    if let Some(mut before) = before {
+        before.to_be_states = fixed::relative(system);
+        if !before.to_be_states.is_empty() {
+            settle(&mut before);
+            *system = before;
         }
     }
     inputs::refuse(system, diagnostics);
 }
 
-/// Replaces `der(x)` by the variable that an equation `v = der(x)` names, everywhere else.
-fn name_derivatives(system: &mut System) -> bool {
-    let rates = rates(system);
-    let mut changed = false;
-    for number in 0..system.equations.len() {
-        let range = system.equations[number].range;
-        changed |= rename(system, &rates, Place::Equation(number), range);
-    }
-    for slot in 0..system.slots.len() {
-        for branch in 0..system.slots[slot].branches.len() {
-            changed |= rename(system, &rates, Place::Branch(slot, branch), Range::SCALAR);
-        }
-    }
-    // Guards, actions, samples and outputs read derivatives too.
-    let before = system.flat.exprs.len();
-    let equations = std::mem::take(&mut system.equations);
-    let slots = std::mem::take(&mut system.slots);
-    system.rewrite_all(None, |arena, expr| {
-        let Expr::Der(var, index) = expr else {
-            return None;
-        };
-        let rate = covering(&rates, var, index, Range::SCALAR, None)?;
-        Some(arena.add(Expr::Var(rate.target, shifted(index, rate.shift))))
-    });
-    system.equations = equations;
-    system.slots = slots;
-    changed || system.flat.exprs.len() > before
-}
-
-#[derive(Clone, Copy)]
-enum Place {
-    Equation(usize),
-    Branch(usize, usize),
-}
-
-fn rename(
-    system: &mut System,
-    rates: &BTreeMap<VarId, Vec<Rate>>,
-    place: Place,
-    range: Range,
-) -> bool {
-    let (lhs, rhs) = match place {
-        Place::Equation(number) => (system.equations[number].lhs, system.equations[number].rhs),
-        Place::Branch(slot, branch) => {
-            let branch = &system.slots[slot].branches[branch];
-            (branch.lhs, branch.rhs)
-        }
-    };
-    let own = if let Place::Equation(number) = place {
-        Some(number)
-    } else {
-        None
-    };
-    let mut memo = std::collections::HashMap::new();
-    let mut replace = |system: &mut System, id: ExprId| {
-        system.flat.exprs.rewrite(id, &mut memo, |arena, _, expr| {
-            let Expr::Der(var, index) = expr else {
-                return None;
-            };
-            let rate = covering(rates, var, index, range, own)?;
-            Some(arena.add(Expr::Var(rate.target, shifted(index, rate.shift))))
-        })
-    };
-    let (left, right) = (replace(system, lhs), replace(system, rhs));
-    let changed = left != lhs || right != rhs;
-    match place {
-        Place::Equation(number) => {
-            system.equations[number].lhs = left;
-            system.equations[number].rhs = right;
-        }
-        Place::Branch(slot, branch) => {
-            let branch = &mut system.slots[slot].branches[branch];
-            branch.lhs = left;
-            branch.rhs = right;
-        }
-    }
-    changed
-}
-
-/// The equations `v = der(x)`, by x; where several name the same derivative, the one whose v is in an array is kept.
-fn rates(system: &System) -> BTreeMap<VarId, Vec<Rate>> {
-    let mut found: BTreeMap<VarId, Vec<Rate>> = BTreeMap::new();
-    for (number, equation) in system.equations.iter().enumerate() {
-        let exprs = &system.flat.exprs;
-        for (v, d) in [(equation.lhs, equation.rhs), (equation.rhs, equation.lhs)] {
-            let (Expr::Var(target, to), Expr::Der(var, from)) = (exprs[v], exprs[d]) else {
-                continue;
-            };
-            if !system.is_continuous(target)
-                || to.stride != from.stride
-                || (from.stride != 0 && from.stride != 1)
-            {
-                continue;
-            }
-            let (first, last) = System::interval(from, equation.range);
-            let rate = Rate {
-                first,
-                last,
-                target,
-                shift: to.offset - from.offset,
-                equation: number,
-            };
-            let list = found.entry(var).or_default();
-            match list
-                .iter_mut()
-                .find(|old| old.first == first && old.last == last)
-            {
-                Some(old) => {
-                    let better = |t: VarId| system.flat.variables[t].len.is_some();
-                    if better(target) && !better(old.target) {
-                        *old = rate;
-                    }
-                }
-                None => list.push(rate),
-            }
+/// Repeats the rewritings until nothing changes.
+fn settle(system: &mut System) {
+    let declared = system.declared_values();
+    // Each round eliminates at least one variable or derivative.
+    for _ in 0..10_000 {
+        let aliased = alias::eliminate(system);
+        let named = rates::name_derivatives(system);
+        let expanded =
+            whole_arrays::expand_one(system, &declared) || expand_some(system, &declared);
+        if !aliased && !named && !expanded {
             break;
         }
     }
-    found
 }
 
-/// The rate that covers an access over a range, if one target does, and the equation asking is not its own.
-fn covering(
-    rates: &BTreeMap<VarId, Vec<Rate>>,
-    var: VarId,
-    index: Index,
-    range: Range,
-    own: Option<usize>,
-) -> Option<Rate> {
-    let list = rates.get(&var)?;
-    let (first, last) = System::interval(index, range);
-    let mut at = first;
-    let mut found: Option<Rate> = None;
-    while at <= last {
-        let rate = *list
-            .iter()
-            .find(|rate| (rate.first..=rate.last).contains(&at))?;
-        if own == Some(rate.equation) {
-            return None;
-        }
-        if found.is_some_and(|other| other.target != rate.target || other.shift != rate.shift) {
-            return None;
-        }
-        found = Some(rate);
-        at = rate.last + 1;
-    }
-    found
-}
-
-fn shifted(index: Index, by: i32) -> Index {
-    Index {
-        offset: index.offset + by,
-        ..index
-    }
-}
-
-/// Makes one differentiated variable explicit, if an equation allows: `der(v)` becomes the derivative of its value.
+/// Makes differentiated variables explicit where equations allow: `der(v)` becomes the derivative of its value. Whether one
+/// was.
 ///
 /// What modes fix stays a state as long as any other variable of any constraint can go.
-fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
+fn expand_some(system: &mut System, declared: &[Vec<f64>]) -> bool {
     let mut differentiated = differentiated(system);
-    for (var, variable) in system.flat.variables.enumerate() {
-        let eliminated = system.aliases.contains_key(&(var, 0));
-        if variable.state >= StateChoice::Prefer && variable.len.is_none() && !eliminated {
-            differentiated.insert(var, 0, 0);
-        }
+    for (var, element) in wanted::states(system) {
+        differentiated.insert(var, element, element);
     }
     let wanted = wanted::at_start(system);
     let kept = wanted::kept(system);
     for pinned in [false, true] {
+        // Rates of what became explicit in this pass, in its order. Equations that read it wait for the next pass.
+        let mut rates: Vec<(Cell, ExprId)> = Vec::new();
         for number in 0..system.equations.len() {
             let Equation {
                 range, lhs, rhs, ..
@@ -229,41 +82,68 @@ fn expand_one(system: &mut System, declared: &[Vec<f64>]) -> bool {
             let Some(leaves) = state_leaves(system, lhs, rhs, &differentiated) else {
                 continue;
             };
+            let fresh = |cell: &Cell| rates.iter().any(|(known, _)| known == cell);
+            let settled = |cell: &Cell| differentiated.contains(cell) && !fresh(cell);
+            if !rates.is_empty() && !leaves.iter().all(settled) {
+                continue;
+            }
             let candidates: Vec<Cell> = leaves
                 .into_iter()
                 .filter(|cell| differentiated.contains(cell) || wanted.contains(cell))
                 .filter(|cell| pinned || !kept.contains(cell))
                 .collect();
-            if expand(
-                system,
-                declared,
-                number,
-                (lhs, rhs),
-                candidates,
-                &differentiated,
-                &kept,
-            ) {
-                return true;
+            let form = (lhs, rhs);
+            let states = &differentiated;
+            if let Some(rate) = expand(system, declared, number, form, candidates, states, &kept) {
+                rates.push(rate);
+                // The equations of an array have been split.
+                if pinned || system.flat.variables[rate.0.0].len.is_some() {
+                    break;
+                }
             }
         }
         // Reduction in general leaves pinned variables alone, so that their constraints are looked for further.
-        if !pinned && !kept.is_empty() {
+        if rates.is_empty() && !pinned && !kept.is_empty() {
             let states = &differentiated;
             for (number, lhs, rhs, leaves) in inline::constraints(system, declared, states) {
                 let free = leaves
                     .into_iter()
                     .filter(|cell| !kept.contains(cell))
                     .collect();
-                if expand(system, declared, number, (lhs, rhs), free, states, &kept) {
-                    return true;
+                let form = (lhs, rhs);
+                rates.extend(expand(system, declared, number, form, free, states, &kept));
+                if !rates.is_empty() {
+                    break;
                 }
             }
+        }
+        if !rates.is_empty() {
+            replace_derivatives(system, rates);
+            return true;
         }
     }
     false
 }
 
-/// Makes the first candidate explicit that an equation, in the form given, can be solved for.
+/// Replaces the derivatives of what became explicit, the last first: rates are made of variables that did so later.
+fn replace_derivatives(system: &mut System, rates: Vec<(Cell, ExprId)>) {
+    let mut found: BTreeMap<Cell, ExprId> = BTreeMap::new();
+    let replace = |found: &BTreeMap<Cell, ExprId>, expr: Expr| {
+        let Expr::Der(var, index) = expr else {
+            return None;
+        };
+        found.get(&System::cell(var, index)?).copied()
+    };
+    for (cell, rate) in rates.into_iter().rev() {
+        let mut memo = HashMap::new();
+        let whole = |_: &mut ExprArena, _, expr| replace(&found, expr);
+        let rate = system.flat.exprs.rewrite(rate, &mut memo, whole);
+        found.insert(cell, rate);
+    }
+    system.rewrite_all(None, |_, expr| replace(&found, expr));
+}
+
+/// Makes the first candidate explicit that an equation, in the form given, can be solved for; gives its rate.
 fn expand(
     system: &mut System,
     declared: &[Vec<f64>],
@@ -272,7 +152,7 @@ fn expand(
     mut candidates: Vec<Cell>,
     differentiated: &Cells,
     kept: &BTreeSet<Cell>,
-) -> bool {
+) -> Option<(Cell, ExprId)> {
     let in_array = |system: &System, cell: &Cell| system.flat.variables[cell.0].len.is_some();
     let is_left = |system: &System, cell: Cell| matches!(system.flat.exprs[lhs], Expr::Var(var, _) if var == cell.0);
     let fixed = |system: &System, cell: &Cell| {
@@ -310,18 +190,17 @@ fn expand(
         equation.lhs = system.flat.exprs.add(leaf);
         equation.rhs = value;
         let origin = equation.origin.clone();
-        system.dependent.push(Dependent {
-            var: cell.0,
-            element: cell.1,
-            len: 1,
-            origin,
-        });
-        system.rewrite_all(None, |_, expr| {
-            (expr == Expr::Der(cell.0, System::cell_index(cell))).then_some(rate)
-        });
-        return true;
+        if system.dependent.iter().all(|d| (d.var, d.element) != cell) {
+            system.dependent.push(Dependent {
+                var: cell.0,
+                element: cell.1,
+                len: 1,
+                origin,
+            });
+        }
+        return Some((cell, rate));
     }
-    false
+    None
 }
 
 /// The cells of continuous variables that stand under `der` anywhere in the equations.

@@ -1,5 +1,6 @@
 //! Exits of modes, `when` clauses and asserts become reactions: a condition over truths, and what is set when it fires.
 
+use crate::layout::alias;
 use crate::system::System;
 use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
 use hyde_ir::dae::{Alias, Assignment, Dae, Reaction, ReactionKind, Space, Target};
@@ -144,12 +145,7 @@ fn state_target(
     value: ExprId,
 ) -> Option<(Target, ExprId)> {
     let element = usize::try_from(index.offset).unwrap_or(0);
-    let alias = dae
-        .aliases
-        .iter()
-        .find(|(known, _)| *known == var)
-        .map(|(_, alias)| *alias);
-    let (var, element, value) = match alias {
+    let (var, element, value) = match alias(dae, var) {
         Some(Alias::Of {
             var,
             element,

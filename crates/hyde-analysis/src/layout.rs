@@ -7,11 +7,13 @@ use crate::explicit::{Order, access};
 use crate::held_speed::holds_speed;
 use crate::matching::{Matched, Node, origin};
 use crate::reduce;
+use crate::segments::Segment;
 use crate::system::{Cell, System};
 use hyde_ir::dae::{
-    AutomatonInfo, Dae, Definition, Place, Residual, Selection, Space, Start, Unknown,
+    Alias, AutomatonInfo, Dae, Definition, Place, Residual, Selection, Space, Start, Unknown,
 };
 use hyde_ir::{Expr, ExprId, Id as _, IdVec, Index, Range, StateChoice, VarId, VariableKind};
+use std::collections::BTreeSet;
 
 /// Builds the DAE with its places, definitions and residuals; pins exchange rows later.
 pub(crate) fn place(system: &mut System, matched: &Matched, order: &Order) -> Dae {
@@ -106,6 +108,12 @@ pub(crate) fn place(system: &mut System, matched: &Matched, order: &Order) -> Da
     dae
 }
 
+/// What an eliminated scalar stands for; they are in the order of variables.
+pub(crate) fn alias(dae: &Dae, var: VarId) -> Option<Alias> {
+    let found = dae.aliases.binary_search_by_key(&var, |(known, _)| *known);
+    found.ok().map(|number| dae.aliases[number].1)
+}
+
 /// Where the variables, constraints and factors of each group lie.
 fn selections(system: &System, matched: &Matched, dae: &mut Dae) {
     for (number, group) in system.groups.iter().enumerate() {
@@ -186,25 +194,17 @@ fn variable_places(
     dae: &mut Dae,
 ) -> IdVec<VarId, Option<Place>> {
     let mut places: IdVec<VarId, Option<Place>> = dae.variables.iter().map(|_| None).collect();
-    let in_vector = |var: VarId| {
-        matched
-            .unknowns
-            .iter()
-            .zip(&order.in_vector)
-            .any(|(u, kept)| u.var == var && *kept)
+    let unknowns = matched.unknowns.iter().zip(&order.in_vector);
+    let (kept, given): (Vec<_>, Vec<_>) = unknowns.partition(|(_, kept)| **kept);
+    let variables = |list: Vec<(&Segment, &bool)>| -> BTreeSet<VarId> {
+        list.into_iter().map(|(unknown, _)| unknown.var).collect()
     };
-    let defined = |var: VarId| {
-        matched
-            .unknowns
-            .iter()
-            .zip(&order.in_vector)
-            .any(|(u, kept)| u.var == var && !*kept)
-    };
+    let (kept, given) = (variables(kept), variables(given));
     let mut unknowns = Vec::new();
     for (id, variable) in system.flat.variables.enumerate() {
-        if variable.kind == VariableKind::Continuous && in_vector(id) {
+        if variable.kind == VariableKind::Continuous && kept.contains(&id) {
             unknowns.push((variable.len.is_some(), id));
-        } else if variable.kind == VariableKind::Continuous && defined(id) {
+        } else if variable.kind == VariableKind::Continuous && given.contains(&id) {
             places[id] = Some(Place {
                 space: Space::Work,
                 base: dae.n_work,

@@ -6,8 +6,9 @@
 //! 1. `alias` and `derivatives`, repeated until nothing changes: variables that are equal become one, before and
 //!    after differentiation (M5); derivatives of explicit variables become explicit;
 //! 2. `reduce`: equations that constrain states to each other are differentiated, and states chosen among the
-//!    constrained variables while running;
-//! 3. `relations`: comparisons in continuous equations become relations with root functions;
+//!    constrained variables while running; constraints that only their numbers make dependent are refused (`redundant`);
+//! 3. `prescribed`: modes that fix what is prescribed let it move;
+//!    `relations`: comparisons in continuous equations become relations with root functions;
 //! 4. `matching`: every equation is matched to the unknown it determines, array equations as a whole (F3);
 //! 5. `explicit`: algebraic variables with an explicit solution become definitions, loops are torn;
 //! 6. `layout`: every variable gets its place;
@@ -35,7 +36,9 @@ mod mode_constraints;
 mod outputs;
 mod partials;
 mod pins;
+mod prescribed;
 mod reduce;
+mod redundant;
 mod regularity;
 mod relations;
 mod segments;
@@ -70,6 +73,10 @@ pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
         return None;
     }
     reduce::reduce(&mut system);
+    if redundant::refuse(&mut system, diagnostics) {
+        return None;
+    }
+    prescribed::let_move(&mut system, diagnostics);
     relations::extract(&mut system);
     let matched = matching::match_equations(&mut system, diagnostics)?;
     let order = explicit::choose(&mut system, &matched);
@@ -77,7 +84,7 @@ pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
     pins::exchange_rows(&mut dae, &mut system, &matched, &order, diagnostics);
     clocked::sort(&mut dae, &mut system, diagnostics);
     events::react(&mut dae, &mut system, diagnostics);
-    state_choices::check(&dae, &system, diagnostics);
+    state_choices::check(&mut dae, &mut system, diagnostics);
     initial::conditions(&mut dae, &mut system, diagnostics);
     if diagnostics.has_errors() {
         return None;

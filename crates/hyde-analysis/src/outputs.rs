@@ -1,5 +1,6 @@
 //! What a run reports: every variable of the model, then what the experiment measures and reduces.
 
+use crate::layout::alias;
 use crate::system::System;
 use hyde_diag::MadeBy;
 use hyde_ir::dae::{Alias, Dae, Output};
@@ -54,12 +55,7 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
         if range.is_empty() {
             continue;
         }
-        let alias = dae
-            .aliases
-            .iter()
-            .find(|(known, _)| *known == id)
-            .map(|(_, alias)| *alias);
-        let (value, discrete) = match alias {
+        let (value, discrete) = match alias(dae, id) {
             Some(Alias::Value(value)) => (value, true),
             Some(Alias::Of {
                 var,

@@ -8,14 +8,18 @@
 //! otherwise: the force that holds the state. The diagonal stays structurally sound in every mode, and w stays what it
 //! is to the last bit.
 
+mod inlined;
+
 use crate::alias::signed_cell;
 use crate::explicit::Order;
 use crate::matching::{Matched, Node};
 use crate::segments::Segment;
-use crate::system::{Cell, System};
+use crate::solve::solve_for;
+use crate::system::{Branch, Cell, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy};
 use hyde_ir::dae::{Dae, Pin};
 use hyde_ir::{AutomatonId, Expr, ExprId, VariableKind};
+pub(crate) use inlined::Values;
 
 /// Marks the branches of slots that fix a state.
 pub(crate) fn mark(system: &mut System, unknowns: &[Segment]) {
@@ -24,28 +28,63 @@ pub(crate) fn mark(system: &mut System, unknowns: &[Segment]) {
             unknown.state && unknown.var == cell.0 && unknown.overlaps(cell.1, cell.1)
         })
     };
+    let values = Values::new(system, &is_state);
     for slot in 0..system.slots.len() {
-        for branch in 0..system.slots[slot].branches.len() {
-            let (lhs, rhs) = {
-                let branch = &system.slots[slot].branches[branch];
-                (branch.lhs, branch.rhs)
+        for number in 0..system.slots[slot].branches.len() {
+            let branch = system.slots[slot].branches[number].clone();
+            let branch = match said_of_a_state(system, &branch, &is_state) {
+                Some(pin) => Branch {
+                    pin: Some(pin),
+                    ..branch
+                },
+                None => said_of_states(system, branch, &values),
             };
-            let pin = [(lhs, rhs), (rhs, lhs)]
-                .into_iter()
-                .find_map(|(side, value)| {
-                    let (cell, negated) = signed_cell(system, side)?;
-                    (is_state(cell) && constant_between_events(system, value))
-                        .then_some((cell, value, negated))
-                });
-            if let Some((cell, value, negated)) = pin {
-                let value = if negated {
-                    system.exprs().negative(value)
-                } else {
-                    value
-                };
-                system.slots[slot].branches[branch].pin = Some((cell, value));
-            }
+            system.slots[slot].branches[number] = branch;
         }
+    }
+}
+
+/// The state and its value of `w = 0`.
+fn said_of_a_state(
+    system: &mut System,
+    branch: &Branch,
+    is_state: &dyn Fn(Cell) -> bool,
+) -> Option<(Cell, ExprId)> {
+    let sides = [(branch.lhs, branch.rhs), (branch.rhs, branch.lhs)];
+    let (cell, value, negated) = sides.into_iter().find_map(|(side, value)| {
+        let (cell, negated) = signed_cell(system, side)?;
+        (is_state(cell) && constant_between_events(system, value)).then_some((cell, value, negated))
+    })?;
+    let value = match negated {
+        true => system.exprs().negative(value),
+        false => value,
+    };
+    Some((cell, value))
+}
+
+/// The same where explicit values stand between: of one state it is a pin, of several an equation between states.
+fn said_of_states(system: &mut System, branch: Branch, values: &Values<'_>) -> Branch {
+    let Some((residual, states)) = values.of(system, &branch) else {
+        return branch;
+    };
+    let zero = system.exprs().constant(0.0);
+    if let [cell] = *states.as_slice() {
+        let leaf = Expr::Var(cell.0, System::cell_index(cell));
+        let value = solve_for(&mut system.flat.exprs, residual, zero, leaf);
+        if let Some(value) = value.filter(|&value| constant_between_events(system, value)) {
+            return Branch {
+                pin: Some((cell, value)),
+                ..branch
+            };
+        }
+    }
+    if states.is_empty() {
+        return branch;
+    }
+    Branch {
+        lhs: residual,
+        rhs: zero,
+        ..branch
     }
 }
 
@@ -147,7 +186,7 @@ fn refuse_two_pins(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
                     diagnostics.push(
                         diagnostic
                             .label(branch.origin.span, "by this equation of its mode")
-                            .note("two set-valued frictions on one body share its force in no definite way")
+                            .note("two set-valued frictions on one body, or on bodies that are rigidly joined, share their force in no definite way")
                             .help("make one an effect of the other, or put a stiffness between them"),
                     );
                 }

@@ -15,6 +15,7 @@ use crate::derivatives::by_rates;
 use crate::graph::Bipartite;
 use crate::matching::{self, Node};
 use crate::segments;
+use crate::split;
 use crate::system::{Cell, Equation, System};
 use hyde_diag::{MadeBy, Origin};
 use hyde_ir::{Expr, ExprId, Index, Quantity, Range, VarId, Variable, VariableKind};
@@ -182,6 +183,9 @@ fn name_rates(system: &mut System, number: usize) -> Option<()> {
     }
     for cell in derivatives {
         let leaf = Expr::Der(cell.0, System::cell_index(cell));
+        if system.flat.variables[cell.0].len.is_some() && !split::at_cell(system, cell) {
+            return None;
+        }
         let rate = new_rate(system, cell)?;
         let origin = equation.origin.made_by(MadeBy::Derivative);
         system.rewrite_all(None, |_, expr| (expr == leaf).then_some(rate));
@@ -277,7 +281,8 @@ fn variable(system: &System, id: ExprId) -> Option<Cell> {
 
 /// The rate of a variable, no longer its derivative: what `v = der(x)` names, or a new variable.
 fn take_rate(system: &mut System, cell: Cell) -> Option<ExprId> {
-    if system.flat.variables[cell.0].len.is_some() || pinned(system, cell) {
+    let array = system.flat.variables[cell.0].len.is_some();
+    if pinned(system, cell) || array && !split::at_cell(system, cell) {
         return None;
     }
     if let Some((rate, number)) = named_rates(system).get(&cell).copied() {
@@ -304,14 +309,13 @@ fn pinned(system: &System, cell: Cell) -> bool {
         .any(|(side, value)| system.flat.exprs[side] == leaf && system.is_parametric(value))
 }
 
-fn new_rate(system: &mut System, cell: Cell) -> Option<ExprId> {
+/// A new variable for the derivative of a scalar or of an element.
+pub(crate) fn new_rate(system: &mut System, cell: Cell) -> Option<ExprId> {
+    let name = format!("der({})", system.cell_name(cell));
     let of = &system.flat.variables[cell.0];
-    if of.len.is_some() {
-        return None;
-    }
     let dimension = of.quantity.dimension.divide(hyde_units::Dimension::TIME);
     let variable = Variable {
-        name: format!("der({})", of.name),
+        name,
         len: None,
         first: 1,
         kind: VariableKind::Continuous,

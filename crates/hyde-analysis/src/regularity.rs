@@ -9,6 +9,7 @@
 //! columns that do. Both are found by exact elimination, so that equal ratios are told from nearly equal ones. What only an
 //! instant or a mode makes singular is found by the run.
 
+mod closed;
 mod conflict;
 mod elimination;
 mod exact;
@@ -19,7 +20,9 @@ mod shortened;
 mod words;
 
 use crate::system::System;
+pub(crate) use closed::held_once_more;
 use hyde_diag::Diagnostics;
+pub(crate) use words::{and, noun};
 
 /// Reports what makes the model singular; whether anything does.
 pub(crate) fn refuse(system: &System, diagnostics: &mut Diagnostics) -> bool {

@@ -1,9 +1,10 @@
 //! What authors said of variables as states (`state = always`), held against what became of them.
 
-use crate::system::System;
+use crate::derivatives::fixed_by_modes;
+use crate::system::{Cell, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_ir::dae::{Alias, Dae, Space};
-use hyde_ir::{StateChoice, VarId};
+use hyde_ir::{Expr, Range, StateChoice, VarId};
 
 /// What became of a variable.
 enum Fate {
@@ -16,18 +17,25 @@ enum Fate {
 }
 
 /// Reports every choice that could not be met: `always` and `never` as errors, `prefer` and `avoid` as warnings.
-pub(crate) fn check(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
+pub(crate) fn check(dae: &mut Dae, system: &mut System, diagnostics: &mut Diagnostics) {
+    // The expressions belong to the equations again, which tell the causes.
+    std::mem::swap(&mut dae.exprs, &mut system.flat.exprs);
+    report(dae, system, diagnostics);
+    std::mem::swap(&mut dae.exprs, &mut system.flat.exprs);
+}
+
+fn report(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
     for (var, variable) in dae.variables.enumerate() {
-        let (choice, fate) = (variable.state, fate(dae, system, var));
+        let choice = variable.state;
         let wanted = choice >= StateChoice::Prefer;
-        let unmet = match fate {
+        if choice == StateChoice::Open || system.aliases.contains_key(&(var, 0)) && !wanted {
+            continue;
+        }
+        let unmet = match fate(dae, system, var) {
             Fate::State => choice <= StateChoice::Avoid,
             Fate::Other => wanted,
             Fate::Chosen => false,
         };
-        if choice == StateChoice::Open || system.aliases.contains_key(&(var, 0)) && !wanted {
-            continue;
-        }
         if unmet {
             diagnostics.push(refused(dae, system, var, wanted));
         }
@@ -140,12 +148,56 @@ fn refused(dae: &Dae, system: &System, var: VarId, wanted: bool) -> Diagnostic {
             .note("what it equals is known and constant")
             .help("take the choice from it, or free it");
     }
-    match dae.dependent.iter().find(|d| (d.var, d.element) == root) {
-        Some(dependent) => diagnostic
-            .label(dependent.origin.span, "this equation gives it by others, which are states")
-            .help("say `prefer` or `always` of it alone among those that the equation ties"),
-        None => diagnostic
+    let Some(dependent) = dae.dependent.iter().find(|d| (d.var, d.element) == root) else {
+        return diagnostic
             .note("no equation has its derivative, and no constraint between states could be solved for another one")
-            .help("choose a variable that is differentiated, or the derivative of one"),
+            .help("choose a variable that is differentiated, or the derivative of one");
+    };
+    diagnostic = diagnostic.label(
+        dependent.origin.span,
+        "this equation gives it by others, which are states",
+    );
+    let others = given_by(system, root);
+    let fixed = fixed_by_modes(system);
+    let held: Vec<String> = others
+        .iter()
+        .filter(|cell| fixed.contains(cell))
+        .map(|&cell| format!("`{}`", system.cell_name(cell)))
+        .collect();
+    let word = variable.state.word();
+    let also_chosen = |&(var, _): &Cell| dae.variables[var].state >= StateChoice::Prefer;
+    if !held.is_empty() {
+        return diagnostic
+            .note(format!(
+                "modes hold {} still, as a friction that sticks does: what they hold has to be a state",
+                crate::regularity::and(&held)
+            ))
+            .help(format!("take `state = {word}` from it"));
     }
+    diagnostic.help(match others.iter().any(also_chosen) {
+        true => {
+            "say `prefer` or `always` of it alone among those that the equation ties".to_owned()
+        }
+        false => {
+            format!("take `state = {word}` from it, or say `avoid` of one that the equation ties")
+        }
+    })
+}
+
+/// The variables in the equation that gives a variable.
+fn given_by(system: &System, cell: Cell) -> Vec<Cell> {
+    let leaf = Expr::Var(cell.0, System::cell_index(cell));
+    let exprs = &system.flat.exprs;
+    let rate = |expr| matches!(expr, Expr::Der(..));
+    let mut equations = system.equations.iter();
+    let found = equations.find(|equation| {
+        let scalar = equation.range == Range::SCALAR;
+        scalar && exprs[equation.lhs] == leaf && !exprs.any(equation.rhs, rate)
+    });
+    let below = found.map_or_else(Vec::new, |equation| exprs.below(&[equation.rhs]));
+    let cells = below.into_iter().filter_map(|id| {
+        let (var, index, derivative) = exprs[id].access()?;
+        System::cell(var, index).filter(|_| !derivative && system.is_continuous(var))
+    });
+    cells.collect()
 }

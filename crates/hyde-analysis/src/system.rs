@@ -42,6 +42,7 @@ pub(crate) struct Equation {
 }
 
 /// The model under analysis.
+#[derive(Clone)]
 pub(crate) struct System {
     pub(crate) flat: FlatModel,
     pub(crate) equations: Vec<Equation>,
@@ -58,6 +59,8 @@ pub(crate) struct System {
     pub(crate) notes: Vec<String>,
     /// Variables that equations give by states, so that they are none.
     pub(crate) dependent: Vec<Dependent>,
+    /// What a mode fixes and several states would give: it is to be a state itself.
+    pub(crate) to_be_states: Vec<Cell>,
 }
 
 impl System {
@@ -116,6 +119,7 @@ impl System {
             relations: hyde_ir::IdVec::new(),
             notes,
             dependent: Vec::new(),
+            to_be_states: Vec::new(),
         }
     }
 
@@ -282,6 +286,26 @@ impl System {
     ) -> bool {
         let divisor = divisor(&mut self.flat.exprs, lhs, rhs, leaf);
         divisor.is_some_and(|divisor| self.value_with(declared, divisor) == Some(0.0))
+    }
+
+    /// The value of an expression at the start of time, with the parameters and variables given; `None` if it has others.
+    pub(crate) fn value_at(
+        &self,
+        values: &[Vec<f64>],
+        cells: &BTreeMap<Cell, f64>,
+        id: ExprId,
+    ) -> Option<f64> {
+        let leaf = |expr: Expr| {
+            if let Expr::Var(var, index) = expr {
+                let cell = Self::cell(var, index).ok_or(())?;
+                return cells.get(&cell).copied().ok_or(());
+            }
+            if expr == Expr::Time {
+                return Ok(0.0);
+            }
+            declared(values, 0, expr)
+        };
+        self.flat.exprs.evaluate(id, leaf).ok()
     }
 
     /// The value of an expression of parameters with the values given; `None` if it is not one.

@@ -15,6 +15,7 @@
 mod branches;
 mod endless;
 mod located;
+mod struck;
 
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
@@ -400,6 +401,7 @@ impl Instant<'_, '_> {
             slides.retain(|slide| slide.modes.is_none_or(|pair| pair.automaton != automaton));
             self.state.z[program.automata[automaton].place] = to as f64;
         }
+        self.let_go(fired, &entered)?;
         self.pin(&entered)
     }
 

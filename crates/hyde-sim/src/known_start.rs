@@ -5,7 +5,7 @@ use crate::consistent::Consistent;
 use crate::failure::Failure;
 use crate::initial::{self, Round};
 use crate::setup::Setup;
-use crate::start_modes::{initial_pins, leave_impossible_modes, leave_modes_against};
+use crate::start_modes::{initial_pins, leave_impossible_modes, leave_modes};
 use crate::state::State;
 use hyde_program::Program;
 use hyde_signal::Table;
@@ -45,7 +45,7 @@ pub fn known_start(
     if !known.is_empty() {
         known.iter().for_each(|&(state, value)| y[state] = value);
         let is_known = |position: usize| known.iter().any(|(state, _)| *state == position);
-        leave_modes_against(&mut state, t, &y, &yp, &is_known)?;
+        leave_modes(&mut state, (t, &y, &yp), &|_, position| is_known(position))?;
         state.pinned = initial_pins(&mut state, t, &y, &yp);
         let kept = Round::StatesKept;
         initial::solve(&mut state, &mut consistent, t, &mut y, &mut yp, kept)?;

@@ -11,6 +11,9 @@ use nalgebra::{DMatrix, DVector};
 /// The choice is changed when another one is better by this factor.
 const WORTH_A_CHANGE: f64 = 5.0;
 
+/// How little the column of a variable counts whose value is given: it is determined only where nothing else can be.
+const GIVEN: f64 = 1e-6;
+
 /// Steps to the constraints at most.
 const MAX_STEPS_TO_CONSTRAINTS: usize = 30;
 
@@ -37,7 +40,7 @@ pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &mut [f64], yp: 
         let mut jacobian = weighted(jacobian(state, selection, t, y, yp), selection);
         for (column, &candidate) in selection.candidates.iter().enumerate() {
             if fixed[candidate] {
-                jacobian.column_mut(column).scale_mut(1e-6);
+                jacobian.column_mut(column).scale_mut(GIVEN);
             }
         }
         let determined = best(&jacobian);
@@ -103,6 +106,31 @@ pub(crate) fn choose_again(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64])
         }
     }
     changed
+}
+
+/// Makes states of the variables that an event `struck`, as far as the constraints allow: the others follow from them.
+pub(crate) fn choose_struck(
+    state: &mut State<'_>,
+    t: f64,
+    y: &[f64],
+    yp: &[f64],
+    struck: &[usize],
+) {
+    for selection in &state.program.selections {
+        let candidates = selection.candidates.iter().enumerate();
+        let given = candidates.filter(|(_, candidate)| struck.contains(candidate));
+        let given: Vec<usize> = given.map(|(column, _)| column).collect();
+        let is_state = |&column: &usize| state.differential[selection.candidates[column]];
+        if given.iter().all(is_state) {
+            continue;
+        }
+        let mut jacobian = weighted(jacobian(state, selection, t, y, yp), selection);
+        for column in given {
+            jacobian.column_mut(column).scale_mut(GIVEN);
+        }
+        let determined = best(&jacobian);
+        set(state, selection, &determined);
+    }
 }
 
 /// The derivatives of the constraints by the variables.

@@ -1,4 +1,4 @@
-//! The modes a run starts in: the states they fix, and which initial modes cannot be.
+//! Modes that cannot be with the values that states have, at the start and after an impact: they are left.
 
 use crate::failure::{Failure, FailureKind};
 use crate::guards::{current_mode, is_active};
@@ -27,8 +27,7 @@ pub(crate) fn initial_pins(
         .collect()
 }
 
-/// Leaves initial modes that fix a state whose fixed start value is another one: by the first exit to a mode in which
-/// the model can be. A guide that moves at the start slips.
+/// Leaves initial modes that fix a state whose fixed start value is another one. A guide that moves at the start slips.
 pub(crate) fn leave_impossible_modes(
     state: &mut State<'_>,
     t: f64,
@@ -36,7 +35,7 @@ pub(crate) fn leave_impossible_modes(
     yp: &[f64],
 ) -> Result<(), Box<Failure>> {
     let program: &Program = state.program;
-    leave_modes_against(state, t, y, yp, &|position| {
+    let declared = |_: usize, position: usize| {
         program.initial.iter().any(|condition| match condition {
             InitialCondition::Fixed {
                 state,
@@ -49,26 +48,27 @@ pub(crate) fn leave_impossible_modes(
             | InitialCondition::Equation { .. }
             | InitialCondition::Check { .. } => false,
         })
-    })
+    };
+    leave_modes(state, (t, y, yp), &declared).map(drop)
 }
 
-/// The same where it is known otherwise which states have their values for good.
-pub(crate) fn leave_modes_against(
+/// Leaves modes that fix a state to another value than it has, where that value was `given` to the state (of an automaton,
+/// at a position): by the first exit to a mode in which the model can be. Gives the reactions that this takes.
+pub(crate) fn leave_modes(
     state: &mut State<'_>,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-    declared: &dyn Fn(usize) -> bool,
-) -> Result<(), Box<Failure>> {
+    (t, y, yp): (f64, &[f64], &[f64]),
+    given: &dyn Fn(usize, usize) -> bool,
+) -> Result<Vec<usize>, Box<Failure>> {
     let program: &Program = state.program;
+    let mut taken = Vec::new();
     for automaton in 0..program.automata.len() {
-        let Some((pin, value)) = violated(state, automaton, t, y, yp, declared) else {
+        let Some((pin, value)) = violated(state, automaton, t, y, yp, given) else {
             continue;
         };
         let here = current_mode(program, &state.z, automaton);
         let before = state.z.clone();
-        let mut found = false;
-        for reaction in &program.reactions {
+        let mut found = None;
+        for (number, reaction) in program.reactions.iter().enumerate() {
             let ReactionKind::Transition {
                 automaton: of,
                 from,
@@ -89,31 +89,32 @@ pub(crate) fn leave_modes_against(
                 }
             }
             state.z[program.automata[automaton].place] = to as f64;
-            if violated(state, automaton, t, y, yp, declared).is_none()
+            if violated(state, automaton, t, y, yp, given).is_none()
                 && !leaves_at_once(state, automaton, to, t, y, yp)
             {
-                found = true;
+                found = Some(number);
                 break;
             }
             state.z.copy_from_slice(&before);
         }
-        if !found {
+        let Some(found) = found else {
             let name = program.unknown_name(program.pins[pin].state);
             let kind = FailureKind::Impact(name, y[program.pins[pin].state], value);
             return Err(Failure::new(kind, t).at_origin(&program.pins[pin].origin));
-        }
+        };
+        taken.push(found);
     }
-    Ok(())
+    Ok(taken)
 }
 
-/// The pin of an automaton's mode that a fixed start value contradicts, with its value.
+/// The pin of an automaton's mode that a given value contradicts, with its value.
 fn violated(
     state: &mut State<'_>,
     automaton: usize,
     t: f64,
     y: &[f64],
     yp: &[f64],
-    declared: &dyn Fn(usize) -> bool,
+    given: &dyn Fn(usize, usize) -> bool,
 ) -> Option<(usize, f64)> {
     let program = state.program;
     let mode = current_mode(program, &state.z, automaton);
@@ -123,7 +124,7 @@ fn violated(
         let value = values[program.assignments.len() + number];
         let tolerance = 1e-9 * value.abs().max(y[pin.state].abs());
         let other = (y[pin.state] - value).abs() > tolerance;
-        (pin.automaton == automaton && pin.mode == mode && other && declared(pin.state))
+        (pin.automaton == automaton && pin.mode == mode && other && given(automaton, pin.state))
             .then_some((number, value))
     })
 }

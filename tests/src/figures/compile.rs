@@ -1,4 +1,4 @@
-//! `compile_ms_y_axis`, `compile_growth_100k_over_100`: from source text to machine code that has run once.
+//! `compile_ms_y_axis`, `compile_growth_100k_over_100`, `compile_chain_growth_400_over_100`: from source text to machine code that has run once.
 
 use super::promise::{Figure, Measured, Promise, Session};
 use super::start::START;
@@ -30,6 +30,38 @@ pub(super) const GROWTH: Figure = Figure {
         Ok(Measured::Value(screw(1e5)? / screw(100.0)?))
     },
 };
+
+/// The time a mass of a chain takes, of 400 over that of 100.
+pub(super) const CHAIN: Figure = Figure {
+    name: "compile_chain_growth_400_over_100",
+    unit: "ratio",
+    promise: Promise::Below(2.0),
+    measure: |_: &Session| {
+        let chain = |masses: usize| {
+            let example = Example::load("tests/models/screw.hyde", None)?;
+            let example = example.replaced(&chain_of(masses), "still");
+            Ok::<f64, String>(shortest(&example)? / masses as f64)
+        };
+        Ok(Measured::Value(chain(400)? / chain(100)?))
+    },
+};
+
+/// Masses with a spring between each two, by name.
+fn chain_of(masses: usize) -> String {
+    let part = |n: usize| format!("  Mass m{n}(M = 1 [kg]); SpringDamper k{n}(c = 1e4 [N/m]);\n");
+    let joint = |n: usize| {
+        format!(
+            "  connect(m{n}.b, k{n}.a); connect(k{n}.b, m{}.a);\n",
+            n + 1
+        )
+    };
+    let parts: String = (0..masses).map(part).collect();
+    let joints: String = (0..masses).map(joint).collect();
+    format!(
+        "package chain;\nimport SI.*;\nimport Translational.*;\nmodel Chain\n{parts}  Mass m{masses}(M = 1 [kg]);\n\
+         equation\n{joints}end Chain;\nexperiment still of Chain\n  solve ida(rtol = 1e-6) stop 1 [s];\nend still;\n"
+    )
+}
 
 /// Repeats; the shortest counts, for nothing but other work on the machine makes one longer.
 const REPEATS: usize = 7;

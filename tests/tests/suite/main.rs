@@ -26,6 +26,7 @@ mod experiments;
 mod first_order;
 mod frequency_responses;
 mod gradients;
+mod held_parts;
 mod ledger;
 mod limit_cycle;
 mod loops;

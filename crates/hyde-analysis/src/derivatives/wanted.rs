@@ -2,8 +2,25 @@
 
 use crate::alias;
 use crate::system::{Cell, System};
-use hyde_ir::{Expr, ExprId};
+use hyde_ir::{Expr, ExprId, StateChoice};
 use std::collections::BTreeSet;
+
+/// The cells that their authors or modes want as states, without those that are given by other states already.
+pub(super) fn states(system: &System) -> Vec<Cell> {
+    let variables = system.flat.variables.enumerate();
+    let preferred = variables
+        .filter(|(_, variable)| variable.state >= StateChoice::Prefer && variable.len.is_none());
+    let given: BTreeSet<Cell> = system
+        .dependent
+        .iter()
+        .map(|d| (d.var, d.element))
+        .collect();
+    preferred
+        .map(|(var, _)| (var, 0))
+        .chain(system.to_be_states.iter().copied())
+        .filter(|cell| !system.aliases.contains_key(cell) && !given.contains(cell))
+        .collect()
+}
 
 /// The cells under `der` in initial equations: `der(slip) = 0` needs the derivative of what `slip` is.
 pub(super) fn at_start(system: &System) -> BTreeSet<Cell> {
@@ -19,7 +36,7 @@ pub(super) fn at_start(system: &System) -> BTreeSet<Cell> {
 }
 
 /// The cells that modes fix to a constant, and those that they are the derivatives of.
-pub(super) fn kept(system: &System) -> BTreeSet<Cell> {
+pub(crate) fn kept(system: &System) -> BTreeSet<Cell> {
     let branches = system.slots.iter().flat_map(|slot| &slot.branches);
     let sides = branches.flat_map(|branch| [(branch.lhs, branch.rhs), (branch.rhs, branch.lhs)]);
     let fixes = sides.filter_map(|(a, b)| {

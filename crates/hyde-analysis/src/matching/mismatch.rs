@@ -1,5 +1,7 @@
 //! What is wrong where equations and unknowns do not match, in the words of the model.
 
+mod massless;
+
 use super::{Node, origin, sides};
 use crate::graph::{Bipartite, Matching};
 use crate::segments::Segment;
@@ -24,10 +26,12 @@ pub(super) fn report(
     let mut constraints = false;
     for &left in &surplus {
         let (lefts, rights) = graph.over_determined(matching, left);
+        let massless = massless::between(system, nodes, &lefts);
+        constraints |= massless.is_some();
         let diagnostic = if rights.is_empty() {
             constrained(system, nodes[left])
         } else {
-            too_many(system, nodes, unknowns, &lefts, &rights)
+            massless.unwrap_or_else(|| too_many(system, nodes, unknowns, &lefts, &rights))
         };
         constraints |= diagnostic.code == Code::Constrained;
         diagnostics.push(diagnostic);

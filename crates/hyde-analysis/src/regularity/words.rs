@@ -392,7 +392,8 @@ fn connector(name: &str) -> &str {
     name.rsplit_once('.').map_or(name, |(before, _)| before)
 }
 
-fn and(names: &[String]) -> String {
+/// A list of names as words.
+pub(crate) fn and(names: &[String]) -> String {
     match names {
         [] => String::new(),
         [only] => only.clone(),
@@ -401,7 +402,7 @@ fn and(names: &[String]) -> String {
 }
 
 /// What a quantity is called.
-fn noun(dimension: Dimension) -> &'static str {
+pub(crate) fn noun(dimension: Dimension) -> &'static str {
     let known: [([i16; 7], i16, &str); 9] = [
         ([0, 0, 0, 0, 0, 0, 0], 1, "angle"),
         ([0, 1, 0, 0, 0, 0, 0], 0, "place"),

@@ -1,0 +1,77 @@
+//! Loops of rigid parts that are closed once more than they can be, in the words of the model.
+
+use super::words::and;
+use crate::matching::{Node, origin, sides};
+use crate::system::System;
+use hyde_diag::{Code, Diagnostic, MadeBy, Origin, Span};
+use hyde_ir::Expr;
+
+/// Constraints of which each follows from the others wherever they hold.
+pub(crate) fn held_once_more(system: &System, constraints: Vec<Node>) -> Diagnostic {
+    let mut parts: Vec<(String, Span)> = Vec::new();
+    // What the top of the model says itself.
+    let mut own: Vec<Span> = Vec::new();
+    for node in constraints {
+        let equation = origin(system, node);
+        if system.component(&equation).is_none() && !own.contains(&equation.span) {
+            own.push(equation.span);
+        }
+        for origin in named(system, node) {
+            if let Some(part) = system.component(&origin)
+                && !parts.contains(&part)
+            {
+                parts.push(part);
+            }
+        }
+    }
+    parts.sort_by_key(|(_, span)| span.start);
+    let names: Vec<String> = parts.iter().map(|(name, _)| format!("`{name}`")).collect();
+    let who = match names.as_slice() {
+        [] | [_] => "constraints".to_owned(),
+        several => and(several),
+    };
+    let message = format!("{who} hold each other once more than they can be held");
+    let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message);
+    for span in own.into_iter().take(4) {
+        diagnostic = diagnostic.label(span, "a constraint among them");
+    }
+    for (number, (part, span)) in parts.iter().take(8).enumerate() {
+        let text = match number {
+            0 => "one of the rigid parts that close a loop".to_owned(),
+            _ => format!("`{part}` is one too"),
+        };
+        diagnostic = diagnostic.label(*span, text);
+    }
+    diagnostic
+        .note("with these dimensions the loop moves, but one of its parts is redundant: how they share the force cannot be told")
+        .help("take one out, or put a `SpringDamper` in the place of one strut, its joints included")
+}
+
+/// Who has a part in an equation: itself, its variables, and the parameters that are its dimensions.
+fn named(system: &System, node: Node) -> Vec<Origin> {
+    let own = origin(system, node);
+    let mut found = Vec::new();
+    if !matches!(own.made_by, MadeBy::Connection | MadeBy::Unconnected) {
+        found.push(own);
+    }
+    for (_, lhs, rhs) in sides(system, node) {
+        for id in system.flat.exprs.below(&[lhs, rhs]) {
+            match system.flat.exprs[id] {
+                Expr::Var(var, _) => found.push(system.flat.variables[var].origin.clone()),
+                Expr::Param(param, _) => found.push(system.flat.parameters[param].origin.clone()),
+                Expr::Const(_)
+                | Expr::Time
+                | Expr::Counter
+                | Expr::Der(..)
+                | Expr::Pre(..)
+                | Expr::Relation(_)
+                | Expr::InMode(..)
+                | Expr::Unary(..)
+                | Expr::Binary(..)
+                | Expr::If(..)
+                | Expr::NoEvent(_) => {}
+            }
+        }
+    }
+    found
+}
