@@ -14,9 +14,14 @@ pub(crate) fn read_text(path: &Path) -> Result<String, String> {
     as_text(path, read(path)?)
 }
 
-/// The content of a file as text.
+/// The content of a file as text, without the byte order mark that some editors put before it.
 pub(crate) fn as_text(path: &Path, bytes: Vec<u8>) -> Result<String, String> {
-    String::from_utf8(bytes).map_err(|_| format!("`{}` is no UTF-8 text", path.display()))
+    let text = String::from_utf8(bytes)
+        .map_err(|_| format!("`{}` is not UTF-8 text: save it as UTF-8", path.display()))?;
+    Ok(match text.strip_prefix('\u{feff}') {
+        Some(rest) => rest.to_owned(),
+        None => text,
+    })
 }
 
 /// Whether there is a file.

@@ -288,6 +288,10 @@ impl File {
                     span,
                     format!("neither in the library nor {}", packages.searched),
                 );
+                if let Some(help) = hyde_syntax::instead_of(&package) {
+                    diagnostics.push(diagnostic.help(help));
+                    continue;
+                }
                 let help = format!("the library has {}", library.join(", "));
                 diagnostics.push(if own.is_empty() {
                     diagnostic.help(help)

@@ -289,13 +289,16 @@ impl<'a> Model<'a, '_> {
         if let Some(found) = self.function_named(function) {
             return self.function(found, arguments, scope, span);
         }
+        let help = hyde_syntax::instead_of(&function.dotted());
+        let help =
+            help.unwrap_or_else(|| "a field is read at a place with `field.at(x)`".to_owned());
         self.report(
             Diagnostic::error(
                 Code::UnknownFunction,
                 format!("no function is called `{}`", function.dotted()),
             )
             .label(function.span, "not known")
-            .help("a field is read at a place with `field.at(x)`"),
+            .help(help),
         );
         self.poison(span)
     }

@@ -48,8 +48,12 @@ struct Walk<'a> {
     id: InstanceId,
     file: FileIndex,
     modifiers: Vec<Modifier<'a>>,
-    depth: usize,
+    /// The classes that extend each other on the way here.
+    way: Vec<&'a Class>,
 }
+
+/// So long a chain of `extends` at most.
+const MAX_EXTENDED: usize = 500;
 
 /// A replaceable part may be redeclared as what holds it, a few times over; more has no end.
 const MAX_NESTED: usize = 6;
@@ -159,7 +163,7 @@ impl<'a> Model<'a, '_> {
             id,
             file,
             modifiers,
-            depth: 0,
+            way: Vec::new(),
         };
         self.collect(walk, class, &mut collected);
         self.members(id, &collected);
@@ -229,13 +233,36 @@ impl<'a> Model<'a, '_> {
 
     /// The elements of a class, those of its bases first.
     fn collect(&mut self, walk: Walk<'a>, class: &'a Class, out: &mut Vec<Collected<'a>>) {
-        if walk.depth > 40 {
-            self.report(
-                Diagnostic::error(Code::Cycle, format!("`{}` extends itself", class.name.text))
-                    .label(class.name.span, "declared here"),
-            );
+        let own = walk
+            .way
+            .iter()
+            .position(|known| std::ptr::eq(*known, class));
+        if own.is_some() || walk.way.len() > MAX_EXTENDED {
+            let name = &class.name.text;
+            let (code, message) = match own {
+                Some(own) => {
+                    let names: Vec<String> = walk.way[own..]
+                        .iter()
+                        .chain([&class])
+                        .map(|class| format!("`{}`", class.name.text))
+                        .collect();
+                    let message = match names.len() {
+                        2 => format!("`{name}` extends itself"),
+                        _ => format!("`{name}` extends itself: {}", names.join(" extends ")),
+                    };
+                    (Code::Cycle, message)
+                }
+                None => (
+                    Code::TooDeep,
+                    format!("more than {MAX_EXTENDED} models extend each other up to `{name}`"),
+                ),
+            };
+            let diagnostic = Diagnostic::error(code, message);
+            self.report(diagnostic.label(class.name.span, "declared here"));
             return;
         }
+        let mut walk = walk;
+        walk.way.push(class);
         match &class.body {
             ClassBody::Short {
                 base,
@@ -272,7 +299,6 @@ impl<'a> Model<'a, '_> {
         match self.names.class(walk.file, base) {
             Some((file, class)) => {
                 walk.file = file;
-                walk.depth += 1;
                 self.collect(walk, class, out);
             }
             None => {

@@ -341,6 +341,10 @@ impl<'a, 'd> Model<'a, 'd> {
             "not known",
         );
         let diagnostic = match names::nearest(word, known.iter().copied()) {
+            _ if word == "Modelica" => {
+                let help = hyde_syntax::instead_of(&whole.dotted());
+                diagnostic.help(help.unwrap_or_default())
+            }
             Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
             None if known.is_empty() => diagnostic,
             None => diagnostic.help(format!("known here: {}", listed(&known))),

@@ -112,6 +112,9 @@ impl<'a> Names<'a> {
             format!("no type or model is called `{text}` here"),
         )
         .label(name.span, "not known in this file");
+        if let Some(help) = hyde_syntax::instead_of(&text) {
+            return diagnostic.help(help);
+        }
         match nearest(&text, known.iter().copied()) {
             Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
             None => diagnostic

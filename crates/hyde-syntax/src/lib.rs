@@ -7,6 +7,7 @@ pub mod ast;
 
 mod format;
 mod grammar;
+mod habits;
 mod nesting;
 mod parse;
 mod recover;
@@ -15,4 +16,5 @@ mod words;
 pub use format::{
     expression as format_expression, file as format, member, reference as format_reference,
 };
+pub use habits::instead_of;
 pub use parse::parse;

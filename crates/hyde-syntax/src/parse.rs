@@ -16,7 +16,7 @@ mod item;
 
 use crate::ast;
 use crate::grammar::{HydeParser, Rule};
-use crate::{nesting, recover, words};
+use crate::{habits, nesting, recover, words};
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use pest::Parser as _;
 use pest::error::{ErrorVariant, InputLocation};
@@ -25,6 +25,11 @@ use pest::iterators::Pairs;
 /// Parses one source file. What cannot be parsed is missing in the tree and told in `diagnostics`.
 pub fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> ast::File {
     let text = &sources.get(file).text;
+    if let Some(diagnostic) = without_end(text, file) {
+        // Whatever stands behind it is not read: nothing else is known of the file.
+        diagnostics.push(diagnostic);
+        return ast::File::default();
+    }
     let too_deep = nesting::too_deep(text);
     Parser {
         text,
@@ -34,6 +39,26 @@ pub fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> 
         diagnostics,
     }
     .file()
+}
+
+/// A comment or a text that goes on to the end of the file.
+fn without_end(text: &str, file: FileId) -> Option<Diagnostic> {
+    let (at, opened) = recover::without_end(text)?;
+    let span = Span::new(file, at, at + opened.len());
+    let (what, help) = if opened == "\"" {
+        (
+            "text",
+            "end it with `\"`; where this one does, a text before it has no end",
+        )
+    } else {
+        ("comment", "end it with `*/`")
+    };
+    let message = format!("this {what} goes on to the end of the file");
+    Some(
+        Diagnostic::error(Code::Syntax, message)
+            .label(span, "begins here")
+            .help(help),
+    )
 }
 
 /// The state of parsing one file: how far it got.
@@ -142,9 +167,27 @@ impl<'a> Parser<'a> {
             ErrorVariant::ParsingError { positives, .. } => words::expected(positives),
             ErrorVariant::CustomError { message } => message.clone(),
         };
+        let first = self.text[start..]
+            .split(|c: char| !c.is_alphanumeric())
+            .next();
+        if let Some(word) = first.filter(|word| recover::BLOCKS.contains(word))
+            && expected == format!("`{word}`")
+        {
+            let opened = Span::new(self.file, start, start + word.len());
+            return Diagnostic::error(Code::Syntax, format!("this `{word}` is not ended"))
+                .label(opened, "begins here")
+                .label(span, format!("expected `end {word};`"))
+                .help(format!("write `end {word};`"));
+        }
         let found = found.map_or("the end of the file".to_owned(), |(_, token)| {
             format!("`{token}`")
         });
+        if let Some(found) = habits::find(self.text, start, begin) {
+            let span = Span::new(self.file, found.begin, found.end);
+            return Diagnostic::error(Code::Syntax, found.habit.message)
+                .label(span, "not a part of the language")
+                .help(found.habit.help);
+        }
         let hint = self.hint(start, begin);
         // What is missing belongs behind the word before, not in front of the next line.
         let (span, label) = match &hint {
@@ -190,13 +233,7 @@ impl<'a> Parser<'a> {
                 help,
             })
         };
-        if here.starts_with(":=") {
-            Some(Hint {
-                expected: Some("`=`"),
-                behind: false,
-                help: "equations and bindings are written with `=`, not `:=`",
-            })
-        } else if open && here.starts_with(';') {
+        if open && here.starts_with(';') {
             Some(Hint {
                 expected: Some("`)`"),
                 behind: true,
@@ -210,10 +247,6 @@ impl<'a> Parser<'a> {
             })
         } else if here.starts_with("==") {
             help("an equation is written with one `=`; `==` compares")
-        } else if here.starts_with("!=") {
-            help("not equal is written `<>`")
-        } else if here.starts_with("&&") || here.starts_with("||") {
-            help("write `and`, `or`")
         } else {
             None
         }

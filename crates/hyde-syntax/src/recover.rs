@@ -42,6 +42,31 @@ impl<'a> Iterator for Scanner<'a> {
     }
 }
 
+/// Where a comment or a text begins that has no end, and the sign that opens it.
+pub(crate) fn without_end(text: &str) -> Option<(usize, &'static str)> {
+    let mut at = 0;
+    while let Some(next) = text[at..].find(['/', '"']) {
+        at += next;
+        let rest = &text[at..];
+        let (opened, len) = if rest.starts_with("//") {
+            at += rest.find('\n')?;
+            continue;
+        } else if rest.starts_with("/*") {
+            ("/*", rest.get(2..)?.find("*/").map(|end| end + 4))
+        } else if rest.starts_with('"') {
+            ("\"", string_end(rest))
+        } else {
+            at += 1;
+            continue;
+        };
+        match len {
+            Some(len) => at += len,
+            None => return Some((at, opened)),
+        }
+    }
+    None
+}
+
 /// The end of the last word of a text, comments and white space left out; 0 if it has none.
 pub(crate) fn end_of_last_word(text: &str) -> usize {
     Scanner::new(text, 0)
@@ -85,12 +110,54 @@ pub(crate) fn skip_statement(text: &str, start: usize) -> usize {
             "if" if at == start => blocks += 1,
             "for" | "when" | "if" if previous == "end" => blocks = blocks.saturating_sub(1),
             ";" if depth == 0 && blocks == 0 => return at + 1,
-            "end" if at > start && blocks == 0 && depth == 0 => return at,
+            "end" if at > start && depth == 0 && previous != "." => {
+                let next = Scanner::new(text, at + token.len()).next();
+                let of_block = next.is_some_and(|(_, next)| BLOCKS.contains(&next));
+                if blocks == 0 || !of_block {
+                    return at;
+                }
+            }
             _ => {}
         }
         previous = token;
     }
     text.len()
+}
+
+/// Where the section of a class ends that begins at `start`: at the next one, or at the end of the class.
+pub(crate) fn skip_section(text: &str, start: usize) -> usize {
+    let mut at = start;
+    loop {
+        at = skip_statement(text, at).max(at + 1);
+        let next = Scanner::new(text, at.min(text.len())).next();
+        let Some((begin, token)) = next else {
+            return text.len();
+        };
+        let ends = [
+            "equation",
+            "initial",
+            "algorithm",
+            "protected",
+            "public",
+            "end",
+        ];
+        if ends.contains(&token) || ITEMS.contains(&token) {
+            return begin;
+        }
+        at = begin;
+    }
+}
+
+/// Behind `end NAME;` of the class that starts at `start`, or its statement where it has none.
+pub(crate) fn skip_class(text: &str, start: usize, name: &str) -> usize {
+    let mut previous = "";
+    for (at, token) in Scanner::new(text, start) {
+        if previous == "end" && token == name {
+            return skip_statement(text, at);
+        }
+        previous = token;
+    }
+    skip_statement(text, start).max(start + 1)
 }
 
 /// The start of the next item after the broken one that starts at `start`.
@@ -99,6 +166,9 @@ pub(crate) fn skip_item(text: &str, start: usize) -> usize {
         .find(|&(at, token)| at > start && ITEMS.contains(&token) && text[..at].ends_with('\n'))
         .map_or(text.len(), |(at, _)| at)
 }
+
+/// The words of statements that have an `end` of their own.
+pub(crate) const BLOCKS: [&str; 3] = ["if", "for", "when"];
 
 /// The words that items begin with.
 pub(crate) const ITEMS: [&str; 8] = [
@@ -113,14 +183,19 @@ pub(crate) const ITEMS: [&str; 8] = [
 ];
 
 fn string_len(rest: &str) -> usize {
+    string_end(rest).unwrap_or(rest.len())
+}
+
+/// Behind the quote that ends a text.
+fn string_end(rest: &str) -> Option<usize> {
     let mut escaped = false;
     for (at, c) in rest.char_indices().skip(1) {
         match c {
             _ if escaped => escaped = false,
             '\\' => escaped = true,
-            '"' => return at + 1,
+            '"' => return Some(at + 1),
             _ => {}
         }
     }
-    rest.len()
+    None
 }

@@ -153,7 +153,7 @@ impl<'a> Model<'a, '_> {
             id,
             file,
             modifiers,
-            depth: 0,
+            way: Vec::new(),
         };
         self.collect(walk, class, &mut collected);
         let (parameters, rest): (Vec<_>, Vec<_>) = collected.into_iter().partition(is_parameter);

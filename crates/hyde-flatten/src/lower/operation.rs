@@ -127,10 +127,12 @@ impl<'a> Model<'a, '_> {
             && matches!(op, BinaryOp::Eq | BinaryOp::Ne)
             && (self.varies(a.id) || self.varies(b.id))
         {
+            let sign = if op == BinaryOp::Eq { "==" } else { "<>" };
+            let message = format!("`{sign}` of continuous values: they are hardly ever equal");
             self.report(
-                Diagnostic::error(Code::WrongType, "continuous values are hardly ever equal")
+                Diagnostic::error(Code::WrongType, message)
                     .label(span, "compares values that change continuously")
-                    .help("compare with `<` or `>`"),
+                    .help("compare with `<` or `>`; within a distance, `abs(x - y) < 1e-6`"),
             );
         }
         let id = self.flat.exprs.binary(op, a.id, b.id);

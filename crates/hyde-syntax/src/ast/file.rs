@@ -3,7 +3,7 @@
 use super::{Class, Experiment, Name, Reference, Study, UnitText};
 
 /// A source file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct File {
     /// `package bench_axis "doc";`
     pub package: Option<(Reference, Option<String>)>,

@@ -1,9 +1,11 @@
 //! Expressions, by precedence climbing.
 
 use super::build::{Builder, Node, parts};
-use crate::ast::{Argument, Binary, Comprehension, Expr, ExprKind, Part, Range, Reference, Unary};
+use crate::ast::{
+    Argument, Binary, Comprehension, Expr, ExprKind, Part, Range, Reference, Unary, UnitText,
+};
 use crate::grammar::Rule;
-use hyde_diag::Span;
+use hyde_diag::{Code, Diagnostic, Span};
 use pest::pratt_parser::{Assoc, Op, PrattParser};
 use std::cell::RefCell;
 use std::sync::OnceLock;
@@ -151,7 +153,26 @@ impl Builder<'_> {
         {
             *slot = Some(unit);
         }
+        self.refuse_backwards(&from, &to);
         Some(Range { from, to })
+    }
+
+    /// A range of numbers goes upwards.
+    fn refuse_backwards(&mut self, from: &Expr, to: &Expr) {
+        let (Some((a, unit)), Some((b, other))) = (written(from), written(to)) else {
+            return;
+        };
+        let text = |unit: Option<&UnitText>| unit.map(|unit| unit.text.clone());
+        if a <= b || text(unit) != text(other) {
+            return;
+        }
+        let span = from.span.to(to.span);
+        let (low, high) = (crate::format_expression(to), crate::format_expression(from));
+        let message = "a range goes from the lower bound to the upper one";
+        let diagnostic = Diagnostic::error(Code::Syntax, message)
+            .label(span, "goes downwards")
+            .help(format!("write `{low} .. {high}`"));
+        self.diagnostics.push(diagnostic);
     }
 
     fn comprehension(
@@ -285,4 +306,15 @@ fn binary(rule: Rule) -> Binary {
         Rule::over => Binary::Div,
         _ => Binary::Pow,
     }
+}
+
+/// A number as it is written, with a sign, and its unit.
+fn written(expr: &Expr) -> Option<(f64, Option<&UnitText>)> {
+    if let ExprKind::Unary(Unary::Negative, inner) = &expr.kind {
+        return written(inner).map(|(number, unit)| (-number, unit));
+    }
+    if let ExprKind::Number(number, unit) = &expr.kind {
+        return Some((*number, unit.as_ref()));
+    }
+    None
 }

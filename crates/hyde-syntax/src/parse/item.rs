@@ -6,7 +6,7 @@ use crate::ast::{
     Class, ClassBody, ClassKind, Clocked, EffectUse, Element, File, Import, Item, Name, TypeItem,
 };
 use crate::grammar::Rule;
-use crate::recover;
+use crate::{habits, recover};
 use hyde_diag::{Code, Diagnostic, Span};
 
 /// Which section the elements of a class are in.
@@ -19,21 +19,22 @@ enum Section {
 
 impl Parser<'_> {
     pub(super) fn file(mut self) -> File {
-        let mut file = File {
-            package: None,
-            imports: Vec::new(),
-            items: Vec::new(),
-        };
+        let mut file = File::default();
         while self.more() {
             let start = self.at;
             if self.refuse_too_deep() {
                 continue;
             }
-            if self.looking_at("package") {
+            if self.looking_at("end") {
+                self.end_of_nothing();
+            } else if self.looking_at("package") {
+                self.refuse_second(&file);
                 if let Some(pairs) = self.expect(Rule::package_clause) {
                     let mut inner = significant(pairs).flat_map(parts);
                     let mut build = self.build(start);
-                    if let Some(path) = inner.next() {
+                    if let Some(path) = inner.next()
+                        && file.package.is_none()
+                    {
                         file.package =
                             Some((build.reference(path), inner.next().map(Builder::text)));
                     }
@@ -54,10 +55,36 @@ impl Parser<'_> {
                 continue;
             }
             if self.at == start {
-                self.at = recover::skip_item(self.text, start);
+                let behind = habits::behind_prefix(self.text, start);
+                self.at = behind.unwrap_or_else(|| recover::skip_item(self.text, start));
             }
         }
         file
+    }
+
+    /// A file is one package.
+    fn refuse_second(&mut self, file: &File) {
+        let Some((first, _)) = &file.package else {
+            return;
+        };
+        let span = Span::new(self.file, self.at, self.at + "package".len());
+        let message = "a file is one package: a second one begins here";
+        let diagnostic = Diagnostic::error(Code::Syntax, message)
+            .label(span, "a second package")
+            .label(first.span, "the first one")
+            .help("put it into a file of its own, called as the package, and import it: `import Name.*;`");
+        self.diagnostics.push(diagnostic);
+    }
+
+    /// `end NAME;` outside of everything, as of a package.
+    fn end_of_nothing(&mut self) {
+        let start = self.at;
+        let span = Span::new(self.file, start, start + "end".len());
+        let diagnostic = Diagnostic::error(Code::Syntax, "nothing is open here that could end")
+            .label(span, "an `end` too many")
+            .help("leave it out; a package is its file, `package Name;` on the first line, and has no `end`");
+        self.diagnostics.push(diagnostic);
+        self.at = recover::skip_statement(self.text, start + "end".len());
     }
 
     fn item(&mut self) -> Option<Item> {
@@ -136,11 +163,11 @@ impl Parser<'_> {
                 };
                 continue;
             }
-            if self.refuse_too_deep() {
+            if self.refuse_too_deep() || self.refuse_nested(name) {
                 continue;
             }
             let Some(pairs) = self.expect(Rule::element) else {
-                self.at = recover::skip_statement(self.text, start).max(start + 1);
+                self.at = self.behind_broken(start);
                 if self.at_item() {
                     break;
                 }
@@ -172,6 +199,43 @@ impl Parser<'_> {
         }
         self.missing_end(name);
         elements
+    }
+
+    /// Reports and skips a class inside of another; whether there was one.
+    fn refuse_nested(&mut self, outer: &Name) -> bool {
+        const CLASSES: [&str; 5] = ["model", "connector", "effect", "function", "package"];
+        let (Some(word), Some(name)) = (self.nth_word(0), self.nth_word(1)) else {
+            return false;
+        };
+        // At the beginning of a line it is the outer one that has no end.
+        if !CLASSES.contains(&word) || self.text[..self.at].ends_with('\n') {
+            return false;
+        }
+        let span = Span::new(self.file, self.at, self.at + word.len());
+        let message = format!("`{name}` stands inside of `{}`", outer.text);
+        let diagnostic = Diagnostic::error(Code::Syntax, message)
+            .label(span, "a class of its own")
+            .help(format!(
+                "put it before `{}`: a file has its classes side by side",
+                outer.text
+            ));
+        self.diagnostics.push(diagnostic);
+        self.at = recover::skip_class(self.text, self.at, name);
+        true
+    }
+
+    /// Where elements go on after a broken one.
+    fn behind_broken(&self, start: usize) -> usize {
+        if let Some(behind) = habits::behind_prefix(self.text, start) {
+            return behind;
+        }
+        let of_assignments = self.looking_at("algorithm") || self.nth_word(1) == Some("algorithm");
+        let behind = if of_assignments {
+            recover::skip_section(self.text, start)
+        } else {
+            recover::skip_statement(self.text, start)
+        };
+        behind.max(start + 1)
     }
 
     /// An equation in its section; one outside of any is reported.
