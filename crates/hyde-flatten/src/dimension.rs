@@ -184,11 +184,12 @@ impl Dimensions {
                     }
                     [(unknown, exponent)] => {
                         progress = true;
-                        let inverse = exponent.as_integer().and_then(|n| Exponent::ratio(-1, n));
-                        let inverse =
-                            inverse.or_else(|| Exponent::from_f64(-1.0 / exponent.to_f64()));
-                        self.solved[*unknown] = inverse.and_then(|inverse| known.power(inverse));
-                        self.waiting.push((a, b, demand));
+                        let root = Dimension::DIMENSIONLESS.divide(known).root(*exponent);
+                        self.solved[*unknown] = Some(root.unwrap_or(Dimension::DIMENSIONLESS));
+                        match root {
+                            Some(_) => self.waiting.push((a, b, demand)),
+                            None => found.push((no_root(*exponent, &demand), demand.sides)),
+                        }
                     }
                     _ => self.waiting.push((a, b, demand)),
                 }
@@ -214,6 +215,20 @@ impl Dimensions {
                 Dim::Any => None,
             })
     }
+}
+
+/// An unknown dimension to a power that no exact dimension has.
+fn no_root(exponent: Exponent, demand: &Demand) -> Diagnostic {
+    let (left, right) = demand.spans;
+    let message = format!("no dimension to the power {exponent} makes the two sides agree");
+    let diagnostic = Diagnostic::error(Code::UnitMismatch, message);
+    let diagnostic = match left == right {
+        true => diagnostic,
+        false => diagnostic.label(left, "this side"),
+    };
+    diagnostic
+        .label(right, "has a variable without a unit, to this power")
+        .help("declare the variable with a type or a unit, and divide it by a reference value of that unit before it is raised: `(x/(1 [m]))^1.3`")
 }
 
 fn verdict(

@@ -103,12 +103,22 @@ impl Dimension {
         if exponent.is_zero() {
             return Some(Self::DIMENSIONLESS);
         }
+        self.scaled(|known| known.times(exponent))
+    }
+
+    /// The dimension that has this one as its power; none if an exponent would not be exact.
+    #[must_use]
+    pub fn root(self, exponent: Exponent) -> Option<Self> {
+        self.scaled(|known| known.over(exponent))
+    }
+
+    fn scaled(self, change: impl Fn(Exponent) -> Option<Exponent>) -> Option<Self> {
         let mut result = self;
         for base in &mut result.base {
-            *base = base.times(exponent)?;
+            *base = change(*base)?;
         }
         if let AngleExponent::Known(angle) = self.angle {
-            result.angle = AngleExponent::Known(angle.times(exponent)?);
+            result.angle = AngleExponent::Known(change(angle)?);
         }
         Some(result)
     }

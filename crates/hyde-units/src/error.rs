@@ -52,8 +52,15 @@ pub enum UnitErrorKind {
         /// The number as written.
         number: String,
     },
-    /// A product after a division, as in `J/kg.K`.
+    /// A symbol that data sheets use for more than one quantity, or for what is not a unit, as `oz`.
     Ambiguous {
+        /// The symbol as written.
+        symbol: String,
+        /// What to write instead.
+        advice: &'static str,
+    },
+    /// A product after a division, as in `J/kg.K`.
+    TwoReadings {
         /// What probably was to be divided by, `kg.K`.
         divisor: String,
     },
@@ -79,7 +86,9 @@ impl UnitError {
     pub fn fact(&self) -> String {
         match &self.kind {
             UnitErrorKind::Empty => "a unit is missing".to_owned(),
-            UnitErrorKind::Unknown { symbol, .. } | UnitErrorKind::Joined { symbol, .. } => {
+            UnitErrorKind::Unknown { symbol, .. }
+            | UnitErrorKind::Joined { symbol, .. }
+            | UnitErrorKind::Ambiguous { symbol, .. } => {
                 format!("unknown unit `{symbol}`")
             }
             UnitErrorKind::Prefix { prefix, symbol } => {
@@ -92,7 +101,7 @@ impl UnitError {
                 format!("expected {expected}, found `{found}`")
             }
             UnitErrorKind::Factor { number } => format!("a unit has no factor like `{number}`"),
-            UnitErrorKind::Ambiguous { .. } => {
+            UnitErrorKind::TwoReadings { .. } => {
                 "a product after `/` can be read in two ways".to_owned()
             }
             UnitErrorKind::Offset { symbol } => {
@@ -120,10 +129,13 @@ impl UnitError {
                 Some("write `1` for a bare number".to_owned())
             }
             UnitErrorKind::Factor { .. } => Some("multiply the value by it instead".to_owned()),
-            UnitErrorKind::Ambiguous { divisor } => Some(format!("write `/({divisor})`")),
+            UnitErrorKind::Ambiguous { advice, .. } => Some((*advice).to_owned()),
+            UnitErrorKind::TwoReadings { divisor } => Some(format!("write `/({divisor})`")),
             UnitErrorKind::Offset { .. } => Some("write `K`".to_owned()),
-            UnitErrorKind::Prefix { .. }
-            | UnitErrorKind::Unexpected { .. }
+            UnitErrorKind::Prefix { symbol, .. } => {
+                Some(format!("write `{symbol}`, and the power of ten in the number"))
+            }
+            UnitErrorKind::Unexpected { .. }
             | UnitErrorKind::Exponent { .. }
             | UnitErrorKind::TooDeep
             | UnitErrorKind::OutOfRange => None,

@@ -58,6 +58,17 @@ impl Exponent {
         i32::try_from(parts / i64::from(PARTS)).ok().map(Self)
     }
 
+    /// The quotient, as in the root of `m^a` that is raised to b; none if it is not a whole number of parts or too large.
+    #[must_use]
+    pub fn over(self, other: Self) -> Option<Self> {
+        let parts = i64::from(self.0) * i64::from(PARTS);
+        let divisor = i64::from(other.0);
+        if divisor == 0 || parts % divisor != 0 {
+            return None;
+        }
+        i32::try_from(parts / divisor).ok().map(Self)
+    }
+
     /// Whether it is 0.
     #[must_use]
     pub const fn is_zero(self) -> bool {
@@ -152,6 +163,16 @@ mod tests {
         assert_eq!(sixteenth.times(Exponent::HALF), None);
         assert_eq!(Exponent::ratio(1, 11), None);
         assert_eq!(Exponent::ratio(1, 0), None);
+    }
+
+    #[test]
+    fn quotients_are_exact_or_refused() {
+        let exponent = |value| Exponent::from_f64(value).unwrap();
+        assert_eq!(exponent(2.6).over(exponent(1.3)), Some(exponent(2.0)));
+        assert_eq!(Exponent::ZERO.over(exponent(1.3)), Some(Exponent::ZERO));
+        assert_eq!(Exponent::ONE.over(exponent(-2.0)), Some(exponent(-0.5)));
+        assert_eq!(Exponent::ONE.over(exponent(1.3)), None);
+        assert_eq!(Exponent::ONE.over(Exponent::ZERO), None);
     }
 
     #[test]

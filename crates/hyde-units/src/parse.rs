@@ -38,7 +38,6 @@ pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
 }
 
 const MAX_DEPTH: usize = 16;
-const MAX_EXPONENT: i32 = 20;
 
 struct Parser<'a> {
     text: &'a str,
@@ -71,7 +70,7 @@ impl Parser<'_> {
                 divisor_start = Some(start);
             } else if let Some(start) = divisor_start {
                 let divisor = self.text[start..self.at].to_owned();
-                return Err(self.error(operator..self.at, UnitErrorKind::Ambiguous { divisor }));
+                return Err(self.error(operator..self.at, UnitErrorKind::TwoReadings { divisor }));
             }
             result = self.combine(&result, &factor, divides)?;
         }
@@ -109,6 +108,9 @@ impl Parser<'_> {
             return Err(self.bad_exponent(start));
         };
         let scale = unit.scale.power(exponent);
+        if !scale.is_usable() {
+            return Err(self.error(base.at.start..self.at, UnitErrorKind::OutOfRange));
+        }
         Ok(Part {
             unit: Unit {
                 dimension,
@@ -198,10 +200,9 @@ impl Parser<'_> {
             Some(c) if superscript(c).is_some() => (self.superscript_integer(), 1),
             Some(_) | None => return Ok(None),
         };
-        let small = ratio.0.abs() <= MAX_EXPONENT;
         match Exponent::ratio(ratio.0, ratio.1) {
-            Some(exponent) if small => Ok(Some(exponent)),
-            Some(_) | None => Err(self.bad_exponent(start)),
+            Some(exponent) => Ok(Some(exponent)),
+            None => Err(self.bad_exponent(start)),
         }
     }
 

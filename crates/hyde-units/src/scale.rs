@@ -104,6 +104,9 @@ impl Scale {
             return Self::ratio(self.factor().powf(exponent.to_f64()), 1.0);
         };
         let base = if n < 0 { self.inverse() } else { self };
+        if base.is_one() {
+            return Self::ONE;
+        }
         (0..n.unsigned_abs()).fold(Self::ONE, |product, _| product.multiply(base))
     }
 

@@ -9,6 +9,12 @@ use crate::symbol::{SYMBOLS, look_up, prefixed};
 /// two symbols without a dot, a slip of one letter.
 pub(crate) fn explain(symbol: &str) -> UnitErrorKind {
     let symbol_text = symbol.to_owned();
+    if let Some((_, advice)) = AMBIGUOUS.iter().find(|(text, _)| *text == symbol) {
+        return UnitErrorKind::Ambiguous {
+            symbol: symbol_text,
+            advice,
+        };
+    }
     if let Some((_, product)) = WELL_KNOWN.iter().find(|(joined, _)| *joined == symbol) {
         return UnitErrorKind::Joined {
             symbol: symbol_text,
@@ -41,7 +47,26 @@ pub(crate) fn explain(symbol: &str) -> UnitErrorKind {
 }
 
 /// Products whose letters would also match something less likely: `nm`, `N.ms`.
-const WELL_KNOWN: [(&str, &str); 3] = [("Nm", "N.m"), ("NM", "N.m"), ("Nms", "N.m.s")];
+#[rustfmt::skip]
+const WELL_KNOWN: [(&str, &str); 14] = [
+    ("Nm", "N.m"), ("NM", "N.m"), ("Nms", "N.m.s"),
+    ("kgcm", "kgf.cm"), ("gcm", "gf.cm"),
+    ("ozin", "ozf.in"), ("inoz", "ozf.in"), ("lbin", "lbf.in"), ("inlb", "lbf.in"), ("inlbf", "lbf.in"),
+    ("lbft", "lbf.ft"), ("ftlb", "lbf.ft"), ("ftlbf", "lbf.ft"), ("inozf", "ozf.in"),
+];
+
+/// Symbols of data sheets that stand for more than one quantity, or for none that is a unit.
+const AMBIGUOUS: [(&str, &str); 9] = [
+    ("oz", "write `ozf` for a force (a torque is in `ozf.in`), `ozm` for a mass"),
+    ("lb", "write `lbf` for a force (a torque is in `lbf.in`), `lbm` for a mass"),
+    ("lbs", "write `lbf` for a force (a torque is in `lbf.in`), `lbm` for a mass"),
+    ("kp", "write `kgf` for a kilopond"),
+    ("cpr", "write `counts/rev`"),
+    ("ppr", "write `counts/rev`"),
+    ("ipm", "write `in/min`"),
+    ("mph", "write `1.609344 [km/h]` for a mile an hour"),
+    ("dB", "a ratio is a pure number: write `10^(x/20)`, for 6 dB `2`"),
+];
 
 /// `ohms`, `Meter`, `kilonewtons` are words for symbols.
 fn meant_by_word(symbol: &str) -> Option<Vec<String>> {
@@ -49,6 +74,9 @@ fn meant_by_word(symbol: &str) -> Option<Vec<String>> {
     let singular = lower.strip_suffix('s').unwrap_or(&lower);
     for (word, prefix) in [
         ("", ""),
+        ("u", "u"),
+        ("m", "m"),
+        ("k", "k"),
         ("micro", "u"),
         ("milli", "m"),
         ("kilo", "k"),
@@ -94,29 +122,20 @@ fn split(symbol: &str) -> Option<String> {
     })
 }
 
-/// Symbols of three letters or more that one letter too many, too few, or wrong makes.
+/// Symbols that one slip makes of another.
+///
+/// A short symbol with one letter more or another letter is as likely a unit that the table lacks: `inc` is not an inch,
+/// `kgf` not a mass. So two letters in the wrong order are seen in three, a missing or further letter in four, a wrong
+/// one in five.
 fn one_slip(symbol: &str) -> Vec<String> {
-    // A letter too many at the end is told even of a symbol of two letters: `mHy` is `mH`.
-    let shorter: Vec<String> = spellings()
-        .filter(|text| {
-            text.len() >= 2 && symbol.strip_prefix(text.as_str()).is_some_and(one_letter)
-        })
-        .collect();
-    if !shorter.is_empty() {
-        return shorter;
-    }
-    let candidates = spellings().filter(|text| text.chars().count() >= 3);
-    candidates
+    spellings()
         .filter(|text| is_one_slip(text, symbol))
         .take(3)
         .collect()
 }
 
-fn one_letter(text: &str) -> bool {
-    text.chars().count() == 1
-}
-
 fn is_one_slip(a: &str, b: &str) -> bool {
+    let length = a.chars().count().max(b.chars().count());
     let (a, b): (Vec<char>, Vec<char>) = (a.chars().collect(), b.chars().collect());
     let same_start = a.iter().zip(&b).take_while(|(x, y)| x == y).count();
     let (a, b) = (&a[same_start..], &b[same_start..]);
@@ -128,7 +147,9 @@ fn is_one_slip(a: &str, b: &str) -> bool {
         .count();
     let (a, b) = (&a[..a.len() - same_end], &b[..b.len() - same_end]);
     let swapped = a.len() == 2 && b.len() == 2 && a[0] == b[1] && a[1] == b[0];
-    swapped || a.len().max(b.len()) == 1
+    let replaced = a.len() == 1 && b.len() == 1;
+    let one_more = a.len() + b.len() == 1;
+    length >= 3 && swapped || length >= 4 && one_more || length >= 5 && replaced
 }
 
 /// Every symbol with every prefix it takes, the bare symbols first.
@@ -196,13 +217,34 @@ mod tests {
 
     #[test]
     fn an_unusual_prefix_is_said_to_be_one() {
-        assert_eq!(message("krad/s"), "`rad` does not take the prefix `k`");
-        assert_eq!(message("kmin"), "`min` does not take the prefix `k`");
+        for (text, symbol) in [("krad/s", "rad"), ("kmin", "min")] {
+            let said = format!(
+                "`{symbol}` does not take the prefix `k`: write `{symbol}`, and the power of ten in the number"
+            );
+            assert_eq!(message(text), said);
+        }
     }
 
     #[test]
     fn what_is_like_nothing_gets_no_help() {
         assert_eq!(message("furlong"), "unknown unit `furlong`");
         assert_eq!(message("m/x"), "unknown unit `x`");
+    }
+
+    #[test]
+    fn a_unit_that_is_not_known_is_no_other_quantity() {
+        for text in ["slug", "dyn", "erg", "fur", "kat", "lux", "bps", "pcs", "rqm"] {
+            assert!(!message(text).contains("did you mean"), "{}", message(text));
+        }
+        for (text, help) in [
+            ("oz.in", "write `ozf` for a force (a torque is in `ozf.in`), `ozm` for a mass"),
+            ("lb.ft", "write `lbf` for a force (a torque is in `lbf.in`), `lbm` for a mass"),
+        ] {
+            assert!(message(text).ends_with(help), "{}", message(text));
+        }
+        assert_eq!(message("kgcm"), "unknown unit `kgcm`: write `kgf.cm`");
+        assert_eq!(message("ftlb"), "unknown unit `ftlb`: write `lbf.ft`");
+        assert_eq!(message("msec"), "unknown unit `msec`: did you mean `ms`?");
+        assert_eq!(message("kohms"), "unknown unit `kohms`: did you mean `kohm`?");
     }
 }

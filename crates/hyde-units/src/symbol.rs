@@ -41,7 +41,7 @@ pub(crate) const PREFIXES: [(char, Scale); 12] = [
 
 /// Every symbol without a prefix. Exponents: kg, m, A, s, K, mol, cd; then the angle.
 #[rustfmt::skip]
-pub(crate) const SYMBOLS: [Symbol; 41] = [
+pub(crate) const SYMBOLS: [Symbol; 56] = [
     row("m",   &["metre", "meter"],     [0, 1, 0, 0, 0, 0, 0], 0, Scale::ONE, "pnumcdk"),
     row("g",   &["gram", "gramme"],     [1, 0, 0, 0, 0, 0, 0], 0, Scale::ratio(1.0, 1e3), "numk"),
     row("s",   &["second", "sec"],      [0, 0, 0, 1, 0, 0, 0], 0, Scale::ONE, "fpnum"),
@@ -55,7 +55,8 @@ pub(crate) const SYMBOLS: [Symbol; 41] = [
     row("arcmin", &["arcminute"],                  [0; 7], 1, Scale::of_pi(1.0, 10_800.0), ""),
     row("arcsec", &["arcsecond"],                  [0; 7], 1, Scale::of_pi(1.0, 648_000.0), ""),
     row("rev",    &["revolution", "turn", "rot"],  [0; 7], 1, Scale::of_pi(2.0, 1.0), ""),
-    row("rpm",    &["upm"],  [0, 0, 0, -1, 0, 0, 0], 1, Scale::of_pi(1.0, 30.0), ""),
+    row("rpm",    &["upm"],  [0, 0, 0, -1, 0, 0, 0], 1, Scale::of_pi(1.0, 30.0), "k"),
+    row("rps",    &[],       [0, 0, 0, -1, 0, 0, 0], 1, Scale::of_pi(2.0, 1.0), ""),
     row("Hz",     &["hertz", "cps"],    [0, 0, 0, -1, 0, 0, 0], 0, Scale::ONE, "umkMG"),
     // time
     row("min", &["minute"],             [0, 0, 0, 1, 0, 0, 0], 0, Scale::ratio(60.0, 1.0), ""),
@@ -69,6 +70,17 @@ pub(crate) const SYMBOLS: [Symbol; 41] = [
     row("gn",  &["g0"],                 [0, 1, 0, -2, 0, 0, 0], 0, Scale::ratio(980_665.0, 1e5), ""),
     row("bar", &[],                     [1, -1, 0, -2, 0, 0, 0], 0, Scale::ratio(1e5, 1.0), "m"),
     row("in",  &["inch", "inche"],      [0, 1, 0, 0, 0, 0, 0], 0, Scale::ratio(254.0, 1e4), ""),
+    row("ft",  &["foot", "feet"],       [0, 1, 0, 0, 0, 0, 0], 0, Scale::ratio(3048.0, 1e4), ""),
+    row("mil", &[],                     [0, 1, 0, 0, 0, 0, 0], 0, Scale::ratio(254.0, 1e7), ""),
+    row("thou", &[],                    [0, 1, 0, 0, 0, 0, 0], 0, Scale::ratio(254.0, 1e7), ""),
+    row("gf",  &["pond"],               [1, 1, 0, -2, 0, 0, 0], 0, Scale::ratio(980_665.0, 1e8), "k"),
+    row("lbm", &[],                     [1, 0, 0, 0, 0, 0, 0], 0, Scale::ratio(45_359_237.0, 1e8), ""),
+    row("ozm", &[],                     [1, 0, 0, 0, 0, 0, 0], 0, Scale::ratio(45_359_237.0, 16e8), ""),
+    row("lbf", &[],                     [1, 1, 0, -2, 0, 0, 0], 0, Scale::ratio(44_482_216_152_605.0, 1e13), "k"),
+    row("ozf", &[],                     [1, 1, 0, -2, 0, 0, 0], 0, Scale::ratio(44_482_216_152_605.0, 16e13), ""),
+    row("psi", &[],                     [1, -1, 0, -2, 0, 0, 0], 0, Scale::ratio(44_482_216_152_605.0, 64_516e5), "k"),
+    row("hp",  &["horsepower"],         [1, 2, 0, -3, 0, 0, 0], 0, Scale::ratio(37_284_993_579_113_512.0, 5e13), ""),
+    row("PS",  &[],                     [1, 2, 0, -3, 0, 0, 0], 0, Scale::ratio(73_549_875.0, 1e5), ""),
     row("l",   &["litre", "liter"],     [0, 3, 0, 0, 0, 0, 0], 0, Scale::ratio(1.0, 1e3), "umcdh"),
     row("L",   &[],                     [0, 3, 0, 0, 0, 0, 0], 0, Scale::ratio(1.0, 1e3), "um"),
     row("t",   &["tonne", "ton"],       [1, 0, 0, 0, 0, 0, 0], 0, Scale::ratio(1e3, 1.0), "k"),
@@ -79,12 +91,15 @@ pub(crate) const SYMBOLS: [Symbol; 41] = [
     row("C",   &["coulomb"],            [0, 0, 1, 1, 0, 0, 0], 0, Scale::ONE, "pnumk"),
     row("Ah",  &[],                     [0, 0, 1, 1, 0, 0, 0], 0, Scale::ratio(3600.0, 1.0), "umk"),
     row("F",   &["farad"],              [-1, -2, 2, 4, 0, 0, 0], 0, Scale::ONE, "fpnumk"),
-    row("H",   &["henry", "henrie"],    [1, 2, -2, -2, 0, 0, 0], 0, Scale::ONE, "pnumk"),
+    row("H",   &["henry", "henrie", "hy"],    [1, 2, -2, -2, 0, 0, 0], 0, Scale::ONE, "pnumk"),
     row("Wb",  &["weber"],              [1, 2, -1, -2, 0, 0, 0], 0, Scale::ONE, "numk"),
     row("T",   &["tesla"],              [1, 0, -1, -2, 0, 0, 0], 0, Scale::ONE, "pnumk"),
     row("VA",  &[],                     [1, 2, 0, -3, 0, 0, 0], 0, Scale::ONE, "mkMG"),
     // numbers
     row("%",   &["percent", "pct"],     [0; 7], 0, Scale::ratio(1.0, 100.0), ""),
+    row("inc", &["increment"],          [0; 7], 0, Scale::ONE, ""),
+    row("count", &[],                   [0; 7], 0, Scale::ONE, ""),
+    row("counts", &["tick", "pulse", "cts"], [0; 7], 0, Scale::ONE, ""),
     row("ppm", &[],                     [0; 7], 0, Scale::ratio(1.0, 1e6), ""),
     // temperatures with a zero point of their own
     affine("degC", &["celsius", "centigrade"], Scale::ONE, 273.15),

@@ -136,6 +136,42 @@ mod tests {
         assert_eq!(si(60.0, "1/min"), 1.0);
     }
 
+    /// NIST SP 811, appendix B: the customary units from the pound (0.453 592 37 kg), the inch and standard gravity.
+    #[test]
+    fn units_of_data_sheets_have_the_values_of_nist() {
+        for (unit, value) in [
+            ("ft", 0.3048),
+            ("mil", 2.54e-5),
+            ("thou", 2.54e-5),
+            ("kgf", 9.80665),
+            ("gf", 9.80665e-3),
+            ("lbm", 0.453_592_37),
+            ("ozm", 0.028_349_523_125),
+            ("lbf", 4.448_221_615_260_5),
+            ("ozf", 0.278_013_850_953_781_3),
+            ("psi", 6_894.757_293_168_362),
+            ("hp", 745.699_871_582_270_2),
+            ("PS", 735.498_75),
+            ("rps", 2.0 * PI),
+            ("inc", 1.0),
+            ("counts", 1.0),
+        ] {
+            assert!((si(1.0, unit) - value).abs() <= 1e-15 * value, "{unit}");
+        }
+        for (unit, value) in [
+            ("kgf.cm", 0.098_066_5),
+            ("ozf.in", 7.061_551_814_226_043e-3),
+            ("lbf.in", 0.112_984_829_027_616_7),
+            ("lbf.ft", 1.355_817_948_331_400_4),
+            ("V/krpm", 30e-3 / PI),
+            ("N.m/krpm", 30e-3 / PI),
+            ("lbm.ft2", 0.042_140_110_093_804_8),
+            ("counts/rev", 1.0 / (2.0 * PI)),
+        ] {
+            assert!((si(1.0, unit) - value).abs() <= 4e-16 * value, "{unit}");
+        }
+    }
+
     #[test]
     fn turns_convert_with_two_pi_and_hertz_does_not() {
         assert_eq!(si(10.0, "mm/rev"), 0.01 / (2.0 * PI));

@@ -186,8 +186,11 @@ impl<'a> Model<'a, '_> {
             .as_constant(b.id)
             .and_then(Exponent::from_f64);
         let dim = match exponent {
-            Some(exponent) => a.dim.power(exponent),
-            None => {
+            // A dimension that is not known yet, to a power that not every dimension has.
+            Some(exponent) if a.dim.as_known().is_some() || a.dim.power(exponent).is_some() => {
+                a.dim.power(exponent)
+            }
+            Some(_) | None => {
                 let number = Typed {
                     dim: Dim::NUMBER,
                     ..a.clone()
@@ -195,7 +198,7 @@ impl<'a> Model<'a, '_> {
                 self.agree(
                     &a,
                     &number,
-                    "a power with a varying exponent has a pure number as its base, not",
+                    "only a pure number can be raised to this power, this relates",
                     scope.instance,
                 );
                 Some(Dim::NUMBER)

@@ -3,7 +3,8 @@
 #![allow(clippy::float_cmp, reason = "factors are exact")]
 
 use super::*;
-use crate::{AngleExponent, Dimension};
+use crate::{Agreement, AngleExponent, Dimension};
+use proptest::prelude::*;
 
 fn dimension(text: &str) -> Dimension {
     parse_unit(text).unwrap().dimension
@@ -128,7 +129,13 @@ fn mistakes_are_told_with_their_place() {
             0..4,
             "`degC` has a zero point of its own and fits no product: write `K`",
         ),
-        ("m^99", 1..4, "the exponent `99` is too large or not exact"),
+        (
+            "m^999999",
+            1..8,
+            "the exponent `999999` is too large or not exact",
+        ),
+        ("km^400000", 0..9, "the factor to SI is out of range"),
+        ("((rev/rad)^600)^600", 1..14, "the factor to SI is out of range"),
         (
             "m99999999999",
             1..12,
@@ -154,6 +161,30 @@ fn mistakes_are_told_with_their_place() {
             (at, message),
             "{text}"
         );
+    }
+}
+
+proptest! {
+    #[test]
+    fn the_unit_of_any_dimension_reads_back(
+        parts in proptest::array::uniform8(prop_oneof![
+            3 => Just((0, 1)),
+            3 => (-60_i32..60, Just(1)),
+            2 => (-60_i32..60, prop_oneof![Just(2), Just(3), Just(7), Just(16)]),
+            1 => (any::<i32>(), Just(5040)),
+        ]),
+    ) {
+        let exponent = |(n, d)| Exponent::ratio(n, d).unwrap();
+        let [kg, m, a, s, k, mol, cd, angle] = parts.map(exponent);
+        let dimension = Dimension {
+            base: [kg, m, a, s, k, mol, cd],
+            angle: AngleExponent::Known(angle),
+        };
+        for text in [dimension.usual_unit(), dimension.base_units()] {
+            let unit = parse_unit(&text).unwrap();
+            prop_assert_eq!(unit.dimension.agreement(dimension), Agreement::Same, "{}", text);
+            prop_assert!(unit.is_si(), "{}", text);
+        }
     }
 }
 
