@@ -162,6 +162,7 @@ impl Hoisting {
             derived: true,
             prior: None,
             role: hyde_ir::Role::Plain,
+            allowed: hyde_units::Allowed::default(),
             range: None,
             source: None,
             origin,

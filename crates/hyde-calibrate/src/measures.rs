@@ -124,6 +124,7 @@ fn reason(error: &hyde_experiment::RunError) -> String {
         RunError::Failed(failure) => format!("the run ended at {:.4} s", failure.t),
         RunError::NoParameter(name) => format!("the closed loop has no parameter `{name}`"),
         RunError::CannotSet(name, why) => format!("`{name}` cannot be set: {why}"),
+        RunError::NotAllowed(name, why) => format!("the value of `{name}` is not allowed: {why}"),
         RunError::NoGradientBy(name, why) => format!("no gradient by `{name}`: {why}"),
         RunError::NoStop => "nothing says when it ends".to_owned(),
         RunError::EndsBeforeStart {

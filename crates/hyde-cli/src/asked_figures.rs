@@ -1,6 +1,6 @@
 //! The figures that an experiment asks for, drawn from the results of its run.
 
-use crate::figures::shown;
+use crate::figures::{drawn_in, shown};
 use crate::files;
 use hyde_experiment::Run;
 use hyde_program::{Constant, Curve, FigureKind, Program};
@@ -61,9 +61,16 @@ impl Shown<'_> {
         column.get(self.rows()).unwrap_or_default().to_vec()
     }
 
+    /// The values in the unit of another curve, of the same panel.
+    fn values_as(&self, curve: &Curve, first: &Curve) -> Vec<f64> {
+        let (_, unit) = drawn_in(&self.program.outputs[first.output].unit);
+        let values = self.values(curve).into_iter();
+        values.map(|si| unit.from_si(si)).collect()
+    }
+
     fn unit(&self, curve: &Curve) -> String {
-        let dimension = self.program.outputs[curve.output].dimension;
-        shown(&dimension.usual_unit()).to_owned()
+        let (unit, _) = drawn_in(&self.program.outputs[curve.output].unit);
+        shown(&unit).to_owned()
     }
 
     /// The name of a panel's only curve, which stands on its axis, and its unit.
@@ -79,7 +86,7 @@ impl Shown<'_> {
     fn lines(&self, x: &[f64], curves: &[Curve]) -> Vec<Line> {
         let line = |curve: &Curve| {
             let label = if curves.len() == 1 { "" } else { &curve.name };
-            Line::new(label, x.to_vec(), self.values(curve))
+            Line::new(label, x.to_vec(), self.values_as(curve, &curves[0]))
         };
         curves.iter().map(line).collect()
     }
@@ -94,7 +101,7 @@ impl Shown<'_> {
     }
 
     fn over(&self, title: &str, panels: &[Vec<Curve>], over: &Curve) -> Figure {
-        let x = self.values(over);
+        let x = self.values_as(over, over);
         let panel = |curves: &Vec<Curve>| {
             let (label, unit) = self.label(curves);
             let x_axis = (over.name.as_str(), self.unit(over));

@@ -28,7 +28,8 @@ pub(crate) fn point_time(text: Option<&str>) -> Result<PointTime, String> {
             let help =
                 || format!("`--at {text}`: write `--at '0.3 [s]'`, `--at start` or `--at steady`");
             let setting = settings::parse(&format!("t={text}")).map_err(|_| help())?;
-            let time = setting.dimension.unwrap_or(Dimension::TIME);
+            let unit = setting.unit.as_ref();
+            let time = unit.map_or(Dimension::TIME, |unit| unit.unit().dimension);
             let fits = time.agreement(Dimension::TIME) == Agreement::Same;
             match fits && setting.value >= 0.0 {
                 true => Ok(PointTime::At(setting.value)),

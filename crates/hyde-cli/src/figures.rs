@@ -7,6 +7,7 @@ use hyde_report::{
     EventRow, EventStrip, Figure, Line, LineStyle, Panel, Span, time_panel, time_plot,
 };
 use hyde_sim::{EventKind, Results};
+use hyde_units::{NamedUnit, Unit};
 
 /// Panels in one figure.
 const MAX_PANELS: usize = 4;
@@ -100,22 +101,43 @@ pub(crate) fn strip(program: &Program, results: &Results, stop_s: f64) -> Option
 }
 
 fn measured_and_simulated(channel: &Channel) -> Panel {
-    let unit = channel.unit.unit().dimension.usual_unit();
+    let (unit, of) = drawn_in(&channel.unit);
+    let values = |si: &[f64]| si.iter().map(|&si| of.from_si(si)).collect();
     let lines = vec![
-        Line::new("measured", channel.time.clone(), channel.measured.clone()),
-        Line::new("simulated", channel.time.clone(), channel.simulated.clone())
-            .with_style(LineStyle::Dashed),
+        Line::new("measured", channel.time.clone(), values(&channel.measured)),
+        Line::new(
+            "simulated",
+            channel.time.clone(),
+            values(&channel.simulated),
+        )
+        .with_style(LineStyle::Dashed),
     ];
     time_panel(channel.name.clone(), shown(&unit), lines)
 }
 
+/// The unit that values are drawn in: that of SI, with the prefix that fits, for all that is declared in a multiple of it;
+/// any other as it is declared.
+pub(crate) fn drawn_in(unit: &NamedUnit) -> (String, Unit) {
+    let si = NamedUnit::usual(unit.unit().dimension);
+    let drawn = if unit.is_multiple_of_si() { &si } else { unit };
+    (drawn.text().to_owned(), drawn.unit())
+}
+
+/// The unit that differences of values are drawn in: of temperatures in degC it is K.
+pub(crate) fn difference_in(unit: &NamedUnit) -> (String, Unit) {
+    match unit.unit().is_absolute() {
+        true => drawn_in(&NamedUnit::usual(unit.unit().dimension)),
+        false => drawn_in(unit),
+    }
+}
+
 fn error(channel: &Channel) -> Panel {
-    let unit = channel.unit.unit().dimension.usual_unit();
+    let (unit, of) = difference_in(&channel.unit);
     let difference = channel
         .measured
         .iter()
         .zip(&channel.simulated)
-        .map(|(a, b)| a - b)
+        .map(|(a, b)| of.from_si(a - b))
         .collect();
     time_panel(
         channel.name.clone(),
@@ -137,14 +159,16 @@ fn states(program: &Program, results: &Results) -> Vec<Panel> {
         if output.auxiliary || !is_state(&output.name) {
             continue;
         }
-        let unit = output.dimension.usual_unit();
+        let (unit, _) = drawn_in(&output.unit);
         match groups.iter_mut().find(|(known, _)| *known == unit) {
             Some((_, list)) => list.push(number),
             None => groups.push((unit, vec![number])),
         }
     }
     let line = |number: &usize| {
-        let values = results.column(*number).unwrap_or_default().to_vec();
+        let (_, unit) = drawn_in(&program.outputs[*number].unit);
+        let values = results.column(*number).unwrap_or_default();
+        let values = values.iter().map(|&si| unit.from_si(si)).collect();
         Line::new(
             program.outputs[*number].name.clone(),
             results.time.clone(),

@@ -235,9 +235,7 @@ impl Project {
         };
         for setting in &self.settings {
             let checked = match compiled.program.parameter(&setting.path) {
-                Some((parameter, _)) => {
-                    settings::check(setting, &setting.path, parameter.dimension, &parameter.unit)
-                }
+                Some((parameter, _)) => settings::check(setting, parameter),
                 None => Err(unknown_parameter(&compiled, &setting.path)),
             };
             if let Err(reason) = checked {

@@ -47,12 +47,15 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
     let channels = run
         .channels
         .iter()
-        .map(|channel| ChannelError {
-            channel: channel.name.clone(),
-            unit: figures::shown(&channel.unit.unit().dimension.usual_unit()).to_owned(),
-            rms: channel.rms,
-            relative: channel.relative_percent / 100.0,
-            noise: channel.noise,
+        .map(|channel| {
+            let (unit, of) = figures::difference_in(&channel.unit);
+            ChannelError {
+                channel: channel.name.clone(),
+                unit: figures::shown(&unit).to_owned(),
+                rms: of.from_si(channel.rms),
+                relative: channel.relative_percent / 100.0,
+                noise: channel.noise.map(|noise| of.from_si(noise)),
+            }
         })
         .collect();
     let rows = run

@@ -22,6 +22,10 @@ pub(crate) fn diagnostic(
             let message = format!("`{name}` cannot be set: {why}");
             (cannot_set(program, name, message), Exit::CommandLine)
         }
+        RunError::NotAllowed(name, why) => {
+            let message = format!("the value of `{name}` is not allowed: {why}");
+            (cannot_set(program, name, message), Exit::CommandLine)
+        }
         RunError::NoGradientBy(name, why) => {
             let message = format!("there is no gradient by `{name}`: {why}");
             let diagnostic = Diagnostic::error(Code::NoGradient, message);

@@ -1,6 +1,7 @@
 //! `--set path=value [unit]`.
 
-use hyde_units::{Agreement, Dimension, NamedUnit};
+use hyde_program::{Given, Parameter};
+use hyde_units::NamedUnit;
 
 /// A value set from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -9,8 +10,22 @@ pub(crate) struct Setting {
     pub(crate) path: String,
     /// SI.
     pub(crate) value: f64,
-    /// Dimension of the unit; `None` where none was written.
-    pub(crate) dimension: Option<Dimension>,
+    /// The unit it was written in; `None` where none was.
+    pub(crate) unit: Option<NamedUnit>,
+    /// It was written as `true` or `false`.
+    pub(crate) truth: bool,
+}
+
+impl Setting {
+    /// A value in SI.
+    pub(crate) fn of(path: String, value: f64, unit: Option<NamedUnit>) -> Self {
+        Self {
+            path,
+            value,
+            unit,
+            truth: false,
+        }
+    }
 }
 
 /// Reads `saddle.M=320 [kg]`, with or without brackets and blanks.
@@ -19,6 +34,12 @@ pub(crate) fn parse(text: &str) -> Result<Setting, String> {
         .split_once('=')
         .ok_or_else(|| format!("`{text}`: write `path=value [unit]`"))?;
     let value = value.trim();
+    if let Ok(truth) = value.parse::<bool>() {
+        return Ok(Setting {
+            truth: true,
+            ..Setting::of(path.trim().to_owned(), f64::from(u8::from(truth)), None)
+        });
+    }
     let end = value
         .find(|c: char| c == '[' || c.is_whitespace())
         .unwrap_or(value.len());
@@ -36,40 +57,36 @@ pub(crate) fn parse(text: &str) -> Result<Setting, String> {
         .trim();
     let path = path.trim().to_owned();
     if unit.is_empty() {
-        return Ok(Setting {
-            path,
-            value: number,
-            dimension: None,
-        });
+        return Ok(Setting::of(path, number, None));
     }
     let unit = NamedUnit::parse(unit).map_err(|error| format!("`{text}`: {error}"))?;
-    let unit = unit.unit();
-    Ok(Setting {
-        path,
-        value: unit.to_si(number),
-        dimension: Some(unit.dimension),
-    })
+    Ok(Setting::of(path, unit.unit().to_si(number), Some(unit)))
 }
 
 /// Whether a setting fits a parameter; what to write instead if not.
-pub(crate) fn check(
-    setting: &Setting,
-    name: &str,
-    dimension: Dimension,
-    unit: &NamedUnit,
-) -> Result<(), String> {
-    let shown = unit.text();
-    match setting.dimension {
-        None if dimension.is_dimensionless() || setting.value == 0.0 => Ok(()),
-        None => Err(format!(
-            "`{name}` has a unit: write `--set {name}='{} [{shown}]'`",
-            setting.value
-        )),
-        Some(given) if given.agreement(dimension) == Agreement::Different => {
-            Err(format!("`{name}` is in {shown}, not in {given}"))
+pub(crate) fn check(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
+    let given = Given {
+        value: setting.value,
+        unit: setting.unit.as_ref(),
+        truth: setting.truth,
+    };
+    let Some(misfit) = parameter.misfit(&given) else {
+        return Ok(());
+    };
+    let name = &setting.path;
+    let written: Vec<String> = misfit
+        .instead
+        .iter()
+        .map(|value| format!("`--set {name}='{value}'`"))
+        .collect();
+    let reason = &misfit.reason;
+    Err(match written.as_slice() {
+        [turns, radians] => {
+            format!("`{name}` {reason}: write {turns} if it counts turns, {radians} if radians")
         }
-        Some(_) => Ok(()),
-    }
+        [only] => format!("`{name}` {reason}: write {only}"),
+        _ => format!("`{name}` {reason}"),
+    })
 }
 
 #[cfg(test)]
@@ -89,7 +106,9 @@ mod tests {
             "`gap=12um`: `12um` is no number"
         );
         assert_eq!(parse("gap = 12 um").unwrap().value, 12e-6);
-        assert_eq!(parse("n=3").unwrap().dimension, None);
+        assert_eq!(parse("n=3").unwrap().unit, None);
+        let on = parse("on = true").unwrap();
+        assert_eq!((on.value, on.truth), (1.0, true));
         assert!(parse("x").is_err());
         assert!(parse("x=1 [blah]").unwrap_err().contains("blah"));
     }

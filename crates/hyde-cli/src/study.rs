@@ -4,11 +4,11 @@ use crate::args::{ModelArgs, StudyArgs};
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Aim, Project, Records, complain};
-use crate::settings;
 use crate::unobservable::{unreadable, unsupported};
 use hyde_calibrate::{CalibrationPlan, Observer, Recording, Source, Varied, Vary};
 use hyde_compiler::Compiled;
 use hyde_diag::{Code, Diagnostic, Diagnostics, Sources, Span};
+use hyde_program::Given;
 use hyde_syntax::ast::{Experiment, Study, StudyKind};
 use hyde_units::counted;
 use std::collections::BTreeMap;
@@ -381,13 +381,16 @@ fn varied(
                         Some("it shapes the equations: each value is a model of its own".to_owned())
                     }
                     Some((parameter, _)) if parameter.is_final => Some("it is final".to_owned()),
-                    Some((parameter, _)) => bounds.as_ref().and_then(|(from, _, unit)| {
-                        let setting = settings::Setting {
-                            path: name.clone(),
-                            value: *from,
-                            dimension: Some(unit.unit().dimension),
+                    Some((parameter, _)) => bounds.as_ref().and_then(|(from, to, unit)| {
+                        let misfit = |value| {
+                            let (unit, truth) = (Some(unit), false);
+                            parameter.misfit(&Given { value, unit, truth })
                         };
-                        settings::check(&setting, name, parameter.dimension, &parameter.unit).err()
+                        let misfit = misfit(*from).or_else(|| misfit(*to))?;
+                        let help = misfit
+                            .help()
+                            .map_or(String::new(), |help| format!("; {help}"));
+                        Some(format!("it {}{help}", misfit.reason))
                     }),
                 };
                 if let Some(problem) = problem {

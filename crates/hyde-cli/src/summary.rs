@@ -7,7 +7,7 @@ use hyde_compiler::Compiled;
 use hyde_experiment::Run;
 use hyde_program::Method;
 use hyde_sim::{Event, EventKind, GradientEnd, GradientEndKind};
-use hyde_units::{counted, engineering, engineering_as, significant};
+use hyde_units::{counted, engineering_as, engineering_difference, significant};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::time::Duration;
@@ -82,10 +82,8 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
             "measured - simulated", "rms", "relative", "noise"
         );
         for channel in &run.channels {
-            let dimension = channel.unit.unit().dimension;
-            let noise = channel
-                .noise
-                .map_or(String::new(), |noise| engineering(noise, dimension));
+            let difference = |value| engineering_difference(value, &channel.unit);
+            let noise = channel.noise.map_or(String::new(), difference);
             // Nothing measured has no relative error.
             let relative = if channel.relative_percent.is_finite() {
                 format!("{} %", significant(channel.relative_percent, 3))
@@ -95,7 +93,7 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
             let line = format!(
                 "  {:<28} {:>12} {relative:>11} {noise:>12}",
                 channel.name,
-                engineering(channel.rms, dimension),
+                difference(channel.rms),
             );
             let _ = writeln!(out, "{}", line.trim_end());
         }
@@ -142,7 +140,12 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         .map(|parameter| {
             let values = &run.parameters[parameter.place..parameter.place + parameter.len];
             let value = if parameter.len == 1 { json!(values[0]) } else { json!(values) };
-            let entry = json!({ "value": value, "unit": parameter.dimension.usual_unit(), "source": parameter.source });
+            let shown: Vec<f64> = values.iter().map(|&si| parameter.unit.unit().from_si(si)).collect();
+            let shown = if parameter.len == 1 { json!(shown[0]) } else { json!(shown) };
+            let entry = json!({
+                "value": value, "unit": parameter.dimension.usual_unit(), "source": parameter.source,
+                "display": shown, "display_unit": parameter.unit.text(),
+            });
             (parameter.name.clone(), entry)
         })
         .collect();
@@ -177,8 +180,20 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         .measures
         .iter()
         .filter(|measure| !measure.expectation)
-        .zip(program.experiment.measures.iter().filter(|measure| !measure.expectation))
-        .map(|(measure, known)| json!({ "name": measure.name, "value": measure.value, "unit": known.unit.unit().dimension.usual_unit() }))
+        .zip(
+            program
+                .experiment
+                .measures
+                .iter()
+                .filter(|measure| !measure.expectation),
+        )
+        .map(|(measure, known)| {
+            let unit = known.unit.unit();
+            json!({
+                "name": measure.name, "value": measure.value, "unit": unit.dimension.usual_unit(),
+                "display": unit.from_si(measure.value), "display_unit": known.unit.text(),
+            })
+        })
         .collect();
     let expectations: Vec<Value> = run
         .measures

@@ -56,11 +56,13 @@ codes! {
     UnitMismatch "E0301" "two sides have different dimensions";
     BadUnit "E0302" "a unit cannot be read";
     AngleMismatch "E0303" "two sides differ in the angle only";
+    ZeroPoint "E0304" "a temperature with a zero point is added as a difference";
     BadConnection "E0401" "things that do not fit are connected";
     UnknownModification "E0402" "a modification changes nothing";
     FinalModified "E0403" "a final parameter is modified";
     NoValue "E0404" "a parameter has no value";
     UnboundInput "E0405" "an input has nothing to read";
+    NotAllowed "E0406" "a value is not allowed";
     TooManyEquations "E0501" "equations determine nothing new";
     TooFewEquations "E0502" "unknowns that no equation determines";
     MissingBoundary "E0503" "a field has no boundary condition at one end";

@@ -6,6 +6,7 @@ use crate::reduce::reduce;
 use hyde_program::{Column, Constant, Measured, Parameter, Program, RecordValue, RecordedResponse};
 use hyde_signal::Table;
 use hyde_sim::{Failure, Results, Setup};
+use hyde_units::Allowed;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -71,6 +72,8 @@ pub enum RunError {
     NoParameter(String),
     /// The parameter shapes the equations or may not be set: its name and why.
     CannotSet(String, &'static str),
+    /// The value of a parameter is not allowed: its name and why.
+    NotAllowed(String, String),
     /// The parameter shapes the equations, or is a whole array: there is no gradient by it. Its name and why.
     NoGradientBy(String, &'static str),
     /// Neither the experiment nor the caller says when to stop.
@@ -123,6 +126,24 @@ pub fn run(
         channels,
         measures,
     })
+}
+
+/// Whether every parameter is within its bounds, also those that are computed from others.
+pub(crate) fn within_bounds(program: &Program, parameters: &[f64]) -> Result<(), RunError> {
+    for parameter in &program.parameters {
+        let Allowed { min, max, .. } = parameter.allowed;
+        let bounds = Allowed {
+            min,
+            max,
+            ..Allowed::default()
+        };
+        for &value in &parameters[parameter.place..parameter.place + parameter.len] {
+            if let Some(refusal) = bounds.refusal(value, &parameter.unit) {
+                return Err(RunError::NotAllowed(parameter.name.clone(), refusal));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// What a run is told: parameters, times and tolerances of the experiment, or of the caller where those are given.

@@ -15,7 +15,7 @@ use hyde_ir::{
     Expr as Ir, ExprId, Id as _, Index, ParamId, Parameter, Range, Role, VarId, VariableKind,
 };
 use hyde_syntax::ast::Element;
-use hyde_units::Dimension;
+use hyde_units::{Allowed, Dimension, Kind};
 
 impl<'a> Model<'a, '_> {
     /// Lowers every binding: parameters, clocks, start values, then the equations of bound variables.
@@ -215,7 +215,10 @@ impl<'a> Model<'a, '_> {
                     instance,
                 );
                 match argument.name.as_ref().map(|name| name.text.as_str()) {
-                    None => period = Some(value.id),
+                    None => {
+                        period = Some(value.id);
+                        self.check_period(&value);
+                    }
                     Some("delay") => self.flat.clocks[clock].delay = value.id,
                     Some("phase") => self.flat.clocks[clock].phase = value.id,
                     Some(other) => self.report(
@@ -236,6 +239,23 @@ impl<'a> Model<'a, '_> {
                     .help(format!("write `clocked {}(1 [ms])`", clocked.name.text)),
                 ),
             }
+        }
+    }
+
+    /// A clock ticks after a time that goes on.
+    fn check_period(&mut self, period: &Typed) {
+        if let Some(value) = self.current_value(period.id)
+            && value <= 0.0
+        {
+            let shown = hyde_units::engineering(value, Dimension::TIME);
+            self.report(
+                Diagnostic::error(
+                    Code::NotAllowed,
+                    format!("a clock cannot tick every {shown}"),
+                )
+                .label(period.span, "the period must be above 0 s")
+                .help("write the time from tick to tick: `clocked name(1 [ms])`"),
+            );
         }
     }
 
@@ -283,6 +303,15 @@ impl<'a> Model<'a, '_> {
         let notes = self.notes(var);
         let (instance, dim) = (notes.instance, notes.dim.clone());
         let quantity = variable.quantity.clone();
+        let kind = if notes.integer {
+            Kind::Integer
+        } else {
+            Kind::Real
+        };
+        let allowed = Allowed {
+            kind,
+            ..Allowed::default()
+        };
         let value = match variable.start.first() {
             Some(&value) => value,
             None => self.flat.exprs.constant(0.0),
@@ -292,6 +321,7 @@ impl<'a> Model<'a, '_> {
             binding: None,
             state: Lowering::Done,
             boolean: false,
+            bounds: [None, None],
             within: None,
         });
         let param = self.flat.parameters.push(Parameter {
@@ -299,6 +329,7 @@ impl<'a> Model<'a, '_> {
             len: None,
             value: vec![value],
             quantity,
+            allowed,
             structural: false,
             is_final: false,
             found: false,
@@ -365,6 +396,8 @@ impl<'a> Model<'a, '_> {
                 ..self.typed(lhs, self.dim(var), binding.span)
             };
             self.same_kind(&declared, &value);
+            self.check_whole(&declared, &value);
+            self.shown_as_difference(&declared, &value);
             self.agree(
                 &declared,
                 &value,

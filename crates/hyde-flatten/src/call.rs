@@ -16,6 +16,7 @@ use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
 use crate::names::nearest;
+use crate::zero::Zero;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{BinaryOp, UnaryOp};
 use hyde_syntax::ast::{Argument, Expr, Reference};
@@ -186,10 +187,12 @@ impl<'a> Model<'a, '_> {
             };
             let a = self.value(a, scope);
             if !a.bare {
+                // The sine of a number is one: only its dimension counts.
                 let angle = Typed {
-                    dim: Dim::known(Dimension::ANGLE),
+                    dim: Dim::known(Dimension::ANGLE.composed()),
                     ..a.clone()
                 };
+                self.sine_of_turns(name, &a);
                 self.agree(
                     &a,
                     &angle,
@@ -313,7 +316,9 @@ impl<'a> Model<'a, '_> {
         let (id, dim) = match name {
             "sqrt" => (
                 arena.unary(UnaryOp::Sqrt, a.id),
-                a.dim.power(Exponent::HALF).unwrap_or(Dim::Any),
+                a.dim
+                    .power(Exponent::HALF)
+                    .map_or(Dim::Any, |dim| dim.composed()),
             ),
             "sign" => {
                 let (one, minus) = (arena.constant(1.0), arena.constant(-1.0));
@@ -330,7 +335,10 @@ impl<'a> Model<'a, '_> {
             }
             _ => (arena.unary(UnaryOp::Abs, a.id), a.dim.clone()),
         };
-        self.typed(id, dim, span)
+        Typed {
+            zero: if name == "abs" { a.zero } else { Zero::Open },
+            ..self.typed(id, dim, span)
+        }
     }
 
     fn without_events(&mut self, a: &'a Expr, scope: &Scope<'a>, span: Span) -> Typed {

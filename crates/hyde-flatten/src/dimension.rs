@@ -6,9 +6,10 @@
 //! What nothing determines is a pure number (U2).
 
 use crate::instance::InstanceId;
+use crate::turns::{self, Said};
 use hyde_diag::{Code, Diagnostic, InstancePath, Span};
 use hyde_ir::ExprId;
-use hyde_units::{Agreement, AngleExponent, Dimension, Exponent};
+use hyde_units::{Agreement, Dimension, Exponent};
 
 /// An unknown dimension.
 pub(crate) type Unknown = usize;
@@ -69,6 +70,14 @@ impl Dim {
         }
     }
 
+    /// As the dimension of a product or a power: its angle matches any.
+    pub(crate) fn composed(&self) -> Self {
+        match self {
+            Self::Any => Self::Any,
+            Self::Of(dimension, unknowns) => Self::Of(dimension.composed(), unknowns.clone()),
+        }
+    }
+
     fn combine(&self, other: &Self, inverse: bool) -> Self {
         let (Self::Of(a, left), Self::Of(b, right)) = (self, other) else {
             return Self::Any;
@@ -104,6 +113,8 @@ pub(crate) struct Demand {
     pub(crate) bare: (bool, bool),
     /// The bare numbers as written.
     pub(crate) written: (String, String),
+    /// The sides as a repair may name them.
+    pub(crate) said: (Said, Said),
     /// The two sides.
     pub(crate) sides: (ExprId, ExprId),
 }
@@ -245,7 +256,7 @@ fn verdict(
                 .label(left, format!("this is {}", short(a)))
                 .label(right, format!("this is {}", short(b)))
                 .note("the two differ only in how often an angle is in them: Hz counts turns, rad/s radians")
-                .help(angle_repair(a, b)),
+                .help(turns::repair(demand.what, a, b, &demand.said)),
         ),
         Agreement::Different => {
             let diagnostic =
@@ -299,16 +310,6 @@ pub(crate) fn short(dimension: Dimension) -> String {
         "a pure number".to_owned()
     } else {
         unit
-    }
-}
-
-fn angle_repair(a: Dimension, b: Dimension) -> String {
-    let turns = |d: Dimension| d.angle() == AngleExponent::Known(Exponent::ZERO);
-    if turns(a) || turns(b) {
-        "multiply what counts turns by 2*pi, or give the angle its unit: `1 [rad]`, `1 [rev]`"
-            .to_owned()
-    } else {
-        "check which of the two is per radian".to_owned()
     }
 }
 

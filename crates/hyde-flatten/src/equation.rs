@@ -194,6 +194,9 @@ impl<'a> Model<'a, '_> {
     ) -> Option<Equation> {
         let (left, right) = (self.lower(lhs, scope), self.lower(rhs, scope));
         self.same_kind(&left, &right);
+        self.check_whole(&left, &right);
+        self.shown_as_difference(&left, &right);
+        self.check_whole(&right, &left);
         self.agree(&left, &right, "`=` equates", scope.instance);
         let origin = self.origin(scope.instance, span);
         (!self.needs_unrolling).then_some(Equation {

@@ -106,7 +106,7 @@ impl Model<'_, '_> {
 /// The quantity chosen for printing if it fits the dimension, else the usual unit.
 fn settled(known: Quantity, dimension: Dimension) -> Quantity {
     let agrees = known.dimension.agreement(dimension) != hyde_units::Agreement::Different;
-    if agrees && !known.dimension.is_dimensionless() {
+    if agrees && known.unit.text() != "1" {
         known
     } else {
         Quantity::usual(dimension)

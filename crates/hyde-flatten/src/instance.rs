@@ -2,6 +2,8 @@
 
 use crate::dimension::Dim;
 use crate::names::FileIndex;
+use crate::turns::Turns;
+use crate::zero::Zero;
 use hyde_diag::{InstancePath, Span};
 use hyde_ir::{ClockId, ExprId, Index, ParamId, VarId};
 use hyde_syntax::ast::{Class, Element, Expr};
@@ -94,6 +96,12 @@ pub(crate) struct VariableNotes<'a> {
     pub(crate) dim: Dim,
     pub(crate) binding: Option<Binding<'a>>,
     pub(crate) start: Option<Binding<'a>>,
+    /// `min` and `max`.
+    pub(crate) bounds: [Option<Binding<'a>>; 2],
+    /// Of whole numbers.
+    pub(crate) integer: bool,
+    /// It is the difference of two temperatures.
+    pub(crate) difference: bool,
     pub(crate) field: Option<Field>,
 }
 
@@ -103,6 +111,8 @@ pub(crate) struct ParameterNotes<'a> {
     pub(crate) binding: Option<Binding<'a>>,
     pub(crate) state: Lowering,
     pub(crate) boolean: bool,
+    /// `min` and `max`.
+    pub(crate) bounds: [Option<Binding<'a>>; 2],
     /// `in a .. b`, with the instance whose names it uses.
     pub(crate) within: Option<(InstanceId, &'a hyde_syntax::ast::Range)>,
 }
@@ -240,7 +250,9 @@ pub(crate) struct Typed {
     pub(crate) truth: bool,
     /// A bare number without a unit.
     pub(crate) bare: bool,
-    /// `2*pi`: doubtful beside what is already per angle (U1).
-    pub(crate) two_pi: bool,
+    /// What is known of turns in it.
+    pub(crate) turns: Turns,
+    /// What is known of its zero point.
+    pub(crate) zero: Zero,
     pub(crate) span: Span,
 }

@@ -13,6 +13,7 @@
 //! Arrays and fields are not unrolled: a `for` equation or a field equation is one equation over a range.
 
 mod additions;
+mod allowed;
 mod bind;
 mod call;
 mod candidates;
@@ -32,7 +33,9 @@ mod modes;
 mod names;
 mod site;
 mod structural;
+mod turns;
 mod wrap;
+mod zero;
 
 pub use additions::Additions;
 pub use candidates::{Candidate, Knob};
@@ -127,7 +130,9 @@ fn flat_model(
     let root = model.instantiate_root()?;
     model.find_replays(root);
     model.lower_bindings();
+    model.check_parameters();
     model.lower_equations();
+    model.bounded_variables();
     model.finish_effects();
     model.replay_equations(false);
     model.connect();

@@ -12,6 +12,8 @@ pub(crate) use resolve::Resolved;
 use crate::dimension::Dim;
 use crate::instance::{Scope, Typed};
 use crate::model::Model;
+use crate::turns::Turns;
+use crate::zero::Zero;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_syntax::ast::{Expr, ExprKind, UnitText};
 use hyde_units::{AngleExponent, NamedUnit, UnitError};
@@ -52,7 +54,8 @@ impl<'a> Model<'a, '_> {
                         id,
                         dim,
                         bare: branch.bare && value.bare,
-                        two_pi: false,
+                        turns: Turns::Plain,
+                        zero: branch.zero,
                         span,
                         truth: value.truth,
                     };
@@ -123,7 +126,14 @@ impl<'a> Model<'a, '_> {
             Ok(unit) => {
                 let unit = unit.unit();
                 let id = self.flat.exprs.constant(unit.to_si(value));
-                self.typed(id, Dim::known(unit.dimension), span)
+                Typed {
+                    zero: if unit.is_absolute() {
+                        Zero::Own
+                    } else {
+                        Zero::Open
+                    },
+                    ..self.typed(id, Dim::known(unit.dimension), span)
+                }
             }
             Err(error) => {
                 self.bad_unit(text, &error);
@@ -150,15 +160,15 @@ impl<'a> Model<'a, '_> {
     }
 }
 
-/// The dimension of a sum: that of the side which has one; angle-neutral if a side is.
+/// The dimension of a sum: that of the side which has one; its angle is open if that of a side is.
 pub(crate) fn sum_dim(a: &Dim, b: &Dim) -> Dim {
     match (a, b) {
         (Dim::Any, other) | (other, Dim::Any) => other.clone(),
         (Dim::Of(..), Dim::Of(..)) => {
-            let neutral = b
+            let open = b
                 .as_known()
-                .is_some_and(|dimension| dimension.angle() == AngleExponent::Neutral);
-            if neutral || a.as_known().is_none() {
+                .is_some_and(|dimension| !matches!(dimension.angle(), AngleExponent::Known(_)));
+            if open || a.as_known().is_none() {
                 b.clone()
             } else {
                 a.clone()

@@ -7,6 +7,8 @@ use crate::instance::{
     Domain, Instance, InstanceId, Member, ParameterNotes, Scope, Typed, VariableNotes,
 };
 use crate::names::{self, Names};
+use crate::turns::Turns;
+use crate::zero::Zero;
 use hyde_diag::{Code, Diagnostic, Diagnostics, InstancePath, MadeBy, Origin, Severity, Span};
 use hyde_ir::{
     ClockId, ColumnId, Expr, ExprId, FlatModel, Id as _, ParamId, Quantity, VarId, Variable,
@@ -59,6 +61,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) undeclared: BTreeSet<&'a str>,
     /// Classes that contain themselves, once reported.
     pub(crate) endless: Vec<&'a hyde_syntax::ast::Class>,
+    /// The values that elements of parameters have now, once they are known.
+    pub(crate) current_values: BTreeMap<(ParamId, usize), f64>,
     /// How deep the call of a function is in others.
     pub(crate) calls: usize,
     /// A subscript met that keeps its `for` equation from being one equation over a range.
@@ -94,6 +98,7 @@ impl<'a, 'd> Model<'a, 'd> {
             column_values: BTreeMap::new(),
             undeclared: BTreeSet::new(),
             endless: Vec::new(),
+            current_values: BTreeMap::new(),
             calls: 0,
             needs_unrolling: false,
             diagnostics,
@@ -116,6 +121,17 @@ impl<'a, 'd> Model<'a, 'd> {
         self.variables[hyde_ir::Id::index(var)].dim.clone()
     }
 
+    /// What a mere name means and is shown in: that of a variable or a parameter.
+    pub(crate) fn quantity_of(&self, id: ExprId) -> Option<&Quantity> {
+        if let Expr::Var(var, _) = self.flat.exprs[id] {
+            return Some(&self.flat.variables[var].quantity);
+        }
+        if let Expr::Param(param, _) = self.flat.exprs[id] {
+            return Some(&self.flat.parameters[param].quantity);
+        }
+        None
+    }
+
     pub(crate) fn notes(&self, var: VarId) -> &VariableNotes<'a> {
         &self.variables[hyde_ir::Id::index(var)]
     }
@@ -136,6 +152,7 @@ impl<'a, 'd> Model<'a, 'd> {
             instance,
             bare: (a.bare, b.bare),
             written: (self.bare_text(a), self.bare_text(b)),
+            said: (self.said(a), self.said(b)),
             sides: (a.id, b.id),
         };
         let Self {
@@ -148,7 +165,9 @@ impl<'a, 'd> Model<'a, 'd> {
         let found = dimensions.agree(&a.dim, &b.dim, demand, &|id| {
             in_scope(instances, parameters, flat, id)
         });
-        let Some(diagnostic) = found else { return true };
+        let Some(diagnostic) = found.or_else(|| self.lost_turn(a, b)) else {
+            return true;
+        };
         let error = diagnostic.severity == Severity::Error;
         let diagnostic = self.with_parts(diagnostic, (a.id, b.id));
         self.report(diagnostic);
@@ -253,6 +272,9 @@ impl<'a, 'd> Model<'a, 'd> {
             dim,
             binding: None,
             start: None,
+            bounds: [None, None],
+            integer: false,
+            difference: false,
             field: None,
         });
         let origin = self.origin(instance, span).made_by(made_by);
@@ -283,7 +305,8 @@ impl<'a, 'd> Model<'a, 'd> {
             dim: Dim::Any,
             truth: false,
             bare: false,
-            two_pi: false,
+            turns: Turns::Plain,
+            zero: Zero::Open,
             span,
         }
     }
@@ -294,7 +317,8 @@ impl<'a, 'd> Model<'a, 'd> {
             dim,
             truth: false,
             bare: false,
-            two_pi: false,
+            turns: Turns::Plain,
+            zero: Zero::Open,
             span,
         }
     }

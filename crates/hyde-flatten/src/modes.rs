@@ -98,11 +98,8 @@ impl<'a> Model<'a, '_> {
                 Some(TypeName::Boolean) => (Dim::NUMBER, true),
                 Some(TypeName::Integer) => (Dim::NUMBER, false),
                 Some(TypeName::Real) => (Dim::unknown(self.dimensions.fresh()), false),
-                Some(TypeName::Quantity(_, item)) => {
-                    let unit = item
-                        .unit
-                        .as_ref()
-                        .and_then(|unit| hyde_units::NamedUnit::parse(&unit.text).ok());
+                Some(TypeName::Quantity(file, item)) => {
+                    let unit = self.type_unit(file, item);
                     (
                         unit.map_or(Dim::NUMBER, |unit| Dim::known(unit.unit().dimension)),
                         false,

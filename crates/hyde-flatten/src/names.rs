@@ -3,6 +3,7 @@
 use crate::Input;
 use hyde_diag::{Code, Diagnostic, FileId, Span};
 use hyde_syntax::ast::{self, Class, Item, Reference, TypeItem};
+use hyde_units::Kind;
 use std::collections::BTreeMap;
 
 /// A file by its number in the input.
@@ -15,6 +16,17 @@ pub(crate) enum TypeName<'a> {
     Integer,
     Boolean,
     Quantity(FileIndex, &'a TypeItem),
+}
+
+impl TypeName<'_> {
+    /// What kind of values the type has.
+    pub(crate) fn values(&self) -> Kind {
+        match self {
+            Self::Real | Self::Quantity(..) => Kind::Real,
+            Self::Integer => Kind::Integer,
+            Self::Boolean => Kind::Boolean,
+        }
+    }
 }
 
 /// The classes and types of all files.
@@ -53,11 +65,30 @@ impl<'a> Names<'a> {
             Some("Boolean") => return Some(TypeName::Boolean),
             Some(_) | None => {}
         }
-        let (file, item) = self.look_up(file, name, |item, word| match item {
+        let (file, item) = self.type_item(file, name)?;
+        // `type Teeth = Integer;` is an Integer.
+        let mut base = (file, item);
+        let mut seen = vec![item];
+        while base.1.unit.is_none() {
+            match base.1.base.as_word() {
+                Some("Integer") => return Some(TypeName::Integer),
+                Some("Boolean") => return Some(TypeName::Boolean),
+                Some(_) | None => {}
+            }
+            match self.type_item(base.0, &base.1.base) {
+                Some(next) if !seen.iter().any(|known| std::ptr::eq(*known, next.1)) => base = next,
+                Some(_) | None => break,
+            }
+            seen.push(base.1);
+        }
+        Some(TypeName::Quantity(file, item))
+    }
+
+    fn type_item(self, file: FileIndex, name: &Reference) -> Option<(FileIndex, &'a TypeItem)> {
+        self.look_up(file, name, |item, word| match item {
             Item::Type(item) if item.name.text == word => Some(item),
             Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
-        })?;
-        Some(TypeName::Quantity(file, item))
+        })
     }
 
     /// A class of the first file, by its name.
@@ -305,7 +336,11 @@ pub(crate) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> O
                 candidate,
             )
         })
-        .filter(|(distance, _, candidate)| *distance <= candidate.len().max(word.len()).div_ceil(3))
+        .filter(|(distance, _, candidate)| {
+            let longer = candidate.len().max(word.len());
+            // With every letter another one, it is another name.
+            *distance <= longer.div_ceil(3) && *distance < longer
+        })
         .min()
         .map(|(.., candidate)| candidate)
 }

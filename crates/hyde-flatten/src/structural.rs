@@ -90,6 +90,20 @@ impl<'a> Model<'a, '_> {
     }
 
     fn parameter_value(&mut self, param: ParamId, element: usize, structural: bool) -> Option<f64> {
+        if !structural && let Some(&known) = self.current_values.get(&(param, element)) {
+            return Some(known);
+        }
+        let value = self.value_of_parameter(param, element, structural)?;
+        self.current_values.insert((param, element), value);
+        Some(value)
+    }
+
+    fn value_of_parameter(
+        &mut self,
+        param: ParamId,
+        element: usize,
+        structural: bool,
+    ) -> Option<f64> {
         let parameter = &mut self.flat.parameters[param];
         if structural && parameter.found {
             let (name, span) = (parameter.name.clone(), parameter.origin.span);

@@ -2,7 +2,7 @@
 
 use crate::id::{ClockId, ColumnId, DelayId, ExprId, VarId};
 use hyde_diag::Origin;
-use hyde_units::{Dimension, NamedUnit};
+use hyde_units::{Allowed, Dimension, NamedUnit};
 
 /// What a value means: its dimension, and the unit in which people read it.
 #[derive(Clone, Debug, PartialEq)]
@@ -189,6 +189,8 @@ pub struct Parameter {
     pub value: Vec<ExprId>,
     /// Dimension and printed unit.
     pub quantity: Quantity,
+    /// The values it may have.
+    pub allowed: Allowed,
     /// A change of it changes the equations and compiles anew.
     pub structural: bool,
     /// May not be set.

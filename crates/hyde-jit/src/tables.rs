@@ -140,6 +140,7 @@ fn parameters(dae: &Dae) -> Vec<Parameter> {
                 hyde_ir::Prior::Absolute(spread) => Prior::Absolute(spread),
             }),
             is_size: parameter.role == hyde_ir::Role::Size,
+            allowed: parameter.allowed,
             range: parameter.range,
             source: parameter.source.clone(),
             origin: parameter.origin.clone(),

@@ -18,6 +18,7 @@
 
 mod event;
 mod experiment;
+mod given;
 mod jacobian;
 mod kernels;
 mod ledger;
@@ -31,6 +32,7 @@ pub use experiment::{
     Bode, Curve, Cut, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse,
     Method, Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped,
 };
+pub use given::{Given, Misfit};
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Constant, Function, Kernels, Point, SomeRows, TickWrt, Workspace};
 pub use ledger::{Account, AccountKind, Ledger, Port, PortKind};

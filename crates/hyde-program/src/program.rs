@@ -7,7 +7,7 @@ use crate::experiment::Experiment;
 use crate::jacobian::{Jacobian, JacobianEntry};
 use crate::kernels::{Function, Kernels};
 use hyde_diag::Origin;
-use hyde_units::{Dimension, NamedUnit};
+use hyde_units::{Allowed, Dimension, NamedUnit};
 use std::sync::{Arc, OnceLock};
 
 /// A block of the solver's vector.
@@ -64,6 +64,8 @@ pub struct Parameter {
     pub dimension: Dimension,
     /// Unit for printing; values are SI.
     pub unit: NamedUnit,
+    /// The values it may have.
+    pub allowed: Allowed,
     /// A change of it compiles anew.
     pub structural: bool,
     /// May not be set.

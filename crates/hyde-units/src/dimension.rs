@@ -10,6 +10,9 @@ pub(crate) const BASE_UNITS: [&str; 7] = ["kg", "m", "A", "s", "K", "mol", "cd"]
 pub enum AngleExponent {
     /// The angle enters with this exponent: 1 for rad/s, 0 for Hz, -1 for mm/rev.
     Known(Exponent),
+    /// The exponent that the factors of a product add up to; it matches any. The speed of a point is `w*r` and its
+    /// acceleration `w^2*r`: the radian is 1 there, and only the physics says so.
+    Composed(Exponent),
     /// Unknown and matches any: torque, inertia and their like, and every product that has one in it.
     Neutral,
 }
@@ -112,14 +115,28 @@ impl Dimension {
         self.scaled(|known| known.over(exponent))
     }
 
+    /// As the dimension of a product or a power: its angle matches any.
+    #[must_use]
+    pub fn composed(self) -> Self {
+        match self.angle {
+            AngleExponent::Known(exponent) => Self {
+                angle: AngleExponent::Composed(exponent),
+                ..self
+            },
+            AngleExponent::Composed(_) | AngleExponent::Neutral => self,
+        }
+    }
+
     fn scaled(self, change: impl Fn(Exponent) -> Option<Exponent>) -> Option<Self> {
         let mut result = self;
         for base in &mut result.base {
             *base = change(*base)?;
         }
-        if let AngleExponent::Known(angle) = self.angle {
-            result.angle = AngleExponent::Known(change(angle)?);
-        }
+        result.angle = match self.angle {
+            AngleExponent::Known(angle) => AngleExponent::Known(change(angle)?),
+            AngleExponent::Composed(angle) => AngleExponent::Composed(change(angle)?),
+            AngleExponent::Neutral => AngleExponent::Neutral,
+        };
         Some(result)
     }
 
@@ -137,8 +154,9 @@ impl Dimension {
         }
         match (self.angle, other.angle) {
             (AngleExponent::Known(a), AngleExponent::Known(b)) if a != b => Agreement::AngleDiffers,
-            (AngleExponent::Known(_), AngleExponent::Known(_)) => Agreement::Same,
-            (AngleExponent::Neutral, _) | (_, AngleExponent::Neutral) => Agreement::Same,
+            (AngleExponent::Known(_), AngleExponent::Known(_))
+            | (AngleExponent::Composed(_) | AngleExponent::Neutral, _)
+            | (_, AngleExponent::Composed(_) | AngleExponent::Neutral) => Agreement::Same,
         }
     }
 
@@ -162,8 +180,12 @@ impl Dimension {
 
     fn combine(self, other: Self, op: impl Fn(Exponent, Exponent) -> Exponent) -> Self {
         let angle = match (self.angle, other.angle) {
-            (AngleExponent::Known(a), AngleExponent::Known(b)) => AngleExponent::Known(op(a, b)),
             (AngleExponent::Neutral, _) | (_, AngleExponent::Neutral) => AngleExponent::Neutral,
+            (AngleExponent::Known(a), AngleExponent::Known(b)) => AngleExponent::Known(op(a, b)),
+            (
+                AngleExponent::Known(a) | AngleExponent::Composed(a),
+                AngleExponent::Known(b) | AngleExponent::Composed(b),
+            ) => AngleExponent::Composed(op(a, b)),
         };
         Self {
             base: std::array::from_fn(|i| op(self.base[i], other.base[i])),

@@ -132,9 +132,9 @@ impl UnitError {
             UnitErrorKind::Ambiguous { advice, .. } => Some((*advice).to_owned()),
             UnitErrorKind::TwoReadings { divisor } => Some(format!("write `/({divisor})`")),
             UnitErrorKind::Offset { .. } => Some("write `K`".to_owned()),
-            UnitErrorKind::Prefix { symbol, .. } => {
-                Some(format!("write `{symbol}`, and the power of ten in the number"))
-            }
+            UnitErrorKind::Prefix { symbol, .. } => Some(format!(
+                "write `{symbol}`, and the power of ten in the number"
+            )),
             UnitErrorKind::Unexpected { .. }
             | UnitErrorKind::Exponent { .. }
             | UnitErrorKind::TooDeep

@@ -30,13 +30,15 @@ pub fn engineering(si: f64, dimension: Dimension) -> String {
     }
 }
 
-/// The same in the unit of a declared type, where that is one symbol of SI: an energy in J, not N.m.
+/// The same in the unit of a declared type: an energy in J, not N.m, a speed in rpm, an angle in deg.
+///
+/// Units of SI take the prefix that fits; any other unit is shown as it is declared.
 #[must_use]
 pub fn engineering_as(si: f64, unit: &NamedUnit) -> String {
-    let coherent = unit.unit().to_si(1.0).to_bits() == 1.0_f64.to_bits()
-        && unit.unit().to_si(0.0).to_bits() == 0.0_f64.to_bits();
-    let symbol = look_up(unit.text()).is_some_and(|(_, row)| row.text == unit.text());
-    if !coherent || !symbol {
+    if !unit.unit().is_si() {
+        return shown(unit.unit().from_si(si), unit.text());
+    }
+    if look_up(unit.text()).is_none_or(|(_, row)| row.text != unit.text()) {
         return engineering(si, unit.unit().dimension);
     }
     let size = round_to(si.abs(), DIGITS);
@@ -46,8 +48,23 @@ pub fn engineering_as(si: f64, unit: &NamedUnit) -> String {
             let value = significant(value.copysign(si), DIGITS);
             format!("{value} {prefix}{}", unit.text())
         }
-        None => format!("{} {}", significant(si, DIGITS), unit.text()),
+        None => shown(si, unit.text()),
     }
+}
+
+/// A difference of values, such as an error: that of two temperatures in degC is in K, and multiples of units of SI take the
+/// prefix that fits, for an error is much smaller than what it is an error of.
+#[must_use]
+pub fn engineering_difference(si: f64, unit: &NamedUnit) -> String {
+    if unit.unit().is_absolute() || unit.is_multiple_of_si() {
+        engineering(si, unit.unit().dimension)
+    } else {
+        engineering_as(si, unit)
+    }
+}
+
+fn shown(value: f64, unit: &str) -> String {
+    format!("{} {unit}", significant(value, DIGITS))
 }
 
 /// Prints an SI value in a unit the user chose: `350 mm`. Ten significant digits, so that conversion leaves no dust.
@@ -162,8 +179,22 @@ mod tests {
         assert_eq!(show(-0.004, "J"), "-4 mJ");
         assert_eq!(show(50.0, "Hz"), "50 Hz");
         // No symbol of SI alone: the usual unit of the dimension.
-        assert_eq!(show(0.35, "mm"), "0.35 m");
         assert_eq!(show(20.0, "N.m/rad"), "20 N.m");
+        // Any other unit is there because its reader thinks in it.
+        assert_eq!(show(0.35, "mm"), "350 mm");
+        assert_eq!(show(50.0 * std::f64::consts::PI, "rpm"), "1500 rpm");
+        assert_eq!(show(6e5, "bar"), "6 bar");
+        assert_eq!(show(303.15, "degC"), "30 degC");
+    }
+
+    #[test]
+    fn a_difference_of_temperatures_is_in_kelvin() {
+        let show = |si, unit| engineering_difference(si, &NamedUnit::parse(unit).unwrap());
+        assert_eq!(show(0.5, "degC"), "0.5 K");
+        assert_eq!(show(0.5, "degF"), "0.5 K");
+        assert_eq!(show(0.5, "bar"), "5e-6 bar");
+        assert_eq!(show(7.397e-7, "mm"), "739.7 nm");
+        assert_eq!(show(std::f64::consts::PI / 30.0, "rpm"), "1 rpm");
     }
 
     #[test]

@@ -6,7 +6,8 @@
 //!
 //! Angles have no dimension in SI, and every drive has both `rad/s` and `Hz`, lengths and lengths per revolution. So
 //! a dimension carries the exponent of the angle beside the base units; where two sides differ in nothing else the
-//! answer is [`Agreement::AngleDiffers`], worth a warning. Torque, inertia and motor constants do not tell how often
+//! answer is [`Agreement::AngleDiffers`], worth a warning. In a product the radian may be 1 by the physics (`v = w*r`), so the
+//! angle of a [composed](Dimension::composed) dimension matches any. Torque, inertia and motor constants do not tell how often
 //! the angle is in them (a stiffness in N.m/rad times rad is N.m), so they are [`AngleExponent::Neutral`] and match any.
 //!
 //! ```
@@ -20,6 +21,8 @@
 //! # Ok::<(), hyde_units::UnitError>(())
 //! ```
 
+mod allowed;
+mod angle;
 mod count;
 mod dimension;
 mod error;
@@ -32,11 +35,13 @@ mod suggest;
 mod symbol;
 mod unit;
 
+pub use allowed::{Allowed, Kind};
+pub use angle::with_angle_of;
 pub use count::counted;
 pub use dimension::{Agreement, AngleExponent, Dimension};
 pub use error::{UnitError, UnitErrorKind};
 pub use exponent::Exponent;
-pub use format::{engineering, engineering_as, format_value, significant};
+pub use format::{engineering, engineering_as, engineering_difference, format_value, significant};
 pub use parse::parse_unit;
 pub use scale::Scale;
 pub use unit::{NamedUnit, Unit};

@@ -30,7 +30,7 @@ impl Dimension {
             over: over.iter().map(|&text| text.to_owned()).collect(),
             under: under.iter().map(|&text| text.to_owned()).collect(),
         };
-        fraction.push_angle(self.angle);
+        fraction.push_angle(self);
         fraction
     }
 
@@ -39,7 +39,7 @@ impl Dimension {
         for (symbol, exponent) in BASE_UNITS.iter().zip(self.base) {
             fraction.push(symbol, exponent);
         }
-        fraction.push_angle(self.angle);
+        fraction.push_angle(self);
         fraction
     }
 }
@@ -80,9 +80,16 @@ impl Fraction {
         });
     }
 
-    fn push_angle(&mut self, angle: AngleExponent) {
-        match angle {
-            AngleExponent::Known(exponent) => self.push("rad", exponent),
+    /// The radian; of a product only where it is an angle, its rate, or per angle: `w*r` is m/s.
+    fn push_angle(&mut self, dimension: Dimension) {
+        let turning = [0, 1, 2, 4, 5, 6]
+            .iter()
+            .all(|&base: &usize| dimension.base[base].is_zero());
+        match dimension.angle {
+            AngleExponent::Composed(exponent) if !turning && !exponent.is_negative() => {}
+            AngleExponent::Known(exponent) | AngleExponent::Composed(exponent) => {
+                self.push("rad", exponent);
+            }
             AngleExponent::Neutral => {}
         }
     }

@@ -57,15 +57,27 @@ const WELL_KNOWN: [(&str, &str); 14] = [
 
 /// Symbols of data sheets that stand for more than one quantity, or for none that is a unit.
 const AMBIGUOUS: [(&str, &str); 9] = [
-    ("oz", "write `ozf` for a force (a torque is in `ozf.in`), `ozm` for a mass"),
-    ("lb", "write `lbf` for a force (a torque is in `lbf.in`), `lbm` for a mass"),
-    ("lbs", "write `lbf` for a force (a torque is in `lbf.in`), `lbm` for a mass"),
+    (
+        "oz",
+        "write `ozf` for a force (a torque is in `ozf.in`), `ozm` for a mass",
+    ),
+    (
+        "lb",
+        "write `lbf` for a force (a torque is in `lbf.in`), `lbm` for a mass",
+    ),
+    (
+        "lbs",
+        "write `lbf` for a force (a torque is in `lbf.in`), `lbm` for a mass",
+    ),
     ("kp", "write `kgf` for a kilopond"),
     ("cpr", "write `counts/rev`"),
     ("ppr", "write `counts/rev`"),
     ("ipm", "write `in/min`"),
     ("mph", "write `1.609344 [km/h]` for a mile an hour"),
-    ("dB", "a ratio is a pure number: write `10^(x/20)`, for 6 dB `2`"),
+    (
+        "dB",
+        "a ratio is a pure number: write `10^(x/20)`, for 6 dB `2`",
+    ),
 ];
 
 /// `ohms`, `Meter`, `kilonewtons` are words for symbols.
@@ -233,18 +245,29 @@ mod tests {
 
     #[test]
     fn a_unit_that_is_not_known_is_no_other_quantity() {
-        for text in ["slug", "dyn", "erg", "fur", "kat", "lux", "bps", "pcs", "rqm"] {
+        for text in [
+            "slug", "dyn", "erg", "fur", "kat", "lux", "bps", "pcs", "rqm",
+        ] {
             assert!(!message(text).contains("did you mean"), "{}", message(text));
         }
         for (text, help) in [
-            ("oz.in", "write `ozf` for a force (a torque is in `ozf.in`), `ozm` for a mass"),
-            ("lb.ft", "write `lbf` for a force (a torque is in `lbf.in`), `lbm` for a mass"),
+            (
+                "oz.in",
+                "write `ozf` for a force (a torque is in `ozf.in`), `ozm` for a mass",
+            ),
+            (
+                "lb.ft",
+                "write `lbf` for a force (a torque is in `lbf.in`), `lbm` for a mass",
+            ),
         ] {
             assert!(message(text).ends_with(help), "{}", message(text));
         }
         assert_eq!(message("kgcm"), "unknown unit `kgcm`: write `kgf.cm`");
         assert_eq!(message("ftlb"), "unknown unit `ftlb`: write `lbf.ft`");
         assert_eq!(message("msec"), "unknown unit `msec`: did you mean `ms`?");
-        assert_eq!(message("kohms"), "unknown unit `kohms`: did you mean `kohm`?");
+        assert_eq!(
+            message("kohms"),
+            "unknown unit `kohms`: did you mean `kohm`?"
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! A unit: its dimension and how its values become SI.
 
+use crate::symbol::{is_symbol_character, look_up};
 use crate::{Dimension, Scale, UnitError, parse_unit};
 use std::fmt;
 
@@ -42,6 +43,12 @@ impl Unit {
         self.scale.apply(value)
     }
 
+    /// Whether it has a zero point of its own, so that a difference of its values is in another unit.
+    #[must_use]
+    pub fn is_absolute(self) -> bool {
+        self.offset != 0.0
+    }
+
     /// Whether its values are SI as they stand.
     #[must_use]
     pub fn is_si(self) -> bool {
@@ -79,6 +86,20 @@ impl NamedUnit {
             text: dimension.usual_unit(),
             unit,
         }
+    }
+
+    /// Whether it is made of symbols of SI and their multiples alone: `mm/s`, but not `rpm`, `bar` or `degC`.
+    #[must_use]
+    pub fn is_multiple_of_si(&self) -> bool {
+        let mut symbols = self
+            .text
+            .split(|c| !is_symbol_character(c))
+            .filter(|symbol| !symbol.is_empty());
+        symbols.all(|symbol| {
+            look_up(symbol).is_some_and(|(_, row)| {
+                row.offset == 0.0 && (row.scale.is_one() || row.text == "g")
+            })
+        })
     }
 
     /// The text, `mm/rev`.

@@ -156,6 +156,7 @@ impl Source<'_> {
             RunError::Failed(failure) => failure.t,
             RunError::NoParameter(_)
             | RunError::CannotSet(..)
+            | RunError::NotAllowed(..)
             | RunError::NoGradientBy(..)
             | RunError::NoStop
             | RunError::EndsBeforeStart { .. }

@@ -87,11 +87,13 @@ pages! {
     UnitMismatch "E0301";
     BadUnit "E0302";
     AngleMismatch "E0303";
+    ZeroPoint "E0304";
     BadConnection "E0401";
     UnknownModification "E0402";
     FinalModified "E0403";
     NoValue "E0404";
     UnboundInput "E0405";
+    NotAllowed "E0406";
     TooManyEquations "E0501";
     TooFewEquations "E0502";
     MissingBoundary "E0503";

@@ -309,12 +309,8 @@ fn again(args: &SweepArgs, mut batch: Prepared, number: usize) -> Result<Exit, E
     for (path, value) in batch.plan.settings(&case) {
         let input = batch.plan.inputs.iter().find(|input| input.name == path);
         let unit = input.and_then(|input| input.unit.as_ref());
-        let dimension = unit.map(|unit| unit.unit().dimension);
-        batch.project.settings.push(Setting {
-            path,
-            value,
-            dimension,
-        });
+        let setting = Setting::of(path, value, unit.cloned());
+        batch.project.settings.push(setting);
     }
     let run_args = RunArgs {
         out: args.out.clone(),

@@ -4,14 +4,16 @@ use super::sample::Sampling;
 use super::vary::{effect, varying};
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_syntax::ast::{EffectUse, Expr, ExprKind, Reference, SettingValue, Study, StudyItem};
-use hyde_units::Dimension;
+use hyde_units::NamedUnit;
 
 /// A number as written: SI where it has a unit.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Written {
     pub(super) value: f64,
     /// `None` where no unit was written.
-    pub(super) dimension: Option<Dimension>,
+    pub(super) unit: Option<NamedUnit>,
+    /// Written as `true` or `false`.
+    pub(super) truth: bool,
     pub(super) span: Span,
 }
 

@@ -4,7 +4,7 @@ use super::draft::{Choice, Draft, Fill, Varying, Written, mistake, path};
 use super::plan::{Factor, Input, Model, Values};
 use super::sample::{Points, SOBOL_LIMITS, Sampling};
 use hyde_diag::{Code, Diagnostic, Span};
-use hyde_program::{Parameter, Prior};
+use hyde_program::{Given, Parameter, Prior};
 use hyde_units::Agreement;
 
 /// A plan in the making.
@@ -261,7 +261,8 @@ impl<'m> Layout<'m> {
                 check(
                     &Written {
                         value,
-                        dimension: column.dimension(),
+                        unit: column.unit().cloned(),
+                        truth: false,
                         span,
                     },
                     column.name(),
@@ -282,21 +283,27 @@ impl<'m> Layout<'m> {
 
 /// Whether a number fits a parameter.
 fn check(written: &Written, name: &str, parameter: &Parameter) -> Result<(), Diagnostic> {
-    let unit = parameter.unit.text();
-    match written.dimension {
-        None if parameter.dimension.is_dimensionless() || written.value == 0.0 => Ok(()),
-        None => Err(
-            mistake(written.span, format!("`{name}` has a unit"), "has none")
-                .help(format!("write `{} [{unit}]`", written.value)),
-        ),
-        Some(given) if given.agreement(parameter.dimension) == Agreement::Different => {
-            Err(Diagnostic::error(
-                Code::UnitMismatch,
-                format!("`{name}` is in {unit}, not in {given}"),
-            )
-            .label(written.span, format!("in {given}"))
-            .label(parameter.origin.span, format!("in {unit}")))
+    let given = Given {
+        value: written.value,
+        unit: written.unit.as_ref(),
+        truth: written.truth,
+    };
+    let Some(misfit) = parameter.misfit(&given) else {
+        return Ok(());
+    };
+    let code = match (&written.unit, misfit.instead.is_empty()) {
+        (Some(unit), _)
+            if unit.unit().dimension.agreement(parameter.dimension) != Agreement::Same =>
+        {
+            Code::UnitMismatch
         }
-        Some(_) => Ok(()),
-    }
+        _ => Code::BadSweep,
+    };
+    let diagnostic = Diagnostic::error(code, format!("`{name}` {}", misfit.reason))
+        .label(written.span, "does not fit")
+        .label(parameter.origin.span, format!("in {}", parameter.unit));
+    Err(match misfit.help() {
+        Some(help) => diagnostic.help(help),
+        None => diagnostic,
+    })
 }

@@ -2,7 +2,7 @@
 
 use super::dataset::Dataset;
 use super::outcome::{Outcome, Trajectory};
-use crate::run::{Options, RunError, measures, setup};
+use crate::run::{Options, RunError, measures, setup, within_bounds};
 use hyde_program::Program;
 use hyde_signal::Table;
 use std::collections::BTreeMap;
@@ -59,6 +59,7 @@ pub fn solve(
     wanted: &Wanted,
 ) -> Result<Outcome, RunError> {
     let mut setup = setup(program, records, options)?;
+    within_bounds(program, &setup.parameters)?;
     setup.keep = Some(wanted.outputs.clone());
     let results = hyde_sim::simulate(program, &setup).map_err(RunError::Failed)?;
     let found = measures(program, &setup.parameters, &results);

@@ -124,6 +124,14 @@ fn number(expr: &Expr, unit: Option<&UnitText>) -> Result<Written, Diagnostic> {
     } else {
         (1.0, expr)
     };
+    if let ExprKind::Boolean(truth) = &expr.kind {
+        return Ok(Written {
+            value: f64::from(u8::from(*truth)),
+            unit: None,
+            truth: true,
+            span: expr.span,
+        });
+    }
     let ExprKind::Number(value, own) = &inner.kind else {
         return Err(mistake(expr.span, "this is no number", "a number with its unit is expected")
             .help("write `5 [um]`; what changes together with others comes from a table: `cases \"cases.csv\";`"));
@@ -131,17 +139,18 @@ fn number(expr: &Expr, unit: Option<&UnitText>) -> Result<Written, Diagnostic> {
     let Some(text) = own.as_ref().or(unit) else {
         return Ok(Written {
             value: sign * value,
-            dimension: None,
+            unit: None,
+            truth: false,
             span: expr.span,
         });
     };
     let unit = NamedUnit::parse(&text.text).map_err(|error| {
         Diagnostic::error(Code::BadUnit, error.to_string()).label(text.span, "cannot be read")
     })?;
-    let unit = unit.unit();
     Ok(Written {
-        value: unit.to_si(sign * value),
-        dimension: Some(unit.dimension),
+        value: unit.unit().to_si(sign * value),
+        unit: Some(unit),
+        truth: false,
         span: expr.span,
     })
 }

@@ -3,6 +3,7 @@
 use crate::dimension::Dim;
 use crate::instance::{Elementwise, Scope, Setting, Typed};
 use crate::model::Model;
+use crate::turns::Turns;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::flat::{ClockedEquation, Equation};
 use hyde_ir::{ClockId, Expr as Ir, ExprId, Index, Range, VarId, VariableKind};
@@ -78,7 +79,7 @@ impl<'a> Model<'a, '_> {
         Typed {
             span,
             bare: false,
-            two_pi: false,
+            turns: Turns::Plain,
             ..inner
         }
     }

@@ -3,6 +3,7 @@
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
+use crate::zero::Zero;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::flat::{Reduction, ReductionKind};
 use hyde_ir::{BinaryOp, UnaryOp, VariableKind};
@@ -96,6 +97,10 @@ impl<'a> Model<'a, '_> {
         let reduction = Reduction { kind, value, var };
         self.flat.experiment.reductions.push(reduction);
         let id = self.flat.exprs.var(var);
-        self.typed(id, dim, span)
+        let keeps = matches!(name, "max" | "min" | "rms" | "mean" | "first" | "last");
+        Typed {
+            zero: if keeps { inner.zero } else { Zero::Open },
+            ..self.typed(id, dim, span)
+        }
     }
 }

@@ -90,6 +90,8 @@ impl<'a> Model<'a, '_> {
             ..self.typed(lhs, self.dim(var), target.span)
         };
         self.same_kind(&declared, &value);
+        self.check_whole(&declared, &value);
+        self.shown_as_difference(&declared, &value);
         self.agree(
             &declared,
             &value,

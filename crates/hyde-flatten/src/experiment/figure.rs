@@ -128,10 +128,15 @@ impl<'a> Model<'a, '_> {
         };
         let typed = self.value(expr, &scope);
         let dimension = self.dimensions.resolve(&typed.dim).as_known();
+        // What stands alone is drawn in the unit that it is declared with.
+        let declared = self.quantity_of(typed.id).cloned();
+        let usual = Quantity::usual(dimension.unwrap_or(Dimension::DIMENSIONLESS));
         let curve = Curve {
             name: hyde_syntax::format_expression(expr),
             value: typed.id,
-            quantity: Quantity::usual(dimension.unwrap_or(Dimension::DIMENSIONLESS)),
+            quantity: declared
+                .filter(|known| known.unit.text() != "1")
+                .unwrap_or(usual),
         };
         (curve, typed)
     }

@@ -3,6 +3,7 @@
 use crate::dimension::Dim;
 use crate::instance::{Scope, Typed};
 use crate::model::Model;
+use crate::zero::Zero;
 use hyde_diag::MadeBy;
 use hyde_ir::Quantity;
 use hyde_ir::flat::Measure;
@@ -16,11 +17,12 @@ impl<'a> Model<'a, '_> {
         let file = self.instances[scope.instance].file;
         let mut unit = None;
         match self.names.quantity(file, &measure.type_name) {
-            Some(crate::names::TypeName::Quantity(_, item)) => {
-                unit = item
-                    .unit
-                    .as_ref()
-                    .and_then(|unit| NamedUnit::parse(&unit.text).ok());
+            Some(crate::names::TypeName::Quantity(file, item)) => {
+                let difference = typed.zero == Zero::Difference;
+                let own_zero = |unit: &NamedUnit| unit.unit().is_absolute();
+                unit = self
+                    .type_unit(file, item)
+                    .filter(|unit| !(difference && own_zero(unit)));
                 if let Some(unit) = &unit {
                     let declared = Typed {
                         dim: Dim::known(unit.unit().dimension),
@@ -39,6 +41,25 @@ impl<'a> Model<'a, '_> {
             None => {
                 let diagnostic = self.names.unknown(file, &measure.type_name);
                 self.report(diagnostic);
+            }
+        }
+        if let Some(asked) = &measure.unit {
+            match NamedUnit::parse(&asked.text) {
+                Ok(asked) => {
+                    let shown = Typed {
+                        dim: Dim::known(asked.unit().dimension),
+                        span: measure.name.span,
+                        ..typed.clone()
+                    };
+                    self.agree(
+                        &shown,
+                        &typed,
+                        "the unit asked for and the value are",
+                        scope.instance,
+                    );
+                    unit = Some(asked);
+                }
+                Err(error) => self.bad_unit(asked, &error),
             }
         }
         if scope.instance == 0 {

@@ -9,7 +9,7 @@ use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::{Column, ColumnId, Interpolation, Parameter, Quantity, VarId, VariableKind};
 use hyde_syntax::ast::Reference;
 use hyde_syntax::member;
-use hyde_units::{Dimension, NamedUnit};
+use hyde_units::{Allowed, Dimension, NamedUnit};
 
 impl<'a> Model<'a, '_> {
     /// `record.column`, `.next`, `.first`, `.mean`; `record.begin` and `record.end`.
@@ -229,6 +229,7 @@ impl<'a> Model<'a, '_> {
             binding: None,
             state: Lowering::Done,
             boolean: false,
+            bounds: [None, None],
             within: None,
         });
         let origin = self.origin(0, span).made_by(MadeBy::Experiment);
@@ -237,6 +238,7 @@ impl<'a> Model<'a, '_> {
             len: None,
             value: vec![zero],
             quantity,
+            allowed: Allowed::default(),
             structural: false,
             is_final: false,
             found: false,

@@ -2,12 +2,13 @@
 
 use crate::bind::short;
 use crate::dimension::Dim;
-use crate::instance::{InstanceId, Lowering, Member, ParameterNotes, Scope, Setting};
+use crate::instance::{InstanceId, Lowering, Member, ParameterNotes, Scope, Setting, Typed};
 use crate::model::{Model, listed};
 use hyde_diag::{Code, Diagnostic, MadeBy, Origin};
 use hyde_ir::flat::Equation;
-use hyde_ir::{Expr as Ir, ExprId, Id as _, Parameter, Quantity, Range, VarId};
+use hyde_ir::{Expr as Ir, ExprId, Id as _, Parameter, Quantity, Range, VarId, VariableKind};
 use hyde_syntax::ast::Drive;
+use hyde_units::Allowed;
 
 impl<'a> Model<'a, '_> {
     /// `stimulus r = e`: drives a free input.
@@ -48,9 +49,18 @@ impl<'a> Model<'a, '_> {
             records: true,
             ..Scope::new(root, Setting::Equation)
         };
-        let value = self.value(&drive.value, &scope);
+        let boolean = self.flat.variables[var].boolean;
+        let mut value = self.lower(&drive.value, &scope);
+        if boolean && !value.truth {
+            value = self.truth_of_column(value);
+        }
         let lhs = self.flat.exprs.var(var);
-        let left = self.typed(lhs, self.dim(var), drive.target.span);
+        let left = Typed {
+            truth: boolean,
+            ..self.typed(lhs, self.dim(var), drive.target.span)
+        };
+        self.same_kind(&left, &value);
+        self.check_whole(&left, &value);
         self.agree(&left, &value, "the input and its stimulus are", root);
         let origin = self
             .origin(root, drive.target.span)
@@ -61,6 +71,24 @@ impl<'a> Model<'a, '_> {
             rhs: value.id,
             origin,
         });
+    }
+
+    /// A column that drives a Boolean: true from 0.5 on, held between its rows.
+    fn truth_of_column(&mut self, value: Typed) -> Typed {
+        let Ir::Var(var, index) = self.flat.exprs[value.id] else {
+            return value;
+        };
+        let VariableKind::Column(column, _) = self.flat.variables[var].kind else {
+            return value;
+        };
+        let (_, held) = self.column_variables[&column];
+        let number = self.flat.exprs.add(Ir::Var(held, index));
+        let half = self.flat.exprs.constant(0.5);
+        Typed {
+            id: self.flat.exprs.binary(hyde_ir::BinaryOp::Gt, number, half),
+            truth: true,
+            ..value
+        }
     }
 
     /// A parameter that the model does not declare, for what drives it from outside.
@@ -77,6 +105,7 @@ impl<'a> Model<'a, '_> {
             binding: None,
             state: Lowering::Done,
             boolean: false,
+            bounds: [None, None],
             within: None,
         });
         let param = self.flat.parameters.push(Parameter {
@@ -84,6 +113,7 @@ impl<'a> Model<'a, '_> {
             len: None,
             value: vec![value],
             quantity,
+            allowed: Allowed::default(),
             structural: false,
             is_final: false,
             found: false,

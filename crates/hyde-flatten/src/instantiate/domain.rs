@@ -60,7 +60,14 @@ impl<'a> Model<'a, '_> {
                     Code::BadArguments,
                     format!("`{name}` cannot have {count} cells"),
                 )
-                .label(span_of_count, "at least 2"),
+                .label(
+                    span_of_count,
+                    if count < 2 {
+                        "at least 2"
+                    } else {
+                        "at most 10 million"
+                    },
+                ),
             );
             self.undeclared.insert(name);
             return;

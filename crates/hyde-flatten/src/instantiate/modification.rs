@@ -204,27 +204,45 @@ impl<'a> Model<'a, '_> {
         })
     }
 
+    /// The bounds that a quantity declares, `min` and `max`.
+    pub(super) fn declared_bounds(
+        &mut self,
+        id: InstanceId,
+        declarator: &'a Declarator,
+        modifiers: &[Modifier<'a>],
+    ) -> [Option<Binding<'a>>; 2] {
+        ["min", "max"].map(|word| self.attribute(id, declarator, modifiers, word))
+    }
+
+    /// Reports attributes that are not among those that the declaration can have.
     pub(super) fn check_attributes(
         &mut self,
         declarator: &'a Declarator,
         modifiers: &[Modifier<'a>],
+        known: &[&str],
     ) {
         for modifier in modifiers {
             if modifier.target.is_empty()
-                || matches!(modifier.target.as_slice(), ["start" | "fixed" | "state"])
+                || matches!(modifier.target.as_slice(), [word] if known.contains(word))
             {
                 self.modifications[modifier.number].2 = true;
             }
         }
         for change in &declarator.changes {
-            if !matches!(change.target.as_word(), Some("start" | "fixed" | "state")) {
+            let word = change.target.as_word();
+            if word.is_none_or(|word| !known.contains(&word)) {
+                let of = if known.contains(&"state") {
+                    "variable"
+                } else {
+                    "parameter"
+                };
                 self.report(
                     Diagnostic::error(
                         Code::UnknownModification,
-                        format!("a variable has no attribute `{}`", change.target.dotted()),
+                        format!("a {of} has no attribute `{}`", change.target.dotted()),
                     )
                     .label(change.target.span, "changes nothing")
-                    .help("attributes are `start`, `fixed` and `state`"),
+                    .help(format!("attributes are {}", listed(known))),
                 );
             }
         }

@@ -7,7 +7,7 @@ use crate::names::TypeName;
 use hyde_diag::{Code, Diagnostic};
 use hyde_ir::{Parameter, Role};
 use hyde_syntax::ast::{self, Declaration, Prefix};
-use hyde_units::NamedUnit;
+use hyde_units::{Allowed, NamedUnit};
 
 impl<'a> Model<'a, '_> {
     pub(super) fn declare_parameters(
@@ -63,7 +63,9 @@ impl<'a> Model<'a, '_> {
             if found && binding.is_none() {
                 binding = self.attribute(id, declarator, &modifiers, "start");
             }
-            self.check_attributes(declarator, &modifiers);
+            let bounds = self.declared_bounds(id, declarator, &modifiers);
+            let known = ["min", "max", "fixed", "start"];
+            self.check_attributes(declarator, &modifiers, &known);
             let (dim, quantity) = self.quantity(kind, binding.as_ref().map(|binding| binding.expr));
             let len = self.length(id, &declaration.dims, &declarator.dims);
             let span = binding
@@ -78,6 +80,7 @@ impl<'a> Model<'a, '_> {
                 binding,
                 state: Lowering::Waiting,
                 boolean: matches!(kind, TypeName::Boolean),
+                bounds,
                 within: declarator.within.as_ref().map(|within| (id, within)),
             });
             let role = match (has(Prefix::Size), has(Prefix::Shape)) {
@@ -90,6 +93,10 @@ impl<'a> Model<'a, '_> {
                 len,
                 value: Vec::new(),
                 quantity,
+                allowed: Allowed {
+                    kind: kind.values(),
+                    ..Allowed::default()
+                },
                 structural: false,
                 is_final: is_final || found,
                 found,

@@ -3,6 +3,7 @@
 use crate::dimension::Dim;
 use crate::model::Model;
 use crate::names::{FileIndex, TypeName};
+use hyde_diag::{Code, Diagnostic};
 use hyde_ir::Quantity;
 use hyde_syntax::ast::{self, Expr, ExprKind};
 use hyde_units::NamedUnit;
@@ -24,7 +25,7 @@ impl<'a> Model<'a, '_> {
                 None => (Dim::unknown(self.dimensions.fresh()), None),
             },
             TypeName::Quantity(file_of_type, item) => {
-                let unit = self.type_unit(file_of_type, item, 0);
+                let unit = self.type_unit(file_of_type, item);
                 let dim = unit
                     .as_ref()
                     .map_or(Dim::NUMBER, |unit| Dim::known(unit.unit().dimension));
@@ -42,31 +43,45 @@ impl<'a> Model<'a, '_> {
         (dim, quantity)
     }
 
-    fn type_unit(
+    /// The unit of a type: its own, or that of the type it is made of.
+    pub(crate) fn type_unit(
         &mut self,
-        file: FileIndex,
-        item: &'a ast::TypeItem,
-        depth: usize,
+        mut file: FileIndex,
+        mut item: &'a ast::TypeItem,
     ) -> Option<NamedUnit> {
-        if let Some(unit) = &item.unit {
-            return match NamedUnit::parse(&unit.text) {
-                Ok(unit) => Some(unit),
-                Err(error) => {
-                    self.bad_unit(unit, &error);
-                    None
+        let mut seen: Vec<&ast::TypeItem> = Vec::new();
+        loop {
+            if let Some(unit) = &item.unit {
+                return match NamedUnit::parse(&unit.text) {
+                    Ok(unit) => Some(unit),
+                    Err(error) => {
+                        self.bad_unit(unit, &error);
+                        None
+                    }
+                };
+            }
+            seen.push(item);
+            match self.names.quantity(file, &item.base) {
+                Some(TypeName::Quantity(_, base))
+                    if seen.iter().any(|known| std::ptr::eq(*known, base)) =>
+                {
+                    let name = &base.name.text;
+                    let message = format!("the type `{name}` is made of itself");
+                    let mut diagnostic = Diagnostic::error(Code::Cycle, message);
+                    for item in seen {
+                        let next = item.base.dotted();
+                        diagnostic = diagnostic.label(item.name.span, format!("is a `{next}`"));
+                    }
+                    self.report(diagnostic.help(format!("write `type {name} = Real [unit];`")));
+                    return None;
                 }
-            };
-        }
-        if depth > 20 {
-            return None;
-        }
-        match self.names.quantity(file, &item.base) {
-            Some(TypeName::Quantity(file, base)) => self.type_unit(file, base, depth + 1),
-            Some(TypeName::Real | TypeName::Integer | TypeName::Boolean) => None,
-            None => {
-                let diagnostic = self.names.unknown(file, &item.base);
-                self.report(diagnostic);
-                None
+                Some(TypeName::Quantity(next, base)) => (file, item) = (next, base),
+                Some(TypeName::Real | TypeName::Integer | TypeName::Boolean) => return None,
+                None => {
+                    let diagnostic = self.names.unknown(file, &item.base);
+                    self.report(diagnostic);
+                    return None;
+                }
             }
         }
     }

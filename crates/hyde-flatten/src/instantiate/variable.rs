@@ -7,6 +7,7 @@ use crate::names::TypeName;
 use hyde_diag::{Code, Diagnostic};
 use hyde_ir::{StateChoice, Variable, VariableKind};
 use hyde_syntax::ast::{ClassKind, Declaration, Declarator, Expr, ExprKind, Prefix};
+use hyde_units::Kind;
 
 impl<'a> Model<'a, '_> {
     pub(super) fn declare_variable(
@@ -27,7 +28,9 @@ impl<'a> Model<'a, '_> {
         let start = attribute(self, "start");
         let fixed = attribute(self, "fixed");
         let state = attribute(self, "state");
-        self.check_attributes(declarator, &modifiers);
+        let bounds = self.declared_bounds(id, declarator, &modifiers);
+        let all = ["start", "fixed", "state", "min", "max"];
+        self.check_attributes(declarator, &modifiers, &all);
         // At the top, and in a modification, the author means this model; in a part's own declaration every use of it.
         let given = [&start, &fixed].into_iter().flatten();
         let start_given = given.into_iter().any(|attribute| attribute.scope != id)
@@ -78,6 +81,9 @@ impl<'a> Model<'a, '_> {
             dim,
             binding,
             start,
+            bounds,
+            integer: kind.values() == Kind::Integer,
+            difference: false,
             field,
         });
         let var = self.flat.variables.push(Variable {
@@ -102,10 +108,33 @@ impl<'a> Model<'a, '_> {
             .insert(name, Member::Variable(var));
     }
 
-    /// Whether `fixed` is `true`.
+    /// What `fixed = …` says: a truth that is known before the run, or a list of equal ones for an array.
     pub(super) fn is_true(&mut self, fixed: &Binding<'a>) -> bool {
-        let (picked, ..) = self.picked(fixed, Setting::Parameter);
-        matches!(picked.kind, ExprKind::Boolean(true))
+        let (expr, _, scope) = self.picked(fixed, Setting::Parameter);
+        let list = if let ExprKind::Array(items, None) = &expr.kind {
+            items.as_slice()
+        } else {
+            std::slice::from_ref(expr)
+        };
+        let mut truths = Vec::new();
+        for item in list {
+            let truth = if let ExprKind::Boolean(truth) = item.kind {
+                truth
+            } else {
+                let condition = self.truth(item, &scope);
+                self.evaluate(condition).is_some_and(|value| value != 0.0)
+            };
+            truths.push(truth);
+        }
+        let first = truths.first().copied().unwrap_or(false);
+        if truths.iter().any(|&truth| truth != first) {
+            self.report(
+                Diagnostic::error(Code::NotYet, "some elements are fixed and others are not")
+                    .label(expr.span, "one truth for all elements in this version")
+                    .help("declare two arrays, or leave all elements free and fix some by `initial equation x[1] = …;`"),
+            );
+        }
+        first
     }
 
     /// The word behind `state =`.

@@ -4,10 +4,11 @@ use super::sum_dim;
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
+use crate::turns::Turns;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{BinaryOp, Expr as Ir, UnaryOp, VariableKind};
 use hyde_syntax::ast::{Binary, Expr, Unary};
-use hyde_units::{AngleExponent, Exponent};
+use hyde_units::Exponent;
 
 impl<'a> Model<'a, '_> {
     pub(super) fn unary(
@@ -36,7 +37,11 @@ impl<'a> Model<'a, '_> {
                 Typed {
                     id,
                     span,
-                    two_pi: false,
+                    turns: if value.turns == Turns::TwoPi {
+                        Turns::Plain
+                    } else {
+                        value.turns
+                    },
                     ..value
                 }
             }
@@ -85,25 +90,31 @@ impl<'a> Model<'a, '_> {
                     true => sum_dim(&a.dim, &b.dim),
                     false => Dim::Any,
                 };
+                let turns = match (a.turns, b.turns) {
+                    (Turns::Lost, _) | (_, Turns::Lost) => Turns::Lost,
+                    (Turns::Counted, _) | (_, Turns::Counted) => Turns::Counted,
+                    _ => Turns::Plain,
+                };
                 Typed {
                     bare: a.bare && b.bare,
+                    turns,
+                    zero: self.zero_of_sum(ir, &a, &b),
                     ..self.typed(id, dim, span)
                 }
             }
             Binary::Mul | Binary::Div => {
                 let (a, b) = (self.value(left, scope), self.value(right, scope));
-                self.doubtful_turns(&a, &b);
-                let (ir, dim) = if op == Binary::Mul {
-                    (BinaryOp::Mul, a.dim.multiply(&b.dim))
+                let divides = op == Binary::Div;
+                let (dim, turns) = self.product(&a, &b, divides);
+                let ir = if divides {
+                    BinaryOp::Div
                 } else {
-                    (BinaryOp::Div, a.dim.divide(&b.dim))
+                    BinaryOp::Mul
                 };
                 let id = self.flat.exprs.binary(ir, a.id, b.id);
-                let two_pi =
-                    self.flat.exprs.is_constant(id, std::f64::consts::TAU) && a.bare && b.bare;
                 Typed {
                     bare: a.bare && b.bare,
-                    two_pi,
+                    turns,
                     ..self.typed(id, dim, span)
                 }
             }
@@ -216,29 +227,7 @@ impl<'a> Model<'a, '_> {
         });
         Typed {
             bare: a.bare && b.bare,
-            ..self.typed(id, dim, span)
-        }
-    }
-
-    /// `2*pi` beside a quantity that is per angle already (U1).
-    fn doubtful_turns(&mut self, a: &Typed, b: &Typed) {
-        for (turn, other) in [(a, b), (b, a)] {
-            let Some(dimension) = other.dim.as_known() else {
-                continue;
-            };
-            let per_angle = matches!(dimension.angle(), AngleExponent::Known(e) if e.is_negative());
-            if turn.two_pi && per_angle {
-                self.report(
-                    Diagnostic::warning(
-                        Code::AngleMismatch,
-                        "2*pi times a quantity that is per angle already",
-                    )
-                    .label(other.span, format!("this is {dimension}"))
-                    .label(turn.span, "turns it once more")
-                    .note("units like mm/rev are converted to m/rad as they are read")
-                    .help("leave the `2*pi` out"),
-                );
-            }
+            ..self.typed(id, dim.composed(), span)
         }
     }
 }

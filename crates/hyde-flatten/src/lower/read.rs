@@ -26,6 +26,7 @@ impl<'a> Model<'a, '_> {
                 let id = self.flat.exprs.add(Ir::Param(param, index));
                 Typed {
                     truth,
+                    zero: self.zero_of_name(id),
                     ..self.typed(id, dim, span)
                 }
             }
@@ -113,6 +114,7 @@ impl<'a> Model<'a, '_> {
         let truth = self.flat.variables[var].boolean;
         Typed {
             truth,
+            zero: self.zero_of_name(id),
             ..self.typed(id, self.dim(var), span)
         }
     }

@@ -1,6 +1,8 @@
 //! Models, connectors, effects and functions, and what may stand in them.
 
-use super::{Argument, Change, Declaration, Equation, Expr, Modes, Name, Range, Reference};
+use super::{
+    Argument, Change, Declaration, Equation, Expr, Modes, Name, Range, Reference, UnitText,
+};
 use hyde_diag::Span;
 
 /// What kind of class.
@@ -144,7 +146,7 @@ pub struct Clocked {
     pub span: Span,
 }
 
-/// `measure Length peak = max(abs(e)) "doc";`
+/// `measure Length peak = max(abs(e)) in [um] "doc";`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Measure {
     /// Its type.
@@ -153,6 +155,8 @@ pub struct Measure {
     pub name: Name,
     /// Its value.
     pub value: Expr,
+    /// The unit it is shown in, where that is said.
+    pub unit: Option<UnitText>,
     /// Its documentation.
     pub doc: Option<String>,
 }

@@ -46,9 +46,11 @@ fn declarator_text(item: &Declarator) -> String {
 
 pub(super) fn measure_text(word: &str, measure: &Measure) -> String {
     let value = expression(&measure.value);
+    let unit = measure.unit.as_ref();
+    let unit = unit.map_or(String::new(), |unit| format!(" in [{}]", unit.text));
     let text = doc(measure.doc.as_deref());
     format!(
-        "{word} {} {} = {value}{text};",
+        "{word} {} {} = {value}{unit}{text};",
         reference(&measure.type_name),
         measure.name.text
     )

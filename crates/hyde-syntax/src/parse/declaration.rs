@@ -102,11 +102,19 @@ impl Builder<'_> {
         let type_name = self.reference(inner.next()?);
         let name = self.name(&inner.next()?);
         let value = self.expression(inner.next()?);
+        let (mut unit, mut doc) = (None, None);
+        for part in inner {
+            match part.as_rule() {
+                Rule::unit => unit = Some(self.unit(part)),
+                _ => doc = Some(Self::text(part)),
+            }
+        }
         Some(Measure {
             type_name,
             name,
             value,
-            doc: inner.next().map(Self::text),
+            unit,
+            doc,
         })
     }
 

@@ -135,7 +135,11 @@ fn mistakes_are_told_with_their_place() {
             "the exponent `999999` is too large or not exact",
         ),
         ("km^400000", 0..9, "the factor to SI is out of range"),
-        ("((rev/rad)^600)^600", 1..14, "the factor to SI is out of range"),
+        (
+            "((rev/rad)^600)^600",
+            1..14,
+            "the factor to SI is out of range",
+        ),
         (
             "m99999999999",
             1..12,

@@ -10,7 +10,7 @@ use crate::settings::Setting;
 use crate::{records, run_failure};
 use hyde_experiment::{Level, Options, SteppedPoint, Steps, parameters, stepped_response};
 use hyde_program::{Constant, Program};
-use hyde_units::{Dimension, engineering, engineering_as, significant};
+use hyde_units::{Dimension, NamedUnit, engineering, engineering_as, significant};
 use std::fmt::Write as _;
 
 /// Runs the response of that number; puts what came out beside the linearised responses, and tells it. Whether every
@@ -25,11 +25,9 @@ pub(crate) fn measured(
         return Ok((String::new(), true));
     };
     // Which frequency does not matter here: a run sets its own.
-    project.settings.push(Setting {
-        path: format!("{input}.frequency"),
-        value: 1.0,
-        dimension: Some(Dimension::DIMENSIONLESS.divide(Dimension::TIME)),
-    });
+    let hertz = NamedUnit::usual(Dimension::FREQUENCY);
+    let frequency = Setting::of(format!("{input}.frequency"), 1.0, Some(hertz));
+    project.settings.push(frequency);
     let compiled = project.compile_silently(Aim::Run);
     project.settings.pop();
     let compiled = compiled.inspect_err(|_| {

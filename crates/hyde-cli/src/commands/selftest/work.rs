@@ -80,6 +80,9 @@ pub(super) fn reason(error: &SelftestError) -> String {
             RunError::CannotSet(name, cause) | RunError::NoGradientBy(name, cause) => {
                 format!("`{name}` cannot be set: {cause}")
             }
+            RunError::NotAllowed(name, cause) => {
+                format!("the value of `{name}` is not allowed: {cause}")
+            }
             RunError::NoStop => "its experiment does not say when to stop".to_owned(),
             RunError::EndsBeforeStart {
                 start_s, stop_s, ..
