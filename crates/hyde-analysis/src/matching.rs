@@ -120,9 +120,7 @@ pub(crate) fn edges(system: &System, node: Node, unknowns: &[Segment]) -> Vec<us
     let constraint = matches!(node, Node::Equation(number) if system.equations[number].constraint);
     let mut found: Vec<(u8, usize, f64)> = Vec::new();
     for (range, lhs, rhs) in sides(system, node) {
-        let mut factors = HashMap::new();
-        constant_factors(system, lhs, 1.0, &mut factors);
-        constant_factors(system, rhs, 1.0, &mut factors);
+        let factors = constant_factors(system, [lhs, rhs]);
         for id in system.flat.exprs.below(&[lhs, rhs]) {
             let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
                 continue;
@@ -160,37 +158,46 @@ pub(crate) fn edges(system: &System, node: Node, unknowns: &[Segment]) -> Vec<us
     found.into_iter().map(|(_, number, _)| number).collect()
 }
 
-/// The magnitudes of the numbers that parts of a sum are multiplied by.
-fn constant_factors(system: &System, id: ExprId, factor: f64, found: &mut HashMap<ExprId, f64>) {
+/// The magnitudes of the numbers that parts of sums are multiplied by, the largest where a part is met more than once.
+fn constant_factors(system: &System, sums: [ExprId; 2]) -> HashMap<ExprId, f64> {
     let exprs = &system.flat.exprs;
-    match exprs[id] {
-        Expr::Binary(BinaryOp::Add | BinaryOp::Sub, a, b) => {
-            constant_factors(system, a, factor, found);
-            constant_factors(system, b, factor, found);
-        }
-        Expr::Unary(UnaryOp::Neg, a) => constant_factors(system, a, factor, found),
-        Expr::Binary(BinaryOp::Mul, a, b) => {
-            let (of_a, of_b) = (exprs.as_constant(a), exprs.as_constant(b));
-            constant_factors(system, a, factor * of_b.map_or(1.0, f64::abs), found);
-            constant_factors(system, b, factor * of_a.map_or(1.0, f64::abs), found);
-        }
-        Expr::Der(..) => {
-            let own = found.entry(id).or_insert(0.0);
+    let mut factors: HashMap<ExprId, f64> = sums.iter().map(|&id| (id, 1.0)).collect();
+    // Each sum before its parts, each once: parts are shared, and the ways to one may be without number.
+    for id in exprs.below(&sums).into_iter().rev() {
+        let Some(&factor) = factors.get(&id) else {
+            continue;
+        };
+        let mut goes_on = |part: ExprId, factor: f64| {
+            let own = factors.entry(part).or_insert(0.0);
             *own = own.max(factor);
+        };
+        match exprs[id] {
+            Expr::Binary(BinaryOp::Add | BinaryOp::Sub, a, b) => {
+                goes_on(a, factor);
+                goes_on(b, factor);
+            }
+            Expr::Unary(UnaryOp::Neg, a) => goes_on(a, factor),
+            Expr::Binary(BinaryOp::Mul, a, b) => {
+                let (of_a, of_b) = (exprs.as_constant(a), exprs.as_constant(b));
+                goes_on(a, factor * of_b.map_or(1.0, f64::abs));
+                goes_on(b, factor * of_a.map_or(1.0, f64::abs));
+            }
+            Expr::Der(..)
+            | Expr::Const(_)
+            | Expr::Time
+            | Expr::Counter
+            | Expr::Param(..)
+            | Expr::Var(..)
+            | Expr::Pre(..)
+            | Expr::Relation(_)
+            | Expr::InMode(..)
+            | Expr::Unary(..)
+            | Expr::Binary(..)
+            | Expr::If(..)
+            | Expr::NoEvent(_) => {}
         }
-        Expr::Const(_)
-        | Expr::Time
-        | Expr::Counter
-        | Expr::Param(..)
-        | Expr::Var(..)
-        | Expr::Pre(..)
-        | Expr::Relation(_)
-        | Expr::InMode(..)
-        | Expr::Unary(..)
-        | Expr::Binary(..)
-        | Expr::If(..)
-        | Expr::NoEvent(_) => {}
     }
+    factors
 }
 
 /// The origin of a node.

@@ -124,6 +124,11 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
             false,
         ));
     }
+    let plain = Quantity::usual(hyde_units::Dimension::DIMENSIONLESS);
+    for condition in experiment.conditions() {
+        let name = "condition of a reduction".to_owned();
+        dae.outputs.push(single(name, condition, &plain, false));
+    }
     for (name, value, quantity) in experiment.bodes.iter().flat_map(|bode| &bode.outputs) {
         dae.outputs
             .push(single(format!("response {name}"), *value, quantity, false));
@@ -138,7 +143,6 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
         dae.outputs
             .push(single(name, curve.value, &curve.quantity, false));
     }
-    let plain = Quantity::usual(hyde_units::Dimension::DIMENSIONLESS);
     for account in &experiment.ledger.accounts {
         let name = account.component.member(&account.name);
         for (range, value) in &account.pieces {

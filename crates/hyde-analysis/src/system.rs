@@ -200,6 +200,9 @@ impl System {
         }
         for reduction in &mut flat.experiment.reductions {
             each(arena, &mut reduction.value);
+            if let Some(condition) = &mut reduction.condition {
+                each(arena, condition);
+            }
         }
         for (_, value, _) in flat
             .experiment

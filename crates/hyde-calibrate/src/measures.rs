@@ -126,6 +126,8 @@ fn reason(error: &hyde_experiment::RunError) -> String {
         RunError::CannotSet(name, why) => format!("`{name}` cannot be set: {why}"),
         RunError::NotAllowed(name, why) => format!("the value of `{name}` is not allowed: {why}"),
         RunError::NoGradientBy(name, why) => format!("no gradient by `{name}`: {why}"),
+        RunError::TooManyRows { rows, .. } => format!("it has {rows:.1e} rows"),
+        RunError::NotANumber { variable, .. } => format!("`{variable}` is not a number"),
         RunError::NoStop => "nothing says when it ends".to_owned(),
         RunError::EndsBeforeStart {
             start_s, stop_s, ..

@@ -2,7 +2,9 @@
 //! written is remembered until the command ends, and told there.
 
 use crate::exit::Exit;
-use std::io::{ErrorKind, Write as _};
+use crate::render;
+use hyde_diag::{Diagnostics, Sources};
+use std::io::{ErrorKind, IsTerminal as _, Write as _};
 use std::sync::OnceLock;
 
 /// Why standard output of this process could not be written. There is one of it, whoever prints.
@@ -10,13 +12,35 @@ static FAILED: OnceLock<String> = OnceLock::new();
 
 /// A line on standard output. Whoever reads it may have gone: a closed pipe is no mistake.
 pub(crate) fn print_output(text: &str) {
-    let written = writeln!(std::io::stdout().lock(), "{}", text.trim_end());
+    let text = visible(text.trim_end());
+    let written = writeln!(std::io::stdout().lock(), "{text}");
     note(written);
 }
 
 /// A line on standard error.
 pub(crate) fn print_error(text: &str) {
-    drop(writeln!(std::io::stderr().lock(), "{}", text.trim_end()));
+    let text = visible(text.trim_end());
+    drop(writeln!(std::io::stderr().lock(), "{text}"));
+}
+
+/// Diagnostics on standard error, in colour on a terminal, and a line behind them.
+pub(crate) fn print_diagnostics(diagnostics: &Diagnostics, sources: &Sources, last: &str) {
+    let text = render::render(diagnostics, sources, std::io::stderr().is_terminal());
+    let all = format!("{text}{}", visible(last));
+    drop(writeln!(std::io::stderr().lock(), "{}", all.trim_end()));
+}
+
+/// Characters that steer a terminal or turn the direction of writing, as signs that do nothing: texts come from models and
+/// names of files.
+fn visible(text: &str) -> String {
+    let sign = |c: char| match c {
+        '\n' | '\t' => c,
+        '\u{0}'..='\u{1f}' => char::from_u32(0x2400 + c as u32).unwrap_or('\u{fffd}'),
+        '\u{7f}' => '\u{2421}',
+        '\u{80}'..='\u{9f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => '\u{fffd}',
+        _ => c,
+    };
+    text.chars().map(sign).collect()
 }
 
 /// Remembers that standard output could not be written.

@@ -4,7 +4,7 @@ use crate::args::ModelArgs;
 use crate::batch::inputs::Kind;
 use crate::exit::Exit;
 use crate::files;
-pub(crate) use crate::output::{print_error, print_output};
+pub(crate) use crate::output::{print_diagnostics, print_error, print_output};
 use crate::package::{MANIFEST, Roots};
 use crate::records::{self, Record};
 use crate::render;
@@ -17,7 +17,6 @@ use hyde_syntax::ast::Experiment;
 use serde_json::json;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
-use std::io::IsTerminal as _;
 
 /// A loaded file with what was chosen of it.
 pub(crate) struct Project {
@@ -300,11 +299,7 @@ impl Project {
     /// Prints warnings, if any.
     pub(crate) fn print_warnings(&self, args: &ModelArgs) {
         if !self.diagnostics.is_empty() && !args.json && !args.quiet {
-            print_error(&render::render(
-                &self.diagnostics,
-                &self.sources,
-                std::io::stderr().is_terminal(),
-            ));
+            print_diagnostics(&self.diagnostics, &self.sources, "");
         }
     }
 
@@ -327,17 +322,15 @@ pub(crate) fn report_errors(
             json!({ "ok": false, "diagnostics": list })
         ));
     } else {
-        let text = render::render(diagnostics, sources, std::io::stderr().is_terminal());
         let count = diagnostics.error_count();
         let errors = if count == 1 {
             "1 error".to_owned()
         } else {
             format!("{count} errors")
         };
-        print_error(&format!(
-            "{text}{}: {errors}; `hyde explain CODE` tells more",
-            args.file.display()
-        ));
+        let file = args.file.display();
+        let last = format!("{file}: {errors}; `hyde explain CODE` tells more");
+        print_diagnostics(diagnostics, sources, &last);
     }
     Exit::Model
 }

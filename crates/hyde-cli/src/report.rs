@@ -29,7 +29,7 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
             } else {
                 Outcome::Failed
             },
-            text: measure.name.clone(),
+            text: format!("{}{}", measure.name, summary::why_missing(measure)),
         })
         .collect();
     let key_figures = run
@@ -39,9 +39,18 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
         .filter(|(measure, _)| !measure.expectation)
         .map(|(measure, known)| hyde_report::KeyFigure {
             name: measure.name.clone(),
-            value: significant(known.unit.unit().from_si(measure.value), 5),
-            unit: figures::shown(known.unit.text()).to_owned(),
-            note: String::new(),
+            value: match measure.missing {
+                None => significant(known.unit.unit().from_si(measure.value), 5),
+                Some(_) => "no value".to_owned(),
+            },
+            unit: match measure.missing {
+                None => figures::shown(known.unit.text()).to_owned(),
+                Some(_) => String::new(),
+            },
+            note: measure
+                .missing
+                .as_ref()
+                .map_or(String::new(), hyde_experiment::Missing::text),
         })
         .collect();
     let channels = run

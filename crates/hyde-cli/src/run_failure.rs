@@ -54,6 +54,14 @@ pub(crate) fn diagnostic(
             ),
             Exit::Model,
         ),
+        RunError::TooManyRows {
+            rows,
+            columns,
+            least_s,
+        } => (
+            too_many_rows((*rows, *columns), *least_s, experiment),
+            Exit::Model,
+        ),
         RunError::Compare(error) => {
             let message = format!(
                 "the channel `{}` cannot be compared: {}",
@@ -67,6 +75,23 @@ pub(crate) fn diagnostic(
                 None => diagnostic,
             };
             (diagnostic, Exit::Model)
+        }
+        RunError::NotANumber {
+            measure,
+            variable,
+            t,
+        } => {
+            let t = hyde_units::significant(*t, 7);
+            let message =
+                format!("`{measure}` has no value: `{variable}` is not a number at {t} s");
+            let measures = &program.experiment.measures;
+            let known = measures.iter().find(|known| known.name == *measure);
+            let diagnostic = Diagnostic::error(Code::NotFinite, message);
+            let diagnostic = match known {
+                Some(known) => diagnostic.label(known.origin.span, "read here"),
+                None => diagnostic,
+            };
+            (diagnostic, Exit::Expectation)
         }
         RunError::Failed(failure) => {
             let exit = if failure.kind == FailureKind::Interrupted {
@@ -86,6 +111,29 @@ pub(crate) fn cannot_set(program: &Program, name: &str, message: String) -> Diag
         Some((parameter, _)) => diagnostic.label(parameter.origin.span, "its value is given here"),
         None => diagnostic,
     }
+}
+
+/// Results that fit nowhere, and how far apart rows may be.
+fn too_many_rows(
+    (rows, columns): (f64, usize),
+    least_s: f64,
+    experiment: Option<&Experiment>,
+) -> Diagnostic {
+    let significant = hyde_units::significant;
+    let gigabytes = significant(rows * columns as f64 * 8e-9, 2);
+    let rows = significant(rows, 3);
+    let message =
+        format!("the results would have {rows} rows of {columns} columns, {gigabytes} GB");
+    let diagnostic = Diagnostic::error(Code::BadSolve, message);
+    let diagnostic = match experiment {
+        Some(experiment) => diagnostic.label(experiment.name.span, "this experiment asks for them"),
+        None => diagnostic,
+    };
+    let written = significant(10.0_f64.powf(least_s.log10().ceil()), 1);
+    diagnostic.help(format!(
+        "write `every {written} [s]` or more, or leave `every` out: events have rows of their own, and measures do not \
+         depend on rows"
+    ))
 }
 
 fn no_stop(experiment: Option<&Experiment>) -> (Diagnostic, Exit) {

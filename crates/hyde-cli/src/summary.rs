@@ -4,7 +4,7 @@ use crate::commands::effects::wrapped;
 use crate::project::Project;
 use crate::{assumptions, ledger, start};
 use hyde_compiler::Compiled;
-use hyde_experiment::Run;
+use hyde_experiment::{MeasureValue, Run};
 use hyde_program::Method;
 use hyde_sim::{Event, EventKind, GradientEnd, GradientEndKind};
 use hyde_units::{counted, engineering_as, engineering_difference, significant};
@@ -108,7 +108,11 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
             } else {
                 "DOES NOT HOLD"
             };
-            let _ = writeln!(out, "  expect {}: {verdict}", measure.name);
+            let why = why_missing(measure);
+            let _ = writeln!(out, "  expect {}: {verdict}{why}", measure.name);
+        } else if measure.missing.is_some() {
+            let why = why_missing(measure);
+            let _ = writeln!(out, "  {}: no value{why}", measure.name);
         } else {
             let value = engineering_as(measure.value, &known.unit);
             let _ = writeln!(out, "  {} = {value}", measure.name);
@@ -118,6 +122,12 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
         out.push_str(&ledger::text(&ledger));
     }
     out
+}
+
+/// Why a measure or an expectation has no value, behind a colon; empty of one that has.
+pub(crate) fn why_missing(measure: &MeasureValue) -> String {
+    let missing = measure.missing.as_ref();
+    missing.map_or(String::new(), |missing| format!(": {}", missing.text()))
 }
 
 /// From when on a run has no gradient, and why.
@@ -189,17 +199,25 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         )
         .map(|(measure, known)| {
             let unit = known.unit.unit();
-            json!({
+            let value = json!({
                 "name": measure.name, "value": measure.value, "unit": unit.dimension.usual_unit(),
                 "display": unit.from_si(measure.value), "display_unit": known.unit.text(),
-            })
+            });
+            (value, measure)
         })
+        .map(with_missing)
         .collect();
     let expectations: Vec<Value> = run
         .measures
         .iter()
         .filter(|measure| measure.expectation)
-        .map(|measure| json!({ "text": measure.name, "holds": measure.holds }))
+        .map(|measure| {
+            (
+                json!({ "text": measure.name, "holds": measure.holds }),
+                measure,
+            )
+        })
+        .map(with_missing)
         .collect();
     let modes: Map<String, Value> = program
         .automata
@@ -265,6 +283,14 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         summary["ledger"] = ledger::json(&ledger);
     }
     summary
+}
+
+/// Adds why there is no value.
+fn with_missing((mut entry, measure): (Value, &MeasureValue)) -> Value {
+    if let Some(missing) = &measure.missing {
+        entry["missing"] = json!(missing.text());
+    }
+    entry
 }
 
 /// The event log as CSV.

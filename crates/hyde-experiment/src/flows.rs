@@ -1,6 +1,5 @@
 //! The forces, torques and currents between the components of a run, one line a connection.
 
-use crate::reduce::mean;
 use hyde_program::Program;
 use hyde_sim::Results;
 
@@ -48,4 +47,13 @@ pub fn flows(program: &Program, results: &Results) -> Vec<FlowLine> {
     };
     let lines = program.experiment.flows.iter().filter_map(line);
     lines.filter(|line| line.peak() > 0.0).collect()
+}
+
+/// The mean over time of a function of a signal, by the trapezoidal rule. An instant with an event has two rows, so a jump is
+/// no ramp.
+fn mean(time: &[f64], values: &[f64], of: impl Fn(f64) -> f64) -> f64 {
+    let pairs = time.windows(2).zip(values.windows(2));
+    let areas = pairs.map(|(t, v)| 0.5 * (t[1] - t[0]) * (of(v[0]) + of(v[1])));
+    let ends = time.last().zip(time.first());
+    areas.sum::<f64>() / ends.map_or(0.0, |(last, first)| last - first)
 }

@@ -18,13 +18,13 @@ mod limit;
 mod linearize;
 mod margins;
 mod measured_response;
+mod measures;
 mod mode_fit;
 mod mode_shape;
 mod modes;
 mod pencil;
 mod poles;
 mod record;
-mod reduce;
 mod rows;
 mod run;
 mod sampled;
@@ -41,6 +41,7 @@ pub use limit::{Answer, LIMIT_LEFT, LIMIT_PART, limit};
 pub use linearize::{About, Linear, LinearizeError, linearize, linearize_about};
 pub use margins::{CutError, DelayMargin, GainCrossover, Margins, PhaseCrossover, margins};
 pub use measured_response::{MeasuredCurve, curve_of_run, measured_curve};
+pub use measures::{MeasureValue, Missing};
 pub use mode_fit::{
     Combination, FoundParameter, MeasuredMode, ModeFit, ModeFitError, ModeFitRequest, PairedMode,
     fit_modes,
@@ -49,7 +50,7 @@ pub use mode_shape::{ModeShape, mode_shape};
 pub use modes::{NaturalMode, modes};
 pub use poles::{Pole, Poles, poles};
 pub use record::read_record;
-pub use run::{MeasureValue, Options, Run, RunError, parameters, places, record_value, run};
+pub use run::{Options, Run, RunError, parameters, places, record_value, run};
 pub use sampled::{Clocked, Sampled};
 pub use stepped::{Level, SteppedOutput, SteppedPoint, Steps, stepped_response};
 pub use swept::{Swept, swept_response};

@@ -2,7 +2,7 @@
 //! what it is compared with.
 
 use crate::compare::{self, Channel, CompareError};
-use crate::reduce::reduce;
+use crate::measures::{MeasureValue, measures};
 use hyde_program::{Column, Constant, Measured, Parameter, Program, RecordValue, RecordedResponse};
 use hyde_signal::Table;
 use hyde_sim::{Failure, Results, Setup};
@@ -27,23 +27,12 @@ pub struct Options {
     pub atol: Option<f64>,
     /// Time between rows of the results in s.
     pub every_s: Option<f64>,
+    /// From when on the run counts for measures, in s; all of it if not said.
+    pub measured_from_s: Option<f64>,
     /// Names of the parameters by which the run is differentiated; without any there is no gradient.
     pub gradient: Vec<String>,
     /// Set from outside to end the run after the step under way.
     pub interrupted: Arc<AtomicBool>,
-}
-
-/// A measure or an expectation.
-#[derive(Clone, Debug, PartialEq)]
-pub struct MeasureValue {
-    /// Its name, or the expectation as written.
-    pub name: String,
-    /// Its value, SI; of an expectation 1 where it holds, else 0.
-    pub value: f64,
-    /// Whether it must hold.
-    pub expectation: bool,
-    /// Whether it does; true of a mere measure.
-    pub holds: bool,
 }
 
 /// A finished run.
@@ -89,11 +78,33 @@ pub enum RunError {
     },
     /// A number that must be positive is not: which, and its value.
     NotPositive(&'static str, f64),
+    /// More rows of results than fit anywhere.
+    TooManyRows {
+        /// The rows.
+        rows: f64,
+        /// The columns of each.
+        columns: usize,
+        /// The time in s that rows may be apart at least.
+        least_s: f64,
+    },
     /// A measured channel cannot be compared.
     Compare(CompareError),
+    /// A measure or expectation reads what is not a number: its name, the variable, and when first, in s.
+    NotANumber {
+        /// The measure's name, or the expectation as written.
+        measure: String,
+        /// The variable.
+        variable: String,
+        /// When first, in s.
+        t: f64,
+    },
     /// The solver could not go on.
     Failed(Box<Failure>),
 }
+
+/// Rows of the results at most, and numbers in all of them (3 GB).
+const MOST_ROWS: f64 = 2e7;
+const MOST_NUMBERS: f64 = 4e8;
 
 /// Runs a program as its experiment says.
 ///
@@ -164,6 +175,9 @@ pub(crate) fn setup<'r>(
             record,
         });
     }
+    if stop_s.is_infinite() {
+        return Err(RunError::NotPositive("stop", stop_s));
+    }
     let every = options
         .every_s
         .or_else(|| constant(Constant::Every))
@@ -184,11 +198,23 @@ pub(crate) fn setup<'r>(
         ("the time between rows", every),
         ("max_step", setup.max_step_s),
     ] {
-        if value.is_nan() || value <= 0.0 {
+        let endless = value.is_infinite() && what != "max_step";
+        if value.is_nan() || value <= 0.0 || endless {
             return Err(RunError::NotPositive(what, value));
         }
     }
+    let (count, columns) = ((stop_s - start_s) / every, program.outputs.len() + 1);
+    let most = MOST_ROWS.min(MOST_NUMBERS / columns as f64);
+    if count > most {
+        return Err(RunError::TooManyRows {
+            rows: count,
+            columns,
+            least_s: (stop_s - start_s) / most,
+        });
+    }
     setup.rows_s = rows(program, records, (start_s, stop_s), every);
+    setup.reductions.clone_from(&program.experiment.reductions);
+    setup.reduced_from_s = options.measured_from_s.unwrap_or(f64::NEG_INFINITY);
     Ok(setup)
 }
 
@@ -347,39 +373,4 @@ fn rows(
     rows.sort_by(f64::total_cmp);
     rows.dedup_by(|later, earlier| (*later - *earlier).abs() <= 1e-12 + 1e-13 * later.abs());
     rows
-}
-
-/// The measures and expectations of a solution, which needs the outputs that they reduce only.
-pub(crate) fn measures(
-    program: &Program,
-    parameters: &[f64],
-    results: &Results,
-) -> Vec<MeasureValue> {
-    let experiment = &program.experiment;
-    let reductions: Vec<f64> = experiment
-        .reductions
-        .iter()
-        .map(|reduction| {
-            let values = results.column(reduction.output);
-            values.map_or(f64::NAN, |values| {
-                reduce(reduction.kind, &results.time, values)
-            })
-        })
-        .collect();
-    let mut values = vec![0.0; experiment.measures.len()];
-    program
-        .kernels
-        .measures(parameters, &reductions, &mut values);
-    experiment
-        .measures
-        .iter()
-        .zip(values)
-        .map(|(measure, value)| MeasureValue {
-            name: measure.name.clone(),
-            value,
-            expectation: measure.expectation,
-            // A truth is 0 or 1; one without a value does not hold.
-            holds: !measure.expectation || value > 0.5,
-        })
-        .collect()
 }

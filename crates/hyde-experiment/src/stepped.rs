@@ -3,8 +3,9 @@
 //!
 //! The runs know nothing of each other, so several go side by side and give the same.
 
+use crate::measures::MeasureValue;
 use crate::rows::EvenRows;
-use crate::run::{MeasureValue, Options, RunError, measures, run};
+use crate::run::{Options, RunError, run};
 use hyde_program::{Bode, Program};
 use hyde_signal::Table;
 use hyde_signal::spectrum::{Complex, harmonic_distortion, response_at};
@@ -179,8 +180,10 @@ impl Sine<'_> {
         options.set.push((format!("{input}.amplitude"), amplitude));
         options.stop_s = Some((settling + counted) * period);
         options.every_s = Some(period / ROWS);
+        let from = settling * period;
+        options.measured_from_s = Some(from);
         let run = run(self.program, self.records, &options)?;
-        let (mut results, from) = (run.results, settling * period);
+        let mut results = run.results;
         let before = results.time.partition_point(|t| *t < from - 1e-6 * period);
         results.time.drain(..before);
         for column in &mut results.columns {
@@ -192,7 +195,7 @@ impl Sine<'_> {
             frequency_hz: self.frequency_hz,
             amplitude,
             outputs: outputs.collect(),
-            measures: measures(self.program, &run.parameters, &results),
+            measures: run.measures,
         })
     }
 

@@ -12,6 +12,8 @@ mod reduction;
 mod sum;
 mod table;
 
+pub(crate) use function::Calls;
+
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;

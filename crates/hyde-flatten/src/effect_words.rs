@@ -111,7 +111,7 @@ impl<'a> Model<'a, '_> {
                 return;
             }
         };
-        let shapes = self.shapes(file, class, 0);
+        let shapes = self.shapes(file, class);
         if let ExprKind::Reference(name) = &found.value.kind
             && name.as_word().is_some_and(|word| shapes.contains(&word))
         {
@@ -129,23 +129,27 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The names of the shapes of an effect and of what it extends.
-    fn shapes(&self, file: FileIndex, class: &'a Class, depth: usize) -> Vec<&'a str> {
-        let ClassBody::Long { elements, .. } = &class.body else {
-            return Vec::new();
-        };
+    fn shapes(&self, file: FileIndex, class: &'a Class) -> Vec<&'a str> {
+        let (mut waiting, mut seen) = (vec![(file, class)], Vec::<&'a Class>::new());
         let mut found = Vec::new();
-        for element in elements {
-            if let Element::Declaration(declaration) = element
-                && declaration.prefixes.contains(&Prefix::Shape)
-            {
-                let names = declaration.declarators.iter();
-                found.extend(names.map(|declarator| declarator.name.text.as_str()));
+        while let Some((file, class)) = waiting.pop() {
+            if seen.iter().any(|&known| std::ptr::eq(known, class)) {
+                continue;
             }
-            if let Element::Extends(base, _) = element
-                && let Some((file, base)) = self.names.class(file, base)
-                && depth < 40
-            {
-                found.extend(self.shapes(file, base, depth + 1));
+            seen.push(class);
+            let ClassBody::Long { elements, .. } = &class.body else {
+                continue;
+            };
+            for element in elements {
+                if let Element::Declaration(declaration) = element
+                    && declaration.prefixes.contains(&Prefix::Shape)
+                {
+                    let names = declaration.declarators.iter();
+                    found.extend(names.map(|declarator| declarator.name.text.as_str()));
+                }
+                if let Element::Extends(base, _) = element {
+                    waiting.extend(self.names.class(file, base));
+                }
             }
         }
         found

@@ -48,15 +48,17 @@ struct Walk<'a> {
     id: InstanceId,
     file: FileIndex,
     modifiers: Vec<Modifier<'a>>,
-    /// The classes that extend each other on the way here.
-    way: Vec<&'a Class>,
+    /// The classes that are extended on the way, the one asked for first.
+    chain: Vec<&'a Class>,
 }
-
-/// So long a chain of `extends` at most.
-const MAX_EXTENDED: usize = 500;
 
 /// A replaceable part may be redeclared as what holds it, a few times over; more has no end.
 const MAX_NESTED: usize = 6;
+/// Parts inside parts at most: nobody builds machines so, and recursion needs stack.
+const MAX_PARTS: usize = 200;
+/// Classes that extend each other in a chain at most, and all that a class extends by whatever way.
+const MAX_BASES: usize = 200;
+const MAX_EXTENDED: usize = 2000;
 
 impl<'a> Model<'a, '_> {
     /// Instantiates the model asked for; `None` if there is none of that name.
@@ -153,6 +155,15 @@ impl<'a> Model<'a, '_> {
             );
             return id;
         }
+        if self.depth(id) > MAX_PARTS {
+            self.endless.push(class);
+            self.too_deep(
+                format!("more than {MAX_PARTS} parts are nested in each other"),
+                (class.name.span, "instantiated inside that many others"),
+                "put parts beside each other and connect them",
+            );
+            return id;
+        }
         self.note_modified(id, &modifiers);
         if parent.is_none() {
             self.hook_additions(id);
@@ -163,9 +174,11 @@ impl<'a> Model<'a, '_> {
             id,
             file,
             modifiers,
-            way: Vec::new(),
+            chain: Vec::new(),
         };
+        let extended = std::mem::replace(&mut self.extended, 0);
         self.collect(walk, class, &mut collected);
+        self.extended = extended;
         self.members(id, &collected);
         self.offer(id);
         id
@@ -233,36 +246,39 @@ impl<'a> Model<'a, '_> {
 
     /// The elements of a class, those of its bases first.
     fn collect(&mut self, walk: Walk<'a>, class: &'a Class, out: &mut Vec<Collected<'a>>) {
-        let own = walk
-            .way
-            .iter()
-            .position(|known| std::ptr::eq(*known, class));
-        if own.is_some() || walk.way.len() > MAX_EXTENDED {
+        if let Some(own) = walk.chain.iter().position(|&known| std::ptr::eq(known, class)) {
             let name = &class.name.text;
-            let (code, message) = match own {
-                Some(own) => {
-                    let names: Vec<String> = walk.way[own..]
-                        .iter()
-                        .chain([&class])
-                        .map(|class| format!("`{}`", class.name.text))
-                        .collect();
-                    let message = match names.len() {
-                        2 => format!("`{name}` extends itself"),
-                        _ => format!("`{name}` extends itself: {}", names.join(" extends ")),
-                    };
-                    (Code::Cycle, message)
-                }
-                None => (
-                    Code::TooDeep,
-                    format!("more than {MAX_EXTENDED} models extend each other up to `{name}`"),
-                ),
+            let names: Vec<String> = walk.chain[own..]
+                .iter()
+                .chain([&class])
+                .map(|class| format!("`{}`", class.name.text))
+                .collect();
+            let message = match names.len() {
+                2 => format!("`{name}` extends itself"),
+                _ => format!("`{name}` extends itself: {}", names.join(" extends ")),
             };
-            let diagnostic = Diagnostic::error(code, message);
-            self.report(diagnostic.label(class.name.span, "declared here"));
+            self.report(
+                Diagnostic::error(Code::Cycle, message).label(class.name.span, "declared here"),
+            );
             return;
         }
-        let mut walk = walk;
-        walk.way.push(class);
+        self.extended += 1;
+        if walk.chain.len() > MAX_BASES || self.extended > MAX_EXTENDED {
+            // Told once: what is beyond it is left out.
+            if self.extended <= MAX_EXTENDED + 1 {
+                self.extended = MAX_EXTENDED + 1;
+                let name = &self.instances[walk.id].class.name;
+                self.too_deep(
+                    format!(
+                        "`{}` extends more than {MAX_BASES} classes in a chain, or more than {MAX_EXTENDED} in all",
+                        name.text
+                    ),
+                    (name.span, "its chain of `extends` is too long"),
+                    "leave classes out that only pass on what they extend",
+                );
+            }
+            return;
+        }
         match &class.body {
             ClassBody::Short {
                 base,
@@ -270,12 +286,12 @@ impl<'a> Model<'a, '_> {
                 effects,
             } => {
                 self.hook(walk.id, walk.file, effects);
-                self.collect_base(walk, base, changes, out);
+                self.collect_base(walk, class, base, changes, out);
             }
             ClassBody::Long { elements, .. } => {
                 for element in elements {
                     if let Element::Extends(base, changes) = element {
-                        self.collect_base(walk.clone(), base, changes, out);
+                        self.collect_base(walk.clone(), class, base, changes, out);
                     } else {
                         out.push(Collected {
                             element,
@@ -291,6 +307,7 @@ impl<'a> Model<'a, '_> {
     fn collect_base(
         &mut self,
         mut walk: Walk<'a>,
+        around: &'a Class,
         base: &'a Reference,
         changes: &'a [Change],
         out: &mut Vec<Collected<'a>>,
@@ -299,6 +316,7 @@ impl<'a> Model<'a, '_> {
         match self.names.class(walk.file, base) {
             Some((file, class)) => {
                 walk.file = file;
+                walk.chain.push(around);
                 self.collect(walk, class, out);
             }
             None => {
@@ -306,6 +324,17 @@ impl<'a> Model<'a, '_> {
                 self.report(diagnostic);
             }
         }
+    }
+
+    /// How many instances are around an instance, itself counted.
+    fn depth(&self, id: InstanceId) -> usize {
+        std::iter::successors(Some(id), |&id| self.instances[id].parent).count()
+    }
+
+    /// Reports a limit that is passed.
+    pub(crate) fn too_deep(&mut self, message: String, at: (Span, &str), help: &str) {
+        let diagnostic = Diagnostic::error(Code::TooDeep, message).label(at.0, at.1);
+        self.report(diagnostic.help(help));
     }
 
     /// How often the class of an instance is that of the instances around it, itself counted.

@@ -63,8 +63,10 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) endless: Vec<&'a hyde_syntax::ast::Class>,
     /// The values that elements of parameters have now, once they are known.
     pub(crate) current_values: BTreeMap<(ParamId, usize), f64>,
-    /// How deep the call of a function is in others.
-    pub(crate) calls: usize,
+    /// The functions whose calls are being replaced, the outermost first, and what is known of calls.
+    pub(crate) calls: crate::call::Calls<'a>,
+    /// The classes that the instance being made extends, by whatever way.
+    pub(crate) extended: usize,
     /// A subscript met that keeps its `for` equation from being one equation over a range.
     pub(crate) needs_unrolling: bool,
     pub(crate) diagnostics: &'d mut Diagnostics,
@@ -99,7 +101,8 @@ impl<'a, 'd> Model<'a, 'd> {
             undeclared: BTreeSet::new(),
             endless: Vec::new(),
             current_values: BTreeMap::new(),
-            calls: 0,
+            calls: crate::call::Calls::default(),
+            extended: 0,
             needs_unrolling: false,
             diagnostics,
         }

@@ -12,12 +12,41 @@ impl ExprArena {
     pub fn evaluate<E>(
         &self,
         root: ExprId,
+        leaf: impl FnMut(Expr) -> Result<f64, E>,
+    ) -> Result<f64, E> {
+        self.evaluate_nodes(root, false, leaf)
+    }
+
+    /// The same, but what reads a value that is not a number is not a number either, comparisons and branches too: no
+    /// truth follows from one.
+    ///
+    /// # Errors
+    /// The first error of `leaf`.
+    pub fn evaluate_known<E>(
+        &self,
+        root: ExprId,
+        leaf: impl FnMut(Expr) -> Result<f64, E>,
+    ) -> Result<f64, E> {
+        self.evaluate_nodes(root, true, leaf)
+    }
+
+    fn evaluate_nodes<E>(
+        &self,
+        root: ExprId,
+        known: bool,
         mut leaf: impl FnMut(Expr) -> Result<f64, E>,
     ) -> Result<f64, E> {
         let mut values: HashMap<ExprId, f64> = HashMap::new();
+        let unknown = |value: f64| known && value.is_nan();
         for id in self.below(&[root]) {
             let value = match self[id] {
                 Expr::Const(number) => number.0,
+                Expr::Unary(_, a) | Expr::Binary(_, a, _) | Expr::If(a, ..)
+                    if unknown(values[&a]) =>
+                {
+                    f64::NAN
+                }
+                Expr::Binary(_, _, b) if unknown(values[&b]) => f64::NAN,
                 Expr::Unary(op, a) => op.apply(values[&a]),
                 Expr::Binary(op, a, b) => op.apply(values[&a], values[&b]),
                 Expr::If(c, a, b) => {

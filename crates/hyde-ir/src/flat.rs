@@ -197,9 +197,9 @@ pub enum ReductionKind {
     Mean,
     /// Integral over time.
     Integral,
-    /// The first value there is: NaN is none.
+    /// The first value, where there is a condition the one at the first instant at which it holds.
     First,
-    /// The last value there is.
+    /// The last value, where there is a condition the one at the last instant at which it holds.
     Last,
     /// The instant from which the signal stays at zero or below, in s; infinite if it never does.
     Settling,
@@ -214,7 +214,9 @@ pub struct Reduction {
     pub kind: ReductionKind,
     /// Of what.
     pub value: ExprId,
-    /// The variable that stands for the result.
+    /// When it counts, as 1 or 0; none where always.
+    pub condition: Option<ExprId>,
+    /// The variable that stands for the result; its name is the reduction as written.
     pub var: VarId,
 }
 
@@ -350,6 +352,15 @@ pub struct Experiment {
     pub method: Method,
     /// Options of the solver by name (`rtol`), of parameters alone.
     pub solve: Vec<(String, ExprId)>,
+}
+
+impl Experiment {
+    /// The conditions of the reductions that have one, in their order.
+    pub fn conditions(&self) -> impl Iterator<Item = ExprId> {
+        self.reductions
+            .iter()
+            .filter_map(|reduction| reduction.condition)
+    }
 }
 
 /// A model with an experiment, flat.

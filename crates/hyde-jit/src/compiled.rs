@@ -317,7 +317,7 @@ impl Compiled {
             };
             value.copied().ok_or(())
         };
-        self.dae.exprs.evaluate(id, leaf).ok()
+        self.dae.exprs.evaluate_known(id, leaf).ok()
     }
 
     /// The expression of a number that parameters alone determine.

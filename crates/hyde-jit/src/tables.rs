@@ -6,7 +6,7 @@ use crate::flows::flows;
 use crate::{figures, ledger};
 use hyde_ir::dae::{self, Dae};
 use hyde_ir::flat;
-use hyde_ir::{Id as _, Interpolation, VariableKind};
+use hyde_ir::{Expr, ExprId, Id as _, Interpolation, VariableKind};
 use hyde_program::{
     Assignment, Automaton, Bode, Clock, Column, Cut, Derivatives, Experiment, Firmness, Hold,
     InitialCondition, Measure, Measured, MeasuredResponse, Method, Output, Parameter, Pin,
@@ -218,6 +218,7 @@ fn outputs(dae: &Dae) -> Vec<Output> {
     let auxiliary_from = dae.outputs.len()
         - dae.experiment.measured.len()
         - dae.experiment.reductions.len()
+        - dae.experiment.conditions().count()
         - dae
             .experiment
             .bodes
@@ -240,6 +241,21 @@ fn outputs(dae: &Dae) -> Vec<Output> {
         }
     }
     found
+}
+
+/// The reductions that an expression reads.
+fn reductions_read(dae: &Dae, value: ExprId) -> Vec<usize> {
+    let nodes = dae.exprs.below(&[value]).into_iter();
+    let number = |id| {
+        if let Expr::Var(var, _) = dae.exprs[id]
+            && let VariableKind::Reduction(number) = dae.variables[var].kind
+        {
+            Some(number)
+        } else {
+            None
+        }
+    };
+    nodes.filter_map(number).collect()
 }
 
 fn relation(relation: &dae::Relation) -> Relation {
@@ -360,9 +376,13 @@ fn experiment(dae: &Dae) -> Experiment {
     let first_account = columns - ledger::columns(&known.ledger);
     let first_curve = first_account - figures::outputs(&known.figures);
     let first_cut = first_curve - known.cuts.len();
-    let first_measured = first_cut - known.measured.len() - known.reductions.len() - responses;
+    let conditions = known.conditions().count();
+    let first_measured =
+        first_cut - known.measured.len() - known.reductions.len() - conditions - responses;
     let first_reduction = first_measured + known.measured.len();
-    let mut next_response = first_reduction + known.reductions.len();
+    let first_condition = first_reduction + known.reductions.len();
+    let mut conditions_before = first_condition..;
+    let mut next_response = first_condition + conditions;
     Experiment {
         name: known.name.clone(),
         records: known.records.clone(),
@@ -407,7 +427,9 @@ fn experiment(dae: &Dae) -> Experiment {
                     flat::ReductionKind::Settling => ReductionKind::Settling,
                     flat::ReductionKind::Resonance => ReductionKind::Resonance,
                 },
+                text: dae.variables[reduction.var].name.to_string(),
                 output,
+                condition: reduction.condition.and_then(|_| conditions_before.next()),
             })
             .collect(),
         measures: known
@@ -416,6 +438,7 @@ fn experiment(dae: &Dae) -> Experiment {
             .map(|measure| Measure {
                 name: measure.name.clone(),
                 expectation: measure.expectation,
+                reductions: reductions_read(dae, measure.value),
                 unit: measure.quantity.unit.clone(),
                 origin: measure.origin.clone(),
             })

@@ -47,9 +47,9 @@ pub enum ReductionKind {
     Mean,
     /// Integral over time.
     Integral,
-    /// The first value there is: NaN is none.
+    /// The first value, where there is a condition the one at the first instant at which it holds.
     First,
-    /// The last value there is.
+    /// The last value, where there is a condition the one at the last instant at which it holds.
     Last,
     /// The instant from which the signal stays at zero or below, in s; infinite if it never does.
     Settling,
@@ -62,8 +62,12 @@ pub enum ReductionKind {
 pub struct Reduction {
     /// How.
     pub kind: ReductionKind,
+    /// As written: `max(abs(e))`.
+    pub text: String,
     /// Of which output.
     pub output: usize,
+    /// The output that is 1 where the value counts; none where it always does.
+    pub condition: Option<usize>,
 }
 
 /// A measure or expectation; its value is of the same number in [`crate::Kernels::measures`].
@@ -73,6 +77,8 @@ pub struct Measure {
     pub name: String,
     /// Whether it must hold.
     pub expectation: bool,
+    /// The reductions that it reads, by number.
+    pub reductions: Vec<usize>,
     /// Unit for printing.
     pub unit: NamedUnit,
     /// Where it is written.

@@ -29,9 +29,11 @@ mod initial;
 mod inputs;
 mod integrator;
 mod known_start;
+mod lobatto;
 mod loose;
 mod meter;
 mod operating_point;
+mod reductions;
 mod released;
 mod results;
 mod root_rates;
@@ -54,8 +56,8 @@ pub use inputs::InputError;
 pub use known_start::{KnownStart, known_start};
 pub use operating_point::{OperatingPoint, PointModes, PointTime, TakenMode, operating_point};
 pub use results::{
-    Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Results, Statistics,
-    Yielded,
+    Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Reduced, Results,
+    Statistics, Yielded,
 };
 pub use setup::Setup;
 

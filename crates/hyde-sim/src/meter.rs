@@ -1,20 +1,13 @@
 //! [`Meter`]: adds up, step by step, what the energy ledger asks for.
 //!
 //! Over a stretch of the solution the work at a port is `∫ flow d(potential)`, the energy of a power `∫ power dt`. Both
-//! are taken by the rule of Lobatto with five points on the solver's own interpolant; the slope of the potential is that
-//! of the polynomial through its five values (Hairer, Nørsett, Wanner, *Solving Ordinary Differential Equations I*, II.7).
-//! A stretch ends where the solution has a corner: at steps and events. At an event an energy may jump; jumps are summed
-//! apart.
+//! are taken by the [rule of Lobatto](crate::lobatto) on the solver's own interpolant; the slope of the potential is that
+//! of the polynomial through its five values. A stretch ends where the solution has a corner: at steps and events. At an
+//! event an energy may jump; jumps are summed apart.
 
+use crate::lobatto::{NODES, POINTS, WEIGHTS};
 use crate::results::Energies;
 use hyde_program::{AccountKind, Ledger, PortKind};
-
-/// Points of the rule on -1..1.
-pub(crate) const POINTS: usize = 5;
-/// sqrt(3/7)
-const INNER: f64 = 0.654_653_670_707_977_1;
-const NODES: [f64; POINTS] = [-1.0, -INNER, 0.0, INNER, 1.0];
-const WEIGHTS: [f64; POINTS] = [0.1, 49.0 / 90.0, 32.0 / 45.0, 49.0 / 90.0, 0.1];
 
 /// Sums up to now.
 pub(crate) struct Meter<'a> {
@@ -40,14 +33,6 @@ impl<'a> Meter<'a> {
                 passed: 0.0,
             },
         })
-    }
-
-    /// The times at which [`Meter::stretch`] wants the outputs.
-    pub(crate) fn times(from: f64, to: f64) -> [f64; POINTS] {
-        let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-        let mut times = NODES.map(|node| middle + half * node);
-        (times[0], times[POINTS - 1]) = (from, to);
-        times
     }
 
     /// Adds a stretch of `span` s with the outputs at its points.
@@ -141,7 +126,7 @@ mod tests {
         };
         let mut meter = Meter::new(&ledger).unwrap();
         // f = 3 t^2, s = t^3 from 1 to 3: work 9 t^5/5.
-        let times = Meter::times(1.0, 3.0);
+        let times = crate::lobatto::times(1.0, 3.0);
         let outputs = times.map(|t: f64| vec![3.0 * t * t, t.powi(3), t]);
         meter.stretch(2.0, &outputs);
         meter.instant(&[0.0, 0.0, 3.0], &[0.0, 0.0, 2.5]);

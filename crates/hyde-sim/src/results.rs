@@ -96,6 +96,22 @@ pub struct Energies {
     pub passed: f64,
 }
 
+/// What a signal over a run is as one number.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Reduced {
+    /// The number, SI.
+    Value(f64),
+    /// There is none: the condition never holds, or a signal that does not change has no resonance.
+    Nothing,
+    /// The signal has no value.
+    NotANumber {
+        /// When first, in s.
+        t: f64,
+        /// The variable that has none.
+        variable: String,
+    },
+}
+
 /// Why a gradient goes no further than to an instant.
 #[derive(Clone, Debug, PartialEq)]
 pub enum GradientEndKind {
@@ -154,6 +170,8 @@ pub struct Results {
     pub sliding: Vec<(String, f64)>,
     /// Time each automaton spent in each mode, in s; while it slides between two, each has its share.
     pub mode_times: Vec<Vec<f64>>,
+    /// What was asked for as one number, in that order.
+    pub reductions: Vec<Reduced>,
     /// The sums of the energy ledger, if it was asked for.
     pub energies: Option<Energies>,
     /// Final solver's vector and memory.

@@ -1,6 +1,6 @@
 //! [`Setup`]: what a run is told beside its program.
 
-use hyde_program::Method;
+use hyde_program::{Method, Reduction};
 use hyde_signal::Table;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -27,6 +27,10 @@ pub struct Setup<'a> {
     pub max_step_s: f64,
     /// Times of the results' rows in s, ascending; rows at events come in addition.
     pub rows_s: Vec<f64>,
+    /// Signals that are to become one number each.
+    pub reductions: Vec<Reduction>,
+    /// What they are before this time, in s, does not count.
+    pub reduced_from_s: f64,
     /// The outputs to keep, by number, ascending; `None` for all.
     pub keep: Option<Vec<usize>>,
     /// The parameters by which the run is differentiated: positions in the parameter vector, of plain parameters; `None` for
@@ -50,6 +54,8 @@ impl<'a> Setup<'a> {
             atol: 1e-8,
             max_step_s: f64::INFINITY,
             rows_s: Self::rows_every(0.0, stop_s, stop_s / 1000.0),
+            reductions: Vec::new(),
+            reduced_from_s: f64::NEG_INFINITY,
             keep: None,
             sensitivities: None,
             interrupted: Arc::default(),

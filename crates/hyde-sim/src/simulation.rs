@@ -2,6 +2,7 @@
 
 mod instant;
 mod point;
+mod reduce;
 mod rows;
 mod steady;
 
@@ -14,7 +15,9 @@ use crate::guards::{self, Crossing};
 use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
+use crate::lobatto;
 use crate::meter::Meter;
+use crate::reductions::Reductions;
 use crate::results::{Gradient, Results};
 use crate::selection;
 use crate::sensitivity::{Cause, Sensitivities};
@@ -23,7 +26,7 @@ use crate::solver::method;
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
 use crate::time_spent::count_modes;
-use hyde_program::Program;
+use hyde_program::{Function, Program, SomeRows};
 use std::sync::atomic::Ordering;
 
 /// Relations that are not settled after so many solutions of the initial equations contradict them.
@@ -47,6 +50,8 @@ pub(crate) struct Simulation<'a> {
     crossed: Vec<usize>,
     hurry: Hurry,
     meter: Option<Meter<'a>>,
+    /// What becomes one number, with the kernel of what it reads.
+    reductions: Option<(Reductions, Box<dyn SomeRows + 'a>)>,
     sensitivities: Option<Sensitivities>,
     /// Events change relations alone, no modes: they are those of an operating point.
     modes_are_given: bool,
@@ -119,6 +124,13 @@ impl<'a> Simulation<'a> {
             crossed: Vec::new(),
             hurry: Hurry::default(),
             meter: Meter::new(&program.experiment.ledger),
+            reductions: Reductions::new(&setup.reductions, setup.reduced_from_s).map(
+                |reductions| {
+                    let outputs = reductions.outputs();
+                    let kernel = program.kernels.some_rows(Function::Outputs, outputs);
+                    (reductions, kernel)
+                },
+            ),
             sensitivities,
             modes_are_given: false,
         })
@@ -128,6 +140,7 @@ impl<'a> Simulation<'a> {
     pub(crate) fn run(mut self) -> Result<Results, Box<Failure>> {
         match self.advance_to_stop() {
             Ok(()) => {
+                self.reduce_instant();
                 self.close();
                 Ok(self.results)
             }
@@ -185,11 +198,13 @@ impl<'a> Simulation<'a> {
         self.results.parameters.clone_from(&state.p);
         let left = delays::limits(&mut self.integrator, None);
         self.row();
+        self.reduce_instant();
         if self.schedule.due(t) {
             let start = self.limit();
             self.tick(&start)?;
             self.iterate(&[], false)?;
             self.row();
+            self.reduce_instant();
         }
         while self
             .setup
@@ -260,6 +275,7 @@ impl<'a> Simulation<'a> {
                 .as_ref()
                 .map_or(self.integrator.t, |crossing| crossing.t);
             self.measure_energy(from, end);
+            self.reduce_stretch(from, end);
             if let Some(sensitivities) = &mut self.sensitivities {
                 sensitivities.note_step(&mut self.integrator, from);
             }
@@ -368,7 +384,7 @@ impl<'a> Simulation<'a> {
         }
         let n = self.program.n_unknowns;
         let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-        let outputs = Meter::times(from, to).map(|t| {
+        let outputs = lobatto::times(from, to).map(|t| {
             self.integrator.solution(t, &mut y, &mut yp);
             let state = self.integrator.state_mut();
             self.consistent.refine(state, t, &mut y, &mut yp);
@@ -431,6 +447,9 @@ impl<'a> Simulation<'a> {
             (&mut self.results.gradient, &mut self.sensitivities)
         {
             gradient.end = sensitivities.end.take();
+        }
+        if let Some((reductions, _)) = &self.reductions {
+            self.results.reductions = reductions.finish();
         }
         self.results.energies = self.meter.as_ref().map(Meter::sums);
         self.results.last = (self.integrator.y.clone(), self.integrator.state().z.clone());

@@ -27,6 +27,9 @@ pub(crate) enum Solver<'a> {
 /// clock: between 10 and 100 it makes little difference, and a step too long is only taken again).
 const LONGER_FIRST_STEP: f64 = 20.0;
 
+/// Strides that a run without unknowns takes at least.
+const LEAST_STRIDES: f64 = 1000.0;
+
 /// The method for a program: where clocks tick, one that starts anew at no cost. States that are chosen anew need slopes
 /// of them all, which a Runge-Kutta method has not.
 pub(crate) fn method(program: &Program, asked: Method) -> Method {
@@ -48,7 +51,9 @@ impl<'a> Solver<'a> {
         let program = state.program;
         let stride = state.delays.max_step_s();
         if program.n_unknowns == 0 {
+            let of_run = (setup.stop_s - setup.start_s) / LEAST_STRIDES;
             let stride_s = setup.max_step_s.min(setup.row_spacing()).min(stride);
+            let stride_s = stride_s.min(of_run);
             let state = Box::new(state);
             return Ok(Self::Nothing { state, stride_s });
         }

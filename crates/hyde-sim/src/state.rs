@@ -7,7 +7,7 @@ use crate::released::Released;
 use crate::setup::Setup;
 use crate::sliding::{Slide, Surface};
 use hyde_ida::{Recoverable, System};
-use hyde_program::{Function, Point, Program, TickWrt, Workspace};
+use hyde_program::{Function, Point, Program, SomeRows, TickWrt, Workspace};
 
 /// The model between and during calls of the solver.
 pub(crate) struct State<'a> {
@@ -126,6 +126,30 @@ impl<'a> State<'a> {
                 program.kernels.evaluate(function, at, workspace, out);
             });
         }
+    }
+
+    /// The same of some rows.
+    pub(crate) fn evaluate_rows(
+        &mut self,
+        rows: &dyn SomeRows,
+        (t, y, yp): (f64, &[f64], &[f64]),
+        out: &mut [f64],
+    ) {
+        let side = |state: &mut Self, out: &mut [f64]| {
+            state.read_continuous(t);
+            let (at, workspace) = state.at(t, y, yp);
+            rows.evaluate(at, workspace, out);
+        };
+        if self.slides.is_empty() {
+            return side(self, out);
+        }
+        let weights = self.weights(t, y, yp);
+        let values = self.mean(&weights, &mut |state| {
+            let mut values = vec![0.0; out.len()];
+            side(state, &mut values);
+            values
+        });
+        out.copy_from_slice(&values);
     }
 
     /// The derivatives of a function, in the program's order; while sliding the mean of the sides.

@@ -46,7 +46,7 @@ fn word(rule: Rule) -> String {
         | Rule::boolean
         | Rule::group
         | Rule::array
-        | Rule::call
+        | Rule::named
         | Rule::conditional
         | Rule::negative
         | Rule::positive
@@ -84,6 +84,8 @@ fn word(rule: Rule) -> String {
         Rule::source => "`from`",
         Rule::within => "`in`",
         Rule::subscript => "a subscript",
+        Rule::counted => "`for`",
+        Rule::upper => "`:`",
         Rule::mode => "`mode`",
         Rule::exit => "`exit`",
         Rule::class_kind => "`model`, `connector`, `effect` or `function`",

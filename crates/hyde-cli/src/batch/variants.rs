@@ -154,6 +154,7 @@ impl Source<'_> {
         let time_s = match error {
             RunError::Failed(failure) if failure.kind == FailureKind::Interrupted => return None,
             RunError::Failed(failure) => failure.t,
+            RunError::NotANumber { t, .. } => *t,
             RunError::NoParameter(_)
             | RunError::CannotSet(..)
             | RunError::NotAllowed(..)
@@ -161,6 +162,7 @@ impl Source<'_> {
             | RunError::NoStop
             | RunError::EndsBeforeStart { .. }
             | RunError::NotPositive(..)
+            | RunError::TooManyRows { .. }
             | RunError::Compare(_) => f64::NAN,
         };
         let (diagnostic, _) = run_failure::diagnostic(error, program, None);

@@ -5,6 +5,7 @@ use crate::args::{BudgetArgs, ModelArgs, RunArgs};
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Project, Records, complain, print_error, print_output};
+use crate::summary;
 use hyde_compiler::{changed, ideals};
 use hyde_experiment::{BudgetOf, Share};
 use hyde_syntax::ast::{Experiment, Ideal};
@@ -124,6 +125,15 @@ fn measures(args: &ModelArgs, project: Project) -> Result<Measures, Exit> {
         .iter()
         .zip(&compiled.program.experiment.measures);
     let measures = both.filter(|(measure, _)| !measure.expectation);
+    let mut missing = run
+        .measures
+        .iter()
+        .filter(|measure| measure.missing.is_some());
+    if let Some(measure) = missing.next() {
+        let (name, why) = (&measure.name, summary::why_missing(measure));
+        let reason = format!("`{name}` has no value{why}");
+        return Err(complain(args, Exit::Expectation, &reason));
+    }
     Ok(measures
         .map(|(measure, known)| (measure.name.clone(), known.unit.clone(), measure.value))
         .collect())

@@ -4,7 +4,9 @@ use crate::args::{Format, RunArgs};
 use crate::exit::Exit;
 use crate::files;
 use crate::interruption;
-use crate::project::{self, Aim, Project, Records, complain, print_error, print_output};
+use crate::project::{
+    self, Aim, Project, Records, complain, print_diagnostics, print_error, print_output,
+};
 use crate::records;
 use crate::{asked_figures, forces, render, report, run_failure, summary};
 use hyde_compiler::Compiled;
@@ -14,7 +16,6 @@ use hyde_signal::{Column, csv, parquet};
 use hyde_sim::Results;
 use hyde_units::NamedUnit;
 use serde_json::{Map, Value, json};
-use std::io::IsTerminal as _;
 use std::path::Path;
 
 /// Runs an experiment, prints what happened, and leaves its files.
@@ -70,6 +71,7 @@ pub(crate) fn solved_of(
         rtol: args.rtol,
         atol: args.atol,
         every_s: None,
+        measured_from_s: None,
         gradient: args.gradient.clone(),
         interrupted: interruption::interrupted(),
     };
@@ -121,7 +123,12 @@ fn finish(
     }
     if args.model.quiet {
         for measure in run.measures.iter().filter(|measure| !measure.holds) {
-            print_error(&format!("expect {}: does not hold", measure.name));
+            let (name, why) = (&measure.name, summary::why_missing(measure));
+            print_error(&if measure.expectation {
+                format!("expect {name}: does not hold{why}")
+            } else {
+                format!("{name}: no value{why}")
+            });
         }
     }
     Exit::Expectation
@@ -277,10 +284,6 @@ fn tell(args: &RunArgs, project: &Project) {
             json!({ "ok": false, "diagnostics": diagnostics })
         ));
     } else {
-        print_error(&render::render(
-            &project.diagnostics,
-            &project.sources,
-            std::io::stderr().is_terminal(),
-        ));
+        print_diagnostics(&project.diagnostics, &project.sources, "");
     }
 }

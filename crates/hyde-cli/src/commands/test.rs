@@ -5,6 +5,7 @@ use crate::commands::{check, run};
 use crate::exit::Exit;
 use crate::limits::{self, Neutral};
 use crate::project::{self, print_output};
+use crate::summary;
 use hyde_units::significant;
 use serde_json::{Value, json};
 
@@ -106,20 +107,21 @@ fn experiment(args: &ModelArgs, tests: &mut Vec<Tested>) -> Exit {
         }
     };
     let expected: Vec<_> = run.measures.iter().filter(|m| m.expectation).collect();
-    let broken: Vec<&str> = expected
+    let broken: Vec<String> = run
+        .measures
         .iter()
         .filter(|measure| !measure.holds)
-        .map(|measure| measure.name.as_str())
+        .map(|measure| format!("{}{}", measure.name, summary::why_missing(measure)))
         .collect();
     let before = tests.len();
     tests.push(Tested {
         verdict: match (expected.len(), broken.len()) {
-            (0, _) => Verdict::Skipped,
+            (0, 0) => Verdict::Skipped,
             (_, 0) => Verdict::Passed,
             _ => Verdict::Failed,
         },
         found: match (expected.len(), broken.as_slice()) {
-            (0, _) => "expects nothing".to_owned(),
+            (0, []) => "expects nothing".to_owned(),
             (1, []) => "1 expectation holds".to_owned(),
             (count, []) => format!("{count} expectations hold"),
             (_, broken) => format!("does not hold: {}", broken.join("; ")),

@@ -2,7 +2,8 @@
 
 use super::dataset::Dataset;
 use super::outcome::{Outcome, Trajectory};
-use crate::run::{Options, RunError, measures, setup, within_bounds};
+use crate::measures::{Missing, measures};
+use crate::run::{Options, RunError, setup, within_bounds};
 use hyde_program::Program;
 use hyde_signal::Table;
 use std::collections::BTreeMap;
@@ -32,12 +33,7 @@ impl Wanted {
             .iter()
             .map(|column| program.output(&column.name))
             .collect();
-        let reduced = program
-            .experiment
-            .reductions
-            .iter()
-            .map(|reduction| reduction.output);
-        let mut outputs: Vec<usize> = reduced.chain(kept.iter().copied().flatten()).collect();
+        let mut outputs: Vec<usize> = kept.iter().copied().flatten().collect();
         outputs.sort_unstable();
         outputs.dedup();
         Self {
@@ -63,6 +59,18 @@ pub fn solve(
     setup.keep = Some(wanted.outputs.clone());
     let results = hyde_sim::simulate(program, &setup).map_err(RunError::Failed)?;
     let found = measures(program, &setup.parameters, &results);
+    // Half a case is none: what is not a number is told as the case's fault.
+    let bad = found.iter().find_map(|measure| match &measure.missing {
+        Some(Missing::NotANumber { variable, t }) => Some(RunError::NotANumber {
+            measure: measure.name.clone(),
+            variable: variable.clone(),
+            t: *t,
+        }),
+        Some(Missing::Nothing(_) | Missing::Undefined) | None => None,
+    });
+    if let Some(bad) = bad {
+        return Err(bad);
+    }
     let value = |number: &Option<usize>| number.map_or(f64::NAN, |number| found[number].value);
     let column = |number: &Option<usize>| {
         let column = number.and_then(|number| results.column(number));

@@ -3,16 +3,45 @@
 //! A call is replaced by the function's expressions, its arguments for its inputs, so that derivatives, units and events
 //! are those of the expression. A function sees its inputs and its own variables, nothing of the model.
 
-use crate::instance::{Scope, Typed};
+use crate::dimension::Dim;
+use crate::instance::{FieldPlace, InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::names::FileIndex;
 use hyde_diag::{Code, Diagnostic, Span};
+use hyde_ir::ExprId;
 use hyde_syntax::ast::{
     Argument, Class, ClassBody, ClassKind, Declaration, Declarator, Element, Prefix, Reference,
 };
+use std::collections::HashMap;
 
-/// Calls within calls; more is a function that calls itself.
-const MAX_DEPTH: usize = 30;
+/// Calls within calls at most: recursion needs stack.
+const MAX_DEPTH: usize = 100;
+/// Calls that one call may lead to: functions that call others twice double them at every level.
+const MAX_CALLS: usize = 10_000;
+
+/// The calls of functions that are being replaced, and what is known of earlier ones.
+#[derive(Default)]
+pub(crate) struct Calls<'a> {
+    /// The functions, the outermost first.
+    within: Vec<&'a Class>,
+    /// How many the outermost call has led to.
+    count: usize,
+    /// Values of earlier calls.
+    known: HashMap<Called, Vec<(Call, Typed)>>,
+}
+
+/// The function that is called (the place of its name), from which instance, with which arguments.
+type Called = (Span, InstanceId, Vec<ExprId>);
+
+/// What beside its arguments' expressions the value of a call depends on.
+#[derive(Clone, PartialEq)]
+struct Call {
+    setting: Setting,
+    place: FieldPlace,
+    records: bool,
+    /// Of each argument dimension, truth, whether it is bare, whether it is `2*pi`; none that is not given.
+    arguments: Vec<Option<(Dim, bool, bool, bool)>>,
+}
 
 impl<'a> Model<'a, '_> {
     /// The function of that name, seen from where the name is written.
@@ -30,44 +59,109 @@ impl<'a> Model<'a, '_> {
         scope: &Scope<'a>,
         span: Span,
     ) -> Typed {
-        self.calls += 1;
-        let value = if self.calls > MAX_DEPTH {
-            self.report(
-                Diagnostic::error(Code::Cycle, format!("`{}` calls itself", class.name.text))
-                    .label(class.name.span, "called inside itself without end")
-                    .help("a function is an expression: it cannot call itself"),
-            );
-            None
-        } else {
-            self.called(file, class, arguments, scope, span)
-        };
-        self.calls -= 1;
+        let declared = self.declarations_of(class);
+        let value = declared.and_then(|declared| {
+            let (given, rest) = self.given(&declared, arguments, scope);
+            let goes_on = self.goes_on(class);
+            self.calls.within.push(class);
+            let value = goes_on
+                .then(|| self.called((file, class), declared, given, rest, scope, span))
+                .flatten();
+            self.calls.within.pop();
+            value
+        });
         match value {
             Some(value) => Typed { span, ..value },
             None => self.poison(span),
         }
     }
 
-    fn called(
+    /// The values of the inputs that a call gives, and the arguments that are none.
+    fn given(
         &mut self,
-        file: FileIndex,
-        class: &'a Class,
+        declared: &[(&'a Declaration, &'a Declarator)],
         arguments: &'a [Argument],
         scope: &Scope<'a>,
-        span: Span,
-    ) -> Option<Typed> {
-        let declared = self.declarations_of(class)?;
+    ) -> (Vec<Option<Typed>>, Vec<&'a Argument>) {
         let mut rest: Vec<&'a Argument> = arguments.iter().collect();
-        let mut values: Vec<(&'a str, Typed)> = Vec::new();
-        let mut output = None;
+        let mut given = Vec::new();
         for (declaration, declarator) in declared {
-            let name = declarator.name.text.as_str();
-            let has = |prefix| declaration.prefixes.contains(&prefix);
-            let given = if has(Prefix::Input) {
-                take(&mut rest, name)
+            let argument = if declaration.prefixes.contains(&Prefix::Input) {
+                take(&mut rest, &declarator.name.text)
             } else {
                 None
             };
+            given.push(argument.map(|argument| self.lower(&argument.value, scope)));
+        }
+        (given, rest)
+    }
+
+    /// Whether a function may be called where others are being replaced; reports why not.
+    fn goes_on(&mut self, class: &'a Class) -> bool {
+        let within = &self.calls.within;
+        if within.is_empty() {
+            self.calls.count = 0;
+        }
+        self.calls.count += 1;
+        let name = (class.name.span, "called once more here");
+        if within.iter().any(|&known| std::ptr::eq(known, class)) {
+            self.report(
+                Diagnostic::error(Code::Cycle, format!("`{}` calls itself", class.name.text))
+                    .label(class.name.span, "called inside itself without end")
+                    .help("a function is an expression: it cannot call itself"),
+            );
+            return false;
+        }
+        if within.len() == MAX_DEPTH {
+            self.too_deep(
+                format!("more than {MAX_DEPTH} functions call each other in a chain"),
+                name,
+                "write the expression where it is called, in fewer functions",
+            );
+            return false;
+        }
+        if self.calls.count == MAX_CALLS + 1 {
+            let outermost = within.first().map_or("", |class| &class.name.text);
+            self.too_deep(
+                format!("a call of `{outermost}` leads to more than {MAX_CALLS} others"),
+                name,
+                "give what a function calls twice a name of its own: `Real part = f(x);`",
+            );
+        }
+        self.calls.count <= MAX_CALLS
+    }
+
+    /// The value of a call with the values of its inputs.
+    fn called(
+        &mut self,
+        (file, class): (FileIndex, &'a Class),
+        declared: Vec<(&'a Declaration, &'a Declarator)>,
+        given: Vec<Option<Typed>>,
+        rest: Vec<&'a Argument>,
+        scope: &Scope<'a>,
+        span: Span,
+    ) -> Option<Typed> {
+        // A call that was replaced before is the same expression again.
+        let ids = given.iter().flatten().map(|value| value.id).collect();
+        let key = (class.name.span, scope.instance, ids);
+        let kind_of = |value: &Typed| (value.dim.clone(), value.truth, value.bare, value.two_pi);
+        let arguments = given.iter().map(|value| value.as_ref().map(kind_of));
+        let call = Call {
+            setting: scope.setting,
+            place: scope.place,
+            records: scope.records,
+            arguments: arguments.collect(),
+        };
+        let known = self.calls.known.get(&key);
+        let known = known.and_then(|known| known.iter().find(|(other, _)| *other == call));
+        if let Some((_, value)) = known.filter(|_| rest.is_empty()) {
+            return Some(value.clone());
+        }
+        let mut values: Vec<(&'a str, Typed)> = Vec::new();
+        let mut output = None;
+        for ((declaration, declarator), given) in declared.into_iter().zip(given) {
+            let name = declarator.name.text.as_str();
+            let has = |prefix| declaration.prefixes.contains(&prefix);
             let inner = Scope {
                 values: Some(values.clone()),
                 counters: Vec::new(),
@@ -75,7 +169,7 @@ impl<'a> Model<'a, '_> {
                 ..scope.clone()
             };
             let mut value = match (given, &declarator.binding) {
-                (Some(argument), _) => self.lower(&argument.value, scope),
+                (Some(argument), _) => argument,
                 (None, Some(binding)) => self.lower(binding, &inner),
                 (None, None) => {
                     self.no_value_in(class, declarator, has(Prefix::Input), span);
@@ -124,7 +218,10 @@ impl<'a> Model<'a, '_> {
             );
             return None;
         }
-        if output.is_none() {
+        if let Some(value) = &output {
+            let known = self.calls.known.entry(key).or_default();
+            known.push((call, value.clone()));
+        } else {
             self.report(
                 Diagnostic::error(
                     Code::BadArguments,

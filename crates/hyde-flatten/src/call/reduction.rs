@@ -43,6 +43,7 @@ impl<'a> Model<'a, '_> {
         let inner = self.value(a, &over_run);
         let time = Dim::known(Dimension::TIME);
         let same = inner.dim.clone();
+        let mut condition_holds = None;
         let (kind, value, dim) = match (name, second) {
             ("max", _) => (ReductionKind::Max, inner.id, same),
             ("min", _) => (ReductionKind::Min, inner.id, same),
@@ -69,16 +70,13 @@ impl<'a> Model<'a, '_> {
                 } else {
                     ReductionKind::Last
                 };
-                let value = match condition {
-                    None => inner.id,
-                    Some(condition) => {
-                        let holds = self.truth(condition, &over_run);
-                        // Where the condition does not hold there is no value.
-                        let nothing = self.flat.exprs.constant(f64::NAN);
-                        self.flat.exprs.if_else(holds, inner.id, nothing)
-                    }
-                };
-                (kind, value, same)
+                condition_holds = condition.map(|condition| {
+                    let holds = self.truth(condition, &over_run);
+                    let arena = &mut self.flat.exprs;
+                    let (yes, no) = (arena.constant(1.0), arena.constant(0.0));
+                    arena.if_else(holds, yes, no)
+                });
+                (kind, inner.id, same)
             }
         };
         let number = self.flat.experiment.reductions.len();
@@ -94,7 +92,12 @@ impl<'a> Model<'a, '_> {
             span,
             MadeBy::Experiment,
         );
-        let reduction = Reduction { kind, value, var };
+        let reduction = Reduction {
+            kind,
+            value,
+            condition: condition_holds,
+            var,
+        };
         self.flat.experiment.reductions.push(reduction);
         let id = self.flat.exprs.var(var);
         let keeps = matches!(name, "max" | "min" | "rms" | "mean" | "first" | "last");

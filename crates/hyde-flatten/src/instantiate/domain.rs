@@ -7,6 +7,9 @@ use hyde_diag::{Code, Diagnostic, Span};
 use hyde_syntax::ast::{self, Declarator};
 use hyde_units::Dimension;
 
+/// Cells of a domain at most.
+const MAX_CELLS: usize = 10_000_000;
+
 impl<'a> Model<'a, '_> {
     pub(super) fn declare_domain(
         &mut self,
@@ -53,7 +56,7 @@ impl<'a> Model<'a, '_> {
         };
         let Some(cells) = usize::try_from(count)
             .ok()
-            .filter(|&n| (2..=10_000_000).contains(&n))
+            .filter(|&n| (2..=MAX_CELLS).contains(&n))
         else {
             self.report(
                 Diagnostic::error(
@@ -63,9 +66,9 @@ impl<'a> Model<'a, '_> {
                 .label(
                     span_of_count,
                     if count < 2 {
-                        "at least 2"
+                        "at least 2".to_owned()
                     } else {
-                        "at most 10 million"
+                        format!("at most {MAX_CELLS}")
                     },
                 ),
             );

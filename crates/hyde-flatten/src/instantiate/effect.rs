@@ -153,7 +153,7 @@ impl<'a> Model<'a, '_> {
             id,
             file,
             modifiers,
-            way: Vec::new(),
+            chain: Vec::new(),
         };
         self.collect(walk, class, &mut collected);
         let (parameters, rest): (Vec<_>, Vec<_>) = collected.into_iter().partition(is_parameter);
@@ -274,7 +274,7 @@ impl<'a> Model<'a, '_> {
             return false;
         };
         let instance = &self.instances[host];
-        self.is_a((instance.file, instance.class), wanted.1, 0)
+        self.is_a((instance.file, instance.class), wanted.1)
     }
 
     /// The names of what a host declares that is of a class or extends it.
@@ -282,10 +282,12 @@ impl<'a> Model<'a, '_> {
         // The host has no members yet: its class and the bases of that are read, of one that extends itself not for ever.
         let mut classes = vec![(self.instances[host].file, self.instances[host].class)];
         let mut found = Vec::new();
-        for _ in 0..40 {
-            let Some((file, class)) = classes.pop() else {
-                break;
-            };
+        let mut seen: Vec<&'a Class> = Vec::new();
+        while let Some((file, class)) = classes.pop() {
+            if seen.iter().any(|&known| std::ptr::eq(known, class)) {
+                continue;
+            }
+            seen.push(class);
             classes.extend(self.bases(file, class));
             let ClassBody::Long { elements, .. } = &class.body else {
                 continue;
@@ -293,7 +295,7 @@ impl<'a> Model<'a, '_> {
             for element in elements {
                 if let Element::Declaration(declaration) = element
                     && let Some(own) = self.names.class(file, &declaration.type_name)
-                    && self.is_a(own, wanted, 0)
+                    && self.is_a(own, wanted)
                 {
                     let names = declaration.declarators.iter();
                     found.extend(names.map(|own| own.name.text.as_str()));
@@ -304,16 +306,19 @@ impl<'a> Model<'a, '_> {
     }
 
     /// Whether a class is another one or extends it.
-    fn is_a(&self, own: (FileIndex, &'a Class), other: &'a Class, depth: usize) -> bool {
-        let (file, class) = own;
-        if std::ptr::eq(class, other) {
-            return true;
+    fn is_a(&self, own: (FileIndex, &'a Class), other: &'a Class) -> bool {
+        let mut waiting = vec![own];
+        let mut seen: Vec<&'a Class> = Vec::new();
+        while let Some((file, class)) = waiting.pop() {
+            if std::ptr::eq(class, other) {
+                return true;
+            }
+            if !seen.iter().any(|&known| std::ptr::eq(known, class)) {
+                seen.push(class);
+                waiting.extend(self.bases(file, class));
+            }
         }
-        depth < 40
-            && self
-                .bases(file, class)
-                .into_iter()
-                .any(|base| self.is_a(base, other, depth + 1))
+        false
     }
 
     /// The classes that a class extends, as far as they are known.

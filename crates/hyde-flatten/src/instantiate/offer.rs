@@ -42,7 +42,7 @@ impl Model<'_, '_> {
                 id,
                 file,
                 modifiers: Vec::new(),
-                way: Vec::new(),
+                chain: Vec::new(),
             };
             self.collect(walk, class, &mut collected);
             let elements = collected.iter().map(|item| item.element).collect();

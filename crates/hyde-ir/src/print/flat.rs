@@ -345,8 +345,11 @@ impl Printer<'_> {
             };
             let _ = writeln!(
                 out,
-                "  reduction {number} = {kind} of {}",
-                self.names.expr(reduction.value)
+                "  reduction {number} = {kind} of {}{}",
+                self.names.expr(reduction.value),
+                reduction
+                    .condition
+                    .map_or(String::new(), |c| format!(" where {}", self.names.expr(c)))
             );
         }
         for measure in &experiment.measures {

@@ -30,6 +30,7 @@ impl Simulation<'_> {
         if let Some(sensitivities) = &mut self.sensitivities {
             sensitivities.begin(&mut self.integrator, &mut self.consistent, cause);
         }
+        self.reduce_instant();
         let before = self.meter.as_ref().map(|_| self.outputs.clone());
         let events = self.results.events.len();
         let arrived = delays::arrive(&mut self.integrator, &mut self.consistent)?;
@@ -63,6 +64,7 @@ impl Simulation<'_> {
                 meter.instant(&before, &self.outputs);
             }
         }
+        self.reduce_instant();
         let on_grid = self.row_is_due();
         let moved = limit
             .z

@@ -185,7 +185,7 @@ impl Builder<'_> {
             match part.as_rule() {
                 Rule::prefix_word => declaration.prefixes.push(prefix(part.as_str().trim())),
                 Rule::path => declaration.type_name = self.reference(part),
-                Rule::subscript => declaration.dims = self.expressions(part),
+                Rule::subscript => declaration.dims = self.subscripts(part),
                 _ => declaration.declarators.push(self.declarator(part)?),
             }
         }
@@ -208,7 +208,7 @@ impl Builder<'_> {
         };
         for part in inner {
             match part.as_rule() {
-                Rule::subscript => declarator.dims = self.expressions(part),
+                Rule::subscript => declarator.dims = self.subscripts(part),
                 Rule::modification => declarator.changes = self.changes(part),
                 Rule::on_domain => {
                     declarator.domain = parts(part).next().map(|name| self.name(&name))

@@ -108,16 +108,15 @@ impl Builder<'_> {
     }
 
     /// From a `subscript` node: expressions and slices.
-    fn subscripts(&mut self, node: Node<'_>) -> Vec<Expr> {
+    pub(super) fn subscripts(&mut self, node: Node<'_>) -> Vec<Expr> {
         let mut list = Vec::new();
         for part in parts(node) {
-            let span = self.span(&part);
             if part.as_rule() == Rule::expression {
                 list.push(self.expression(part));
                 continue;
             }
-            let mut bounds = self.expressions(part).into_iter();
-            if let (Some(first), Some(last)) = (bounds.next(), bounds.next()) {
+            if let (Some(last), Some(first)) = (self.first_expression(part), list.pop()) {
+                let span = first.span.to(last.span);
                 let kind = ExprKind::Slice(Box::new(first), Box::new(last));
                 list.push(Expr { kind, span });
             }
@@ -175,8 +174,10 @@ impl Builder<'_> {
         self.diagnostics.push(diagnostic);
     }
 
+    /// From a `counted` node, behind the value of its elements.
     fn comprehension(
         &mut self,
+        value: Expr,
         node: Node<'_>,
         unit: Option<crate::ast::UnitText>,
     ) -> Option<Comprehension> {
@@ -184,7 +185,7 @@ impl Builder<'_> {
         let counter = self.name(&counter);
         let mut list = self.expressions(node).into_iter();
         Some(Comprehension {
-            value: list.next()?,
+            value,
             counter,
             first: list.next()?,
             last: list.next()?,
@@ -222,26 +223,29 @@ impl Builder<'_> {
             Rule::array => {
                 let unit = parts(node.clone()).find(|part| part.as_rule() == Rule::unit);
                 let unit = unit.map(|unit| self.unit(unit));
-                let counted =
-                    parts(node.clone()).find(|part| part.as_rule() == Rule::comprehension);
-                match counted.and_then(|list| self.comprehension(list, unit.clone())) {
+                let counted = parts(node.clone()).find(|part| part.as_rule() == Rule::counted);
+                let mut elements = self.expressions(node);
+                let value = counted.as_ref().and_then(|_| elements.pop());
+                let list = value
+                    .zip(counted)
+                    .and_then(|(value, counted)| self.comprehension(value, counted, unit.clone()));
+                match list {
                     Some(list) => ExprKind::Comprehension(Box::new(list)),
-                    None => ExprKind::Array(self.expressions(node), unit),
+                    None => ExprKind::Array(elements, unit),
                 }
             }
-            Rule::call => {
+            Rule::named => {
                 let mut inner = parts(node);
-                let function = inner.next().map(|part| self.reference(part));
-                let arguments = inner
-                    .next()
-                    .map_or_else(Vec::new, |part| self.arguments(part));
-                let function = function.unwrap_or(Reference {
+                let name = inner.next().map(|part| self.reference(part));
+                let name = name.unwrap_or(Reference {
                     parts: Vec::new(),
                     span,
                 });
-                ExprKind::Call(function, arguments)
+                match inner.next() {
+                    Some(part) => ExprKind::Call(name, self.arguments(part)),
+                    None => ExprKind::Reference(name),
+                }
             }
-            Rule::reference => ExprKind::Reference(self.reference(node)),
             // A group is its expression; the span keeps the parentheses.
             _ => match parts(node).next() {
                 Some(inner) => self.expression(inner).kind,

@@ -7,7 +7,7 @@ use crate::exit::Exit;
 use crate::interruption::interrupted;
 use crate::project::{Aim, Project, complain};
 use crate::settings::Setting;
-use crate::{records, run_failure};
+use crate::{records, run_failure, summary};
 use hyde_experiment::{Level, Options, SteppedPoint, Steps, parameters, stepped_response};
 use hyde_program::{Constant, Program};
 use hyde_units::{Dimension, NamedUnit, engineering, engineering_as, significant};
@@ -161,6 +161,14 @@ fn told(
             };
             all &= fails.is_empty();
             let _ = writeln!(text, "  expect {}: {verdict}", measure.name);
+        } else if let Some(point) = points
+            .iter()
+            .find(|point| point.measures[number].missing.is_some())
+        {
+            let why = summary::why_missing(&point.measures[number]);
+            let at = significant(point.frequency_hz, 4);
+            all &= point.measures[number].holds;
+            let _ = writeln!(text, "  {}: no value at {at} Hz{why}", measure.name);
         } else {
             let least = values()
                 .map(|value| value.value)
