@@ -246,7 +246,11 @@ impl<'a> Model<'a, '_> {
 
     /// The elements of a class, those of its bases first.
     fn collect(&mut self, walk: Walk<'a>, class: &'a Class, out: &mut Vec<Collected<'a>>) {
-        if let Some(own) = walk.chain.iter().position(|&known| std::ptr::eq(known, class)) {
+        if let Some(own) = walk
+            .chain
+            .iter()
+            .position(|&known| std::ptr::eq(known, class))
+        {
             let name = &class.name.text;
             let names: Vec<String> = walk.chain[own..]
                 .iter()

@@ -7,6 +7,8 @@ use crate::dimension::Dim;
 use crate::instance::{FieldPlace, InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::names::FileIndex;
+use crate::turns::Turns;
+use crate::zero::Zero;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::ExprId;
 use hyde_syntax::ast::{
@@ -39,8 +41,8 @@ struct Call {
     setting: Setting,
     place: FieldPlace,
     records: bool,
-    /// Of each argument dimension, truth, whether it is bare, whether it is `2*pi`; none that is not given.
-    arguments: Vec<Option<(Dim, bool, bool, bool)>>,
+    /// Of each argument dimension, truth, whether it is bare, its turns and its zero point; none that is not given.
+    arguments: Vec<Option<(Dim, bool, bool, Turns, Zero)>>,
 }
 
 impl<'a> Model<'a, '_> {
@@ -144,7 +146,15 @@ impl<'a> Model<'a, '_> {
         // A call that was replaced before is the same expression again.
         let ids = given.iter().flatten().map(|value| value.id).collect();
         let key = (class.name.span, scope.instance, ids);
-        let kind_of = |value: &Typed| (value.dim.clone(), value.truth, value.bare, value.two_pi);
+        let kind_of = |value: &Typed| {
+            (
+                value.dim.clone(),
+                value.truth,
+                value.bare,
+                value.turns,
+                value.zero,
+            )
+        };
         let arguments = given.iter().map(|value| value.as_ref().map(kind_of));
         let call = Call {
             setting: scope.setting,
