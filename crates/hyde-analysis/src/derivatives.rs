@@ -332,6 +332,7 @@ fn derivative(
 
 /// The time derivative of an expression by the chain rule; variables without a rate do not change.
 pub(crate) fn by_rates(system: &mut System, id: ExprId, rates: &BTreeMap<Cell, ExprId>) -> ExprId {
+    system.note_differentiated(id);
     let one = system.exprs().constant(1.0);
     system.flat.exprs.tangent(id, |_, leaf| {
         if leaf == Expr::Time {

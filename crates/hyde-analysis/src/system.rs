@@ -229,6 +229,23 @@ impl System {
         }
     }
 
+    /// Notes what drives the model from outside in an expression that is differentiated by the time: it is taken for
+    /// constant there.
+    pub(crate) fn note_differentiated(&mut self, id: ExprId) {
+        let experiment = &mut self.flat.experiment;
+        if experiment.free.is_empty() {
+            return;
+        }
+        for below in self.flat.exprs.below(&[id]) {
+            if let Expr::Param(param, _) = self.flat.exprs[below]
+                && experiment.free.contains(&param)
+                && !experiment.differentiated.contains(&param)
+            {
+                experiment.differentiated.push(param);
+            }
+        }
+    }
+
     /// The cells an access reaches over a range: first, last, and stride.
     pub(crate) fn interval(index: Index, range: Range) -> (usize, usize) {
         let (a, b) = (index.at(range.first), index.at(range.last));

@@ -142,6 +142,7 @@ fn is_whole(system: &System, range: Range, var: VarId, index: Index) -> bool {
 }
 
 fn make_explicit(system: &mut System, number: usize, (var, index): (VarId, Index), value: ExprId) {
+    system.note_differentiated(value);
     let one = system.exprs().constant(1.0);
     let continuous: Vec<bool> = system
         .flat

@@ -48,7 +48,7 @@ pub fn frequency_response(
     for &f in frequencies_hz {
         let s = Complex::new(0.0, std::f64::consts::TAU * f);
         let identity = Matrix::identity(linear.a.nrows(), linear.a.nrows());
-        let plant = (identity * s - complex(&linear.a)).lu();
+        let plant = Plant::new(identity * s - complex(&linear.a));
         let by_input = complex(&linear.b_input.columns(input, 1).into_owned());
         let mut state = plant.solve(&by_input).ok_or(BodeError::Singular(f))?;
         let mut direct = complex(&linear.d_input.columns(input, 1).into_owned());
@@ -76,6 +76,22 @@ pub fn frequency_response(
     Ok(found)
 }
 
+/// The matrix of the states, factorised; a model without states has none.
+struct Plant(Option<nalgebra::LU<Complex<f64>, nalgebra::Dyn, nalgebra::Dyn>>);
+
+impl Plant {
+    fn new(matrix: Matrix) -> Self {
+        Self((!matrix.is_empty()).then(|| matrix.lu()))
+    }
+
+    fn solve(&self, right: &Matrix) -> Option<Matrix> {
+        match &self.0 {
+            Some(factors) => factors.solve(right),
+            None => Some(right.clone()),
+        }
+    }
+}
+
 /// Half the rate of the slowest clock whose held values reach the states or the outputs, in Hz.
 fn nyquist_hz(linear: &Linear, sampled: &Sampled, outputs: &[usize]) -> f64 {
     let reaches = |held: usize| {
@@ -94,7 +110,7 @@ fn nyquist_hz(linear: &Linear, sampled: &Sampled, outputs: &[usize]) -> f64 {
 
 /// The delayed values d, from the response of the states to the input alone: `d = exp(-sT) (now + by_delayed*d)`.
 fn late(
-    plant: &nalgebra::LU<Complex<f64>, nalgebra::Dyn, nalgebra::Dyn>,
+    plant: &Plant,
     delayed: &Delayed,
     input: usize,
     driven: &Matrix,

@@ -180,7 +180,11 @@ pub fn linearize_about(
     right
         .columns_mut(nx + nu + nh, nd)
         .copy_from(&-&residual.by_delayed);
-    let solved = left.lu().solve(&right).ok_or(LinearizeError::Singular)?;
+    let solved = if n == 0 {
+        right
+    } else {
+        left.lu().solve(&right).ok_or(LinearizeError::Singular)?
+    };
     let parts = Parts {
         solved: &solved,
         states: &states,

@@ -332,6 +332,10 @@ pub struct Experiment {
     pub bodes: Vec<Bode>,
     /// Where loops are cut for their margins.
     pub cuts: Vec<Cut>,
+    /// Parameters by which something drives the model from outside: free inputs, test signals.
+    pub free: Vec<ParamId>,
+    /// Those of them whose derivative by the time the equations need, and take for zero.
+    pub differentiated: Vec<ParamId>,
     /// Figures asked for.
     pub figures: Vec<Figure>,
     /// Measured frequency responses.

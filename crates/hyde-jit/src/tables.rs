@@ -477,6 +477,11 @@ fn experiment(dae: &Dae) -> Experiment {
                 }
             })
             .collect(),
+        differentiated: known
+            .differentiated
+            .iter()
+            .map(|&param| dae.parameters[param].name.clone())
+            .collect(),
         cuts: known
             .cuts
             .iter()

@@ -235,6 +235,9 @@ pub struct Experiment {
     pub bodes: Vec<Bode>,
     /// Where loops are cut for their margins.
     pub cuts: Vec<Cut>,
+    /// Free inputs and test signals whose derivative by the time the equations need, and take for zero: no response to
+    /// them is known.
+    pub differentiated: Vec<String>,
     /// Figures asked for.
     pub figures: Vec<Figure>,
     /// Measured frequency responses.

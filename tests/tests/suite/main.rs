@@ -30,6 +30,7 @@ mod held_parts;
 mod ledger;
 mod limit_cycle;
 mod loops;
+mod margins;
 mod measured_responses;
 mod mode_fit;
 mod models;

@@ -194,6 +194,11 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         let _ = writeln!(asked.text, "{name} of {}", program.name);
     }
     for (number, bode) in bodes.iter().enumerate() {
+        if program.experiment.differentiated.contains(&bode.input) {
+            let diagnostic = response::no_rate(bode);
+            project.diagnostics.push(diagnostic);
+            return Err(project.finish_with_errors(model));
+        }
         let band = band(program, number, &p)
             .or_else(|| measured::band(program, number, &recorded))
             .ok_or_else(|| wrong("the band of frequencies is empty".to_owned()))?;

@@ -179,6 +179,9 @@ fn response(
 }
 
 fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    if matrix.is_empty() {
+        return Vec::new();
+    }
     let (balanced, _) = balanced(matrix);
     balanced.complex_eigenvalues().iter().copied().collect()
 }

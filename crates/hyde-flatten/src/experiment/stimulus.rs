@@ -124,6 +124,7 @@ impl<'a> Model<'a, '_> {
             source: None,
             origin: origin.clone(),
         });
+        self.flat.experiment.free.push(param);
         let parameter = Ir::Param(param, hyde_ir::Index::SCALAR);
         self.flat.exprs.add(parameter)
     }

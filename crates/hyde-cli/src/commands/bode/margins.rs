@@ -83,6 +83,16 @@ fn one(
     p: &[f64],
     about: About<'_>,
 ) -> Result<OfLoop, Box<Diagnostic>> {
+    if program.experiment.differentiated.contains(&cut.input) {
+        let message = format!(
+            "the loop needs the derivative of `{}` by the time, which a test signal does not have",
+            cut.signal
+        );
+        let help = "cut at another signal of the loop: at what the controller puts out, or before what is differentiated";
+        let diagnostic = Diagnostic::error(Code::CannotCut, message);
+        let diagnostic = diagnostic.label(cut.origin.span, "differentiated by what reads it");
+        return Err(Box::new(diagnostic.help(help)));
+    }
     let input = std::slice::from_ref(&cut.input);
     let about = About {
         modes: &[about.modes, &cut.modes].concat(),

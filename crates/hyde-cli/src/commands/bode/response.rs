@@ -1,6 +1,7 @@
 //! One response of an experiment: of the linearised model, and as measured on the hybrid one.
 
 use super::measured::Compared;
+use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::{BodeError, Linear, Pole, Poles, SteppedOutput, frequency_response};
 use hyde_program::{Bode, Constant, Program};
 use hyde_signal::spectrum::FrequencyResponse;
@@ -82,6 +83,18 @@ pub(crate) fn linearised(
             stepped: Vec::new(),
         });
     Ok(responses.collect())
+}
+
+/// The equations differentiate the input, of which the linearised system knows the value alone.
+pub(crate) fn no_rate(bode: &Bode) -> Diagnostic {
+    let message = format!(
+        "the equations need the derivative of `{}` by the time: its response is not known",
+        bode.input
+    );
+    let help = "make what they need the input: of a motion that is given its acceleration, with the speed and the place as integrals of it";
+    Diagnostic::error(Code::NoResponse, message)
+        .label(bode.origin.span, "differentiated in the model")
+        .help(help)
 }
 
 /// The modes that swing, from an octave below the band to its end: with clocks those of the closed loop.
