@@ -8,6 +8,7 @@ use crate::held_speed::holds_speed;
 use crate::matching::{Matched, Node, origin};
 use crate::reduce;
 use crate::segments::Segment;
+use crate::solve::solve_for;
 use crate::system::{Cell, System};
 use hyde_ir::dae::{
     Alias, AutomatonInfo, Dae, Definition, Place, Residual, Selection, Space, Start, Unknown,
@@ -307,6 +308,7 @@ fn starts(system: &System, dae: &mut Dae) {
             }
         }
     }
+    guesses_of_definitions(system, dae);
     for automaton in dae.automata.iter() {
         let place = Place {
             space: Space::Memory,
@@ -326,6 +328,39 @@ fn starts(system: &System, dae: &mut Dae) {
                 index: *index,
                 value: *value,
             });
+        }
+    }
+}
+
+/// The guess of a variable that is computed from one unknown without a guess is that unknown's: `big = 100*u`.
+fn guesses_of_definitions(system: &System, dae: &mut Dae) {
+    for number in 0..dae.definitions.len() {
+        let Definition {
+            var, range, value, ..
+        } = dae.definitions[number];
+        let Some(given) = system.starts.get(&(var, 0)) else {
+            continue;
+        };
+        if range != Range::SCALAR || dae.variables[var].len.is_some() {
+            continue;
+        }
+        let read = dae.exprs.below(&[value]).into_iter();
+        let mut leaves = read.filter_map(|id| Some((dae.exprs[id], dae.exprs[id].access()?)));
+        let (Some((leaf, (unknown, _, derivative))), None) = (leaves.next(), leaves.next()) else {
+            continue;
+        };
+        let place = dae.places[unknown].filter(|place| place.space == Space::Unknown);
+        let (Some(place), None) = (place, dae.variables[unknown].len) else {
+            continue;
+        };
+        let mut blocks = dae.unknowns.iter();
+        let is_state = blocks.any(|block| block.var == unknown && block.differential);
+        if derivative || is_state || system.starts.contains_key(&(unknown, 0)) {
+            continue;
+        }
+        let solved = solve_for(&mut dae.exprs, best_start(given), value, leaf);
+        if let Some(value) = solved.filter(|&value| dae.exprs.is_parametric(value)) {
+            dae.starts.push(start(place, 0, value));
         }
     }
 }

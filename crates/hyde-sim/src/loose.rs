@@ -6,22 +6,36 @@
 //!
 //! `sign(p - 10)*sqrt(abs(p - 10))` is 0 at p = 10 with either sign, and upright: a moment beyond, the branch that was left
 //! drives p away from its zero, the one that is entered drives it back, and each crossing would lead to the next. Until its
-//! root function has left rounding far behind, such a relation is evaluated with the equations, as below `noEvent`.
+//! root function has left what the tolerance of the run knows far behind, such a relation is evaluated with the equations, as
+//! below `noEvent`.
 
 use crate::root_rates::rounding;
 use crate::state::State;
-use hyde_program::{Function, RelationUse};
+use hyde_program::{Function, RelationUse, Wrt};
 
-/// How many times rounding a root function goes until its relation is located again.
+/// How many times rounding, and how many times the tolerance, a root function goes until its relation is located again.
 const FAR: f64 = 1e3;
+const FAR_OF_TOLERANCE: f64 = 100.0;
 
 impl State<'_> {
     /// Follows relations from here on.
     pub(crate) fn follow(&mut self, relations: &[usize], (t, y, yp): (f64, &[f64], &[f64])) {
         let rounding = rounding(self, t, y, yp, &[]);
+        let mut far: Vec<f64> = rounding
+            .into_iter()
+            .map(|rounding| FAR * rounding)
+            .collect();
+        let (rtol, atol) = self.tolerances;
+        let partials = self.partials(Function::Roots, t, y, yp);
+        for (entry, value) in self.program.partials(Function::Roots).iter().zip(partials) {
+            if let Wrt::Unknown(column) = entry.wrt {
+                let tolerance = rtol * y[column].abs() + atol;
+                far[entry.row] += FAR_OF_TOLERANCE * (value * tolerance).abs();
+            }
+        }
         for &relation in relations {
             if !self.is_loose(relation) {
-                self.loose.push((relation, FAR * rounding[relation]));
+                self.loose.push((relation, far[relation]));
             }
         }
     }

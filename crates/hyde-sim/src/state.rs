@@ -13,6 +13,8 @@ use hyde_program::{Function, Point, Program, SomeRows, TickWrt, Workspace};
 pub(crate) struct State<'a> {
     pub(crate) program: &'a Program,
     pub(crate) p: Vec<f64>,
+    /// The relative and the absolute tolerance of the run.
+    pub(crate) tolerances: (f64, f64),
     /// The memory.
     pub(crate) z: Vec<f64>,
     pub(crate) inputs: Inputs<'a>,
@@ -44,6 +46,7 @@ impl<'a> State<'a> {
         let mut state = Self {
             program,
             p: setup.parameters.clone(),
+            tolerances: (setup.rtol, setup.atol),
             z: vec![0.0; program.n_memory],
             inputs: Inputs::new(program, setup)?,
             delays: Delays::new(program, setup.start_s),
