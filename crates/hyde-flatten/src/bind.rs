@@ -290,7 +290,28 @@ impl<'a> Model<'a, '_> {
             return;
         }
         self.flat.variables[var].start = self.values(&start, len, &dim, truth);
+        self.fix_elements(var, start.span);
         self.free_start(var, start.span);
+    }
+
+    /// Where some elements are fixed and others are not, each that is has an initial equation.
+    fn fix_elements(&mut self, var: VarId, span: Span) {
+        let notes = self.notes(var);
+        let (instance, fixed) = (notes.instance, notes.fixed_elements.clone());
+        for (at, _) in (0_i32..).zip(fixed).filter(|(_, fixed)| *fixed) {
+            let starts = &self.flat.variables[var].start;
+            let own = usize::try_from(at).ok().filter(|_| starts.len() > 1);
+            let Some(&start) = starts.get(own.unwrap_or(0)) else {
+                continue;
+            };
+            let equation = Equation {
+                range: Range::SCALAR,
+                lhs: self.flat.exprs.add(Ir::Var(var, Index::fixed(at))),
+                rhs: self.flat.exprs.at_counter(start, at),
+                origin: self.origin(instance, span),
+            };
+            self.flat.initial_equations.push(equation);
+        }
     }
 
     /// A start value that is set from outside, as `NAME.start`, is a parameter of that name.

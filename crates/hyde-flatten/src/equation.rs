@@ -14,7 +14,7 @@ use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::Range;
 use hyde_ir::flat::{Assert, ClockedEquation, Equation};
-use hyde_syntax::ast::{self, Element, EquationKind, Expr};
+use hyde_syntax::ast::{self, Element, EquationKind, Expr, ExprKind};
 
 impl<'a> Model<'a, '_> {
     /// Lowers the equations, modes and events of every instance.
@@ -194,9 +194,10 @@ impl<'a> Model<'a, '_> {
     ) -> Option<Equation> {
         let (left, right) = (self.lower(lhs, scope), self.lower(rhs, scope));
         self.same_kind(&left, &right);
-        self.check_whole(&left, &right);
-        self.shown_as_difference(&left, &right);
-        self.check_whole(&right, &left);
+        if matches!(lhs.kind, ExprKind::Reference(_)) {
+            self.check_whole(&left, &right);
+            self.shown_as_difference(&left, &right);
+        }
         self.agree(&left, &right, "`=` equates", scope.instance);
         let origin = self.origin(scope.instance, span);
         (!self.needs_unrolling).then_some(Equation {

@@ -102,6 +102,8 @@ pub(crate) struct VariableNotes<'a> {
     pub(crate) integer: bool,
     /// It is the difference of two temperatures.
     pub(crate) difference: bool,
+    /// Which elements are fixed, where some are and some are not.
+    pub(crate) fixed_elements: Vec<bool>,
     pub(crate) field: Option<Field>,
 }
 

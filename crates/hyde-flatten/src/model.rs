@@ -278,6 +278,7 @@ impl<'a, 'd> Model<'a, 'd> {
             bounds: [None, None],
             integer: false,
             difference: false,
+            fixed_elements: Vec::new(),
             field: None,
         });
         let origin = self.origin(instance, span).made_by(made_by);

@@ -52,11 +52,12 @@ pub fn engineering_as(si: f64, unit: &NamedUnit) -> String {
     }
 }
 
-/// A difference of values, such as an error: that of two temperatures in degC is in K, and multiples of units of SI take the
-/// prefix that fits, for an error is much smaller than what it is an error of.
+/// A difference of values, such as an error: that of two temperatures in degC is in K. Multiples of units of SI take the
+/// prefix that fits, and so does what is too small for its unit, for an error is much smaller than what it is an error of.
 #[must_use]
 pub fn engineering_difference(si: f64, unit: &NamedUnit) -> String {
-    if unit.unit().is_absolute() || unit.is_multiple_of_si() {
+    let readable = (1e-3..1e5).contains(&unit.unit().scale.remove(si).abs());
+    if unit.unit().is_absolute() || unit.is_multiple_of_si() || !readable {
         engineering(si, unit.unit().dimension)
     } else {
         engineering_as(si, unit)
@@ -192,7 +193,8 @@ mod tests {
         let show = |si, unit| engineering_difference(si, &NamedUnit::parse(unit).unwrap());
         assert_eq!(show(0.5, "degC"), "0.5 K");
         assert_eq!(show(0.5, "degF"), "0.5 K");
-        assert_eq!(show(0.5, "bar"), "5e-6 bar");
+        assert_eq!(show(500.0, "bar"), "0.005 bar");
+        assert_eq!(show(3.168e-4, "rev"), "316.8 urad");
         assert_eq!(show(7.397e-7, "mm"), "739.7 nm");
         assert_eq!(show(std::f64::consts::PI / 30.0, "rpm"), "1 rpm");
     }

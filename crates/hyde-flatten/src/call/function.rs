@@ -35,6 +35,9 @@ pub(crate) struct Calls<'a> {
 /// The function that is called (the place of its name), from which instance, with which arguments.
 type Called = (Span, InstanceId, Vec<ExprId>);
 
+/// What counts of an argument: dimension, truth, bare number, turns, zero point.
+type Argued = (Dim, bool, bool, Turns, Zero);
+
 /// What beside its arguments' expressions the value of a call depends on.
 #[derive(Clone, PartialEq)]
 struct Call {
@@ -42,7 +45,7 @@ struct Call {
     place: FieldPlace,
     records: bool,
     /// Of each argument dimension, truth, whether it is bare, its turns and its zero point; none that is not given.
-    arguments: Vec<Option<(Dim, bool, bool, Turns, Zero)>>,
+    arguments: Vec<Option<Argued>>,
 }
 
 impl<'a> Model<'a, '_> {

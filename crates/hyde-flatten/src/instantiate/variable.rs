@@ -35,7 +35,9 @@ impl<'a> Model<'a, '_> {
         let given = [&start, &fixed].into_iter().flatten();
         let start_given = given.into_iter().any(|attribute| attribute.scope != id)
             || self.instances[id].parent.is_none();
-        let said = fixed.map(|fixed| self.is_true(&fixed));
+        let truths = fixed.map(|fixed| self.truths(&fixed));
+        let said = truths.as_ref().map(|list| list.iter().all(|&truth| truth));
+        let fixed_elements = truths.filter(|_| said == Some(false)).unwrap_or_default();
         let (fixed, freed) = (said == Some(true), said == Some(false));
         let state = state.map_or(StateChoice::Open, |state| self.state_choice(state.expr));
         let (dim, quantity) = self.quantity(kind, binding.as_ref().map(|binding| binding.expr));
@@ -84,6 +86,7 @@ impl<'a> Model<'a, '_> {
             bounds,
             integer: kind.values() == Kind::Integer,
             difference: false,
+            fixed_elements,
             field,
         });
         let var = self.flat.variables.push(Variable {
@@ -108,33 +111,25 @@ impl<'a> Model<'a, '_> {
             .insert(name, Member::Variable(var));
     }
 
-    /// What `fixed = …` says: a truth that is known before the run, or a list of equal ones for an array.
+    /// Whether `fixed = …` holds for the whole of a variable.
     pub(super) fn is_true(&mut self, fixed: &Binding<'a>) -> bool {
+        self.truths(fixed).iter().all(|&truth| truth)
+    }
+
+    /// What `fixed = …` says: a truth that is known before the run, or one for each element.
+    fn truths(&mut self, fixed: &Binding<'a>) -> Vec<bool> {
         let (expr, _, scope) = self.picked(fixed, Setting::Parameter);
-        let list = if let ExprKind::Array(items, None) = &expr.kind {
-            items.as_slice()
-        } else {
-            std::slice::from_ref(expr)
+        if let ExprKind::Boolean(truth) = expr.kind {
+            return vec![truth];
+        }
+        let items = match self.list_length(expr, &scope) {
+            Some(len) => (0..len)
+                .map(|at| self.list_item(expr, at, &scope).id)
+                .collect(),
+            None => vec![self.truth(expr, &scope)],
         };
-        let mut truths = Vec::new();
-        for item in list {
-            let truth = if let ExprKind::Boolean(truth) = item.kind {
-                truth
-            } else {
-                let condition = self.truth(item, &scope);
-                self.evaluate(condition).is_some_and(|value| value != 0.0)
-            };
-            truths.push(truth);
-        }
-        let first = truths.first().copied().unwrap_or(false);
-        if truths.iter().any(|&truth| truth != first) {
-            self.report(
-                Diagnostic::error(Code::NotYet, "some elements are fixed and others are not")
-                    .label(expr.span, "one truth for all elements in this version")
-                    .help("declare two arrays, or leave all elements free and fix some by `initial equation x[1] = …;`"),
-            );
-        }
-        first
+        let truth = |item| self.evaluate(item).is_some_and(|value| value != 0.0);
+        items.into_iter().map(truth).collect()
     }
 
     /// The word behind `state =`.
