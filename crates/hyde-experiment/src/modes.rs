@@ -38,9 +38,17 @@ pub fn modes(linear: &Linear) -> Vec<NaturalMode> {
 /// The eigenvalues of a linearised system, given its balanced matrix, or with delays the roots in the upper half plane.
 pub(crate) fn continuous_roots(linear: &Linear, balanced: &DMatrix<f64>) -> Vec<Complex<f64>> {
     match &linear.delayed {
-        None => balanced.complex_eigenvalues().iter().copied().collect(),
+        None => eigenvalues(balanced),
         Some(delayed) => roots_with_delays(linear, delayed),
     }
+}
+
+/// The eigenvalues of a matrix; a model without states has none.
+pub(crate) fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    if matrix.is_empty() {
+        return Vec::new();
+    }
+    matrix.complex_eigenvalues().iter().copied().collect()
 }
 
 /// A matrix with rows and columns scaled by powers of two until their norms agree, and the scale: angles and metres, seconds
@@ -55,8 +63,7 @@ pub(crate) fn balanced(matrix: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
 fn roots_with_delays(linear: &Linear, delayed: &Delayed) -> Vec<Complex<f64>> {
     let mut roots: Vec<Complex<f64>> = Vec::new();
     let (matrix, _) = balanced(&with_past(linear, delayed));
-    let candidates = matrix.complex_eigenvalues();
-    for &candidate in candidates.iter().filter(|root| root.im >= 0.0) {
+    for &candidate in eigenvalues(&matrix).iter().filter(|root| root.im >= 0.0) {
         let Some(root) = polished(linear, candidate) else {
             continue;
         };

@@ -8,7 +8,7 @@
 
 use crate::common_period::CommonPeriod;
 use crate::linearize::Linear;
-use crate::modes::{NaturalMode, balanced, characteristic, continuous_roots};
+use crate::modes::{NaturalMode, balanced, characteristic, continuous_roots, eigenvalues};
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// A part of a matrix below this, relative to its largest, is none of it.
@@ -201,12 +201,12 @@ fn of_map(linear: &Linear, period: &CommonPeriod<'_>) -> Poles {
         scale,
     };
     let (plant, own_scale) = balanced(&linear.a);
-    let own: Vec<Complex<f64>> = match plant.nrows() {
-        0 => Vec::new(),
-        rows if rows > MOST_STATES => Vec::new(),
-        _ => plant.complex_eigenvalues().iter().copied().collect(),
+    let own = if plant.nrows() > MOST_STATES {
+        Vec::new()
+    } else {
+        eigenvalues(&plant)
     };
-    for &z in &poles.matrix.complex_eigenvalues() {
+    for z in eigenvalues(&poles.matrix) {
         if z.im < 0.0 || z.norm() < OVER {
             continue;
         }

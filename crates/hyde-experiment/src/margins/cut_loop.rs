@@ -3,7 +3,7 @@
 use crate::bode::{BodeError, frequency_response};
 use crate::common_period::CommonPeriod;
 use crate::linearize::Linear;
-use crate::modes::balanced;
+use crate::modes::{balanced, eigenvalues};
 use hyde_program::{Cut, Program};
 use nalgebra::{Complex, DMatrix};
 
@@ -142,15 +142,15 @@ impl<'a> CutLoop<'a> {
                 let e = linear.d_input[(*back, 0)];
                 let (b, c) = (linear.b_input.column(0), linear.c.row(*back));
                 let opened = &linear.a - b * c / (1.0 + e);
-                let mut all = eigenvalues(&linear.a);
-                all.extend(eigenvalues(&opened));
+                let mut all = balanced_eigenvalues(&linear.a);
+                all.extend(balanced_eigenvalues(&opened));
                 let times = linear.delayed.iter().flat_map(|delayed| &delayed.times);
                 all.extend(times.map(|time| Complex::new(1.0 / time, 0.0)));
                 all
             }
             Kind::Sampled(period, _, _, own) => {
                 let common = period.period_s();
-                let closed = eigenvalues(&period.transition());
+                let closed = balanced_eigenvalues(&period.transition());
                 let inside = closed.into_iter().filter(|z| z.norm() > NOTHING);
                 let slow: Vec<Complex<f64>> = inside.map(|z| z.ln() / common).collect();
                 // Frequencies are known but for multiples of the common rate.
@@ -178,10 +178,6 @@ fn response(
     }
 }
 
-fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
-    if matrix.is_empty() {
-        return Vec::new();
-    }
-    let (balanced, _) = balanced(matrix);
-    balanced.complex_eigenvalues().iter().copied().collect()
+fn balanced_eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
+    eigenvalues(&balanced(matrix).0)
 }
