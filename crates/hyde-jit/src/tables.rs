@@ -1,18 +1,17 @@
 //! The tables of a [`Program`], from the DAE.
 
+mod experiment;
+
+use self::experiment::experiment;
 use crate::compiled::Compiled;
 use crate::delays::delays;
-use crate::flows::flows;
 use crate::{figures, ledger};
 use hyde_ir::dae::{self, Dae};
-use hyde_ir::flat;
-use hyde_ir::{Expr, ExprId, Id as _, Interpolation, VariableKind};
+use hyde_ir::{Id as _, Interpolation, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Bode, Clock, Column, Cut, Derivatives, Experiment, Firmness, Hold,
-    InitialCondition, Measure, Measured, MeasuredResponse, Method, Output, Parameter, Pin,
-    Preparation, Prior, Program, Reaction, ReactionKind, RecordValue, RecordValueKind,
-    RecordedResponse, Reduction, ReductionKind, Relation, RelationUse, ScaledColumn, Selection,
-    Stepped, Target, UnknownBlock,
+    Assignment, Automaton, Clock, Column, Derivatives, Firmness, Hold, InitialCondition, Output,
+    Parameter, Pin, Prior, Program, Reaction, ReactionKind, RecordValue, RecordValueKind, Relation,
+    RelationUse, Selection, Target, UnknownBlock,
 };
 use std::sync::Arc;
 
@@ -207,13 +206,6 @@ fn columns(dae: &Dae) -> Vec<Column> {
         .collect()
 }
 
-fn chosen_modes(modes: &[(hyde_ir::AutomatonId, usize)]) -> Vec<(usize, usize)> {
-    let chosen = modes.iter();
-    chosen
-        .map(|(automaton, mode)| (automaton.index(), *mode))
-        .collect()
-}
-
 fn outputs(dae: &Dae) -> Vec<Output> {
     let auxiliary_from = dae.outputs.len()
         - dae.experiment.measured.len()
@@ -241,21 +233,6 @@ fn outputs(dae: &Dae) -> Vec<Output> {
         }
     }
     found
-}
-
-/// The reductions that an expression reads.
-fn reductions_read(dae: &Dae, value: ExprId) -> Vec<usize> {
-    let nodes = dae.exprs.below(&[value]).into_iter();
-    let number = |id| {
-        if let Expr::Var(var, _) = dae.exprs[id]
-            && let VariableKind::Reduction(number) = dae.variables[var].kind
-        {
-            Some(number)
-        } else {
-            None
-        }
-    };
-    nodes.filter_map(number).collect()
 }
 
 fn relation(relation: &dae::Relation) -> Relation {
@@ -339,174 +316,6 @@ fn initial(dae: &Dae, condition: &dae::InitialCondition) -> InitialCondition {
         dae::InitialCondition::Check { var, .. } => InitialCondition::Check {
             name: dae.variables[*var].name.clone(),
             origin: dae.variables[*var].origin.clone(),
-        },
-    }
-}
-
-fn measured_response(dae: &Dae, measured: &flat::MeasuredResponse) -> MeasuredResponse {
-    let of = |scaled: &flat::ScaledColumn| {
-        let column = &dae.columns[scaled.column];
-        ScaledColumn {
-            record: column.record.clone(),
-            column: column.column.clone(),
-            scale: scaled.scale,
-        }
-    };
-    MeasuredResponse {
-        name: measured.name.clone(),
-        source: match &measured.source {
-            flat::RecordedResponse::Complex(re, im) => RecordedResponse::Complex(of(re), of(im)),
-            flat::RecordedResponse::Polar(gain, phase) => {
-                RecordedResponse::Polar(of(gain), of(phase))
-            }
-            flat::RecordedResponse::Periodic(input, output, period) => {
-                RecordedResponse::Periodic(of(input), of(output), *period)
-            }
-        },
-        deviation: measured.deviation.as_ref().map(of),
-        place: measured.place,
-        origin: measured.origin.clone(),
-    }
-}
-
-fn experiment(dae: &Dae) -> Experiment {
-    let known = &dae.experiment;
-    let columns: usize = dae.outputs.iter().map(|output| output.names.len()).sum();
-    let responses: usize = known.bodes.iter().map(|bode| bode.outputs.len()).sum();
-    let first_account = columns - ledger::columns(&known.ledger);
-    let first_curve = first_account - figures::outputs(&known.figures);
-    let first_cut = first_curve - known.cuts.len();
-    let conditions = known.conditions().count();
-    let first_measured =
-        first_cut - known.measured.len() - known.reductions.len() - conditions - responses;
-    let first_reduction = first_measured + known.measured.len();
-    let first_condition = first_reduction + known.reductions.len();
-    let mut conditions_before = first_condition..;
-    let mut next_response = first_condition + conditions;
-    Experiment {
-        name: known.name.clone(),
-        records: known.records.clone(),
-        measured: known
-            .measured
-            .iter()
-            .zip(first_measured..)
-            .map(|(measured, output)| Measured {
-                name: measured.name.clone(),
-                source: {
-                    let column = &dae.columns[measured.column];
-                    (column.record.clone(), column.column.clone())
-                },
-                preparation: measured
-                    .preparation
-                    .iter()
-                    .map(|step| match step {
-                        flat::Preparation::Lowpass(corner) => Preparation::Lowpass(*corner),
-                        flat::Preparation::Slope => Preparation::Slope,
-                        flat::Preparation::Scale(factor) => Preparation::Scale(*factor),
-                    })
-                    .collect(),
-                output,
-                clocked: measured.clocked,
-                unit: measured.quantity.unit.clone(),
-                origin: measured.origin.clone(),
-            })
-            .collect(),
-        reductions: known
-            .reductions
-            .iter()
-            .zip(first_reduction..)
-            .map(|(reduction, output)| Reduction {
-                kind: match reduction.kind {
-                    flat::ReductionKind::Max => ReductionKind::Max,
-                    flat::ReductionKind::Min => ReductionKind::Min,
-                    flat::ReductionKind::Rms => ReductionKind::Rms,
-                    flat::ReductionKind::Mean => ReductionKind::Mean,
-                    flat::ReductionKind::First => ReductionKind::First,
-                    flat::ReductionKind::Last => ReductionKind::Last,
-                    flat::ReductionKind::Integral => ReductionKind::Integral,
-                    flat::ReductionKind::Settling => ReductionKind::Settling,
-                    flat::ReductionKind::Resonance => ReductionKind::Resonance,
-                },
-                text: dae.variables[reduction.var].name.to_string(),
-                output,
-                condition: reduction.condition.and_then(|_| conditions_before.next()),
-            })
-            .collect(),
-        measures: known
-            .measures
-            .iter()
-            .map(|measure| Measure {
-                name: measure.name.clone(),
-                expectation: measure.expectation,
-                reductions: reductions_read(dae, measure.value),
-                unit: measure.quantity.unit.clone(),
-                origin: measure.origin.clone(),
-            })
-            .collect(),
-        bodes: known
-            .bodes
-            .iter()
-            .map(|bode| {
-                let name = dae.variables[bode.input].name.clone();
-                let outputs = bode
-                    .outputs
-                    .iter()
-                    .map(|(name, ..)| {
-                        next_response += 1;
-                        (name.clone(), next_response - 1)
-                    })
-                    .collect();
-                let mut at = 0;
-                let mut input_output = None;
-                for output in &dae.outputs {
-                    if output.names.len() == 1 && output.names[0] == name {
-                        input_output = Some(at);
-                        break;
-                    }
-                    at += output.names.len();
-                }
-                Bode {
-                    input: name,
-                    input_output,
-                    outputs,
-                    modes: chosen_modes(&bode.modes),
-                    stepped: bode.stepped.as_ref().map(|stepped| Stepped {
-                        keep: stepped.keep.map(|(output, _)| output),
-                    }),
-                    origin: bode.origin.clone(),
-                }
-            })
-            .collect(),
-        differentiated: known
-            .differentiated
-            .iter()
-            .map(|&param| dae.parameters[param].name.clone())
-            .collect(),
-        cuts: known
-            .cuts
-            .iter()
-            .zip(first_cut..)
-            .map(|(cut, back)| Cut {
-                signal: cut.signal.clone(),
-                input: cut.input.clone(),
-                back,
-                clock: cut.clock.map(|clock| clock.index()),
-                modes: chosen_modes(&cut.modes),
-                origin: cut.origin.clone(),
-            })
-            .collect(),
-        figures: figures::figures(&known.figures, first_curve),
-        flows: flows(dae),
-        measured_responses: known
-            .measured_responses
-            .iter()
-            .map(|measured| measured_response(dae, measured))
-            .collect(),
-        ledger: ledger::ledger(&known.ledger, first_account),
-        method: match known.method {
-            flat::Method::Ida => Method::Ida,
-            flat::Method::Esdirk => Method::Esdirk,
-            flat::Method::Auto => Method::Auto,
         },
     }
 }
