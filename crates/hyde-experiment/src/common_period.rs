@@ -211,27 +211,6 @@ impl<'a> CommonPeriod<'a> {
         }
     }
 
-    /// The Fourier coefficients of the states at each of some s, in the motion that begins at a vector of (x, m, h) of which
-    /// the map makes exp(sT) times itself: of all those s.
-    pub(crate) fn coefficients(&self, start: &Matrix, all: &[Complex<f64>]) -> Vec<Matrix> {
-        let (nx, nm) = (self.linear.a.nrows(), self.sampled.select.ncols());
-        let nh = self.sampled.select.nrows();
-        let mut held = vec![Matrix::zeros(nh, 1); all.len()];
-        self.through(&mut Values::split(start, nx, nm), None, |k, values| {
-            for (held, s) in held.iter_mut().zip(all) {
-                *held += columns(&values.h) * self.weight(k, *s);
-            }
-        });
-        let complex = |matrix: &DMatrix<f64>| matrix.map(|value| Complex::new(value, 0.0));
-        let (a, b) = (complex(&self.linear.a), complex(&self.linear.b_held));
-        let states = held.iter().zip(all).map(|(held, s)| {
-            let plant = Matrix::identity(nx, nx) * *s - &a;
-            let solved = plant.lu().solve(&(&b * held));
-            solved.unwrap_or_else(|| Matrix::zeros(nx, 1))
-        });
-        states.collect()
-    }
-
     /// The common period in s.
     pub(crate) fn period_s(&self) -> f64 {
         self.period

@@ -2,7 +2,7 @@
 //!
 //! Over the common period T of the clocks the map takes (x, m, h), states, memory and held values, to themselves; its
 //! eigenvalues are z = exp(sT) (Franklin, Powell, Workman, Digital Control of Dynamic Systems, ch. 4). Of s the frequency
-//! is known but for multiples of 1/T: the one at which the states move most between ticks counts. What a tick overwrites
+//! is known but for multiples of 1/T and for its sign: the one nearest to a pole of the plant counts. What a tick overwrites
 //! without reading it has z = 0, as a rule several times over; rounding would make numbers of every size of that, so it
 //! is taken out first, range by range.
 
@@ -22,8 +22,7 @@ const ROUNDING: f64 = 1e3 * f64::EPSILON;
 /// A part of an eigenvector below this, relative to its largest, is none of it.
 const UNMOVED: f64 = 1e-7;
 
-/// Of so many frequencies that ticks do not tell apart the one between ticks is looked for, in a plant of so many states.
-const MOST_ALIKE: usize = 8;
+/// Frequencies that ticks do not tell apart are told apart by the poles of a plant of so many states at most.
 const MOST_STATES: usize = 300;
 
 type Vector = DVector<Complex<f64>>;
@@ -200,12 +199,6 @@ fn of_map(linear: &Linear, period: &CommonPeriod<'_>) -> Poles {
         basis,
         scale,
     };
-    let (plant, own_scale) = balanced(&linear.a);
-    let own = if plant.nrows() > MOST_STATES {
-        Vec::new()
-    } else {
-        eigenvalues(&plant)
-    };
     for z in eigenvalues(&poles.matrix) {
         if z.im < 0.0 || z.norm() < OVER {
             continue;
@@ -216,51 +209,48 @@ fn of_map(linear: &Linear, period: &CommonPeriod<'_>) -> Poles {
         if close && (z - 1.0).norm() <= error {
             continue;
         }
-        let mut pole = Pole {
+        poles.all.push(Pole {
             s: z.ln() / period.period_s(),
             grows: z.norm() - 1.0 > error,
             z,
-        };
-        let alike = alike(pole.s, period.period_s(), &own);
-        if alike.len() > 1
-            && let Some(vector) = null_vector(poles.shifted(&pole))
-        {
-            let whole = complex(&poles.basis) * vector;
-            let start = Matrix::from_fn(whole.nrows(), 1, |i, _| whole[i] * poles.scale[i]);
-            let moves = period.coefficients(&start, &alike);
-            let sizes = moves.iter().map(|x| {
-                let parts = x.iter().zip(&own_scale);
-                parts.map(|(x, scale)| (x / scale).norm_sqr()).sum::<f64>()
-            });
-            let most = alike.iter().zip(sizes).max_by(|a, b| a.1.total_cmp(&b.1));
-            pole.s = most.map_or(pole.s, |(s, _)| Complex::new(s.re, s.im.abs()));
-        }
-        poles.all.push(pole);
+        });
     }
+    let plant = if linear.a.nrows() > MOST_STATES {
+        Vec::new()
+    } else {
+        eigenvalues(&balanced(&linear.a).0)
+    };
+    between_ticks(&mut poles.all, period.period_s(), &plant);
     poles
 }
 
-/// The s that have one factor over a period: the one below half its rate first, then those near poles of the plant.
-fn alike(s: Complex<f64>, period: f64, plant: &[Complex<f64>]) -> Vec<Complex<f64>> {
+/// Gives each pole that swings the frequency that it has between ticks. Ticks do not tell apart frequencies that differ by a
+/// multiple of their rate, nor mirror images. Poles of the closed loop and of the plant are paired, the nearest first, each
+/// once; a pole without a pair keeps its frequency below half the rate.
+fn between_ticks(poles: &mut [Pole], period: f64, plant: &[Complex<f64>]) {
     let step = std::f64::consts::TAU / period;
-    let mut found = vec![(0.0, s)];
-    // A real pole is of no pair, and so is one that alternates from tick to tick.
-    let pair = s.im > 1e-9 * step && s.im < (0.5 - 1e-9) * step;
-    for own in plant.iter().filter(|own| pair && own.im > 0.5 * step) {
-        for base in [s, s.conj()] {
-            let turns = ((own.im - base.im) / step).round();
-            let near = base + Complex::new(0.0, turns * step);
-            // Of the vector that belongs to s, not to its mirror image.
-            let same = if base.im < 0.0 { near.conj() } else { near };
-            let known = |other: &(f64, Complex<f64>)| (other.1 - same).norm() < 1e-6 * step;
-            if turns > 0.0 && !found.iter().any(known) {
-                found.push(((near - own).norm(), same));
+    let mut pairs = Vec::new();
+    for (number, pole) in poles.iter().enumerate() {
+        // A real pole is of no pair, and so is one that alternates from tick to tick.
+        if pole.s.im < 1e-9 * step || pole.s.im > (0.5 - 1e-9) * step {
+            continue;
+        }
+        for (mode, own) in plant.iter().enumerate().filter(|(_, own)| own.im > 0.0) {
+            for base in [pole.s, pole.s.conj()] {
+                let turns = ((own.im - base.im) / step).round();
+                let alike = base + Complex::new(0.0, turns * step);
+                pairs.push(((alike - own).norm(), number, mode, alike));
             }
         }
     }
-    found.sort_by(|a, b| a.0.total_cmp(&b.0));
-    found.truncate(MOST_ALIKE);
-    found.into_iter().map(|(_, s)| s).collect()
+    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let mut paired = (vec![false; poles.len()], vec![false; plant.len()]);
+    for (_, number, mode, alike) in pairs {
+        if !paired.0[number] && !paired.1[mode] {
+            (paired.0[number], paired.1[mode]) = (true, true);
+            poles[number].s = Complex::new(alike.re, alike.im.abs());
+        }
+    }
 }
 
 /// A matrix without the part of it that becomes 0 when it is applied again and again, in a basis of what is left.
