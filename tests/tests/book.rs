@@ -226,7 +226,8 @@ fn timeless(text: &str) -> String {
         if line.ends_with(" times real time") {
             return line.split(" s in ").next().unwrap().to_owned();
         }
-        if let Some((unknowns, counts)) = line.split_once(" unknowns, ")
+        let counted = line.split_once(" unknowns, ");
+        if let Some((unknowns, counts)) = counted.or_else(|| line.split_once(" unknown, "))
             && counts.contains(" steps, ")
         {
             return unknowns.to_owned();

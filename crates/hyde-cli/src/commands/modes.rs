@@ -201,7 +201,8 @@ fn loop_told(program: &Program, linear: &Linear, poles: &Poles) -> String {
     match poles.period_s {
         Some(period) => format!(
             "closed loop of the clocks `{clocks}`, exact over their common period of {} ms:\n  \
-             of frequencies {} Hz apart, alike at its ticks, the one nearest to a mode of the plant is listed;\n  \
+             ticks do not tell frequencies {} Hz apart from each other; listed is the one\n  \
+             nearest to a mode of the plant;\n  \
              the plant alone: `--open`\n",
             significant(1e3 * period, 4),
             significant(1.0 / period, 4)
