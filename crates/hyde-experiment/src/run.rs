@@ -254,8 +254,18 @@ fn start(
         let own = |m: &Measured| m.source.0 == column.record && m.source.1 == column.column;
         measured.iter().any(own)
     };
+    // The first column of a measured frequency response is the frequency.
+    let over_frequency = |record: &String| {
+        let mut responses = program.experiment.measured_responses.iter();
+        responses.any(|response| match &response.source {
+            RecordedResponse::Complex(of, _) | RecordedResponse::Polar(of, _) => {
+                of.record == *record
+            }
+            RecordedResponse::Periodic(..) => false,
+        })
+    };
     let begin = |record: &String| {
-        let table = records.get(record)?;
+        let table = records.get(record).filter(|_| !over_frequency(record))?;
         Some((*table.time().first()?, record.clone()))
     };
     let driving = program.columns.iter();

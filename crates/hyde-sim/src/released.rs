@@ -222,6 +222,10 @@ impl Table {
         candidates: &[Candidate],
         count: usize,
     ) -> Option<Self> {
+        // Delayed values are unknowns of the start as well, and follow the states.
+        if !state.program.delays.is_empty() {
+            return None;
+        }
         let before = state.p.clone();
         let (mut moved_y, mut moved_yp) = (y.to_vec(), yp.to_vec());
         move_off(state, candidates, &mut moved_y);
