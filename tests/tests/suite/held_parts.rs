@@ -5,8 +5,10 @@ use hyde_experiment::Options;
 use hyde_sim::EventKind;
 use hyde_tests::Example;
 
-/// The times of the changes of modes, with the mode entered.
-fn changes(file: &str, experiment: &str) -> (Vec<(f64, usize)>, Vec<Vec<f64>>, Vec<f64>) {
+/// The times of the changes of modes with the mode entered; some speeds; the times of the rows.
+type Changes = (Vec<(f64, usize)>, Vec<Vec<f64>>, Vec<f64>);
+
+fn changes(file: &str, experiment: &str) -> Changes {
     let example = Example::load(format!("tests/cases/{file}"), Some(experiment)).unwrap();
     let (compiled, run) = example.run_with(&Options::default()).unwrap();
     let events = run.results.events.iter();
