@@ -52,8 +52,11 @@ struct End {
 pub fn compare(seed: u64) -> Result<Verdict, String> {
     let model = random(seed);
     let example = Example::load("tests/models/ledger.hyde", None)?.replaced(&model.text, "run");
-    let found = compared(&example, model.at_s, &model.starts);
-    found.map_err(|reason| format!("{reason}\n{}", model.text))
+    let with_text = |reason: String| format!("{reason}\n{}", model.text);
+    match compared(&example, model.at_s, &model.starts) {
+        Ok(Verdict::Wrong(reason)) => Ok(Verdict::Wrong(with_text(reason))),
+        other => other.map_err(with_text),
+    }
 }
 
 fn compared(example: &Example, at_s: f64, starts: &[String]) -> Result<Verdict, String> {

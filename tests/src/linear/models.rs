@@ -26,7 +26,7 @@ pub(super) fn random(seed: u64) -> Model {
         let (x0, v0) = (numbers.between(-0.02, 0.02), numbers.between(-0.2, 0.2));
         let _ = writeln!(
             declared,
-            "  parameter Length x{i}_0 = {x0} [m];\n  parameter Velocity v{i}_0 = {v0} [m/s];\n  \
+            "  parameter Length x{i}_0 = {x0} [m], switch{i} = {x0} [m];\n  parameter Velocity v{i}_0 = {v0} [m/s];\n  \
              Length x{i}(start = x{i}_0, fixed = true);\n  Velocity v{i}(start = v{i}_0, fixed = true) = der(x{i});"
         );
         starts.extend([format!("x{i}_0"), format!("v{i}_0")]);
@@ -178,7 +178,7 @@ fn special(
             );
             String::new()
         }
-        // Exactly at its switch.
-        _ => format!(" - (if x{i} > x{i}_0 then {k1} else {k2})*1 [N/m]*(x{i} - x{i}_0)"),
+        // Exactly at its switch, which stays where it is while the start is changed.
+        _ => format!(" - (if x{i} > switch{i} then {k1} else {k2})*1 [N/m]*(x{i} - switch{i})"),
     }
 }
