@@ -8,7 +8,6 @@ use crate::recording::Recording;
 use crate::solution::Solution;
 use crate::standstill::{Cause, audible, standstill};
 use crate::varied::Varied;
-use hyde_program::Program;
 use nalgebra::{DMatrix, DVector};
 
 /// Parameters are of one group if some pair of their errors is correlated more than this.
@@ -102,27 +101,23 @@ impl Fit {
     }
 }
 
-/// Calibrates a program on records, and looks at others.
+/// Calibrates a program on the records of a problem, and looks at others.
 ///
 /// # Errors
 /// The program has no fixed-step form.
 pub fn fit(
-    program: &Program,
-    fitted: &[Recording],
+    problem: &Problem<'_>,
     holdout: &[Recording],
-    observer: &Observer,
-    varied: &[Varied],
-    set: &[(usize, f64)],
     starts: usize,
 ) -> Result<Fit, Unsupported> {
-    let problem = Problem {
+    let Problem {
         program,
         recordings: fitted,
         observer,
         varied,
         set,
-        fold: None,
-    };
+        ..
+    } = *problem;
     let nominal: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
     let mut solutions = Vec::new();
     for start in 0..starts.max(1) {
@@ -140,7 +135,7 @@ pub fn fit(
     let solution = solutions.swap_remove(best);
     let after = Problem {
         recordings: holdout,
-        ..problem
+        ..*problem
     }
     .innovations(&solution.values)?;
     let after: Vec<&Innovations> = solution.innovations.iter().chain(&after).collect();
@@ -148,7 +143,7 @@ pub fn fit(
         problem.innovations(&nominal)?,
         Problem {
             recordings: holdout,
-            ..problem
+            ..*problem
         }
         .innovations(&nominal)?,
     ]

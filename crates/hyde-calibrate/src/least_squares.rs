@@ -17,6 +17,7 @@ use crate::recording::Recording;
 use crate::solution::Solution;
 use crate::varied::Varied;
 use hyde_program::Program;
+use hyde_sim::Reached;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -42,6 +43,8 @@ pub struct Problem<'a> {
     pub set: &'a [(usize, f64)],
     /// The rows that count; all where nothing is said.
     pub fold: Option<Fold>,
+    /// Counts the steps that are done, of the most there may be.
+    pub reached: Option<&'a Reached>,
 }
 
 /// The normal equations: half the second derivatives, of data and of priors, and half the gradients.
@@ -107,6 +110,10 @@ impl Problem<'_> {
                 lambda *= 10.0;
             }
             steps += 1;
+            if let Some(reached) = self.reached {
+                let (before, _) = reached.get();
+                reached.set(before + 1.0, (MAX_STEPS + LAST_STEPS) as f64);
+            }
             if !taken {
                 converged = true;
             }

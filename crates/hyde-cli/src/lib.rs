@@ -34,6 +34,7 @@ mod summary;
 mod tables;
 mod unknown;
 mod unobservable;
+mod watch;
 
 use args::{Arguments, Command};
 use clap::Parser as _;

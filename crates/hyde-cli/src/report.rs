@@ -18,6 +18,10 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
         || program.name.clone(),
         |e| format!("{e} of {}", program.name),
     );
+    let (title, end_s) = match &run.incomplete {
+        None => (title, run.stop_s),
+        Some(incomplete) => (format!("{title}, incomplete"), incomplete.reached_s),
+    };
     let statistics = &run.results.statistics;
     let verdicts = run
         .measures
@@ -154,7 +158,7 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
         footer: format!(
             "Hyde {}, {} of {}",
             env!("CARGO_PKG_VERSION"),
-            format_value(run.stop_s - run.start.0, &stop),
+            format_value(end_s - run.start.0, &stop),
             project
                 .sources
                 .iter()
@@ -165,6 +169,18 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
     .page();
     if let Some(section) = assumptions::section(&assumptions::of_run(project, program, run)) {
         page.sections.insert(0, section);
+    }
+    if let Some(incomplete) = &run.incomplete {
+        let text = format!(
+            "This run did not reach its end at {} s: {}. Results, events and figures end at {} s. There are no measures, \
+             expectations and errors.",
+            significant(run.stop_s, 7),
+            incomplete.reason,
+            significant(incomplete.reached_s, 7)
+        );
+        let heading = "Incomplete".to_owned();
+        let blocks = vec![Block::Text(text)];
+        page.sections.insert(0, Section { heading, blocks });
     }
     // Behind the figures, before the long list of events.
     let events = page

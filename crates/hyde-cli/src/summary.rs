@@ -279,6 +279,11 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         "parameters": parameters,
         "notes": notes,
     });
+    if let Some(incomplete) = &run.incomplete {
+        summary["ok"] = json!(false);
+        summary["incomplete"] =
+            json!({ "reached_s": incomplete.reached_s, "reason": incomplete.reason });
+    }
     if let Some(ledger) = ledger::of(compiled, run) {
         summary["ledger"] = ledger::json(&ledger);
     }

@@ -12,6 +12,7 @@
 use crate::common_period::CommonPeriod;
 use crate::linearize::{Delayed, Linear};
 use crate::sampled::Sampled;
+use hyde_sim::Reached;
 use nalgebra::{Complex, DMatrix};
 
 /// Why there is no response.
@@ -35,6 +36,20 @@ pub fn frequency_response(
     outputs: &[usize],
     frequencies_hz: &[f64],
 ) -> Result<Vec<Vec<Complex<f64>>>, BodeError> {
+    frequency_response_watched(linear, input, outputs, frequencies_hz, &Reached::default())
+}
+
+/// The same, counting the frequencies that are done.
+///
+/// # Errors
+/// As for [`frequency_response`].
+pub fn frequency_response_watched(
+    linear: &Linear,
+    input: usize,
+    outputs: &[usize],
+    frequencies_hz: &[f64],
+    reached: &Reached,
+) -> Result<Vec<Vec<Complex<f64>>>, BodeError> {
     let mut found = vec![Vec::with_capacity(frequencies_hz.len()); outputs.len()];
     let clocked = linear.sampled.as_ref();
     let limit_hz = clocked.map_or(f64::INFINITY, |sampled| {
@@ -45,7 +60,8 @@ pub fn frequency_response(
     if highest > limit_hz {
         return Err(BodeError::AboveNyquist(highest, limit_hz));
     }
-    for &f in frequencies_hz {
+    for (number, &f) in frequencies_hz.iter().enumerate() {
+        reached.set(number as f64, frequencies_hz.len() as f64);
         let s = Complex::new(0.0, std::f64::consts::TAU * f);
         let identity = Matrix::identity(linear.a.nrows(), linear.a.nrows());
         let plant = Plant::new(identity * s - complex(&linear.a));

@@ -32,7 +32,7 @@ mod stepped;
 mod swept;
 
 pub use assumptions::Assumption;
-pub use bode::{BodeError, frequency_response};
+pub use bode::{BodeError, frequency_response, frequency_response_watched};
 pub use budget::{BudgetOf, Share};
 pub use compare::{Channel, CompareError, prepared, unwrapped};
 pub use flows::{FlowLine, flows};
@@ -50,7 +50,9 @@ pub use mode_shape::{ModeShape, mode_shape};
 pub use modes::{NaturalMode, modes};
 pub use poles::{Pole, Poles, poles};
 pub use record::read_record;
-pub use run::{Options, Run, RunError, parameters, places, record_value, run};
+pub use run::{
+    Incomplete, Options, Run, RunError, incomplete, parameters, places, record_value, run,
+};
 pub use sampled::{Clocked, Sampled};
 pub use stepped::{Level, SteppedOutput, SteppedPoint, Steps, stepped_response};
 pub use swept::{Swept, swept_response};

@@ -5,7 +5,7 @@ use crate::compare::{self, Channel, CompareError};
 use crate::measures::{MeasureValue, measures};
 use hyde_program::{Column, Constant, Measured, Parameter, Program, RecordValue, RecordedResponse};
 use hyde_signal::Table;
-use hyde_sim::{Failure, Results, Setup};
+use hyde_sim::{Failure, Reached, Results, Setup};
 use hyde_units::Allowed;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -33,9 +33,11 @@ pub struct Options {
     pub gradient: Vec<String>,
     /// Set from outside to end the run after the step under way.
     pub interrupted: Arc<AtomicBool>,
+    /// How far the run is, for another thread to show.
+    pub reached: Arc<Reached>,
 }
 
-/// A finished run.
+/// A run, finished or not.
 #[derive(Clone, Debug)]
 pub struct Run {
     /// The parameter vector used.
@@ -52,6 +54,17 @@ pub struct Run {
     pub channels: Vec<Channel>,
     /// Measures and expectations.
     pub measures: Vec<MeasureValue>,
+    /// Why the results end before the stop, if they do. Such a run has neither channels nor measures.
+    pub incomplete: Option<Incomplete>,
+}
+
+/// Why a run ended before its stop.
+#[derive(Clone, Debug)]
+pub struct Incomplete {
+    /// The time in s that it reached.
+    pub reached_s: f64,
+    /// What happened.
+    pub reason: String,
 }
 
 /// Why there is no run.
@@ -136,6 +149,34 @@ pub fn run(
         results,
         channels,
         measures,
+        incomplete: None,
+    })
+}
+
+/// What there is of a run that failed or was interrupted.
+///
+/// # Errors
+/// As for [`run`].
+pub fn incomplete(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    options: &Options,
+    failure: &Failure,
+    reason: String,
+) -> Result<Run, RunError> {
+    let setup = setup(program, records, options)?;
+    Ok(Run {
+        start: start(program, records, &setup.parameters),
+        stop_s: setup.stop_s,
+        tolerances: (setup.rtol, setup.atol),
+        parameters: setup.parameters,
+        results: failure.results.clone(),
+        channels: Vec::new(),
+        measures: Vec::new(),
+        incomplete: Some(Incomplete {
+            reached_s: failure.t,
+            reason,
+        }),
     })
 }
 
@@ -186,6 +227,7 @@ pub(crate) fn setup<'r>(
     let mut setup = setup_with(program, records, parameters);
     setup.stop_s = stop_s;
     setup.interrupted = Arc::clone(&options.interrupted);
+    setup.reached = Arc::clone(&options.reached);
     if let Some(rtol) = options.rtol {
         (setup.rtol, setup.atol) = (rtol, atol.unwrap_or(ATOL * rtol));
     }

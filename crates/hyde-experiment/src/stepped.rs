@@ -11,6 +11,7 @@ use hyde_signal::Table;
 use hyde_signal::spectrum::{Complex, harmonic_distortion, response_at};
 use hyde_sim::Results;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Rows in a period: the tenth harmonic has six.
@@ -68,7 +69,7 @@ pub struct SteppedOutput {
 }
 
 /// The stepped response that an experiment asks for; the program was compiled with a value for `INPUT.frequency`. So many
-/// `threads` run side by side.
+/// `threads` run side by side. What is reached of `options` counts frequencies.
 ///
 /// # Errors
 /// The first run that did not start or end, in the order of the frequencies.
@@ -80,8 +81,9 @@ pub fn stepped_response(
     steps: &Steps,
     threads: usize,
 ) -> Result<Vec<SteppedPoint>, RunError> {
-    let next = AtomicUsize::new(0);
+    let (next, finished) = (AtomicUsize::new(0), AtomicUsize::new(0));
     let count = steps.frequencies_hz.len();
+    options.reached.set(0.0, count as f64);
     let work = || {
         let mut done = Vec::new();
         loop {
@@ -98,6 +100,8 @@ pub fn stepped_response(
                 frequency_hz,
             };
             done.push((number, point.measured()));
+            let finished = finished.fetch_add(1, Ordering::Relaxed) + 1;
+            options.reached.set(finished as f64, count as f64);
         }
     };
     let mut found: Vec<_> = std::thread::scope(|scope| {
@@ -182,6 +186,7 @@ impl Sine<'_> {
         options.every_s = Some(period / ROWS);
         let from = settling * period;
         options.measured_from_s = Some(from);
+        options.reached = Arc::default();
         let run = run(self.program, self.records, &options)?;
         let mut results = run.results;
         let before = results.time.partition_point(|t| *t < from - 1e-6 * period);

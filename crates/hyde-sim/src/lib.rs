@@ -33,6 +33,7 @@ mod lobatto;
 mod loose;
 mod meter;
 mod operating_point;
+mod reached;
 mod reductions;
 mod released;
 mod results;
@@ -55,6 +56,7 @@ pub use failure::{Failure, FailureKind};
 pub use inputs::InputError;
 pub use known_start::{KnownStart, known_start};
 pub use operating_point::{OperatingPoint, PointModes, PointTime, TakenMode, operating_point};
+pub use reached::Reached;
 pub use results::{
     Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Reduced, Results,
     Statistics, Yielded,

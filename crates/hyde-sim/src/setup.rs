@@ -1,5 +1,6 @@
 //! [`Setup`]: what a run is told beside its program.
 
+use crate::reached::Reached;
 use hyde_program::{Method, Reduction};
 use hyde_signal::Table;
 use std::collections::BTreeMap;
@@ -38,6 +39,8 @@ pub struct Setup<'a> {
     pub sensitivities: Option<&'a [usize]>,
     /// Set from outside to end the run after the step under way.
     pub interrupted: Arc<AtomicBool>,
+    /// How far the run is, for whoever watches it.
+    pub reached: Arc<Reached>,
 }
 
 impl<'a> Setup<'a> {
@@ -59,6 +62,7 @@ impl<'a> Setup<'a> {
             keep: None,
             sensitivities: None,
             interrupted: Arc::default(),
+            reached: Arc::default(),
         }
     }
 

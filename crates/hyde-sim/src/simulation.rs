@@ -266,6 +266,8 @@ impl<'a> Simulation<'a> {
             if self.setup.interrupted.load(Ordering::Relaxed) {
                 return Err(Failure::new(FailureKind::Interrupted, self.integrator.t));
             }
+            let reached = &self.setup.reached;
+            reached.set(self.integrator.t, self.setup.stop_s);
             let from = self.integrator.step(target)?;
             if let Some(kind) = self.hurry.no_way(self.integrator.t, self.setup) {
                 return Err(self.no_way(kind, target));

@@ -8,7 +8,7 @@
 
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::{Example, bench_axis, root};
-use hyde_calibrate::{Model, Observer, Recording, Varied, free_run};
+use hyde_calibrate::{Model, Observer, Problem, Recording, Varied, free_run};
 use hyde_compiler::Backend;
 use hyde_program::Program;
 use rayon::prelude::*;
@@ -187,7 +187,16 @@ impl Truth {
         program.kernels.parameters(&[], &mut p);
         let varied = Varied::uncertain(&program, &p);
         let fitted = of("fit-", &program)?;
-        let found = hyde_calibrate::fit(&program, &fitted, &[], &observer, &varied, &[], 1);
+        let problem = Problem {
+            program: &program,
+            recordings: &fitted,
+            observer: &observer,
+            varied: &varied,
+            set: &[],
+            fold: None,
+            reached: None,
+        };
+        let found = hyde_calibrate::fit(&problem, &[], 1);
         let found = found.map_err(unsupported)?.parameters.into_iter();
         let set: Vec<(String, f64)> = found.map(|own| (own.name, own.value)).collect();
         let model = Model {

@@ -171,6 +171,7 @@ fn off_from_differences(with: &str, others: &[String], steps: &[f64]) -> BTreeMa
         varied: &varied,
         set: &[],
         fold: None,
+        reached: None,
     };
     let values: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
     let derivatives = problem.derivatives(&values).unwrap();
@@ -280,7 +281,16 @@ fn calibration_finds_the_parameters_that_a_record_was_made_with() {
     let mut varied = Varied::uncertain(program, &p);
     assert_eq!(varied.len(), 12);
     varied.retain(|varied| truth.iter().any(|(name, _)| varied.name == *name));
-    let found = fit(program, &recordings, &[], &observer, &varied, &[], 1).unwrap();
+    let problem = Problem {
+        program,
+        recordings: &recordings,
+        observer: &observer,
+        varied: &varied,
+        set: &[],
+        fold: None,
+        reached: None,
+    };
+    let found = fit(&problem, &[], 1).unwrap();
     assert!(found.converged);
     for parameter in &found.parameters {
         let (_, value) = truth
@@ -307,12 +317,8 @@ fn calibration_finds_the_parameters_that_a_record_was_made_with() {
     assert!(found.records[0].before.0 > 1.1);
     // The same from any number of threads, to the last bit.
     let problem = Problem {
-        program,
-        recordings: &recordings,
-        observer: &observer,
         varied: &varied[..2],
-        set: &[],
-        fold: None,
+        ..problem
     };
     let start = [310.0, 260.0];
     let of = |threads: usize| {

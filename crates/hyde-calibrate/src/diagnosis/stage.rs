@@ -59,6 +59,7 @@ impl Ground<'_> {
             varied,
             set,
             fold,
+            reached: None,
         }
     }
 }

@@ -19,12 +19,15 @@ use crate::exit::Exit;
 use crate::project::{self, Aim, Records, complain, print_output};
 use crate::records;
 use crate::summary;
+use crate::watch::Watch;
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::{About, LinearizeError, linearize_about, parameters, poles, swept_response};
 use hyde_program::{Bode, Program};
+use hyde_sim::Reached;
 use hyde_units::significant;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 /// What one experiment asks for.
 struct Asked {
@@ -209,11 +212,18 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
             open: false,
         };
         let input = std::slice::from_ref(&bode.input);
-        let system = linearize_about(program, &tables, &p, input, about)
-            .map_err(|error| no_system(&mut project, model, (program, bode), error))?;
-        let poles = poles(&system);
-        let found = linearised(&name, program, bode, (&system, &poles), &frequency);
-        let mut responses = found.map_err(|reason| {
+        let reached = Arc::default();
+        let watch = watch(model, &reached);
+        let found = linearize_about(program, &tables, &p, input, about).map(|system| {
+            let poles = poles(&system);
+            let asked = (bode, frequency.as_slice());
+            let responses = linearised(&name, program, asked, (&system, &poles), &reached);
+            (system, poles, responses)
+        });
+        drop(watch);
+        let (system, poles, responses) =
+            found.map_err(|error| no_system(&mut project, model, (program, bode), error))?;
+        let mut responses = responses.map_err(|reason| {
             let diagnostic = Diagnostic::error(Code::NoResponse, reason);
             let diagnostic = diagnostic.label(bode.origin.span, "there is no response from here");
             project.diagnostics.push(diagnostic);
@@ -308,6 +318,15 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         }
     }
     Ok(asked)
+}
+
+/// Shows how many frequencies of a response are done.
+fn watch(args: &ModelArgs, reached: &Arc<Reached>) -> Watch {
+    let reached = Arc::clone(reached);
+    Watch::new(args.json || args.quiet, move || match reached.get() {
+        (done, all) if all > 0.0 => format!("{done} of {all} frequencies"),
+        _ => "linearising".to_owned(),
+    })
 }
 
 /// What the experiment says of itself, else its name.

@@ -9,11 +9,14 @@ use crate::left_model;
 use crate::project::{complain, print_output};
 use crate::study::{self, Calibration};
 use crate::unobservable;
-use hyde_calibrate::{Fit, Model, Unsupported};
+use crate::watch::Watch;
+use hyde_calibrate::{Fit, Model, Problem, Unsupported};
+use hyde_sim::Reached;
 use hyde_units::{counted, engineering, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Calibrates and tells.
 pub(crate) fn fit(args: &FitArgs) -> Exit {
@@ -25,16 +28,7 @@ pub(crate) fn fit(args: &FitArgs) -> Exit {
         Ok(calibration) => calibration,
         Err(exit) => return exit,
     };
-    let found = hyde_calibrate::fit(
-        &calibration.compiled.program,
-        &calibration.fitted,
-        &calibration.holdout,
-        &calibration.observer,
-        &calibration.varied,
-        &calibration.set,
-        calibration.plan.starts,
-    );
-    let found = match found {
+    let found = match watched(args, &calibration) {
         Ok(found) => found,
         Err(error) => return cannot(&mut calibration, args, &error),
     };
@@ -67,6 +61,31 @@ pub(crate) fn fit(args: &FitArgs) -> Exit {
         }
     }
     Exit::Done
+}
+
+/// Calibrates, and shows how far that is.
+fn watched(args: &FitArgs, calibration: &Calibration) -> Result<Fit, Unsupported> {
+    let reached: Arc<Reached> = Arc::default();
+    let shown = Arc::clone(&reached);
+    let starts = calibration.plan.starts;
+    let _watch = Watch::new(args.study.json || args.study.quiet, move || {
+        let (steps, most) = shown.get();
+        let most = most * starts.max(1) as f64;
+        match steps > 0.0 {
+            true => format!("fitted {steps} of at most {most} steps"),
+            false => "fitting".to_owned(),
+        }
+    });
+    let problem = Problem {
+        program: &calibration.compiled.program,
+        recordings: &calibration.fitted,
+        observer: &calibration.observer,
+        varied: &calibration.varied,
+        set: &calibration.set,
+        fold: None,
+        reached: Some(&*reached),
+    };
+    hyde_calibrate::fit(&problem, &calibration.holdout, starts)
 }
 
 /// The errors with the declared values and with the calibrated ones.

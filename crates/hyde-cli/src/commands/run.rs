@@ -8,15 +8,17 @@ use crate::project::{
     self, Aim, Project, Records, complain, print_diagnostics, print_error, print_output,
 };
 use crate::records;
+use crate::watch::Watch;
 use crate::{asked_figures, forces, render, report, run_failure, summary};
 use hyde_compiler::Compiled;
 use hyde_experiment::{Options, Run, RunError};
 use hyde_program::Program;
 use hyde_signal::{Column, csv, parquet};
-use hyde_sim::Results;
-use hyde_units::NamedUnit;
+use hyde_sim::{Reached, Results};
+use hyde_units::{NamedUnit, significant};
 use serde_json::{Map, Value, json};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Runs an experiment, prints what happened, and leaves its files.
 pub(crate) fn run(args: &RunArgs) -> Exit {
@@ -74,16 +76,30 @@ pub(crate) fn solved_of(
         measured_from_s: None,
         gradient: args.gradient.clone(),
         interrupted: interruption::interrupted(),
+        reached: Arc::default(),
     };
     let tables = records::tables(&project.records);
     let start = std::time::Instant::now();
-    match hyde_experiment::run(&compiled.program, &tables, &options) {
+    let watch = watch(args, &options.reached);
+    let outcome = hyde_experiment::run(&compiled.program, &tables, &options);
+    drop(watch);
+    match outcome {
         Ok(run) => {
             let took = start.elapsed();
             Ok((project, compiled, run, took))
         }
-        Err(error) => Err(failed(args, project, &compiled, &error)),
+        Err(error) => Err(failed(args, project, &compiled, &options, &error)),
     }
+}
+
+/// Shows how far a run is.
+fn watch(args: &RunArgs, reached: &Arc<Reached>) -> Watch {
+    let reached = Arc::clone(reached);
+    Watch::new(args.model.json || args.model.quiet, move || {
+        let (now, end) = reached.get();
+        let [now, end] = [now, end].map(|time| significant(time, 4));
+        format!("simulated {now} s of {end} s")
+    })
 }
 
 fn finish(
@@ -249,27 +265,39 @@ fn results_json(program: &Program, results: &Results) -> Value {
     Value::Object(columns)
 }
 
-fn failed(args: &RunArgs, mut project: Project, compiled: &Compiled, error: &RunError) -> Exit {
+fn failed(
+    args: &RunArgs,
+    mut project: Project,
+    compiled: &Compiled,
+    options: &Options,
+    error: &RunError,
+) -> Exit {
     let name = project.experiment.as_deref();
     let mut experiments = project.file.experiments();
     let experiment = experiments.find(|known| name == Some(known.name.text.as_str()));
     let (diagnostic, exit) = run_failure::diagnostic(error, &compiled.program, experiment);
+    let reason = diagnostic.message.clone();
     if exit == Exit::Interrupted {
         complain(&args.model, exit, &diagnostic.message);
     } else {
         project.diagnostics.push(diagnostic);
         tell(args, &project);
     }
-    // What was finished is kept.
+    // The rows so far are kept, marked as incomplete.
     if let (Some(folder), RunError::Failed(failure)) = (&args.out, error) {
-        let kept = files::make_folder(folder)
-            .and_then(|()| leave_results(folder, args.format, &compiled.program, &failure.results))
-            .and_then(|()| {
-                let events = summary::events_csv(&project, compiled, &failure.results.events);
-                files::write(&folder.join("events.csv"), events.as_bytes())
-            });
-        if let Err(reason) = kept {
-            print_error(&format!("error: {reason}"));
+        let (program, tables) = (&compiled.program, records::tables(&project.records));
+        let run = hyde_experiment::incomplete(program, &tables, options, failure, reason);
+        let kept = run
+            .map_err(|_| "nothing of this run can be kept".to_owned())
+            .and_then(|run| leave(folder, args.format, &project, compiled, &run));
+        match kept {
+            Ok(()) if args.model.quiet => {}
+            Ok(()) => print_error(&format!(
+                "the results up to {} s are in {}, marked as incomplete",
+                significant(failure.t, 7),
+                folder.display()
+            )),
+            Err(reason) => print_error(&format!("error: {reason}")),
         }
     }
     exit

@@ -100,8 +100,14 @@ fn status_3_when_the_solver_could_not_go_on_and_keeps_what_was_done() {
     );
     assert!(rows.len() > 400, "{} rows", rows.len());
     assert!(read(&format!("{out}/events.csv")).lines().count() > 30);
-    // No summary of a run that did not end.
-    assert_eq!(folder.names("out"), ["events.csv", "results.csv"]);
+    // The summary and the page say that the run did not end.
+    assert_eq!(
+        folder.names("out"),
+        ["events.csv", "report.html", "results.csv", "summary.json"]
+    );
+    let summary: Value = serde_json::from_str(&read(&format!("{out}/summary.json"))).unwrap();
+    let reached = summary["incomplete"]["reached_s"].as_f64().unwrap();
+    assert!((3.9..4.1).contains(&reached), "{reached}");
 }
 
 #[test]

@@ -2,9 +2,10 @@
 
 use super::measured::Compared;
 use hyde_diag::{Code, Diagnostic};
-use hyde_experiment::{BodeError, Linear, Pole, Poles, SteppedOutput, frequency_response};
+use hyde_experiment::{BodeError, Linear, Pole, Poles, SteppedOutput, frequency_response_watched};
 use hyde_program::{Bode, Constant, Program};
 use hyde_signal::spectrum::FrequencyResponse;
+use hyde_sim::Reached;
 use hyde_units::significant;
 
 /// From an input to one output.
@@ -49,12 +50,13 @@ pub(crate) fn frequencies(band: (f64, f64), count: usize) -> Vec<f64> {
 pub(crate) fn linearised(
     experiment: &str,
     program: &Program,
-    bode: &Bode,
+    (bode, frequency): (&Bode, &[f64]),
     (system, poles): (&Linear, &Poles),
-    frequency: &[f64],
+    reached: &Reached,
 ) -> Result<Vec<Response>, String> {
     let outputs: Vec<usize> = bode.outputs.iter().map(|(_, output)| *output).collect();
-    let all = frequency_response(system, 0, &outputs, frequency).map_err(|error| match error {
+    let all = frequency_response_watched(system, 0, &outputs, frequency, reached);
+    let all = all.map_err(|error| match error {
         BodeError::AboveNyquist(f, limit) => format!(
             "{} Hz is above half the sampling rate, {} Hz: the sampled loop has no response there",
             significant(f, 3),

@@ -1,7 +1,7 @@
 //! The stepped sine of an experiment: planned, run, told.
 
 use super::response::{Response, band, frequencies};
-use super::seen;
+use super::{seen, watch};
 use crate::args::ModelArgs;
 use crate::exit::Exit;
 use crate::interruption::interrupted;
@@ -50,7 +50,9 @@ pub(crate) fn measured(
     };
     let bode = &program.experiment.bodes[number];
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let watch = watch(args, &options.reached);
     let points = stepped_response(program, &tables, &options, bode, &steps, threads);
+    drop(watch);
     let points = match points {
         Ok(points) => points,
         Err(error) => {
