@@ -72,6 +72,7 @@ pub const FIGURES: &[Figure] = &[
     travelling_nut::DRIFT,
     travelling_nut::RIPPLE,
     ledger::FIGURE,
+    ledger::OPEN,
     batches::OVERHEAD,
     batches::TWO_CORES,
     batches::KILLS,

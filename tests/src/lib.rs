@@ -15,7 +15,9 @@ pub mod ivp;
 pub mod library;
 pub mod linear;
 pub mod msl;
+mod numbers;
 pub mod paper;
+pub mod random_ledger;
 pub mod stored_energy;
 
 pub use closed_form::ContinuousAxis;

@@ -6,7 +6,6 @@
 
 mod loops;
 mod models;
-mod numbers;
 
 pub use loops::wrong_poles;
 

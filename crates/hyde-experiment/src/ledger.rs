@@ -55,10 +55,8 @@ impl EnergyLedger {
             .copied()
             .filter(|name| ledger.ports.iter().any(|port| port.component == *name))
             .collect();
-        // A part without connectors keeps its accounts with the component that has them.
-        let home = |component: &str| {
-            nearest(&with_ports, component).unwrap_or_else(|| component.to_owned())
-        };
+        let signalled = Signalled::of(ledger, &with_ports);
+        let home = |component: &str| signalled.home(component, &with_ports);
         let mut entries: Vec<LedgerEntry> = Vec::new();
         for component in components.iter().map(|name| home(name)) {
             if !entries.iter().any(|entry| entry.component == component) {
@@ -71,7 +69,7 @@ impl EnergyLedger {
                 .position(|entry| entry.component == component)
         };
         for (port, energy) in ledger.ports.iter().zip(&sums.received) {
-            if let Some(at) = find(&mut entries, &port.component) {
+            if let Some(at) = find(&mut entries, &home(&port.component)) {
                 entries[at].received += energy;
             }
             let outer = port.component.rsplit_once('.').map(|(outer, _)| outer);
@@ -99,6 +97,9 @@ impl EnergyLedger {
         for (entry, says) in entries.iter_mut().zip(says) {
             if !says {
                 entry.supplied = -entry.received;
+            }
+            if signalled.balanced.contains(&entry.component) {
+                entry.supplied = entry.stored + entry.dissipated - entry.received;
             }
             // What jumped at an event came at once: no port could measure it.
             entry.remainder = entry.received + entry.supplied - entry.stored - entry.dissipated;
@@ -147,6 +148,52 @@ impl LedgerEntry {
             at_events: 0.0,
             dissipated: 0.0,
             remainder: 0.0,
+        }
+    }
+}
+
+/// Sources that may exert the force of a part without connectors, as two drives do for the contact between them. What such a
+/// part stores comes through the sources: their energies balance only together.
+struct Signalled {
+    /// The sources, each with the component around that has connectors; the model itself is empty.
+    sources: Vec<(String, String)>,
+    /// The components whose own equations or sources exchange what no connector measures.
+    balanced: Vec<String>,
+}
+
+impl Signalled {
+    fn of(ledger: &Ledger, with_ports: &[&str]) -> Self {
+        let around = |component: &str| {
+            let outer = component.rsplit_once('.').map(|(outer, _)| outer);
+            let found = outer.and_then(|outer| nearest(with_ports, outer));
+            found.unwrap_or_default()
+        };
+        let accounts = || ledger.accounts.iter().map(|account| &account.component[..]);
+        let is_part = |component: &&str| !component.is_empty() && !with_ports.contains(component);
+        let scopes: Vec<String> = accounts().filter(is_part).map(around).collect();
+        let says = |component: &str| {
+            accounts().any(|known| nearest(with_ports, known).as_deref() == Some(component))
+        };
+        let silent = with_ports.iter().filter(|component| !says(component));
+        let sources: Vec<(String, String)> = silent
+            .map(|component| ((*component).to_owned(), around(component)))
+            .filter(|(_, scope)| scopes.contains(scope))
+            .collect();
+        let mut balanced: Vec<String> = sources.iter().map(|(_, scope)| scope.clone()).collect();
+        // A model without accounts of its own that drives a part by its equations.
+        if scopes.iter().any(String::is_empty) && !accounts().any(str::is_empty) {
+            balanced.push(String::new());
+        }
+        Self { sources, balanced }
+    }
+
+    /// Where a component has its line: a part without connectors, and a source that may act for such a part, with the
+    /// component around that has connectors.
+    fn home(&self, component: &str, with_ports: &[&str]) -> String {
+        let source = self.sources.iter().find(|(known, _)| known == component);
+        match source {
+            Some((_, scope)) => scope.clone(),
+            None => nearest(with_ports, component).unwrap_or_default(),
         }
     }
 }

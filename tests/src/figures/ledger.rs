@@ -1,10 +1,11 @@
-//! `energy_ledger_closure`: does every joule of a run have its place?
+//! `energy_ledger_closure`, `ledger_open`: does every joule of a run have its place?
 //!
 //! Two drives at rtol 1e-8, the worse counts: inertias, a damped bar and a friction that stops them, and the Y axis
 //! setting off, with its motor, belt, screw, frictions and backlash.
 
-use super::promise::{Figure, Measured, Promise, Session};
+use super::promise::{Figure, Measured, Promise, Session, count};
 use crate::Example;
+use crate::random_ledger::open;
 use hyde_experiment::{EnergyLedger, Options};
 
 pub(super) const FIGURE: Figure = Figure {
@@ -12,6 +13,14 @@ pub(super) const FIGURE: Figure = Figure {
     unit: "relative",
     promise: Promise::AtMost(1e-6),
     measure,
+};
+
+/// Random chains of bodies whose ledger does not close.
+pub(super) const OPEN: Figure = Figure {
+    name: "ledger_open",
+    unit: "",
+    promise: Promise::Exactly(0.0),
+    measure: |_: &Session| count(60, open),
 };
 
 /// The remainders of all components over the energy that passed.

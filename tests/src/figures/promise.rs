@@ -134,6 +134,26 @@ impl Session {
     }
 }
 
+/// How many of the first seeds have something wrong.
+pub(super) fn count(
+    seeds: u64,
+    wrong: impl Fn(u64) -> Result<Option<String>, String>,
+) -> Result<Measured, String> {
+    let mut sum = 0_u32;
+    for seed in 0..seeds {
+        if let Some(reason) = wrong(seed)? {
+            tell(seed, &reason);
+            sum += 1;
+        }
+    }
+    Ok(Measured::Value(f64::from(sum)))
+}
+
+#[allow(clippy::print_stderr, reason = "a figure that falls short says where")]
+fn tell(seed: u64, reason: &str) {
+    eprintln!("seed {seed}: {reason}");
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

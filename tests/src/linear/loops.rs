@@ -3,8 +3,8 @@
 //! Values at whole periods of a linear loop are sums of powers of its poles, so the polynomial that has them as its roots
 //! makes nothing of any sequence of them.
 
-use super::numbers::Numbers;
 use crate::Example;
+use crate::numbers::Numbers;
 use hyde_compiler::Backend;
 use hyde_experiment::{linearize, parameters, poles};
 use hyde_program::Method;

@@ -1,6 +1,6 @@
 //! Random chains of bodies with something between them that switches.
 
-use super::numbers::Numbers;
+use crate::numbers::Numbers;
 use std::fmt::Write as _;
 
 /// A model with its operating point.

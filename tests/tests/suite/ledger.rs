@@ -2,6 +2,7 @@
 
 use crate::models::{Solved, close, model};
 use hyde_experiment::{EnergyLedger, LedgerEntry, linearize, mode_shape, parameters, poles};
+use hyde_tests::random_ledger::open;
 use std::collections::BTreeMap;
 
 fn turned() -> Solved {
@@ -41,6 +42,13 @@ fn every_joule_is_told() {
     let push = entry(&ledger, "push");
     close(push.supplied, -push.received, 0.0);
     close(ledger.total().received, 0.0, 1e-9 * ledger.passed);
+}
+
+#[test]
+fn the_ledgers_of_random_chains_close() {
+    for seed in 0..60 {
+        assert_eq!(open(seed).unwrap(), None, "seed {seed}");
+    }
 }
 
 #[test]

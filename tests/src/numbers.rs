@@ -1,10 +1,10 @@
 //! Numbers that a seed makes (Steele, Lea, Flood, Fast Splittable Pseudorandom Number Generators, OOPSLA 2014).
 
 /// A stream of numbers.
-pub(super) struct Numbers(u64);
+pub(crate) struct Numbers(u64);
 
 impl Numbers {
-    pub(super) fn of(seed: u64) -> Self {
+    pub(crate) fn of(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x2545_F491_4F6C_DD1D) ^ 0x9E37_79B9)
     }
 
@@ -17,14 +17,14 @@ impl Numbers {
     }
 
     /// Evenly between two bounds, with six digits.
-    pub(super) fn between(&mut self, from: f64, to: f64) -> f64 {
+    pub(crate) fn between(&mut self, from: f64, to: f64) -> f64 {
         let part = (self.next() >> 11) as f64 / (1_u64 << 53) as f64;
         let value = from + part * (to - from);
         (value * 1e6).round() / 1e6
     }
 
     /// One of so many.
-    pub(super) fn one_of(&mut self, count: u64) -> u64 {
+    pub(crate) fn one_of(&mut self, count: u64) -> u64 {
         self.next() % count
     }
 }
