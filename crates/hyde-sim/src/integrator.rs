@@ -34,6 +34,8 @@ const LEAST_RTOL: f64 = 2e-11;
 const LEAST_ATOL: f64 = 1e-2 * LEAST_RTOL;
 /// The same for algebraic variables, of the largest value they had: a force is a difference of large ones.
 const LEAST_OF_DIFFERENCES: f64 = 1e-9;
+/// So many steps after a start are short and of low order.
+const SHORT_STEPS: u32 = 16;
 
 impl<'a> Integrator<'a> {
     /// Starts a solver from consistent values.
@@ -121,6 +123,12 @@ impl<'a> Integrator<'a> {
         let inside = t.to_bits() != self.t.to_bits();
         let found = inside && self.solver.interpolate(t, y, yp);
         self.finish(found, t, y, yp);
+    }
+
+    /// Whether the interpolant is much less exact for rates, and for what is not a state, than for states: IDA's is as long as
+    /// its steps are short and of low order, that of a one-step method always.
+    pub(crate) fn shows_states_alone(&self) -> bool {
+        self.steps < SHORT_STEPS || !self.solver.has_a_past()
     }
 
     /// Exact values where they are known; at the end of a step those that are there.

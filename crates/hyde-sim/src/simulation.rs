@@ -6,6 +6,7 @@ mod reduce;
 mod rows;
 mod steady;
 
+use self::reduce::Reduced;
 use crate::clocks::Schedule;
 use crate::consistent::Consistent;
 use crate::delays;
@@ -17,7 +18,6 @@ use crate::initial;
 use crate::integrator::Integrator;
 use crate::lobatto;
 use crate::meter::Meter;
-use crate::reductions::Reductions;
 use crate::results::{Gradient, Results};
 use crate::selection;
 use crate::sensitivity::{Cause, Sensitivities};
@@ -26,7 +26,7 @@ use crate::solver::method;
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
 use crate::time_spent::count_modes;
-use hyde_program::{Function, Program, SomeRows};
+use hyde_program::Program;
 use std::sync::atomic::Ordering;
 
 /// Relations that are not settled after so many solutions of the initial equations contradict them.
@@ -50,8 +50,7 @@ pub(crate) struct Simulation<'a> {
     crossed: Vec<usize>,
     hurry: Hurry,
     meter: Option<Meter<'a>>,
-    /// What becomes one number, with the kernel of what it reads.
-    reductions: Option<(Reductions, Box<dyn SomeRows + 'a>)>,
+    reduced: Option<Reduced<'a>>,
     sensitivities: Option<Sensitivities>,
     /// Events change relations alone, no modes: they are those of an operating point.
     modes_are_given: bool,
@@ -110,6 +109,7 @@ impl<'a> Simulation<'a> {
                 .collect(),
             ..Results::default()
         };
+        let reduced = Reduced::new(program, setup, &state);
         let integrator = Integrator::new(state, setup, t, y, yp, 1e-6)?;
         Ok(Self {
             setup,
@@ -124,13 +124,7 @@ impl<'a> Simulation<'a> {
             crossed: Vec::new(),
             hurry: Hurry::default(),
             meter: Meter::new(&program.experiment.ledger),
-            reductions: Reductions::new(&setup.reductions, setup.reduced_from_s).map(
-                |reductions| {
-                    let outputs = reductions.outputs();
-                    let kernel = program.kernels.some_rows(Function::Outputs, outputs);
-                    (reductions, kernel)
-                },
-            ),
+            reduced,
             sensitivities,
             modes_are_given: false,
         })
@@ -450,8 +444,8 @@ impl<'a> Simulation<'a> {
         {
             gradient.end = sensitivities.end.take();
         }
-        if let Some((reductions, _)) = &self.reductions {
-            self.results.reductions = reductions.finish();
+        if let Some(reduced) = &self.reduced {
+            self.results.reductions = reduced.reductions.finish();
         }
         self.results.energies = self.meter.as_ref().map(Meter::sums);
         self.results.last = (self.integrator.y.clone(), self.integrator.state().z.clone());

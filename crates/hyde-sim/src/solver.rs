@@ -112,6 +112,11 @@ impl<'a> Solver<'a> {
         }
     }
 
+    /// Whether its polynomials go through values of earlier steps.
+    pub(crate) fn has_a_past(&self) -> bool {
+        matches!(self, Self::Ida { .. })
+    }
+
     /// One step from `t`, never past `stop`; writes its end to `y` and `yp`, and returns its time.
     pub(crate) fn step(
         &mut self,

@@ -127,6 +127,18 @@ fn measures_of_a_swing_are_exact_whatever_rows_it_has() {
 }
 
 #[test]
+fn a_rate_is_measured_as_exactly_as_a_state() {
+    for experiment in ["lead", "lead_esdirk"] {
+        let solved = solve("measures_of_a_solution", experiment);
+        // A step of some microseconds of order 1 has a rate that is 2e-4 off in between.
+        close(&solved, "off", 0.0, 5e-7);
+        // T times the way of x.
+        let x = |t: f64| 1.0 - (-t / 0.02).exp();
+        close(&solved, "area", 0.02 * (x(0.1) + 2.0 * x(0.0686)), 1e-9);
+    }
+}
+
+#[test]
 fn a_function_of_time_alone_is_measured_between_two_rows() {
     let solved = solve("measures_of_a_solution", "given");
     close(&solved, "most", 1.0, 1e-6);

@@ -1,46 +1,85 @@
 //! What of a run becomes one number: each stretch of the solution, and both sides of each instant.
 
 use super::Simulation;
-use hyde_program::Function;
+use crate::reductions::Reductions;
+use crate::setup::Setup;
+use crate::state::State;
+use hyde_program::{Function, Program, SomeRows, Wrt};
+
+/// What becomes one number of a run.
+pub(super) struct Reduced<'a> {
+    pub(super) reductions: Reductions,
+    /// The kernel of what they read.
+    kernel: Box<dyn SomeRows + 'a>,
+    /// Whether they read rates of states, or what is not a state.
+    reads_more_than_states: bool,
+}
+
+impl<'a> Reduced<'a> {
+    pub(super) fn new(program: &'a Program, setup: &Setup<'_>, state: &State<'_>) -> Option<Self> {
+        let reductions = Reductions::new(&setup.reductions, setup.reduced_from_s)?;
+        let outputs = reductions.outputs();
+        let kernel = program.kernels.some_rows(Function::Outputs, outputs);
+        let entries = program.kernels.entries(Function::Outputs).into_iter();
+        let mut read = entries.filter(|entry| outputs.contains(&entry.row));
+        let reads_more_than_states = read.any(|entry| match entry.wrt {
+            Wrt::Derivative(_) => true,
+            Wrt::Unknown(place) => !state.differential[place],
+            Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => false,
+        });
+        Some(Self {
+            reductions,
+            kernel,
+            reads_more_than_states,
+        })
+    }
+}
 
 impl Simulation<'_> {
-    /// Takes in a stretch of the last step.
+    /// Takes in a stretch of the last step. Where the solver's polynomial is good for states alone, rates and what is not a
+    /// state follow from them by the equations.
     pub(super) fn reduce_stretch(&mut self, from: f64, to: f64) {
-        let Some((mut reductions, kernel)) = self.reductions.take() else {
+        let Some(mut reduced) = self.reduced.take() else {
             return;
         };
         let n = self.program.n_unknowns;
         let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-        reductions.stretch(from, to, &mut |t, out| {
+        reduced.reductions.stretch(from, to, &mut |t, out| {
             self.integrator.interpolate(t, &mut y, &mut yp);
+            let inside = t.to_bits() != self.integrator.t.to_bits();
+            let rough = inside && self.integrator.shows_states_alone();
             let state = self.integrator.state_mut();
-            self.consistent.refine(state, t, &mut y, &mut yp);
-            state.evaluate_rows(&*kernel, (t, &y, &yp), out);
+            if rough && reduced.reads_more_than_states {
+                self.consistent.make_exact(state, t, &mut y, &mut yp);
+            } else {
+                self.consistent.refine(state, t, &mut y, &mut yp);
+            }
+            state.evaluate_rows(&*reduced.kernel, (t, &y, &yp), out);
         });
-        self.reductions = Some((reductions, kernel));
+        self.reduced = Some(reduced);
         self.name_what_is_not_a_number();
     }
 
     /// Takes in the values now: one side of an instant.
     pub(super) fn reduce_instant(&mut self) {
-        let Some((reductions, kernel)) = &mut self.reductions else {
+        let Some(reduced) = &mut self.reduced else {
             return;
         };
-        let mut values = vec![0.0; reductions.outputs().len()];
+        let mut values = vec![0.0; reduced.reductions.outputs().len()];
         let integrator = &mut self.integrator;
         let (t, y, yp) = (integrator.t, integrator.y.clone(), integrator.yp.clone());
         let state = integrator.state_mut();
-        state.evaluate_rows(&**kernel, (t, &y, &yp), &mut values);
-        reductions.point(t, &values);
+        state.evaluate_rows(&*reduced.kernel, (t, &y, &yp), &mut values);
+        reduced.reductions.point(t, &values);
         self.name_what_is_not_a_number();
     }
 
     /// Finds the variable that is not a number: one that the reduction is written with, else the first of all.
     fn name_what_is_not_a_number(&mut self) {
-        let Some((reductions, _)) = &self.reductions else {
+        let Some(reduced) = &self.reduced else {
             return;
         };
-        for (number, t) in reductions.nameless() {
+        for (number, t) in reduced.reductions.nameless() {
             let n = self.program.n_unknowns;
             let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
             self.integrator.interpolate(t, &mut y, &mut yp);
@@ -55,8 +94,8 @@ impl Simulation<'_> {
             let mut words = text.split(|c| !is_name(c));
             let written = words.find(|word| bad.contains(word));
             let name = written.or(bad.first().copied()).unwrap_or(text).to_owned();
-            if let Some((reductions, _)) = &mut self.reductions {
-                reductions.name(number, name);
+            if let Some(reduced) = &mut self.reduced {
+                reduced.reductions.name(number, name);
             }
         }
     }
