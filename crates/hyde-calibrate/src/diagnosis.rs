@@ -40,6 +40,7 @@ mod scan;
 mod search;
 mod stage;
 mod trial;
+mod undetermined;
 mod unknown;
 mod whole;
 

@@ -32,6 +32,7 @@ mod free_run;
 mod frozen;
 mod gain;
 mod inputs;
+mod lateness;
 mod least_squares;
 mod leg;
 mod linearised;

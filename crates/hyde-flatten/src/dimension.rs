@@ -120,7 +120,7 @@ pub(crate) struct Demand {
 }
 
 /// The path of an instance, and its parameters with their dimensions: what a repair may name.
-pub(crate) type InScope<'s> = &'s dyn Fn(InstanceId) -> (InstancePath, Vec<(String, Dimension)>);
+pub(crate) type InScope<'s> = &'s dyn Fn(InstanceId) -> (InstancePath, Vec<(String, Dim)>);
 
 /// All unknown dimensions and the constraints that wait for them.
 #[derive(Default)]
@@ -148,7 +148,7 @@ impl Dimensions {
         }
         let (a, b) = (self.resolve(a), self.resolve(b));
         match (a.as_known(), b.as_known()) {
-            (Some(a), Some(b)) => verdict(a, b, &demand, in_scope),
+            (Some(a), Some(b)) => self.verdict(a, b, &demand, in_scope),
             _ => {
                 self.waiting.push((a, b, demand));
                 None
@@ -190,7 +190,7 @@ impl Dimensions {
                             (Some(a), Some(b)) => (a, b),
                             _ => (known, Dimension::DIMENSIONLESS),
                         };
-                        let verdict = verdict(a, b, &demand, in_scope);
+                        let verdict = self.verdict(a, b, &demand, in_scope);
                         found.extend(verdict.map(|diagnostic| (diagnostic, demand.sides)));
                     }
                     [(unknown, exponent)] => {
@@ -218,6 +218,50 @@ impl Dimensions {
         self.solved[unknown].unwrap_or(Dimension::DIMENSIONLESS)
     }
 
+    /// What is wrong with two dimensions that have to agree.
+    fn verdict(
+        &self,
+        a: Dimension,
+        b: Dimension,
+        demand: &Demand,
+        in_scope: InScope<'_>,
+    ) -> Option<Diagnostic> {
+        let (left, right) = demand.spans;
+        match a.agreement(b) {
+            Agreement::Same => None,
+            Agreement::AngleDiffers => Some(
+                Diagnostic::warning(Code::AngleMismatch, format!("{} {} and {}", demand.what, short(a), short(b)))
+                    .label(left, format!("this is {}", short(a)))
+                    .label(right, format!("this is {}", short(b)))
+                    .note("the two differ only in how often an angle is in them: Hz counts turns, rad/s radians")
+                    .help(turns::repair(demand.what, a, b, &demand.said)),
+            ),
+            Agreement::Different => {
+                let diagnostic =
+                    Diagnostic::error(Code::UnitMismatch, format!("{} {} and {}", demand.what, short(a), short(b)));
+                let diagnostic = if left == right {
+                    diagnostic.label(right, format!("this is {}, not {}", named(b), named(a)))
+                } else {
+                    diagnostic
+                        .label(left, format!("this is {}", named(a)))
+                        .label(right, format!("this is {}", named(b)))
+                };
+                let (instance, names) = in_scope(demand.instance);
+                let known = |(name, dim): (String, Dim)| Some((name, self.resolve(&dim).as_known()?));
+                let names: Vec<(String, Dimension)> = names.into_iter().filter_map(known).collect();
+                let diagnostic = if instance.as_str().is_empty() {
+                    diagnostic
+                } else {
+                    diagnostic.note(format!("in instance `{instance}`"))
+                };
+                Some(match repair(a, b, demand, &names) {
+                    Some(help) => diagnostic.help(help),
+                    None => diagnostic,
+                })
+            }
+        }
+    }
+
     fn first_free(&self) -> Option<Unknown> {
         self.waiting
             .iter()
@@ -240,46 +284,6 @@ fn no_root(exponent: Exponent, demand: &Demand) -> Diagnostic {
     diagnostic
         .label(right, "has a variable without a unit, to this power")
         .help("declare the variable with a type or a unit, and divide it by a reference value of that unit before it is raised: `(x/(1 [m]))^1.3`")
-}
-
-fn verdict(
-    a: Dimension,
-    b: Dimension,
-    demand: &Demand,
-    in_scope: InScope<'_>,
-) -> Option<Diagnostic> {
-    let (left, right) = demand.spans;
-    match a.agreement(b) {
-        Agreement::Same => None,
-        Agreement::AngleDiffers => Some(
-            Diagnostic::warning(Code::AngleMismatch, format!("{} {} and {}", demand.what, short(a), short(b)))
-                .label(left, format!("this is {}", short(a)))
-                .label(right, format!("this is {}", short(b)))
-                .note("the two differ only in how often an angle is in them: Hz counts turns, rad/s radians")
-                .help(turns::repair(demand.what, a, b, &demand.said)),
-        ),
-        Agreement::Different => {
-            let diagnostic =
-                Diagnostic::error(Code::UnitMismatch, format!("{} {} and {}", demand.what, short(a), short(b)));
-            let diagnostic = if left == right {
-                diagnostic.label(right, format!("this is {}, not {}", named(b), named(a)))
-            } else {
-                diagnostic
-                    .label(left, format!("this is {}", named(a)))
-                    .label(right, format!("this is {}", named(b)))
-            };
-            let (instance, names) = in_scope(demand.instance);
-            let diagnostic = if instance.as_str().is_empty() {
-                diagnostic
-            } else {
-                diagnostic.note(format!("in instance `{instance}`"))
-            };
-            Some(match repair(a, b, demand, &names) {
-                Some(help) => diagnostic.help(help),
-                None => diagnostic,
-            })
-        }
-    }
 }
 
 /// A dimension as said of a place.
@@ -353,6 +357,17 @@ fn repair(
         return Some(format!(
             "a unit belongs to the number before it alone: write `20 [{0}]/3`, not `20/3 [{0}]`",
             a.usual_unit()
+        ));
+    }
+    // `1/3e-3 [rad/m]` is m/rad.
+    let inverse = |d: Dimension| Dimension::DIMENSIONLESS.divide(d);
+    let upside_down = names.iter().find(|(_, dimension)| {
+        let twice = inverse(*dimension).divide(*dimension);
+        !dimension.is_dimensionless() && (same(twice, ratio) || same(inverse(twice), ratio))
+    });
+    if let Some((name, _)) = upside_down {
+        return Some(format!(
+            "`{name}` is the reciprocal of what fits; a unit belongs to the number before it alone: write `1 [UNIT]/3`, not `1/3 [UNIT]`"
         ));
     }
     Some(format!(

@@ -8,8 +8,9 @@ use hyde_syntax::ast::{
 };
 
 /// The marks that an effect can leave in measurements, with what stands in parentheses behind each.
-pub(crate) const MARKS: [(&str, &str); 11] = [
+pub(crate) const MARKS: [(&str, &str); 12] = [
     ("velocity", ""),
+    ("acceleration", ""),
     ("direction", ""),
     ("reversal", ""),
     ("offset", ""),

@@ -15,7 +15,6 @@ use hyde_ir::{
     VariableKind,
 };
 use hyde_syntax::ast::Reference;
-use hyde_units::Dimension;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Everything flatten knows so far.
@@ -177,9 +176,12 @@ impl<'a, 'd> Model<'a, 'd> {
         !error
     }
 
-    /// Says what the names in two sides are, where one of them is more than a name.
+    /// Says what the names in two sides are, where one of them is more than a name. What was set in another file than that of
+    /// the sides, as a parameter of a library's component, is where the mistake is.
     fn with_parts(&self, diagnostic: Diagnostic, sides: (ExprId, ExprId)) -> Diagnostic {
         let exprs = &self.flat.exprs;
+        let written_in = diagnostic.labels.first().map(|label| label.span.file);
+        let mut set: Vec<(&str, &Dim, Span)> = Vec::new();
         let mut named: Vec<(&str, &Dim, &Quantity)> = Vec::new();
         let composed = [sides.0, sides.1].into_iter().filter(|&side| {
             matches!(
@@ -189,11 +191,16 @@ impl<'a, 'd> Model<'a, 'd> {
         });
         for id in exprs.below(&composed.collect::<Vec<_>>()) {
             let part = match exprs[id] {
-                Expr::Param(param, _) => (
-                    self.flat.parameters[param].name.as_str(),
-                    &self.parameters[param.index()].dim,
-                    &self.flat.parameters[param].quantity,
-                ),
+                Expr::Param(param, _) => {
+                    let own = &self.flat.parameters[param];
+                    let (name, dim) = (own.name.as_str(), &self.parameters[param.index()].dim);
+                    let span = own.origin.span;
+                    let known = set.iter().any(|(known, ..)| *known == name);
+                    if !known && !own.derived && Some(span.file) != written_in {
+                        set.push((name, dim, span));
+                    }
+                    (name, dim, &own.quantity)
+                }
                 Expr::Var(var, _) => (
                     self.flat.variables[var].name.as_str(),
                     &self.variables[var.index()].dim,
@@ -213,6 +220,17 @@ impl<'a, 'd> Model<'a, 'd> {
             };
             if !named.iter().any(|(name, ..)| *name == part.0) {
                 named.push(part);
+            }
+        }
+        let mut diagnostic = diagnostic;
+        for (name, dim, span) in set.into_iter().rev() {
+            if let Some(dimension) = self.dimensions.resolve(dim).as_known() {
+                let text = format!(
+                    "`{}` is {} here",
+                    short(name),
+                    crate::dimension::short(dimension)
+                );
+                diagnostic.labels.insert(0, hyde_diag::Label { span, text });
             }
         }
         let parts: Vec<String> = named
@@ -381,22 +399,21 @@ impl<'a, 'd> Model<'a, 'd> {
     }
 }
 
-/// The path of an instance and its parameters with a known dimension, those of its parent after its own.
+/// The path of an instance and its parameters with their dimensions, those of its parent after its own.
 fn in_scope(
     instances: &[Instance<'_>],
     parameters: &[ParameterNotes<'_>],
     flat: &FlatModel,
     id: InstanceId,
-) -> (InstancePath, Vec<(String, Dimension)>) {
+) -> (InstancePath, Vec<(String, Dim)>) {
     let mut found = Vec::new();
     let chain = [Some(id), instances[id].parent];
     for instance in chain.into_iter().flatten() {
         for member in instances[instance].members.values() {
-            if let Member::Parameter(param) = member
-                && let Some(dimension) = parameters[hyde_ir::Id::index(*param)].dim.as_known()
-            {
+            if let Member::Parameter(param) = member {
                 let name = &flat.parameters[*param].name;
-                found.push((short(name).to_owned(), dimension));
+                let dim = parameters[hyde_ir::Id::index(*param)].dim.clone();
+                found.push((short(name).to_owned(), dim));
             }
         }
     }

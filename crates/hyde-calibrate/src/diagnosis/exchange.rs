@@ -70,8 +70,8 @@ impl Forward<'_> {
         hypotheses: &[usize],
     ) -> Result<Vec<Score>, Unsupported> {
         let tracks = stage.tracks(self.ground)?;
-        let at = stage.linearise_on(&tracks, self.ground)?;
-        let projection = Projection::new(stage, &at).ok_or_else(Unsupported::singular)?;
+        let projection = Projection::of(stage, &tracks, self.ground)?;
+        let projection = projection.ok_or_else(Unsupported::singular)?;
         let scanner = self.scanner(stage, &tracks, &projection);
         Ok(self.scored(&scanner, hypotheses))
     }

@@ -244,8 +244,8 @@ impl<'s> Forward<'s> {
     pub(crate) fn round(&mut self, branch: &mut Branch) -> Result<(), Unsupported> {
         let stage = &branch.stage;
         let tracks = stage.tracks(self.ground)?;
-        let at = stage.linearise_on(&tracks, self.ground)?;
-        let projection = Projection::new(stage, &at).ok_or_else(Unsupported::singular)?;
+        let projection = Projection::of(stage, &tracks, self.ground)?;
+        let projection = projection.ok_or_else(Unsupported::singular)?;
         let scanner = self.scanner(stage, &tracks, &projection);
         let known = branch.scores.take();
         let scores = known.unwrap_or_else(|| self.scored(&scanner, &self.all()));

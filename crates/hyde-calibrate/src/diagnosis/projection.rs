@@ -7,9 +7,12 @@
 //! parameters: `b^2/M`.
 
 use super::products::Products;
-use super::stage::{Stage, flat};
+use super::stage::{Ground, Stage, flat};
+use crate::lateness::{self, KNOWN_TO};
 use crate::linearised::Linearised;
 use crate::observer::Innovations;
+use crate::plant::Unsupported;
+use crate::track::Track;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Innovations, with what parameters can do about them.
@@ -84,8 +87,50 @@ impl Sums {
 }
 
 impl Projection {
+    /// Where a stage is, without what driving columns explain that come a little later or earlier than their record says.
     /// `None` if the parameters have no curvature at all.
-    pub(crate) fn new(stage: &Stage, at: &Linearised) -> Option<Self> {
+    pub(crate) fn of(
+        stage: &Stage,
+        tracks: &[Track<'_>],
+        ground: &Ground<'_>,
+    ) -> Result<Option<Self>, Unsupported> {
+        let mut at = stage.linearise_on(tracks, ground)?;
+        let Some(mut projection) = Self::new(stage, &at) else {
+            return Ok(None);
+        };
+        let set = ground.set_in(&stage.program, &stage.values());
+        let pairs = tracks.iter().zip(ground.recordings);
+        let late = pairs.map(|(track, recording)| {
+            let p = recording.parameters(&stage.program, &set);
+            lateness::changes(track, &stage.program, recording, &p)
+        });
+        let late = late.collect::<Result<Vec<DMatrix<f64>>, Unsupported>>()?;
+        for column in 0..stage.program.columns.len() {
+            let of_records = late
+                .iter()
+                .flat_map(|own| own.column(column).iter().copied().collect::<Vec<_>>());
+            let all: Vec<f64> = of_records.collect();
+            if all.iter().all(|change| *change == 0.0) {
+                continue;
+            }
+            let answer = projection.answer(&[all]);
+            let rows = answer.sizes[0].clamp(-KNOWN_TO, KNOWN_TO);
+            for (innovations, own) in at.innovations.iter_mut().zip(&late) {
+                let channels = innovations.channels.iter_mut().flatten();
+                channels
+                    .zip(own.column(column).iter())
+                    .for_each(|(into, change)| *into += rows * change);
+            }
+            let Some(next) = Self::new(stage, &at) else {
+                return Ok(None);
+            };
+            projection = next;
+        }
+        Ok(Some(projection))
+    }
+
+    /// `None` if the parameters have no curvature at all.
+    fn new(stage: &Stage, at: &Linearised) -> Option<Self> {
         let innovations = DVector::from_vec(flat(&at.innovations));
         let n = stage.varied.len();
         let mut derivatives = DMatrix::zeros(n, innovations.len());

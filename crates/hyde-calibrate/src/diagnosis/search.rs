@@ -331,13 +331,20 @@ fn findings(stage: &Stage, hypotheses: &[Hypothesis], taken: Vec<Taken>) -> Vec<
             .rev()
             .find(|(known, _)| known == name)
             .map_or(knob.value, |(_, v)| *v);
-        let deviation = number_of(name).map_or(0.0, |number| {
-            covariance[(number, number)].max(0.0).sqrt() * stage.varied[number].scale()
-        });
+        let interval = match number_of(name) {
+            Some(number) => {
+                let deviation = covariance[(number, number)].max(0.0).sqrt();
+                let half = 1.96 * deviation * stage.varied[number].scale();
+                (value - half, value + half)
+            }
+            // As declared, for the records do not determine it ([`super::undetermined`]).
+            None if !knob.integer && value.to_bits() == knob.value.to_bits() => knob.range,
+            None => (value, value),
+        };
         Quantity {
             name: knob.name.clone(),
             value,
-            interval: (value - 1.96 * deviation, value + 1.96 * deviation),
+            interval,
             unit: knob.unit.clone(),
         }
     };

@@ -65,12 +65,7 @@ impl Ground<'_> {
 }
 
 impl Stage {
-    /// Innovations with their derivatives where the stage is.
-    pub(crate) fn linearise(&self, ground: &Ground<'_>) -> Result<Linearised, Unsupported> {
-        self.linearise_on(&self.tracks(ground)?, ground)
-    }
-
-    /// The same, its tracks being known.
+    /// Innovations with their derivatives where the stage is, its tracks being known.
     pub(crate) fn linearise_on(
         &self,
         tracks: &[Track<'_>],

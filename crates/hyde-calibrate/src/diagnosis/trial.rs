@@ -5,6 +5,7 @@ use super::hypothesis::{Build, Built, Hypothesis, Knob, is_on_bound};
 use super::scan::{Node, Score};
 use super::search::{Gates, chi_squared};
 use super::stage::{Ground, Stage};
+use super::undetermined;
 use crate::blocks::Fold;
 use crate::fit::{covariance, covariance_of_first, inflation_of};
 use crate::least_squares::{LAST_STEPS, MAX_STEPS};
@@ -261,30 +262,44 @@ pub(crate) fn finish(
         score,
         program,
         effects,
-        refit: (mut solution, mut varied, kept),
+        refit: (mut solution, mut varied, mut kept),
         ..
     } = begun;
     let hypothesis = &hypotheses[score.hypothesis];
     let own_path = effects.last()?.1.clone();
-    let set = ground.set_in(&program, &kept);
-    let fit = |from: &Solution, varied: &[Varied], steps: usize, slopes: Slopes| {
+    let fit = |from: &[f64], varied: &[Varied], kept: &[(String, f64)], slopes: Slopes| {
+        let set = ground.set_in(&program, kept);
+        let steps = match slopes {
+            Slopes::Tangents => MAX_STEPS,
+            Slopes::Differences => LAST_STEPS,
+        };
         let problem = ground.problem(&program, varied, &set, None);
-        problem.solve_in(&from.values, steps, slopes).ok()
+        problem.solve_in(from, steps, slopes).ok()
     };
     if worth && !solution.converged {
-        solution = fit(&solution, &varied, MAX_STEPS, Slopes::Tangents)?;
+        solution = fit(&solution.values, &varied, &kept, Slopes::Tangents)?;
     }
     // What slopes along one run do not bring to its end, differences do.
     if worth && !solution.converged {
-        let end = fit(&solution, &varied, LAST_STEPS, Slopes::Differences);
+        let end = fit(&solution.values, &varied, &kept, Slopes::Differences);
         solution = end.unwrap_or(solution);
     }
-    let own = stage.varied.len()..varied.len();
+    let mut own = stage.varied.len()..varied.len();
     let sizes = own.start..own.start + hypothesis.sizes.len().min(own.len());
     // A size may be larger than any that is usual, and is found then, though not without doubt.
     let large = worth && widen(&mut varied[sizes.clone()], &solution.values[sizes.clone()]);
     if large {
-        solution = fit(&solution, &varied, MAX_STEPS, Slopes::Tangents)?;
+        solution = fit(&solution.values, &varied, &kept, Slopes::Tangents)?;
+    }
+    if worth {
+        let mut values = solution.values.clone();
+        let (shapes, all) = (&hypothesis.shapes, own.clone());
+        let undetermined = undetermined::held(&solution, &mut varied, &mut values, shapes, all);
+        if !undetermined.is_empty() {
+            kept.extend(undetermined);
+            own.end = varied.len();
+            solution = fit(&values, &varied, &kept, Slopes::Tangents)?;
+        }
     }
     let at_bound = sizes
         .clone()

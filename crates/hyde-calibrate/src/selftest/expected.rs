@@ -67,14 +67,11 @@ impl Reference {
             kept: Vec::new(),
             solution,
         };
-        let at = stage.linearise(&ground)?;
-        let projection = Projection::new(&stage, &at).ok_or_else(Unsupported::singular)?;
-        let innovations = at
-            .innovations
-            .iter()
-            .flat_map(|i| &i.channels)
-            .map(Vec::len)
-            .sum();
+        let tracks = stage.tracks(&ground)?;
+        let projection = Projection::of(&stage, &tracks, &ground)?;
+        let projection = projection.ok_or_else(Unsupported::singular)?;
+        drop(tracks);
+        let innovations = projection.innovations.len();
         Ok(Self {
             gates: Gates {
                 tried: NODES,

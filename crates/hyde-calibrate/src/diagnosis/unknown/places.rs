@@ -43,8 +43,8 @@ impl<'a> Places<'a> {
         stage: &'a Stage,
     ) -> Result<Option<Self>, Unsupported> {
         let ground = inquiry.ground();
-        let at = stage.linearise(&ground)?;
-        let Some(projection) = Projection::new(stage, &at) else {
+        let tracks = stage.tracks(&ground)?;
+        let Some(projection) = Projection::of(stage, &tracks, &ground)? else {
             return Ok(None);
         };
         let felt = |site: &Site| {

@@ -70,7 +70,7 @@ impl Kind {
             ("Translational", "PositionSensor") => Some(Self::Scale),
             ("Rotational", "AngleSensor") => Some(Self::Encoder),
             ("Drives.Control", "Tachogenerator") => Some(Self::Tacho),
-            ("Electrical", "CurrentAmplifier") => Some(Self::Amplifier),
+            ("Electrical", "CurrentControl") => Some(Self::Amplifier),
             _ => None,
         }
     }
@@ -188,7 +188,7 @@ impl Kind {
                 of(host, "a voltage", ("U", "V"), turns, rate)
             }
             Self::Amplifier => {
-                let (host, demand) = ("Electrical.CurrentAmplifier", ("i_ref", ("A", 1.0)));
+                let (host, demand) = ("Electrical.CurrentControl", ("i_ref", ("A", 1.0)));
                 let rise = ("rise", ("A/s", 1.0));
                 of(host, "a current", ("I", "A"), demand, rise)
             }
