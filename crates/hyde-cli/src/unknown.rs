@@ -136,11 +136,7 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
             }
         }
         None => {
-            let why = match found.frozen.as_slice() {
-                [] => "no formula is worth its constants",
-                _ => "no formula is sought where a reading was held",
-            };
-            let _ = writeln!(out, "\n  {why}; the map is the answer");
+            let _ = writeln!(out, "\n  {}; the map is the answer", no_law(found));
         }
     }
     let _ = writeln!(
@@ -171,6 +167,24 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
 pub(crate) fn wave(map: &Map) -> String {
     let [place, speed] = map.site.kind.variables();
     format!("wave over {place}, or {speed} times one")
+}
+
+/// Why there is no law.
+fn no_law(found: &Diagnosis) -> &'static str {
+    match found.frozen.as_slice() {
+        [] => "no formula is worth its constants",
+        _ => "no formula is sought where a reading was held",
+    }
+}
+
+/// `a force at table.a that goes with speed`: the place that gains most, and the variable, if it gains more than by chance.
+pub(crate) fn most_like(unknown: &Unknown) -> Option<String> {
+    let map = &unknown.map;
+    let told = map.panels.iter().filter(|panel| panel.gain > panel.band);
+    let best = told.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
+    let (what, path) = (map.site.kind.words().what, &map.site.path);
+    let variable = best.variable.name(map.site.kind);
+    Some(format!("{what} at {path} that goes with {variable}"))
 }
 
 /// The same as JSON; numbers are SI.
@@ -207,6 +221,8 @@ pub(crate) fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
         .map(|map| json!({ "site": map.site.path, "panels": panels(map), "waves": map.waves }))
         .collect();
     json!({
+        "most_like": most_like(unknown),
+        "why_no_law": unknown.found.is_none().then(|| no_law(found)),
         "law": unknown.found.as_ref().map(|own| law(own, found)),
         "map": {
             "site": unknown.map.site.path,

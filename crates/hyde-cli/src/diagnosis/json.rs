@@ -23,6 +23,7 @@ pub(crate) fn json(told: &Told<'_>) -> Value {
         "model_hash": told.calibration.project.hash,
         "verdict": verdict,
         "sentence": verdict::sentence(told),
+        "grounds": verdict::grounds(told),
         "doubts": verdict::doubts(told),
         "frozen": frozen(told),
         "effects": effects(told),

@@ -31,7 +31,7 @@ pub(crate) fn html(told: &Told<'_>) -> String {
         ]
         .concat(),
         sentence: verdict::sentence(told),
-        doubts: verdict::doubts(told),
+        doubts: [verdict::grounds(told), verdict::doubts(told)].concat(),
         effects: effects(told),
         unknown: unknown(told),
         records: told

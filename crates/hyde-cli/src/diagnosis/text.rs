@@ -22,8 +22,8 @@ pub(crate) fn text(told: &Told<'_>) -> String {
         &format!("{}: ", told.plan.name),
         &verdict::sentence(told),
     );
-    for doubt in verdict::doubts(told) {
-        wrapped(&mut out, "  - ", &doubt);
+    for line in [verdict::grounds(told), verdict::doubts(told)].concat() {
+        wrapped(&mut out, "  - ", &line);
     }
     findings(&mut out, told);
     if let Some(own) = &told.found.unknown {

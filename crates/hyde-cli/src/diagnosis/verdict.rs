@@ -17,7 +17,16 @@ pub(super) fn sentence(told: &Told<'_>) -> String {
     match told.found.verdict {
         Verdict::None => "no effect is missing that these records would show".to_owned(),
         Verdict::Unknown if names.is_empty() => match told.found.frozen.as_slice() {
-            [] => "something is missing, and no effect known is it".to_owned(),
+            [] => {
+                let hint = told
+                    .found
+                    .unknown
+                    .as_ref()
+                    .and_then(crate::unknown::most_like);
+                let hint =
+                    hint.map_or_else(String::new, |hint| format!("; it is most like {hint}"));
+                format!("something is missing, and no effect known is it{hint}")
+            }
             _ => {
                 "a sensor or its line held a reading; what the drive lacks such records do not tell"
                     .to_owned()
@@ -68,7 +77,32 @@ pub(super) fn quantity(quantity: &Quantity) -> String {
     )
 }
 
-/// What speaks for the verdict, and what against it.
+/// What the verdict stands on.
+pub(super) fn grounds(told: &Told<'_>) -> Vec<String> {
+    let held_out = before_after::chi(&told.errors, true);
+    let seen = before_after::chi(&told.errors, false);
+    let Some((before, after)) = held_out.or(seen) else {
+        return Vec::new();
+    };
+    let which = if held_out.is_some() {
+        "on the records held out"
+    } else {
+        "on the records fitted; none were held out"
+    };
+    let change = match told.found.findings.is_empty() {
+        true => format!("is {}", significant(before, 4)),
+        false => format!(
+            "goes from {} to {}",
+            significant(before, 4),
+            significant(after, 4)
+        ),
+    };
+    vec![format!(
+        "the mean square of innovations {change}, {which}; about 1 where all is known"
+    )]
+}
+
+/// What speaks against the verdict.
 pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
     let mut doubts: Vec<String> = told
         .found
@@ -81,23 +115,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
     let held_out = before_after::chi(&told.errors, true);
     let seen = before_after::chi(&told.errors, false);
     if let Some((before, after)) = held_out.or(seen) {
-        let which = if held_out.is_some() {
-            "on the records held out"
-        } else {
-            "on the records fitted; none were held out"
-        };
-        let change = match told.found.findings.is_empty() {
-            true => format!("is {}", significant(before, 4)),
-            false => format!(
-                "goes from {} to {}",
-                significant(before, 4),
-                significant(after, 4)
-            ),
-        };
-        doubts.push(format!(
-            "the mean square of innovations {change}, {which}; about 1 where all is known"
-        ));
-        if after > before {
+        if after > before && !told.found.findings.is_empty() {
             doubts.push("held-out records do not bear it out".to_owned());
         }
         doubts.extend(beyond_the_fitted(&told.errors));
