@@ -82,7 +82,7 @@ impl Instant<'_, '_> {
         // Guards that brought the run here, now or when they were true last, with their root functions' values: zero but for
         // the location's rounding.
         let mut located: Vec<(usize, f64)> = self.state.located.clone();
-        let (mut turned, mut looked_closer) = (Vec::new(), false);
+        let (mut turned, mut looked_closer, mut struck) = (Vec::new(), false, false);
         // Relations of equations that changed at this instant and may have to slide.
         let mut switched: Vec<usize> = Vec::new();
         // Where the relations of equations began to settle, and what they were in the rounds since.
@@ -102,9 +102,9 @@ impl Instant<'_, '_> {
             }
             let Known {
                 truths,
+                roots,
                 doubtful,
                 not_finite,
-                ..
             } = known;
             turned.extend(self.true_guards(&truths));
             let mut flipped = self.flip(&truths);
@@ -129,11 +129,15 @@ impl Instant<'_, '_> {
                     let failure = Failure::new(FailureKind::NotFinite, self.t);
                     return Err(failure.at_origin(&program.relations[relation].origin));
                 }
+                if struck && let Some(relation) = self.comes_back_at_once(&truths, &roots) {
+                    return Err(self.struck_without_end(&program.relations[relation].text));
+                }
                 self.set_edges(|_, _| false);
                 self.state.doubtful = doubtful;
                 return Ok(changed);
             }
             changed = true;
+            struck |= fired.iter().any(|&reaction| self.strikes(reaction));
             for &relation in &flipped {
                 let relation_info = &program.relations[relation];
                 causes.push(relation_info.text.clone());
@@ -169,7 +173,7 @@ impl Instant<'_, '_> {
                 located.extend(self.all_but_zero(&turned));
             }
         }
-        Err(self.chattering(&causes))
+        Err(self.without_end(&causes, struck))
     }
 
     /// The truth of every relation that matters. A guard may ask for another relation, `if a > 0 then …`: it is looked at
@@ -246,8 +250,14 @@ impl Instant<'_, '_> {
             for number in zeros {
                 let (root, rate) = (roots[number], rates[number]);
                 let inclusive = program.relations[number].inclusive;
+                // What stays at its zero is no reason to leave a mode, whatever rounding makes of it.
+                let is_guard = matches!(program.relations[number].used, RelationUse::Exit(..));
                 let truth = if rate.mean == 0.0 {
-                    if root == 0.0 { inclusive } else { root > 0.0 }
+                    if root == 0.0 || is_guard {
+                        inclusive
+                    } else {
+                        root > 0.0
+                    }
                 } else {
                     rate.mean > 0.0
                 };

@@ -1,7 +1,7 @@
 //! Events without end: a ball that bounces ever lower meets infinitely many in a finite time (Zeno).
 
 use crate::failure::FailureKind;
-use crate::results::Event;
+use crate::results::{Event, EventKind};
 use crate::setup::Setup;
 use hyde_diag::Origin;
 
@@ -12,7 +12,7 @@ const LEAST_EVEN: u64 = 4;
 const EVEN: f64 = 0.05;
 /// Of intervals that shrink unevenly the slowest of so many ratios tells what is still to come.
 const RATIOS: usize = 6;
-const NOTHING: f64 = 1e-4;
+const NOTHING: f64 = 1e-6;
 /// So many instants with events within a billionth of the run are no solution any more.
 const MAX_AT_ONCE: u64 = 2000;
 const AT_ONCE: f64 = 1e-9;
@@ -26,6 +26,8 @@ const NO_FURTHER: f64 = 1e-7;
 pub(crate) struct Hurry {
     /// Of each condition, by its text and its origin.
     series: Vec<(String, Origin, Series)>,
+    /// The time of the last instant with one `when` condition and nothing else, and the condition.
+    alone: Option<(f64, String, Origin)>,
     /// Start of the window in which all events are counted, and their number.
     crowd: (f64, u64),
     /// The same for steps.
@@ -75,8 +77,12 @@ impl Hurry {
                 return Some(FailureKind::Zeno { cause, sum_s });
             }
         }
+        let at_once = AT_ONCE * (setup.stop_s - setup.start_s);
+        if let Some(cause) = self.again_at_once(t, events, at_once) {
+            return Some(FailureKind::Zeno { cause, sum_s: t });
+        }
         let (start, _) = self.crowd;
-        if t - start > AT_ONCE * (setup.stop_s - setup.start_s) {
+        if t - start > at_once {
             self.crowd = (t, 0);
         }
         self.crowd.1 += 1;
@@ -89,6 +95,22 @@ impl Hurry {
 }
 
 impl Hurry {
+    /// The `when` condition that became true again at once, with nothing else between: what bounces is too low to be told from
+    /// what it bounces on.
+    fn again_at_once(&mut self, t: f64, events: &[Event], at_once: f64) -> Option<String> {
+        let before = self.alone.take();
+        let [event] = events else {
+            return None;
+        };
+        if event.kind != EventKind::When {
+            return None;
+        }
+        self.alone = Some((t, event.cause.clone(), event.origin.clone()));
+        let (last, cause, origin) = before?;
+        let same = cause == event.cause && origin == event.origin;
+        (same && t - last < at_once).then_some(cause)
+    }
+
     /// Takes note of a step, and tells if they lead nowhere: something jumps to and fro that is no event.
     pub(crate) fn no_way(&mut self, t: f64, setup: &Setup<'_>) -> Option<FailureKind> {
         let (start, count) = &mut self.steps;

@@ -58,10 +58,21 @@ pub(crate) struct RootRate {
 }
 
 impl RootRate {
+    /// Whether a root function turns within the moment.
+    fn turns(self) -> bool {
+        self.now * self.mean < 0.0
+    }
+
+    /// Whether a root function that falls turns before it has fallen by so much, or within the moment.
+    pub(crate) fn returns_before(self, height: f64) -> bool {
+        let bend = 2.0 * (self.mean - self.now) / self.moment;
+        self.now < 0.0 && (self.turns() || 0.5 * self.now.powi(2) < bend * height)
+    }
+
     /// How far a root function may be on the other side of zero before it goes where it goes: within the moment it turns,
     /// and not farther than it would go on.
     pub(crate) fn detour(self) -> f64 {
-        let back = match self.now * self.mean < 0.0 {
+        let back = match self.turns() {
             true => self.now.abs(),
             false => 0.0,
         };

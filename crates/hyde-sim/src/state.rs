@@ -140,6 +140,7 @@ impl<'a> State<'a> {
     ) {
         let side = |state: &mut Self, out: &mut [f64]| {
             state.read_continuous(t);
+            state.read_loose(t, y, yp);
             let (at, workspace) = state.at(t, y, yp);
             rows.evaluate(at, workspace, out);
         };
