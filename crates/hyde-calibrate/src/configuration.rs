@@ -42,6 +42,8 @@ pub(crate) struct Configuration<'p> {
     pub(crate) bending: Bending<'p>,
     /// The point at which it is linear.
     pub(crate) made: Instant,
+    /// What an observer corrects it by ([`crate::gain::Observer::gain_in`]); empty until one has met it.
+    pub(crate) gain: DMatrix<f64>,
 }
 
 /// The equations that are not linear, or read what is outside ([`Kernels::bending_rows`]): in a step, only these are evaluated.
@@ -133,6 +135,7 @@ impl<'p> Configuration<'p> {
             by_states,
             bending,
             made: Instant::of(at),
+            gain: DMatrix::zeros(0, 0),
         })
     }
 

@@ -18,16 +18,20 @@
 //! apart          the experiment that would tell alternatives apart                        diagnosis/apart.rs
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
 //! whole          orders of angles that are likelier whole numbers                         diagnosis/whole.rs
+//! holding        an observer that holds the modes of what was found, too                 diagnosis/holding.rs
+//! claims         the last gate: what is claimed is told from its neutral value            diagnosis/claims.rs
 //! calibrated     a model with states of its own calibrated with a gain for them           diagnosis/calibrated.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
 mod apart;
 mod calibrated;
+mod claims;
 mod contest;
 mod exchange;
 mod forward;
 mod grid;
+mod holding;
 mod hypothesis;
 mod inquiry;
 mod pair;
@@ -48,6 +52,7 @@ pub(crate) use projection::Projection;
 pub(crate) use stage::{Ground, Stage, flat};
 
 pub use apart::{Alternative, Experiment};
+pub use claims::FoundModel;
 pub use hypothesis::{Built, Hypothesis, Knob};
 pub use inquiry::{Author, Inquiry};
 pub use scan::Score;

@@ -310,7 +310,7 @@ pub(crate) fn covariance_of_first(solution: &Solution, inflation: f64, n: usize)
     let (scatter, blocks) = (first(&solution.scatter.0), &solution.scatter.1);
     let scattered = &bread * (scatter * few(*blocks) + weighed) * &bread;
     let wider = DVector::from_fn(n, |i, _| {
-        (scattered[(i, i)] / independent[(i, i)]).max(1.0).sqrt()
+        (scattered[(i, i)] / independent[(i, i)]).max(1.0).sqrt() * solution.wider[i]
     });
     DMatrix::from_fn(n, n, |i, j| independent[(i, j)] * wider[i] * wider[j])
 }

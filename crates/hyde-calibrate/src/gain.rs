@@ -35,6 +35,8 @@ pub struct Observer {
     pub(crate) rounding: Vec<f64>,
     /// Standard deviation of each predicted state, SI.
     pub(crate) spread: Vec<f64>,
+    /// Variance of what the model does not know of each state, fresh at every row, SI; empty until it is known.
+    pub(crate) process: Vec<f64>,
     /// The names of the states.
     states: Vec<String>,
     /// Modes in which the model was linearised although the record begins in others.
@@ -114,12 +116,14 @@ impl Observer {
             noise: noise.clone(),
             rounding,
             spread: vec![f64::NAN; c.ncols()],
+            process: Vec::new(),
             states: state_names(&plant),
             taken,
         };
+        let mut process = DVector::zeros(0);
         for _ in 0..2 {
             let rates = usual_rates(program, recordings, set, &observer)?;
-            let q = DVector::from_iterator(
+            process = DVector::from_iterator(
                 rates.len(),
                 rates
                     .iter()
@@ -129,19 +133,12 @@ impl Observer {
                         false => 0.0,
                     }),
             );
-            let p = riccati(&exp, &c, &q, &noise);
-            let mut s = &c * &p * c.transpose();
-            for (channel, sd) in noise.iter().enumerate() {
-                s[(channel, channel)] += sd * sd;
-            }
-            let inverse = s
-                .clone()
-                .try_inverse()
-                .unwrap_or_else(|| DMatrix::zeros(s.nrows(), s.ncols()));
-            observer.gain = &p * c.transpose() * inverse;
-            observer.deviations = s.diagonal().iter().map(|v| v.sqrt()).collect();
-            observer.spread = p.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect();
+            let found = stationary(&exp, &c, &process, &noise);
+            observer.gain = found.gain;
+            observer.deviations = found.deviations;
+            observer.spread = found.spread;
         }
+        observer.process = process.iter().copied().collect();
         Ok(observer)
     }
 
@@ -153,15 +150,18 @@ impl Observer {
         }
         let mut gain = DMatrix::zeros(names.len(), self.gain.ncols());
         let mut spread = vec![f64::INFINITY; names.len()];
+        let mut process = vec![0.0; names.len()];
         for (row, name) in names.iter().enumerate() {
             if let Some(own) = self.states.iter().position(|state| state == name) {
                 gain.set_row(row, &self.gain.row(own));
                 spread[row] = self.spread[own];
+                process[row] = self.process.get(own).copied().unwrap_or(0.0);
             }
         }
         Self {
             gain,
             spread,
+            process,
             states: names,
             ..self.clone()
         }
@@ -289,6 +289,34 @@ fn balances(configuration: &Configuration<'_>) -> Vec<bool> {
         !(others == 1 && ones == 1)
     };
     (0..configuration.by_states.ncols()).map(row).collect()
+}
+
+/// A stationary gain with what it leaves: standard deviations of innovations and of predicted states.
+pub(crate) struct Stationary {
+    pub(crate) gain: DMatrix<f64>,
+    deviations: Vec<f64>,
+    spread: Vec<f64>,
+}
+
+/// The stationary gain of a step exp(A T) with outputs C, the variance of the model's noise and the deviation of each channel's.
+pub(crate) fn stationary(
+    exp: &DMatrix<f64>,
+    c: &DMatrix<f64>,
+    process: &DVector<f64>,
+    noise: &[f64],
+) -> Stationary {
+    let p = riccati(exp, c, process, noise);
+    let mut s = c * &p * c.transpose();
+    for (channel, sd) in noise.iter().enumerate() {
+        s[(channel, channel)] += sd * sd;
+    }
+    let inverse = s.clone().try_inverse();
+    let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(s.nrows(), s.ncols()));
+    Stationary {
+        gain: &p * c.transpose() * inverse,
+        deviations: s.diagonal().iter().map(|v| v.sqrt()).collect(),
+        spread: p.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect(),
+    }
 }
 
 /// Root mean square of each state's rate over the records.

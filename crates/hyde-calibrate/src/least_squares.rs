@@ -123,6 +123,7 @@ impl Problem<'_> {
             }
         }
         let found = Solution {
+            wider: vec![1.0; values.len()],
             values,
             data,
             priors,

@@ -5,7 +5,7 @@
 //! beginning      the states that its first rows show                              beginning.rs
 //! frozen         readings that were held                                          frozen.rs
 //! fixed steps    the program in dyadic steps, exact where it is linear            plant.rs, inputs.rs, stepping.rs, leg.rs, model.rs, configuration.rs, events.rs, past.rs
-//! observer       a fixed Kalman gain; whitened innovations                        gain.rs, observer.rs
+//! observer       a fixed Kalman gain; whitened innovations                        gain.rs, held.rs, observer.rs
 //! track          where an observer takes the plant along a record                 track.rs, track/
 //! tangent        how innovations change with parameters, along one track              tangent.rs
 //! plan           what a `calibrate` block asks for                                 plan.rs
@@ -31,6 +31,7 @@ mod fit;
 mod free_run;
 mod frozen;
 mod gain;
+mod held;
 mod inputs;
 mod lateness;
 mod least_squares;
@@ -56,9 +57,10 @@ mod windows;
 
 pub use blocks::Fold;
 pub use diagnosis::{
-    Alternative, Author, Built, Diagnosis, Experiment, Factor, Finding, FoundLaw, Gates,
-    Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, Map, Panel, Quantity, Rejection, Round,
-    Scales, Score, Seen, Site, Summand, Trial, Unknown, Variable, Verdict, Written, diagnose,
+    Alternative, Author, Built, Diagnosis, Experiment, Factor, Finding, FoundLaw, FoundModel,
+    Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, Map, Panel, Quantity, Rejection,
+    Round, Scales, Score, Seen, Site, Summand, Trial, Unknown, Variable, Verdict, Written,
+    diagnose,
 };
 pub use even_rows::Resampled;
 pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};

@@ -180,7 +180,7 @@ pub(crate) fn run_while(
         }
         visit(plant, row, When::Before, &error)?;
         forget_missing(&mut error);
-        crate::dense::set_product(&observer.gain, &error, &mut increment);
+        crate::dense::set_product(observer.gain_in(plant), &error, &mut increment);
         plant.begin_row(&increment);
         visit(plant, row, When::After, &error)?;
         if row + 1 < recording.rows() {

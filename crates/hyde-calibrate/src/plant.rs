@@ -7,12 +7,14 @@
 //! stays there bitwise.
 
 use crate::configuration::{Configuration, Places};
+use crate::gain::output_matrix;
 use crate::leg::{Event, Instant, Leg};
 use crate::past::Past;
 use crate::recording::Recording;
 use crate::stepping::{Outcome, Room, gather};
 use hyde_program::{Function, Point, Program, Workspace};
 use hyde_sim::{Failure, PointModes, PointTime, Setup};
+use nalgebra::DMatrix;
 
 /// Steps of a row's time: the longest is its half, the shortest a 64th of that.
 const LONGEST: usize = 1;
@@ -229,6 +231,21 @@ impl<'a> Plant<'a> {
     pub(crate) fn point(&mut self) -> (Point<'_>, &mut Workspace) {
         let (at, _, workspace) = self.point_and_places();
         (at, workspace)
+    }
+
+    /// Derivatives of the measured channels by the states where the plant is.
+    pub(crate) fn outputs(&mut self) -> DMatrix<f64> {
+        let at = Point {
+            t: self.time(),
+            y: &self.y,
+            yp: &self.yp,
+            z: &self.z,
+            u: &self.u,
+            p: &self.p,
+        };
+        let configuration = &self.configurations[self.current].1;
+        let (program, places) = (self.program, &self.places);
+        output_matrix(program, places, configuration, at, &mut self.workspace)
     }
 
     fn point_and_places(&mut self) -> (Point<'_>, &Places, &mut Workspace) {

@@ -21,6 +21,8 @@ pub struct Solution {
     /// How much the gradients of blocks of a second scatter: the sum of their squares, in the same units, and how many they
     /// are.
     pub scatter: (DMatrix<f64>, usize),
+    /// How many times as wide the interval of each number is as its curvature says: 1 unless its profile told otherwise.
+    pub wider: Vec<f64>,
     /// Steps taken.
     pub steps: usize,
     /// Whether the last step gained nothing any more.

@@ -165,7 +165,7 @@ pub(crate) fn along(
             });
             let reached = turned.as_ref().unwrap_or(&bend_next);
             known.bent(left, [&bend, reached], &mut errors)?;
-            correct(&errors, &known.modes[seen].outputs, observer, &mut bent);
+            correct(&errors, &known.modes[seen], observer, &mut bent);
             &bent
         } else {
             let stepped = at.filter(|_| !apart);
@@ -256,7 +256,7 @@ impl Corrected {
                 None => errors.fill_with_identity(),
             }
             let mut matrix = DMatrix::zeros(states + channels, errors.ncols() + channels);
-            correct(&errors, outputs, observer, &mut matrix);
+            correct(&errors, &known[seen], observer, &mut matrix);
             matrix
         };
         self.known.entry((stepped, seen)).or_insert_with(make)
@@ -267,7 +267,7 @@ impl Corrected {
 /// them: corrected errors, and below them the whitened change of innovations.
 fn correct(
     errors: &DMatrix<f64>,
-    outputs: &DMatrix<f64>,
+    Modes { outputs, gain, .. }: &Modes,
     observer: &Observer,
     matrix: &mut DMatrix<f64>,
 ) {
@@ -285,7 +285,7 @@ fn correct(
             each.for_each(|(answer, output)| *answer -= output * error);
         }
         for (channel, answer) in answers.iter_mut().enumerate() {
-            let gain = observer.gain.column(channel);
+            let gain = gain.column(channel);
             let each = kept.iter_mut().zip(gain.iter());
             each.for_each(|(kept, gain)| *kept += gain * *answer);
             *answer /= observer.deviations[channel];
@@ -293,7 +293,7 @@ fn correct(
     }
     let columns = of_channels.chunks_exact_mut(states + channels);
     for (channel, column) in columns.enumerate() {
-        let gain = observer.gain.column(channel);
+        let gain = gain.column(channel);
         let each = column.iter_mut().zip(gain.iter());
         each.for_each(|(kept, gain)| *kept = -gain);
         column[states + channel] = -1.0 / observer.deviations[channel];

@@ -107,16 +107,16 @@ pub(crate) fn closed(
     Some((program(&additions)?, program(&shifted)?))
 }
 
-/// The errors of two models on all records of a calibration, of one model where nothing changed; those held out are read
+/// The errors of two models by an observer on all records of a calibration, of one model where nothing changed; those held out are read
 /// here and nowhere before.
 pub(crate) fn errors(
     calibration: &Calibration,
+    observer: &Observer,
     before: Option<Model<'_>>,
     after: Model<'_>,
 ) -> Result<Vec<RecordErrors>, Unsupported> {
     let mut found = Vec::new();
     for (holdout, recordings) in [(false, &calibration.fitted), (true, &calibration.holdout)] {
-        let observer = &calibration.observer;
         let (new, old) = rayon::join(
             || after.measures(recordings, observer),
             || before.map(|before| before.measures(recordings, observer)),

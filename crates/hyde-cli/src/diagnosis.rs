@@ -1,6 +1,7 @@
 //! What a diagnosis tells, in one order: on the terminal, as JSON, as a page; and the model that has what was missing.
 //!
 //! ```text
+//! held out     what the records held out do not bear out          diagnosis/held_out.rs
 //! verdict      one sentence, and what is doubtful about it        diagnosis/verdict.rs
 //! terminal     80 columns                                         diagnosis/text.rs
 //! JSON         `report.json`: book/src/report.schema.json         diagnosis/json.rs
@@ -8,24 +9,26 @@
 //! model        the old text with a new model behind               diagnosis/model.rs
 //! ```
 
+mod held_out;
 mod json;
 mod model;
 mod page;
 mod text;
 mod verdict;
 
+pub(crate) use held_out::{Refused, agreed};
 pub(crate) use json::json;
 pub(crate) use page::html;
 pub(crate) use text::{text, wrapped};
 
-use crate::before_after::{self, RecordErrors};
+use crate::before_after::RecordErrors;
 use crate::project::Project;
 use crate::records;
 use crate::study::Calibration;
 use crate::unknown;
 use hyde_calibrate::{
-    Cause, Diagnosis, FittedParameter, Hypothesis, Innovations, Model, Rejection, ResidualMap,
-    Score, Trial, Unsupported, Whiteness, fitted_parameters, residual_maps, whiteness,
+    Cause, Diagnosis, FittedParameter, Hypothesis, Innovations, Rejection, ResidualMap, Score,
+    Trial, Whiteness, fitted_parameters, residual_maps, whiteness,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Written};
 use std::collections::BTreeMap;
@@ -38,6 +41,8 @@ pub(crate) struct Told<'a> {
     pub(crate) found: &'a Diagnosis,
     /// Errors of the calibrated model without effects and with them.
     pub(crate) errors: Vec<RecordErrors>,
+    /// What was found and does not hold on the records held out.
+    pub(crate) refused: Vec<Refused>,
     /// Each parameter of the model: calibrated without effects, and with them.
     pub(crate) parameters: Vec<(FittedParameter, FittedParameter)>,
     /// What innovations depend on in the records fitted, and whether they are white.
@@ -61,54 +66,20 @@ pub(crate) struct Tried<'a> {
 }
 
 impl<'a> Told<'a> {
-    /// Measures the errors and writes the model.
+    /// Looks at what is left and writes the model.
     pub(crate) fn new(
         plan: &'a DiagnosisPlan,
         calibration: &'a Calibration,
         candidates: &[Candidate],
         hypotheses: &'a [Hypothesis],
         found: &'a Diagnosis,
-    ) -> Result<Self, Unsupported> {
+        (errors, refused): (Vec<RecordErrors>, Vec<Refused>),
+    ) -> Self {
         let project = &calibration.project;
-        let known: Vec<usize> = found
-            .findings
-            .iter()
-            .map(|finding| finding.hypothesis)
-            .filter(|&number| number < candidates.len())
-            .collect();
-        let law = found.unknown.as_ref().and_then(|own| own.found.as_ref());
-        let written: Vec<&hyde_calibrate::Written> = law
-            .filter(|_| known.len() < found.findings.len())
-            .map(|law| &law.written)
-            .into_iter()
-            .collect();
-        let values = |names: &[hyde_calibrate::Varied], values: &[f64]| {
-            let each = names.iter().zip(values);
-            let each = each.map(|(varied, &value)| (varied.name.clone(), value));
-            let mut all = project.set();
-            all.extend(each);
-            all
-        };
-        let before = values(&calibration.varied, &found.before.values);
-        let mut after = values(&found.varied, &found.after.values);
-        after.extend(found.kept.iter().cloned());
-        let plain = before_after::closed(project, candidates, &[], &[], &before);
-        let with_effects = before_after::closed(project, candidates, &known, &written, &after);
-        let errors = before_after::errors(
-            calibration,
-            (!found.findings.is_empty()).then_some(Model {
-                observed: &calibration.compiled.program,
-                closed: plain.as_ref().map(|(own, _)| own),
-                shifted: None,
-                set: &before,
-            }),
-            Model {
-                observed: &found.program,
-                closed: with_effects.as_ref().map(|(own, _)| own),
-                shifted: with_effects.as_ref().map(|(_, shifted)| shifted),
-                set: &after,
-            },
-        )?;
+        let law = found.law();
+        let is_law = |finding: &hyde_calibrate::Finding| finding.hypothesis >= candidates.len();
+        let law = law.filter(|_| found.findings.iter().any(is_law));
+        let written: Vec<&hyde_calibrate::Written> = law.iter().map(|law| &law.written).collect();
         let old = fitted_parameters(&calibration.varied, &found.before);
         let new = fitted_parameters(&found.varied, &found.after);
         let parameters = old
@@ -130,6 +101,7 @@ impl<'a> Told<'a> {
             hypotheses,
             found,
             errors,
+            refused,
             parameters,
             maps,
             whiteness,
@@ -142,7 +114,7 @@ impl<'a> Told<'a> {
             },
         };
         told.written = model::written(&told, candidates, &written);
-        Ok(told)
+        told
     }
 
     /// What was written behind the text of the user's file.
@@ -224,6 +196,7 @@ fn reason(rejection: Rejection) -> &'static str {
         Rejection::Bound => "on a bound",
         Rejection::Behind => "behind the best",
         Rejection::TooGood => "more than it can",
+        Rejection::Twice => "there already",
     }
 }
 

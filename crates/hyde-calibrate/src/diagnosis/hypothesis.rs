@@ -103,5 +103,11 @@ pub struct Built {
     pub paths: Vec<String>,
 }
 
+/// Whether a program has modes or relations beside those of the program before an effect was put on.
+pub(crate) fn brings_modes(program: &Program, before: &Program) -> bool {
+    program.automata.len() > before.automata.len()
+        || program.relations.len() > before.relations.len()
+}
+
 /// Puts hypotheses, by number, on the model; `None` where they cannot be together.
 pub(crate) type Build<'a> = dyn Fn(&[usize]) -> Option<Built> + Sync + 'a;

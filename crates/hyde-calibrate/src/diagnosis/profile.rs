@@ -5,7 +5,9 @@
 //! ```
 //! Innovations of play and of sticking are not smooth: least squares by slopes end where the next step gains nothing, some
 //! deviations of a weak direction from its bottom. A parabola through costs that are further apart finds it (Seber and
-//! Wild, Nonlinear Regression, 1989, section 5.4, on profiles).
+//! Wild, Nonlinear Regression, 1989, section 5.4, on profiles). Where the cost grows by far less than its curvature says, as
+//! along a kink, intervals are those of the profile; where it does not grow at all, the fit has not converged and the
+//! number has none.
 
 use crate::least_squares::Problem;
 use crate::plant::Unsupported;
@@ -17,6 +19,9 @@ const APART: f64 = 2.0;
 const FURTHEST: f64 = 2.0 * APART;
 /// A bottom so near is reached, in standard deviations.
 const REACHED: f64 = 0.3;
+/// The cost is to grow by this part of what its curvature says; so often twice as far is looked for that.
+const GROWN: f64 = 0.25;
+const DOUBLINGS: i32 = 6;
 /// Parabolas at most for one number.
 const ROUNDS: usize = 6;
 
@@ -51,8 +56,38 @@ pub(crate) fn profiled(
                 Some(_) | None => break,
             }
         }
+        solution.wider[number] = wider(problem, &solution, number, &direction)?;
+        solution.converged &= solution.wider[number].is_finite();
     }
     Ok(solution)
+}
+
+/// How many times as far as the curvature says the cost of a profile has grown by what it says; infinite where it does not.
+/// What a bound keeps from moving says nothing.
+fn wider(
+    problem: &Problem<'_>,
+    solution: &Solution,
+    number: usize,
+    direction: &DVector<f64>,
+) -> Result<f64, Unsupported> {
+    let scale = problem.varied[number].scale();
+    for doubling in 0..=DOUBLINGS {
+        let times = 2.0_f64.powi(doubling);
+        let grown = |far: f64| -> Result<f64, Unsupported> {
+            let there = problem.moved_by(solution, &(far * direction))?;
+            let moved = (there.values[number] - solution.values[number]) / scale;
+            Ok(match moved.abs() < 0.5 * (far * direction[number]).abs() {
+                true => f64::INFINITY,
+                false => there.cost() - solution.cost(),
+            })
+        };
+        let far = APART * times;
+        let (low, high) = rayon::join(|| grown(-far), || grown(far));
+        if low?.min(high?) >= GROWN * APART * APART {
+            return Ok(times);
+        }
+    }
+    Ok(f64::INFINITY)
 }
 
 /// How everything follows one number, by a standard deviation of it.

@@ -5,7 +5,7 @@
 //! that brings modes of its own, as play does, is nothing to begin with and is tried at sizes all over its range.
 
 use super::grid::Grid;
-use super::hypothesis::{Build, Built, Hypothesis, Knob};
+use super::hypothesis::{Build, Built, Hypothesis, Knob, brings_modes};
 use super::projection::Projection;
 use super::runs::{Runs, largest};
 use super::stage::{Ground, Stage};
@@ -179,9 +179,7 @@ impl Scanner<'_> {
         let sizes = Hypothesis::names(&hypothesis.sizes, &path);
         let mut promised = Promised {
             number,
-            own_modes: program.automata.len() > before.automata.len()
-                || program.relations.len() > before.relations.len()
-                || self.delays(&program, &sizes[0]),
+            own_modes: brings_modes(&program, before) || self.delays(&program, &sizes[0]),
             path,
             program,
             plain: DVector::zeros(0),

@@ -8,7 +8,9 @@
 
 use super::apart::Alternative;
 use super::calibrated::calibrate_found;
+use super::claims::only_told;
 use super::forward::{Branch, Forward, Taken};
+use super::holding::holding;
 use super::hypothesis::{Built, Hypothesis};
 use super::inquiry::Inquiry;
 use super::scan::Score;
@@ -18,6 +20,7 @@ use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
 use crate::fit::{correlation, covariance, inflation};
 use crate::frozen::{Frozen, frozen};
+use crate::gain::Observer;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::solution::Solution;
@@ -74,6 +77,14 @@ pub struct Quantity {
     pub interval: (f64, f64),
     /// Its unit.
     pub unit: String,
+}
+
+impl Quantity {
+    /// Whether the interval leaves out 0, the neutral value of a size.
+    #[must_use]
+    pub fn is_told(&self) -> bool {
+        self.interval.0 > 0.0 || self.interval.1 < 0.0
+    }
 }
 
 /// An effect that was taken in.
@@ -140,6 +151,8 @@ pub struct Diagnosis {
     pub unexplained: bool,
     /// What that is, as far as it could be told.
     pub unknown: Option<super::Unknown>,
+    /// The observer that all models were compared by, where it is not that of the inquiry ([`super::holding`]).
+    pub observer: Option<Observer>,
     /// Readings that were held for a while: they ask for forces that no drive knows, and no law is sought of them.
     pub frozen: Vec<Frozen>,
 }
@@ -160,6 +173,12 @@ impl Diagnosis {
     #[must_use]
     pub fn channel(&self, held: &Frozen) -> &str {
         &self.program.experiment.measured[held.channel].name
+    }
+
+    /// The law among what was found.
+    #[must_use]
+    pub fn law(&self) -> Option<&super::FoundLaw> {
+        self.unknown.as_ref()?.found.as_ref()
     }
 
     /// Makes a stage the answer. What is known of effects that were found before stays.
@@ -193,6 +212,17 @@ impl Diagnosis {
 /// # Errors
 /// The model has no fixed-step form.
 pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
+    search_by(inquiry, By::Declared)
+}
+
+/// Whose observer all models are compared by.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum By {
+    Declared,
+    Found,
+}
+
+fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
     let ground = inquiry.ground();
     let frozen = frozen(inquiry.recordings);
     let build = |numbers: &[usize]| (inquiry.author)(numbers, &[]);
@@ -212,6 +242,19 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
     };
     let mut branch = Branch::of(declared.clone());
     search.round(&mut branch)?;
+    if by == By::Declared
+        && let Some(observer) = holding(inquiry, &declared, &branch.stage)?
+    {
+        let own = Inquiry {
+            observer: &observer,
+            ..*inquiry
+        };
+        let found = search_by(&own, By::Found)?;
+        return Ok(Diagnosis {
+            observer: Some(observer),
+            ..found
+        });
+    }
     // A law of one term that explains what no effect does alone, or beside another, spares the rest of the search.
     let (mut law, mut places) = (None, None);
     if frozen.is_empty() && !explained(&branch.stage.solution) {
@@ -247,15 +290,8 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
     let findings = findings(&stage, inquiry.hypotheses, taken);
     let before = &declared.solution;
     let unexplained = !explained(&stage.solution);
-    let verdict = match findings.as_slice() {
-        [] if unexplained => Verdict::Unknown,
-        [] => Verdict::None,
-        _ if unexplained && share(before, &stage.solution) < MOSTLY => Verdict::Unknown,
-        list if list.iter().any(|finding| !finding.alternatives.is_empty()) => Verdict::OneOf,
-        _ => Verdict::Effect,
-    };
     let mut diagnosis = Diagnosis {
-        verdict,
+        verdict: verdict(&findings, before, &stage.solution),
         findings,
         effects: stage.effects,
         rounds,
@@ -267,13 +303,27 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
         unexplained,
         unknown: None,
         frozen,
+        observer: None,
     };
     match law {
         Some(answer) => take_in(inquiry, &mut diagnosis, answer),
         None => propose(inquiry, &mut diagnosis, &declared, places, gates)?,
     }
     calibrate_found(inquiry, &mut diagnosis)?;
+    only_told(inquiry, &mut diagnosis)?;
     Ok(diagnosis)
+}
+
+/// What findings come to, of a model that went from one solution to another by them.
+pub(super) fn verdict(findings: &[Finding], before: &Solution, after: &Solution) -> Verdict {
+    let unexplained = !explained(after);
+    match findings {
+        [] if unexplained => Verdict::Unknown,
+        [] => Verdict::None,
+        _ if unexplained && share(before, after) < MOSTLY => Verdict::Unknown,
+        list if list.iter().any(|finding| !finding.alternatives.is_empty()) => Verdict::OneOf,
+        _ => Verdict::Effect,
+    }
 }
 
 /// The model as it is declared, calibrated.
@@ -360,7 +410,10 @@ fn findings(stage: &Stage, hypotheses: &[Hypothesis], taken: Vec<Taken>) -> Vec<
                 .collect()
         };
         let (sizes, mut shapes) = (of(&hypothesis.sizes), of(&hypothesis.shapes));
-        let mut size = sizes.first().cloned().unwrap_or(Quantity {
+        // Of several that make the effect what it is, one that is told.
+        let essential = sizes.iter().take(hypothesis.essential());
+        let told = essential.clone().find(|size| size.is_told());
+        let mut size = told.or(sizes.first()).cloned().unwrap_or(Quantity {
             name: String::new(),
             value: f64::NAN,
             interval: (f64::NAN, f64::NAN),

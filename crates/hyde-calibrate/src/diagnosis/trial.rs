@@ -51,6 +51,8 @@ pub enum Rejection {
     Behind,
     /// The fit gains far more than the scan, which a linear effect cannot.
     TooGood,
+    /// The same effect is there already, with nearly the same period, order or frequency.
+    Twice,
 }
 
 /// A hypothesis after its fit.
@@ -324,6 +326,11 @@ pub(crate) fn finish(
         None
     };
     let inflation = inflation_of(&solution, sizes.clone());
+    let names = [
+        Hypothesis::names(&hypothesis.sizes, &own_path),
+        Hypothesis::names(&hypothesis.shapes, &own_path),
+    ]
+    .concat();
     let new = Stage {
         program,
         effects,
@@ -331,11 +338,7 @@ pub(crate) fn finish(
         kept,
         solution,
     };
-    let names = [
-        Hypothesis::names(&hypothesis.sizes, &own_path),
-        Hypothesis::names(&hypothesis.shapes, &own_path),
-    ]
-    .concat();
+    let twice = || new.has_one_twice(hypotheses).then_some(Rejection::Twice);
     Some(Trial {
         hypothesis: score.hypothesis,
         score: score.gain(),
@@ -348,7 +351,7 @@ pub(crate) fn finish(
         essential: hypothesis.essential(),
         linear: score.linear,
         refined: false,
-        rejected,
+        rejected: rejected.or_else(twice),
         values: values_of(&names, &new),
         names,
         stage: new,

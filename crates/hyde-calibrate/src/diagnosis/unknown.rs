@@ -129,7 +129,8 @@ pub(super) fn propose(
     };
     let mut answer = Some(alone).filter(better);
     let explains = |alone: &Answer| alone.solution().is_some_and(|(own, _)| explained(own));
-    if diagnosis.unexplained && !answer.as_ref().is_some_and(explains) {
+    let room = last.effects.len() < inquiry.max_effects;
+    if room && diagnosis.unexplained && !answer.as_ref().is_some_and(explains) {
         let both = Places::of(inquiry, &last)?.map(law);
         let as_good = |alone: &Answer| {
             let both = both.as_ref().and_then(Answer::solution);

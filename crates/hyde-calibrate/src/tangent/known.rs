@@ -21,6 +21,8 @@ pub(crate) struct Modes {
     pub(crate) first: DMatrix<f64>,
     pub(crate) second: DMatrix<f64>,
     pub(crate) outputs: DMatrix<f64>,
+    /// What an observer corrects there.
+    pub(crate) gain: DMatrix<f64>,
 }
 
 /// What combinations of modes, and steps in them, make of errors and forces: made where they are new.
@@ -84,6 +86,7 @@ impl<'t> Known<'t> {
             // phi2 is that of a growth over the whole step.
             second: &step.second * rates,
             outputs,
+            gain: own.gain.clone(),
         };
         self.modes.push(made);
         self.number_of[configuration] = Some(self.modes.len() - 1);

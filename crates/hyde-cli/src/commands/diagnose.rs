@@ -55,7 +55,7 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
         let author = |known: &[usize], written: &[hyde_calibrate::Written]| {
             unknown::built(&request, &candidates, known, written)
         };
-        hyde_calibrate::diagnose(&Inquiry {
+        let inquiry = Inquiry {
             recordings: &calibration.fitted,
             observer: &calibration.observer,
             varied: &calibration.varied,
@@ -64,22 +64,32 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
             sites: &sites,
             author: &author,
             max_effects: plan.max_effects,
+        };
+        hyde_calibrate::diagnose(&inquiry).and_then(|mut found| {
+            let agreed = diagnosis::agreed(&calibration, &candidates, &inquiry, &mut found)?;
+            Ok((found, agreed))
         })
     };
-    let told = found.and_then(|found| {
+    let told = found.and_then(|(found, agreed)| {
+        if let Some(own) = &found.observer {
+            calibration.observer = own.clone();
+        }
         let causes = causes(&calibration, &found.before)?;
         let learned = fitted_parameters(&calibration.varied, &found.before);
         if !causes.is_empty() && learned.iter().all(|parameter| parameter.silent) {
             return Ok(Err(unobservable::unlearned(&calibration, &causes)));
         }
         // A finding may be of the effect that was written.
-        let own = found
-            .unknown
-            .as_ref()
-            .and_then(|unknown| unknown.found.as_ref());
-        hypotheses.extend(own.map(|own| own.hypothesis.clone()));
+        hypotheses.extend(found.law().map(|own| own.hypothesis.clone()));
         // What it says borrows what was found; so it is said here.
-        let told = Told::new(&plan, &calibration, &candidates, &hypotheses, &found)?;
+        let told = Told::new(
+            &plan,
+            &calibration,
+            &candidates,
+            &hypotheses,
+            &found,
+            agreed,
+        );
         let told = Told { causes, ..told };
         Ok(Ok(tell(args, &told)))
     });

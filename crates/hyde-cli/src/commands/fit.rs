@@ -117,7 +117,7 @@ fn errors(calibration: &Calibration, found: &Fit) -> Result<Vec<RecordErrors>, U
         shifted: new.as_ref().map(|(_, shifted)| shifted),
         set: &calibrated,
     };
-    before_after::errors(calibration, Some(before), after)
+    before_after::errors(calibration, &calibration.observer, Some(before), after)
 }
 
 /// Tells why there is no calibration.

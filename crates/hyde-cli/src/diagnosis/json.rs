@@ -25,6 +25,7 @@ pub(crate) fn json(told: &Told<'_>) -> Value {
         "sentence": verdict::sentence(told),
         "grounds": verdict::grounds(told),
         "doubts": verdict::doubts(told),
+        "refused": refused(told),
         "frozen": frozen(told),
         "effects": effects(told),
         "unexplained": told.found.unexplained,
@@ -41,6 +42,29 @@ pub(crate) fn json(told: &Told<'_>) -> Value {
         "new_model": told.written.model,
         "new_experiment": told.written.experiment,
     })
+}
+
+/// What the records held out do not bear out.
+fn refused(told: &Told<'_>) -> Value {
+    let each = told.refused.iter().map(|own| {
+        let worse = own.worse.iter().map(|worse| {
+            json!({
+                "record": worse.record,
+                "channel": worse.channel,
+                "measure": worse.measure,
+                "before": worse.change.before,
+                "after": worse.change.after,
+                "floor": worse.change.floor,
+            })
+        });
+        json!({
+            "effect": own.effect,
+            "site": own.site,
+            "size": quantity(&own.size),
+            "worse": worse.collect::<Vec<Value>>(),
+        })
+    });
+    each.collect()
 }
 
 /// Readings that were held for a while.

@@ -1,6 +1,6 @@
 //! The verdict in one sentence, and its doubt.
 
-use super::{Told, named};
+use super::{Refused, Told, named};
 use crate::before_after::{self, RecordErrors};
 use crate::unobservable::reason;
 use hyde_calibrate::{Finding, Frozen, Quantity, Verdict};
@@ -97,19 +97,19 @@ pub(super) fn grounds(told: &Told<'_>) -> Vec<String> {
             significant(after, 4)
         ),
     };
-    vec![format!(
-        "the mean square of innovations {change}, {which}; about 1 where all is known"
-    )]
+    let observer = told.found.observer.as_ref().map(|_| {
+        "all models are compared by the observer of the model found: that of the declared one does not hold its modes"
+            .to_owned()
+    });
+    let change =
+        format!("the mean square of innovations {change}, {which}; about 1 where all is known");
+    [change].into_iter().chain(observer).collect()
 }
 
 /// What speaks against the verdict.
 pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
-    let mut doubts: Vec<String> = told
-        .found
-        .frozen
-        .iter()
-        .map(|own| frozen(told, own))
-        .collect();
+    let mut doubts: Vec<String> = told.refused.iter().map(Refused::sentence).collect();
+    doubts.extend(told.found.frozen.iter().map(|own| frozen(told, own)));
     let causes = told.causes.iter();
     doubts.extend(causes.map(|cause| reason(told.calibration, cause)));
     let held_out = before_after::chi(&told.errors, true);

@@ -64,7 +64,7 @@ impl Passage {
             let own = corrected.outputs.row(channel) / -deviation;
             matrix.row_mut(channel).copy_from(&own);
         }
-        let kept = DMatrix::identity(states, states) - &observer.gain * &corrected.outputs;
+        let kept = DMatrix::identity(states, states) - &corrected.gain * &corrected.outputs;
         matrix
             .rows_mut(channels, states)
             .copy_from(&(&stepped.exp * kept));
@@ -142,7 +142,7 @@ impl Carrier {
                 add_product(matrix, unit.as_slice(), &mut found.entries[start..]);
             }
             if shown.iter().any(|value| *value != 0.0) {
-                set_product(&observer.gain, &shown, &mut increment);
+                set_product(&corrected_by.gain, &shown, &mut increment);
                 let first = found.entries.len() - 2 * states;
                 let first = &mut found.entries[first..][..states];
                 add_product(&stepped_by.exp, &increment, first);
