@@ -16,6 +16,34 @@ fn tested_by(diagnosis: &str, arguments: &[&str]) -> String {
     text(&output)
 }
 
+/// Innovations of a play are rough where an observer does not hold the axis within it: a fit ended at 5 mrad of 6.
+#[test]
+fn a_play_is_found_as_large_as_it_is() {
+    let output = hyde(&[
+        "selftest",
+        "tests/models/rack_axis/axis.hyde",
+        "quick",
+        "--only",
+        "planted",
+        "--sizes",
+        "0.5",
+        "--effects",
+        "CouplingBacklash",
+        "--seed",
+        "1",
+        "--json",
+    ]);
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    let report = json(&text(&output));
+    let case = &report["cases"][0];
+    assert_eq!(case["right"], true, "{report:#}");
+    let number = |value: &Value| value.as_f64().unwrap();
+    let [low, high] = [0, 1].map(|end| number(&case["effects"][0]["interval"][end]));
+    let size = number(&case["size"]);
+    assert!((low..=high).contains(&size), "{case:#}");
+    assert!(high - low < 0.05 * size, "{case:#}");
+}
+
 fn json(printed: &str) -> Value {
     serde_json::from_str(printed).unwrap()
 }
