@@ -12,6 +12,7 @@
 //! contest        survivors beside each other: gates, and which of them is taken in        diagnosis/contest.rs
 //! profile        the last of a fit: numbers of effects at the bottom of their profiles    diagnosis/profile.rs
 //! search         what is missing: the verdict and its findings                            diagnosis/search.rs
+//! finding        an effect that was taken in, with its quantities                          diagnosis/finding.rs
 //! forward        its branches, two at most, and their rounds                              diagnosis/forward.rs
 //! pair           two effects that show only together                                      diagnosis/pair.rs
 //! exchange       earlier effects once more against their rivals                           diagnosis/exchange.rs
@@ -29,6 +30,7 @@ mod calibrated;
 mod claims;
 mod contest;
 mod exchange;
+mod finding;
 mod forward;
 mod grid;
 mod holding;
@@ -53,10 +55,11 @@ pub(crate) use stage::{Ground, Stage, flat};
 
 pub use apart::{Alternative, Experiment};
 pub use claims::FoundModel;
+pub use finding::{Finding, Quantity};
 pub use hypothesis::{Built, Hypothesis, Knob};
 pub use inquiry::{Author, Inquiry};
 pub use scan::Score;
-pub use search::{Diagnosis, Finding, Gates, Quantity, Round, Verdict, diagnose};
+pub use search::{Diagnosis, Gates, Round, Verdict, diagnose};
 pub use trial::{Rejection, Trial};
 pub use unknown::{
     Factor, FoundLaw, Kind, LatentForce, Law, Map, Panel, Scales, Seen, Site, Summand, Unknown,

@@ -5,10 +5,11 @@
 //! goes, everything else is fitted again, and what is left is asked the same. Beside an `unknown` without a law an effect
 //! is a part of what is missing only if it explains a part that is worth a word.
 
+use super::finding::{Finding, Quantity};
 use super::hypothesis::Built;
 use super::inquiry::Inquiry;
 use super::prune::without;
-use super::search::{Diagnosis, Finding, Quantity, Verdict, excess, explained, verdict};
+use super::search::{Diagnosis, Verdict, excess, explained, verdict};
 use super::stage::{Ground, Stage};
 use crate::plant::Unsupported;
 use hyde_program::Program;

@@ -6,9 +6,9 @@
 //! innovations tell less than independent ones. A gain on what was not fitted is also to be material: a part of the
 //! number of innovations. Everything is chosen inside the records to fit.
 
-use super::apart::Alternative;
 use super::calibrated::calibrate_found;
 use super::claims::only_told;
+use super::finding::{Finding, findings};
 use super::forward::{Branch, Forward, Taken};
 use super::holding::holding;
 use super::hypothesis::{Built, Hypothesis};
@@ -18,7 +18,7 @@ use super::stage::{Ground, Stage};
 use super::trial::Trial;
 use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
-use crate::fit::{correlation, covariance, inflation};
+use crate::fit::{correlation, inflation};
 use crate::frozen::{Frozen, frozen};
 use crate::gain::Observer;
 use crate::observer::Innovations;
@@ -64,44 +64,6 @@ impl Gates {
     pub fn material(&self) -> f64 {
         MATERIAL * self.innovations as f64
     }
-}
-
-/// A quantity that was found, SI.
-#[derive(Clone, Debug)]
-pub struct Quantity {
-    /// Its name in the effect.
-    pub name: String,
-    /// Its value.
-    pub value: f64,
-    /// Its 95 % interval.
-    pub interval: (f64, f64),
-    /// Its unit.
-    pub unit: String,
-}
-
-impl Quantity {
-    /// Whether the interval leaves out 0, the neutral value of a size.
-    #[must_use]
-    pub fn is_told(&self) -> bool {
-        self.interval.0 > 0.0 || self.interval.1 < 0.0
-    }
-}
-
-/// An effect that was taken in.
-#[derive(Clone, Debug)]
-pub struct Finding {
-    /// Number of the hypothesis.
-    pub hypothesis: usize,
-    /// Its size: of a sine and a cosine their amplitude.
-    pub size: Quantity,
-    /// All its sizes.
-    pub sizes: Vec<Quantity>,
-    /// Its shapes; the phase of a pair behind them.
-    pub shapes: Vec<Quantity>,
-    /// The number of the round that took it in.
-    pub round: usize,
-    /// Other hypotheses that the records cannot tell from it.
-    pub alternatives: Vec<Alternative>,
 }
 
 /// A round of the search.
@@ -368,88 +330,6 @@ pub(super) fn explained(solution: &Solution) -> bool {
         size <= largest + chance * (2.0 / rows).sqrt()
             && correlation(list) <= likeness + chance / rows.sqrt()
     })
-}
-
-/// The effects with their quantities and intervals.
-fn findings(stage: &Stage, hypotheses: &[Hypothesis], taken: Vec<Taken>) -> Vec<Finding> {
-    let covariance = covariance(&stage.solution, inflation(&stage.solution.innovations));
-    let values = stage.values();
-    let number_of = |name: &str| stage.varied.iter().position(|varied| varied.name == name);
-    let quantity = |knob: &super::Knob, name: &str| {
-        let value = values
-            .iter()
-            .rev()
-            .find(|(known, _)| known == name)
-            .map_or(knob.value, |(_, v)| *v);
-        let interval = match number_of(name) {
-            Some(number) => {
-                let deviation = covariance[(number, number)].max(0.0).sqrt();
-                let half = 1.96 * deviation * stage.varied[number].scale();
-                (value - half, value + half)
-            }
-            // As declared, for the records do not determine it ([`super::undetermined`]).
-            None if !knob.integer && value.to_bits() == knob.value.to_bits() => knob.range,
-            None => (value, value),
-        };
-        Quantity {
-            name: knob.name.clone(),
-            value,
-            interval,
-            unit: knob.unit.clone(),
-        }
-    };
-    let each = stage.effects.iter().zip(taken);
-    each.map(|((number, path), taken)| {
-        let hypothesis = &hypotheses[*number];
-        let of = |knobs: &[super::Knob]| -> Vec<Quantity> {
-            let names = Hypothesis::names(knobs, path);
-            knobs
-                .iter()
-                .zip(names)
-                .map(|(knob, name)| quantity(knob, &name))
-                .collect()
-        };
-        let (sizes, mut shapes) = (of(&hypothesis.sizes), of(&hypothesis.shapes));
-        // Of several that make the effect what it is, one that is told.
-        let essential = sizes.iter().take(hypothesis.essential());
-        let told = essential.clone().find(|size| size.is_told());
-        let mut size = told.or(sizes.first()).cloned().unwrap_or(Quantity {
-            name: String::new(),
-            value: f64::NAN,
-            interval: (f64::NAN, f64::NAN),
-            unit: String::new(),
-        });
-        if hypothesis.is_pair() {
-            let (s, c) = (sizes[0].value, sizes[1].value);
-            let amplitude = s.hypot(c);
-            let half = |quantity: &Quantity| (quantity.interval.1 - quantity.interval.0) / 2.0;
-            let (a, b) = (half(&sizes[0]), half(&sizes[1]));
-            let width = (s * a).hypot(c * b) / amplitude;
-            let turn = (c * a).hypot(s * b) / (amplitude * amplitude);
-            size = Quantity {
-                name: "amplitude".to_owned(),
-                value: amplitude,
-                interval: (amplitude - width, amplitude + width),
-                unit: sizes[0].unit.clone(),
-            };
-            let phase = c.atan2(s);
-            shapes.push(Quantity {
-                name: "phase".to_owned(),
-                value: phase,
-                interval: (phase - turn, phase + turn),
-                unit: "rad".to_owned(),
-            });
-        }
-        Finding {
-            hypothesis: *number,
-            size,
-            sizes,
-            shapes,
-            round: taken.round,
-            alternatives: taken.alternatives,
-        }
-    })
-    .collect()
 }
 
 /// The value that chi squared with so many degrees of freedom exceeds with a small probability; from three degrees on by

@@ -36,9 +36,10 @@ pub(crate) use places::{Answer, Places};
 pub use seen::{Scales, Seen};
 pub use site::{Kind, Site, Written};
 
+use super::finding::Finding;
 use super::hypothesis::Hypothesis;
 use super::inquiry::Inquiry;
-use super::search::{Diagnosis, Finding, Gates, Round, Verdict, explained};
+use super::search::{Diagnosis, Gates, Round, Verdict, explained};
 use super::stage::{Stage, below};
 use super::trial::Trial;
 use crate::plant::Unsupported;
