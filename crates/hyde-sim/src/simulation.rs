@@ -48,6 +48,8 @@ pub(crate) struct Simulation<'a> {
     outputs: Vec<f64>,
     /// The relations that brought the run where it is.
     crossed: Vec<usize>,
+    /// Relations that were crossed and stayed as they are, and how often in a row.
+    in_vain: (Vec<usize>, u32),
     hurry: Hurry,
     meter: Option<Meter<'a>>,
     reduced: Option<Reduced<'a>>,
@@ -122,6 +124,7 @@ impl<'a> Simulation<'a> {
             next_row: 0,
             outputs: vec![0.0; program.outputs.len()],
             crossed: Vec::new(),
+            in_vain: (Vec::new(), 0),
             hurry: Hurry::default(),
             meter: Meter::new(&program.experiment.ledger),
             reduced,

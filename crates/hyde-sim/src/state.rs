@@ -123,11 +123,37 @@ impl<'a> State<'a> {
         let program = self.program;
         let (at, workspace) = self.at(t, y, yp);
         program.kernels.evaluate(function, at, workspace, out);
-        if function == Function::Residual && !all_finite(out) {
-            self.with_own_truths(t, y, yp, |state| {
+        if all_finite(out) {
+            return;
+        }
+        match function {
+            Function::Residual => self.with_own_truths(t, y, yp, |state| {
                 let (at, workspace) = state.at(t, y, yp);
                 program.kernels.evaluate(function, at, workspace, out);
-            });
+            }),
+            Function::Outputs => self.replace_not_finite((t, y, yp), out, |at, workspace, own| {
+                program.kernels.evaluate(function, at, workspace, own);
+            }),
+            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {}
+        }
+    }
+
+    /// Where there is no finite value, that with the truths which relations have at the point itself.
+    fn replace_not_finite(
+        &mut self,
+        (t, y, yp): (f64, &[f64], &[f64]),
+        out: &mut [f64],
+        evaluate: impl FnOnce(Point<'_>, &mut Workspace, &mut [f64]),
+    ) {
+        let mut own = out.to_vec();
+        self.with_own_truths(t, y, yp, |state| {
+            let (at, workspace) = state.at(t, y, yp);
+            evaluate(at, workspace, &mut own);
+        });
+        for (value, own) in out.iter_mut().zip(own) {
+            if !value.is_finite() {
+                *value = own;
+            }
         }
     }
 
@@ -143,6 +169,11 @@ impl<'a> State<'a> {
             state.read_loose(t, y, yp);
             let (at, workspace) = state.at(t, y, yp);
             rows.evaluate(at, workspace, out);
+            if !all_finite(out) {
+                state.replace_not_finite((t, y, yp), out, |at, workspace, own| {
+                    rows.evaluate(at, workspace, own);
+                });
+            }
         };
         if self.slides.is_empty() {
             return side(self, out);

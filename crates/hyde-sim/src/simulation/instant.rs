@@ -6,6 +6,10 @@ use crate::delays;
 use crate::events::Instant;
 use crate::failure::Failure;
 use crate::sensitivity::{Cause, Sensitivities, Slopes};
+use hyde_program::RelationUse;
+
+/// Relations that are crossed so often in a row and stay as they are will do so without end.
+const IN_VAIN: u32 = 4;
 
 /// Values at an instant, from one side of it.
 pub(super) struct Limit {
@@ -24,6 +28,7 @@ impl Simulation<'_> {
         restart: bool,
         cause: &Cause,
     ) -> Result<(), Box<Failure>> {
+        let crossed = self.crossed.clone();
         let limit = self.limit();
         let delayed = delays::limits(&mut self.integrator, Some(&mut self.consistent));
         let left = self.row_values();
@@ -54,6 +59,7 @@ impl Simulation<'_> {
             }
         }
         let happened = self.results.events.len() > events;
+        self.follow_what_is_crossed_in_vain(&crossed, changed || happened);
         if happened {
             self.results.statistics.events += 1;
             self.not_too_many(events)?;
@@ -88,6 +94,30 @@ impl Simulation<'_> {
             self.restart()?;
         }
         Ok(())
+    }
+
+    /// Follows the relations of equations that are crossed and stay as they are, again and again: where a motion ends at a zero
+    /// with an upright slope, as of two tanks that equalise, rounding goes to and fro across it.
+    fn follow_what_is_crossed_in_vain(&mut self, crossed: &[usize], changed: bool) {
+        if changed || crossed.is_empty() || self.in_vain.0 != crossed {
+            self.in_vain = (crossed.to_vec(), 0);
+        }
+        self.in_vain.1 += 1;
+        let relations = &self.program.relations;
+        let of_equation = |relation: &usize| {
+            let known = relations.get(*relation);
+            known.is_some_and(|known| known.used == RelationUse::Equation)
+        };
+        if self.in_vain.1 < IN_VAIN || !crossed.iter().all(of_equation) {
+            return;
+        }
+        let (t, y, yp) = (
+            self.integrator.t,
+            self.integrator.y.clone(),
+            self.integrator.yp.clone(),
+        );
+        let state = self.integrator.state_mut();
+        state.follow(crossed, (t, &y, &yp));
     }
 
     pub(super) fn iterate(
