@@ -313,6 +313,7 @@ impl Loaded {
             let columns = columns.map(|column| (column.name().to_owned(), column.unit().cloned()));
             Header {
                 columns: columns.collect(),
+                step_s: table.usual_step(),
                 unusable: Vec::new(),
             }
         };

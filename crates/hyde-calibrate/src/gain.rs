@@ -5,12 +5,14 @@
 //! ```
 //! R is what the experiment declares: white noise, and the variance q^2/12 of a quantiser of step q. Q is what no model of
 //! an axis gets right: a part [`MODEL_NOISE`] of how fast each balance moves in the records, fresh at every row. States
-//! whose rate is another state (an angle, a position) have none. P solves the discrete Riccati equation, by structured
+//! whose rate is another state (an angle, a position) have none. Beside it Q has what the columns that drive the model are
+//! not known to ([`crate::input_noise`]). P solves the discrete Riccati equation, by structured
 //! doubling (Chu, Fan, Lin and Wang, Int. J. Control 77, 2004, 767).
 //!
 //! The gain is made once from the nominal model and never again within a study: innovations stay comparable.
 
 use crate::configuration::{Configuration, Places};
+use crate::input_noise;
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
 use hyde_program::{Constant, Function, Point, Program, Workspace, Wrt};
@@ -35,10 +37,12 @@ pub struct Observer {
     pub(crate) rounding: Vec<f64>,
     /// Standard deviation of each predicted state, SI.
     pub(crate) spread: Vec<f64>,
-    /// Variance of what the model does not know of each state, fresh at every row, SI; empty until it is known.
-    pub(crate) process: Vec<f64>,
+    /// Covariance of what the model does not know of its states, fresh at every row, SI; empty until it is known.
+    pub(crate) process: DMatrix<f64>,
     /// The names of the states.
     states: Vec<String>,
+    /// Standard deviation of what each driving column is not known to, SI.
+    pub inputs: Vec<f64>,
     /// Modes in which the model was linearised although the record begins in others.
     pub taken: Vec<Taken>,
 }
@@ -116,14 +120,23 @@ impl Observer {
             noise: noise.clone(),
             rounding,
             spread: vec![f64::NAN; c.ncols()],
-            process: Vec::new(),
+            process: DMatrix::zeros(0, 0),
             states: state_names(&plant),
+            inputs: input_noise::deviations(program, recordings),
             taken,
         };
-        let mut process = DVector::zeros(0);
-        for _ in 0..2 {
+        let at = plant.here();
+        let moved = input_noise::moved(program, places, configuration, at, &mut workspace);
+        for pass in 0..2 {
+            if pass > 0 {
+                let between =
+                    input_noise::between_rows(program, recordings, set, &observer, &(&c * &moved))?;
+                for (own, between) in observer.inputs.iter_mut().zip(between) {
+                    *own = own.hypot(between);
+                }
+            }
             let rates = usual_rates(program, recordings, set, &observer)?;
-            process = DVector::from_iterator(
+            let balances_off = DVector::from_iterator(
                 rates.len(),
                 rates
                     .iter()
@@ -133,12 +146,17 @@ impl Observer {
                         false => 0.0,
                     }),
             );
+            let driven = input_noise::covariance(&moved, &observer.inputs);
+            let process = DMatrix::from_diagonal(&balances_off) + driven;
             let found = stationary(&exp, &c, &process, &noise);
             observer.gain = found.gain;
             observer.deviations = found.deviations;
             observer.spread = found.spread;
+            // While rates are not known yet, no other gain is made of them.
+            if pass > 0 {
+                observer.process = process;
+            }
         }
-        observer.process = process.iter().copied().collect();
         Ok(observer)
     }
 
@@ -150,12 +168,18 @@ impl Observer {
         }
         let mut gain = DMatrix::zeros(names.len(), self.gain.ncols());
         let mut spread = vec![f64::INFINITY; names.len()];
-        let mut process = vec![0.0; names.len()];
-        for (row, name) in names.iter().enumerate() {
-            if let Some(own) = self.states.iter().position(|state| state == name) {
+        let own = |name: &String| self.states.iter().position(|state| state == name);
+        let known: Vec<Option<usize>> = names.iter().map(own).collect();
+        let process = DMatrix::from_fn(names.len(), names.len(), |i, j| {
+            let at = known[i].zip(known[j]);
+            at.and_then(|at| self.process.get(at))
+                .copied()
+                .unwrap_or(0.0)
+        });
+        for (row, own) in known.iter().enumerate() {
+            if let Some(own) = *own {
                 gain.set_row(row, &self.gain.row(own));
                 spread[row] = self.spread[own];
-                process[row] = self.process.get(own).copied().unwrap_or(0.0);
             }
         }
         Self {
@@ -302,7 +326,7 @@ pub(crate) struct Stationary {
 pub(crate) fn stationary(
     exp: &DMatrix<f64>,
     c: &DMatrix<f64>,
-    process: &DVector<f64>,
+    process: &DMatrix<f64>,
     noise: &[f64],
 ) -> Stationary {
     let p = riccati(exp, c, process, noise);
@@ -346,7 +370,7 @@ fn usual_rates(
 }
 
 /// The covariance of the prediction.
-fn riccati(exp: &DMatrix<f64>, c: &DMatrix<f64>, q: &DVector<f64>, noise: &[f64]) -> DMatrix<f64> {
+fn riccati(exp: &DMatrix<f64>, c: &DMatrix<f64>, q: &DMatrix<f64>, noise: &[f64]) -> DMatrix<f64> {
     let n = exp.nrows();
     // In units in which channels see each state with about their noise, sizes are alike.
     let largest = |state: usize| {
@@ -358,7 +382,7 @@ fn riccati(exp: &DMatrix<f64>, c: &DMatrix<f64>, q: &DVector<f64>, noise: &[f64]
             .collect::<Vec<_>>();
         parts
             .into_iter()
-            .fold(q[state].sqrt().recip().min(1e12), f64::max)
+            .fold(q[(state, state)].sqrt().recip().min(1e12), f64::max)
     };
     let scale = DVector::from_iterator(n, (0..n).map(|state| 1.0 / largest(state).max(1e-12)));
     let unscale = scale.map(|s| 1.0 / s);
@@ -370,7 +394,7 @@ fn riccati(exp: &DMatrix<f64>, c: &DMatrix<f64>, q: &DVector<f64>, noise: &[f64]
     ));
     let mut a = scaled.transpose();
     let mut g = seen.transpose() * weights * seen;
-    let mut h = DMatrix::from_diagonal(&q.component_mul(&unscale).component_mul(&unscale));
+    let mut h = DMatrix::from_diagonal(&unscale) * q * DMatrix::from_diagonal(&unscale);
     for _ in 0..60 {
         let w = DMatrix::identity(n, n) + &g * &h;
         let Some(inverse) = w.try_inverse() else {

@@ -11,7 +11,7 @@
 
 use crate::gain::{Observer, stationary};
 use crate::plant::Plant;
-use nalgebra::{DMatrix, DVector, Schur};
+use nalgebra::{DMatrix, Schur};
 
 /// Errors grow where they do by more than this part a row: what nothing shows stays as it is but for rounding.
 const GROWTH: f64 = 1e-4;
@@ -51,8 +51,7 @@ impl Observer {
         let mut known = free;
         known.retain(|&state| self.knows(state));
         let (step, seen) = among(&known);
-        let noise = known.iter().map(|&state| self.process[state]);
-        let noise = DVector::from_iterator(known.len(), noise);
+        let noise = self.process.select_rows(&known).select_columns(&known);
         let own = stationary(&step, &seen, &noise, &self.noise).gain;
         let mut gain = DMatrix::zeros(self.gain.nrows(), self.gain.ncols());
         for (row, &state) in known.iter().enumerate() {

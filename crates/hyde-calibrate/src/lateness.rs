@@ -8,13 +8,13 @@
 //! linear between rows  their rates are off by     -B du/T tau       throughout the row
 //! ```
 
-use crate::configuration::Configuration;
+use crate::input_noise::rates;
 use crate::observer::When;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
 use crate::tangent::Known;
 use crate::track::{Track, Vectors};
-use hyde_program::{Function, Point, Program, Workspace};
+use hyde_program::{Program, Workspace};
 use nalgebra::DMatrix;
 
 /// Instants are known to this part of a row.
@@ -56,8 +56,8 @@ pub(crate) fn changes(
         }
         let own = &route.configurations[after];
         let at = track.point(row, When::After, p, &mut room);
-        let [linear, held] =
-            by_column[after].get_or_insert_with(|| rates(track, program, own, at, &mut workspace));
+        let [linear, held] = by_column[after]
+            .get_or_insert_with(|| rates(program, &track.places, own, at, &mut workspace));
         let step = &own.steps[0];
         let mut growing = DMatrix::zeros(states, columns);
         for (number, column) in recording.columns.iter().enumerate() {
@@ -73,38 +73,4 @@ pub(crate) fn changes(
         errors = &step.exp * &errors + &step.first * growing;
     }
     Ok(found)
-}
-
-/// What a unit of each driving column, read linearly and held, makes of the rates of the states.
-fn rates(
-    track: &Track<'_>,
-    program: &Program,
-    configuration: &Configuration<'_>,
-    at: Point<'_>,
-    workspace: &mut Workspace,
-) -> [DMatrix<f64>; 2] {
-    let mut residual = |u: &[f64]| {
-        let mut out = vec![0.0; program.n_unknowns];
-        let at = Point { u, ..at };
-        program
-            .kernels
-            .evaluate(Function::Residual, at, workspace, &mut out);
-        out
-    };
-    let plain = residual(at.u);
-    let mut of = |first: usize| {
-        let mut all = DMatrix::zeros(program.n_unknowns, program.columns.len());
-        for number in 0..program.columns.len() {
-            let mut u = at.u.to_vec();
-            u[2 * number + first] += 1.0;
-            let moved = residual(&u);
-            let differences = moved.iter().zip(&plain).map(|(a, b)| b - a);
-            all.column_mut(number)
-                .iter_mut()
-                .zip(differences)
-                .for_each(|(into, d)| *into = d);
-        }
-        (&configuration.inverse * all).select_rows(&track.places.states)
-    };
-    [of(0), of(1)]
 }

@@ -32,6 +32,7 @@ mod free_run;
 mod frozen;
 mod gain;
 mod held;
+mod input_noise;
 mod inputs;
 mod lateness;
 mod least_squares;

@@ -227,8 +227,30 @@ fn told(calibration: &Calibration, recording: &Recording) -> Vec<String> {
             time(own.step_s)
         ));
     }
+    found.extend(inputs(calibration));
     found.extend(linearised(&calibration.observer));
     found
+}
+
+/// What the columns that drive the model are not known to, where that is said or follows from the model's clocks.
+fn inputs(calibration: &Calibration) -> Vec<String> {
+    let program = &calibration.compiled.program;
+    let each = program.columns.iter().zip(&calibration.observer.inputs);
+    let told = each.filter_map(|(column, deviation)| {
+        let name = format!("`{}.{}`", column.record, column.column);
+        let known = significant(*deviation, 3);
+        match column.ticks_s {
+            Some(period_s) => Some(format!(
+                "{name} is of a clock that ticks every {}, several times between two rows, which the record does not have: it is held \
+                 for a row and taken as known to {known} (SI), as the innovations show it; to know it better, simulate the loop, drive the model by a \
+                 measured column, or record faster",
+                engineering(period_s, Dimension::TIME)
+            )),
+            None if column.noise > 0.0 => Some(format!("{name} drives the model and is taken as known to {known} (SI)")),
+            None => None,
+        }
+    });
+    told.collect()
 }
 
 /// The modes in which the model was linearised for the gain, where it begins in others.

@@ -71,7 +71,12 @@ pub(crate) fn headers(records: &BTreeMap<String, Record>) -> BTreeMap<String, He
                     (column.name.clone(), fault.message, fault.repair)
                 })
                 .collect();
-            (name.clone(), Header { columns, unusable })
+            let header = Header {
+                columns,
+                step_s: record.table.usual_step(),
+                unusable,
+            };
+            (name.clone(), header)
         })
         .collect()
 }

@@ -51,6 +51,8 @@ use std::collections::BTreeMap;
 pub struct Header {
     /// Name and unit of each column; no unit where the file gives none.
     pub columns: Vec<(String, Option<NamedUnit>)>,
+    /// The usual time between two rows, s.
+    pub step_s: Option<f64>,
     /// What else the file has and cannot be used: name, what is wrong, and what to change.
     pub unusable: Vec<(String, String, String)>,
 }

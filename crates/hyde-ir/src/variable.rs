@@ -230,4 +230,8 @@ pub struct Column {
     pub next: bool,
     /// SI value = raw value * scale + offset where the header has no unit; (1, 0) where it has one.
     pub scale: (f64, f64),
+    /// Standard deviation of what its values are not known to, SI; 0 if nothing is said.
+    pub noise: f64,
+    /// The period in s of a clock that gave it, if that ticks several times between two rows.
+    pub ticks_s: Option<f64>,
 }

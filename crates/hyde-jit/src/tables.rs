@@ -202,6 +202,8 @@ fn columns(dae: &Dae) -> Vec<Column> {
             next: column.next,
             continuous,
             stepped,
+            noise: column.noise,
+            ticks_s: column.ticks_s,
         })
         .collect()
 }

@@ -85,7 +85,7 @@ pub struct Parameter {
 }
 
 /// A column of a record.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Column {
     /// The record as the experiment calls it.
     pub record: String,
@@ -97,6 +97,10 @@ pub struct Column {
     pub continuous: bool,
     /// Whether they read it as it is held, or one row ahead: it steps at every row.
     pub stepped: bool,
+    /// Standard deviation of what its values are not known to, SI; 0 if nothing is said.
+    pub noise: f64,
+    /// The period in s of a clock that gave it, if that ticks several times between two rows.
+    pub ticks_s: Option<f64>,
 }
 
 /// Which number of a column.

@@ -30,8 +30,8 @@ use crate::varied::Varied;
 const CHANCE: f64 = 0.01;
 const MARGIN: f64 = 2.0;
 /// The part of the number of innovations that a gain on what was not fitted is to reach.
-const MATERIAL: f64 = 0.002;
-/// Innovations that are explained: their mean square, and their correlation.
+pub(crate) const MATERIAL: f64 = 0.002;
+/// Innovations that are explained: their mean square, and their correlation, of what is smaller than noise a part.
 const EXPLAINED: (f64, f64) = (1.05, 0.1);
 /// What gains this part of what is more than noise, in the linear answer, may explain all once it is fitted.
 pub(super) const PROMISING: f64 = 0.6;
@@ -328,7 +328,7 @@ pub(super) fn explained(solution: &Solution) -> bool {
         let rows = list.len().max(1) as f64;
         let (largest, likeness) = EXPLAINED;
         size <= largest + chance * (2.0 / rows).sqrt()
-            && correlation(list) <= likeness + chance / rows.sqrt()
+            && correlation(list) * size.clamp(0.0, 1.0) <= likeness + chance / rows.sqrt()
     })
 }
 

@@ -157,6 +157,7 @@ fn drive(experiment: &mut Experiment, target: &Reference, value: &Expr) {
     let drive = Drive {
         target: target.clone(),
         value: value.clone(),
+        noise: None,
     };
     experiment.items.push(ExperimentItem::Stimulus(vec![drive]));
 }

@@ -146,6 +146,8 @@ impl<'a> Model<'a, '_> {
             column: column.to_owned(),
             next,
             scale: (1.0, 0.0),
+            noise: 0.0,
+            ticks_s: None,
         });
         let dim = match &unit {
             Some(unit) => Dim::known(unit.unit().dimension),

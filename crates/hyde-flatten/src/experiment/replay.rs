@@ -18,6 +18,9 @@ use hyde_ir::{Expr as Ir, ExprId, Interpolation, VarId, VariableKind};
 use hyde_syntax::ast::{Drive, ExperimentItem};
 use std::collections::HashMap;
 
+/// A clock ticks several times between two rows if its period is at most this part of their distance.
+const SEVERAL: f64 = 0.6;
+
 /// `replay x = column;` with the variable that it is about.
 #[derive(Clone, Copy)]
 pub(crate) struct Replay<'a> {
@@ -73,10 +76,51 @@ impl<'a> Model<'a, '_> {
         let mut column = self.value(&drive.value, &scope);
         let declared = self.typed(value.id, self.dim(var), drive.target.span);
         self.agree(&declared, &column, "the variable and its record are", root);
+        self.noise_of_column(drive, &declared, root);
         if self.is_held(var, value.id) {
+            self.note_ticks_between_rows(var, value.id, column.id);
             column.id = self.with_held_columns(column.id);
         }
         column
+    }
+
+    /// Notes of a column how often what it replays changes, if that is several times between two rows of its record, which
+    /// does not have all of it.
+    fn note_ticks_between_rows(&mut self, var: VarId, value: ExprId, column: ExprId) {
+        let mut kinds = vec![self.flat.variables[var].kind];
+        for id in self.flat.exprs.below(&[value]) {
+            if let Ir::Var(read, _) = self.flat.exprs[id] {
+                kinds.push(self.flat.variables[read].kind);
+            }
+        }
+        let clocks = kinds.into_iter().filter_map(|kind| match kind {
+            VariableKind::Clocked(clock) | VariableKind::Held(clock, _) => Some(clock),
+            VariableKind::Continuous
+            | VariableKind::Discrete
+            | VariableKind::Column(..)
+            | VariableKind::Delayed(_)
+            | VariableKind::Reduction(_) => None,
+        });
+        let periods: Vec<ExprId> = clocks.map(|clock| self.flat.clocks[clock].period).collect();
+        let periods: Vec<f64> = periods
+            .into_iter()
+            .filter_map(|period| self.current_value(period))
+            .collect();
+        let Some(period) = periods.into_iter().reduce(f64::min) else {
+            return;
+        };
+        for id in self.flat.exprs.below(&[column]) {
+            if let Ir::Var(read, _) = self.flat.exprs[id]
+                && let VariableKind::Column(column, _) = self.flat.variables[read].kind
+            {
+                let column = &mut self.flat.columns[column];
+                let header = self.input.records.get(&column.record);
+                let step_s = header.and_then(|header| header.step_s);
+                if step_s.is_some_and(|step_s| period <= SEVERAL * step_s) {
+                    column.ticks_s = Some(period);
+                }
+            }
+        }
     }
 
     /// Puts columns in the place of equations that no effect wraps, those of connections last.

@@ -5,7 +5,7 @@ use crate::dimension::Dim;
 use crate::instance::{InstanceId, Lowering, Member, ParameterNotes, Scope, Setting, Typed};
 use crate::model::{Model, listed};
 use hyde_diag::{Code, Diagnostic, MadeBy, Origin};
-use hyde_ir::flat::Equation;
+use hyde_ir::flat::{Equation, Preparation};
 use hyde_ir::{Expr as Ir, ExprId, Id as _, Parameter, Quantity, Range, VarId, VariableKind};
 use hyde_syntax::ast::Drive;
 use hyde_units::Allowed;
@@ -62,6 +62,7 @@ impl<'a> Model<'a, '_> {
         self.same_kind(&left, &value);
         self.check_whole(&left, &value);
         self.agree(&left, &value, "the input and its stimulus are", root);
+        self.noise_of_column(drive, &left, root);
         let origin = self
             .origin(root, drive.target.span)
             .made_by(MadeBy::Experiment);
@@ -71,6 +72,39 @@ impl<'a> Model<'a, '_> {
             rhs: value.id,
             origin,
         });
+    }
+
+    /// `~ sd` of a stimulus or a replay, in the unit of what is driven: what its column is not known to.
+    pub(super) fn noise_of_column(&mut self, drive: &'a Drive, driven: &Typed, root: InstanceId) {
+        let Some(noise) = &drive.noise else {
+            return;
+        };
+        let sd = self.value(noise, &Scope::new(root, Setting::Parameter));
+        self.agree(&sd, driven, "the noise and what is driven are", root);
+        let mut steps = Vec::new();
+        let Some((column, _)) = self.recorded(&drive.value, root, &mut steps) else {
+            return;
+        };
+        let factor = |step: &Preparation| match step {
+            Preparation::Scale(factor) => Some(*factor),
+            Preparation::Lowpass(_) | Preparation::Slope => None,
+        };
+        let factors: Option<Vec<f64>> = steps.iter().map(factor).collect();
+        let Some(factors) = factors else {
+            self.report(
+                Diagnostic::error(
+                    Code::NoColumn,
+                    "noise of a stimulus is that of a column, or of one times a number",
+                )
+                .label(drive.value.span, "is more than that")
+                .help("prepare the column in the model, or leave the noise out"),
+            );
+            return;
+        };
+        let scale: f64 = factors.into_iter().product();
+        if let Some(sd) = self.current_value(sd.id) {
+            self.flat.columns[column].noise = (sd / scale).abs();
+        }
     }
 
     /// A column that drives a Boolean: true from 0.5 on, held between its rows.

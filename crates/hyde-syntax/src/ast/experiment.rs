@@ -53,6 +53,8 @@ pub struct Drive {
     pub target: Reference,
     /// By what.
     pub value: Expr,
+    /// Standard deviation of what its record is not known to.
+    pub noise: Option<Expr>,
 }
 
 /// `file.i = motor.i ~ 0.02 [A]`

@@ -142,7 +142,10 @@ fn of_experiment<'a>(experiment: &'a Experiment, visit: &mut dyn FnMut(&'a Expr)
     for item in &experiment.items {
         match item {
             ExperimentItem::Stimulus(drives) | ExperimentItem::Replay(drives) => {
-                drives.iter().for_each(|drive| visit(&drive.value))
+                for drive in drives {
+                    visit(&drive.value);
+                    drive.noise.iter().for_each(&mut *visit);
+                }
             }
             ExperimentItem::Measured(channels) => {
                 for channel in channels {

@@ -4,7 +4,7 @@ use super::declaration::{measure_text, modification};
 use super::expression::{optional_arguments, range};
 use super::name::{doc, quoted, reference};
 use super::{Printer, expression};
-use crate::ast::{Drive, Experiment, ExperimentItem, Name, Reference};
+use crate::ast::{Drive, Experiment, ExperimentItem, Expr, Name, Reference};
 
 impl Printer {
     pub(super) fn experiment(&mut self, experiment: &Experiment) {
@@ -59,14 +59,18 @@ impl Printer {
     }
 
     fn experiment_item(&mut self, item: &ExperimentItem) {
+        let noise = |of: Option<&Expr>| {
+            of.map_or_else(String::new, |noise| format!(" ~ {}", expression(noise)))
+        };
         let drives = |list: &[Drive]| {
             let texts: Vec<String> = list
                 .iter()
                 .map(|drive| {
                     format!(
-                        "{} = {}",
+                        "{} = {}{}",
                         reference(&drive.target),
-                        expression(&drive.value)
+                        expression(&drive.value),
+                        noise(drive.noise.as_ref())
                     )
                 })
                 .collect();
@@ -79,14 +83,11 @@ impl Printer {
                 let texts: Vec<String> = channels
                     .iter()
                     .map(|channel| {
-                        let noise = channel
-                            .noise
-                            .as_ref()
-                            .map_or_else(String::new, |noise| format!(" ~ {}", expression(noise)));
                         format!(
-                            "{} = {}{noise}{}",
+                            "{} = {}{}{}",
                             expression(&channel.signal),
                             expression(&channel.value),
+                            noise(channel.noise.as_ref()),
                             doc(channel.doc.as_deref())
                         )
                     })

@@ -205,6 +205,7 @@ impl Builder<'_> {
                 Some(Drive {
                     target,
                     value: self.expression(inner.next()?),
+                    noise: inner.next().and_then(|noise| self.first_expression(noise)),
                 })
             })
             .collect()
