@@ -76,7 +76,7 @@ impl<'a> Model<'a, '_> {
         let mut column = self.value(&drive.value, &scope);
         let declared = self.typed(value.id, self.dim(var), drive.target.span);
         self.agree(&declared, &column, "the variable and its record are", root);
-        self.noise_of_column(drive, &declared, root);
+        self.noise_of_column(drive, (&declared, column.id), root);
         if self.is_held(var, value.id) {
             self.note_ticks_between_rows(var, value.id, column.id);
             column.id = self.with_held_columns(column.id);

@@ -62,7 +62,7 @@ impl<'a> Model<'a, '_> {
         self.same_kind(&left, &value);
         self.check_whole(&left, &value);
         self.agree(&left, &value, "the input and its stimulus are", root);
-        self.noise_of_column(drive, &left, root);
+        self.noise_of_column(drive, (&left, value.id), root);
         let origin = self
             .origin(root, drive.target.span)
             .made_by(MadeBy::Experiment);
@@ -75,29 +75,36 @@ impl<'a> Model<'a, '_> {
     }
 
     /// `~ sd` of a stimulus or a replay, in the unit of what is driven: what its column is not known to.
-    pub(super) fn noise_of_column(&mut self, drive: &'a Drive, driven: &Typed, root: InstanceId) {
+    pub(super) fn noise_of_column(
+        &mut self,
+        drive: &'a Drive,
+        by: (&Typed, ExprId),
+        root: InstanceId,
+    ) {
         let Some(noise) = &drive.noise else {
             return;
         };
+        let (driven, value) = by;
         let sd = self.value(noise, &Scope::new(root, Setting::Parameter));
         self.agree(&sd, driven, "the noise and what is driven are", root);
         let mut steps = Vec::new();
-        let Some((column, _)) = self.recorded(&drive.value, root, &mut steps) else {
-            return;
+        let column = match self.reads_a_column(value) {
+            true => self.recorded(&drive.value, root, &mut steps),
+            false => None,
         };
         let factor = |step: &Preparation| match step {
             Preparation::Scale(factor) => Some(*factor),
             Preparation::Lowpass(_) | Preparation::Slope => None,
         };
         let factors: Option<Vec<f64>> = steps.iter().map(factor).collect();
-        let Some(factors) = factors else {
+        let (Some((column, _)), Some(factors)) = (column, factors) else {
             self.report(
                 Diagnostic::error(
                     Code::NoColumn,
-                    "noise of a stimulus is that of a column, or of one times a number",
+                    format!("`{}` has noise, and is driven by more or less than a column", drive.target.dotted()),
                 )
-                .label(drive.value.span, "is more than that")
-                .help("prepare the column in the model, or leave the noise out"),
+                .label(drive.value.span, "no column of a record, nor one times a number")
+                .help("what is not read from a record is exact: leave `~` out, or write `file.i ~ 15 [mA]`"),
             );
             return;
         };
@@ -105,6 +112,15 @@ impl<'a> Model<'a, '_> {
         if let Some(sd) = self.current_value(sd.id) {
             self.flat.columns[column].noise = (sd / scale).abs();
         }
+    }
+
+    fn reads_a_column(&self, value: ExprId) -> bool {
+        let column = |id: ExprId| {
+            let read = self.flat.exprs[id].access();
+            let kind = read.map(|(var, ..)| self.flat.variables[var].kind);
+            matches!(kind, Some(VariableKind::Column(..)))
+        };
+        self.flat.exprs.below(&[value]).into_iter().any(column)
     }
 
     /// A column that drives a Boolean: true from 0.5 on, held between its rows.
