@@ -13,6 +13,7 @@ use crate::observer::Innovations;
 use crate::recording::Recording;
 use hyde_program::Program;
 use hyde_signal::spectrum::power_spectral_density;
+use hyde_units::{Dimension, NamedUnit};
 use rayon::prelude::*;
 use variable::{Variable, variables};
 
@@ -32,8 +33,8 @@ pub struct ResidualMap {
     pub channel: String,
     /// Over what: `x`, `speed of x`, `frequency`.
     pub over: String,
-    /// Its unit in SI.
-    pub unit: String,
+    /// The unit that it is declared in; the bins are SI.
+    pub unit: NamedUnit,
     /// Middles of the bins, SI.
     pub bins: Vec<f64>,
     /// Mean of the whitened innovations in each bin, before; over frequency their power beyond an even one.
@@ -63,6 +64,8 @@ pub fn residual_maps(
     }
     let rate_hz = recordings.first().map_or(1.0, |r| 1.0 / r.step_s);
     let block = ((BLOCK_S * rate_hz).round() as usize).max(1);
+    let hertz = NamedUnit::parse("Hz");
+    let hertz = hertz.unwrap_or_else(|_| NamedUnit::usual(Dimension::FREQUENCY));
     let mut maps: Vec<ResidualMap> = tasks
         .par_iter()
         .filter_map(|&(channel, variable)| {
@@ -84,7 +87,7 @@ pub fn residual_maps(
                 None => {
                     let (middles, old) = powers(&old, rate_hz)?;
                     let (_, new) = powers(&new, rate_hz)?;
-                    ("frequency".to_owned(), "Hz".to_owned(), (middles, old, new))
+                    ("frequency".to_owned(), hertz.clone(), (middles, old, new))
                 }
             };
             let (bins, old, new) = sorted;

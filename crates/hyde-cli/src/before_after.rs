@@ -10,7 +10,7 @@ use hyde_calibrate::{FreeMeasure, Measures, Model, Observer, Recording, Unsuppor
 use hyde_compiler::{Additions, Candidate, Form, Request};
 use hyde_diag::Diagnostics;
 use hyde_program::Program;
-use hyde_units::{Dimension, engineering, significant};
+use hyde_units::{Dimension, NamedUnit, engineering, engineering_difference, significant};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -366,8 +366,7 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
                 let Some(change) = over(shown(), |record| of(record, number)) else {
                     continue;
                 };
-                let dimension = channel.unit.unit().dimension;
-                let _ = writeln!(out, "{}", line(&channel.name, change, dimension));
+                let _ = writeln!(out, "{}", line(&channel.name, change, &channel.unit));
             }
         };
     table(&mut out, "rms of innovations", &|record, number| {
@@ -385,13 +384,13 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
     out
 }
 
-fn line(name: &str, change: Change, dimension: Dimension) -> String {
+fn line(name: &str, change: Change, unit: &NamedUnit) -> String {
     let times = |value: f64| significant(value / change.floor, 3);
     format!(
         "  {:<32} {:>11} {:>11}   {} -> {}",
         shortened(name, 32),
-        engineering(change.before, dimension),
-        engineering(change.after, dimension),
+        engineering_difference(change.before, unit),
+        engineering_difference(change.after, unit),
         times(change.before),
         times(change.after)
     )

@@ -20,6 +20,7 @@ pub(crate) use held_out::{Refused, agreed};
 pub(crate) use json::json;
 pub(crate) use page::html;
 pub(crate) use text::{text, wrapped};
+pub(crate) use verdict::number;
 
 use crate::before_after::RecordErrors;
 use crate::project::Project;

@@ -118,8 +118,13 @@ fn measured_and_simulated(channel: &Channel) -> Panel {
 /// The unit that values are drawn in: that of SI, with the prefix that fits, for all that is declared in a multiple of it;
 /// any other as it is declared.
 pub(crate) fn drawn_in(unit: &NamedUnit) -> (String, Unit) {
-    let si = NamedUnit::usual(unit.unit().dimension);
-    let drawn = if unit.is_multiple_of_si() { &si } else { unit };
+    // J and N.m, Hz and 1/s are not told from each other by their dimensions.
+    let symbol = unit.unit().is_si() && unit.text().chars().all(char::is_alphabetic);
+    let usual = NamedUnit::usual(unit.unit().dimension);
+    let drawn = match unit.is_multiple_of_si() && !symbol {
+        true => &usual,
+        false => unit,
+    };
     (drawn.text().to_owned(), drawn.unit())
 }
 

@@ -1,12 +1,12 @@
 //! The forces, torques and currents between components: as a table for people, as JSON for programs, as a section of the
 //! report.
 
-use crate::figures::shown;
+use crate::figures::{drawn_in, shown};
 use hyde_compiler::Compiled;
 use hyde_experiment::{FlowLine, Run, flows};
 use hyde_program::Output;
 use hyde_report::{Block, Line, Panel, Section, Table, time_panel, time_plot};
-use hyde_units::{engineering, significant};
+use hyde_units::{engineering_as, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
@@ -23,8 +23,8 @@ pub(crate) fn text(compiled: &Compiled, run: &Run) -> String {
         "between components", "least", "most", "rms"
     );
     for line in &lines {
-        let dimension = compiled.program.outputs[line.output].dimension;
-        let number = |value: f64| engineering(value, dimension);
+        let unit = &compiled.program.outputs[line.output].unit;
+        let number = |value: f64| engineering_as(value, unit);
         let (least, most, rms) = (number(line.least), number(line.most), number(line.rms));
         let _ = writeln!(
             out,
@@ -66,8 +66,8 @@ pub(crate) fn section(compiled: &Compiled, run: &Run) -> Option<Section> {
     table.rows = lines
         .iter()
         .map(|line| {
-            let unit = output(line).dimension.usual_unit();
-            let number = |value: f64| significant(value, 4).replace('-', "−");
+            let (unit, of) = drawn_in(&output(line).unit);
+            let number = |si: f64| significant(of.from_si(si), 4).replace('-', "−");
             vec![
                 line.name.clone(),
                 shown(&unit).to_owned(),
@@ -98,7 +98,7 @@ fn panels<'o>(
     run: &Run,
 ) -> Vec<Panel> {
     let mut units: Vec<String> = Vec::new();
-    for unit in lines.iter().map(|line| output(line).dimension.usual_unit()) {
+    for (unit, _) in lines.iter().map(|line| drawn_in(&output(line).unit)) {
         if !units.contains(&unit) {
             units.push(unit);
         }
@@ -106,11 +106,13 @@ fn panels<'o>(
     let panel = |unit: &String| {
         let mut own: Vec<&FlowLine> = lines
             .iter()
-            .filter(|line| output(line).dimension.usual_unit() == *unit)
+            .filter(|line| drawn_in(&output(line).unit).0 == *unit)
             .collect();
         own.sort_by(|a, b| b.rms.total_cmp(&a.rms));
         let curve = |line: &&FlowLine| {
-            let values = run.results.column(line.output).unwrap_or_default().to_vec();
+            let (_, of) = drawn_in(&output(line).unit);
+            let values = run.results.column(line.output).unwrap_or_default();
+            let values = values.iter().map(|&si| of.from_si(si)).collect();
             Line::new(line.name.clone(), run.results.time.clone(), values)
         };
         time_panel(

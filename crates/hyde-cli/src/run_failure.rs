@@ -369,7 +369,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
     for (name, value) in &failure.unknowns {
         let output = program.output(name).map(|number| &program.outputs[number]);
         let value = match output {
-            Some(output) => hyde_units::engineering(*value, output.dimension),
+            Some(output) => hyde_units::engineering_as(*value, &output.unit),
             None => hyde_units::significant(*value, 6),
         };
         diagnostic = diagnostic.note(format!("`{name}` is {} there", value.trim_end()));

@@ -2,14 +2,14 @@
 
 use hyde_program::{Firmness, Program};
 use hyde_sim::Yielded;
-use hyde_units::{Dimension, engineering};
+use hyde_units::{Dimension, NamedUnit, engineering_as};
 use serde_json::{Value, json};
 
 /// One line for each of which something was said.
 pub(crate) fn lines(program: &Program, yielded: &[Yielded]) -> Vec<String> {
     let line = |found: &Yielded| {
-        let dimension = dimension(program, &found.name);
-        let show = |value: f64| engineering(value, dimension).trim().to_owned();
+        let unit = unit(program, &found.name);
+        let show = |value: f64| engineering_as(value, &unit).trim().to_owned();
         let (value, start) = (show(found.value), show(found.start));
         let name = &found.name;
         if !found.determined {
@@ -37,7 +37,7 @@ pub(crate) fn json(program: &Program, yielded: &[Yielded]) -> Value {
             "name": found.name,
             "value": found.value,
             "start": found.start,
-            "unit": dimension(program, &found.name).usual_unit(),
+            "unit": unit(program, &found.name).unit().dimension.usual_unit(),
             "was": match found.firmness {
                 Firmness::Free => "free",
                 Firmness::Open => "open",
@@ -51,12 +51,11 @@ pub(crate) fn json(program: &Program, yielded: &[Yielded]) -> Value {
     yielded.iter().map(entry).collect()
 }
 
-fn dimension(program: &Program, name: &str) -> Dimension {
+fn unit(program: &Program, name: &str) -> NamedUnit {
     let output = program
         .output(name)
-        .map(|number| program.outputs[number].dimension);
-    let parameter = program
-        .parameter(name)
-        .map(|(parameter, _)| parameter.dimension);
-    output.or(parameter).unwrap_or(Dimension::DIMENSIONLESS)
+        .map(|number| program.outputs[number].unit.clone());
+    let parameter = || Some(program.parameter(name)?.0.unit.clone());
+    let number = || NamedUnit::usual(Dimension::DIMENSIONLESS);
+    output.or_else(parameter).unwrap_or_else(number)
 }

@@ -3,7 +3,7 @@
 use crate::study::Calibration;
 use hyde_calibrate::{Cause, RecordError, Unsupported};
 use hyde_diag::{Code, Diagnostic, Span};
-use hyde_units::{Dimension, engineering, significant};
+use hyde_units::{Dimension, engineering, engineering_difference, significant};
 
 /// Why a record cannot be observed.
 pub(crate) fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnostic {
@@ -127,7 +127,7 @@ pub(crate) fn reason(calibration: &Calibration, cause: &Cause) -> String {
             record,
         } => {
             let channel = &calibration.compiled.program.experiment.measured[*channel];
-            let shown = |value| engineering(value, channel.unit.unit().dimension);
+            let shown = |value| engineering_difference(value, &channel.unit);
             format!(
                 "the observer does not follow {record}: the innovations of `{}` are {}, and the signal itself varies by {}",
                 channel.name,

@@ -88,6 +88,16 @@ impl NamedUnit {
         }
     }
 
+    /// The unit of SI in which its values are kept: itself if it is one, else the usual one of its dimension.
+    #[must_use]
+    pub fn si(&self) -> Self {
+        if self.unit.is_si() {
+            self.clone()
+        } else {
+            Self::usual(self.unit.dimension)
+        }
+    }
+
     /// Whether it is made of symbols of SI and their multiples alone: `mm/s`, but not `rpm`, `bar` or `degC`.
     #[must_use]
     pub fn is_multiple_of_si(&self) -> bool {

@@ -5,6 +5,7 @@ use super::forward::Taken;
 use super::hypothesis::{Hypothesis, Knob};
 use super::stage::Stage;
 use crate::fit::{covariance, inflation};
+use hyde_units::{Dimension, NamedUnit};
 
 /// A quantity that was found, SI.
 #[derive(Clone, Debug)]
@@ -15,8 +16,8 @@ pub struct Quantity {
     pub value: f64,
     /// Its 95 % interval.
     pub interval: (f64, f64),
-    /// Its unit.
-    pub unit: String,
+    /// The unit that it is declared in.
+    pub unit: NamedUnit,
 }
 
 impl Quantity {
@@ -95,7 +96,7 @@ pub(super) fn findings(
             name: String::new(),
             value: f64::NAN,
             interval: (f64::NAN, f64::NAN),
-            unit: String::new(),
+            unit: NamedUnit::usual(Dimension::DIMENSIONLESS),
         });
         if hypothesis.is_pair() {
             let (s, c) = (sizes[0].value, sizes[1].value);
@@ -115,7 +116,7 @@ pub(super) fn findings(
                 name: "phase".to_owned(),
                 value: phase,
                 interval: (phase - turn, phase + turn),
-                unit: "rad".to_owned(),
+                unit: NamedUnit::usual(Dimension::ANGLE),
             });
         }
         Finding {

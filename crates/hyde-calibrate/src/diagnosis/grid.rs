@@ -145,7 +145,7 @@ impl<'h> Grid<'h> {
         let Some(shape) = self.axis.map(|axis| &self.hypothesis.shapes[axis]) else {
             return Measure::Itself;
         };
-        let order = shape.unit == "1";
+        let order = shape.is_number();
         match self.hypothesis.periodic {
             Some(_) if order || shape.range.0 <= 0.0 => Measure::Itself,
             Some(_) => Measure::Inverse,
@@ -203,7 +203,7 @@ impl<'h> Grid<'h> {
             let (from, to) = (self.measure(low), self.measure(high));
             values.extend(parts().map(|part| self.value(from + (to - from) * part)));
             // What is fixed to a shaft comes back with each turn: the peak there is not left to the places looked at finely.
-            if shape.unit == "1" && !shape.integer {
+            if shape.is_number() && !shape.integer {
                 values.retain(|value| (value - value.round()).abs() > WHOLE);
                 let (first, last) = (low.ceil().max(1.0) as u32, high.floor() as u32);
                 values.extend((first..=last).map(f64::from).take(most));
@@ -243,7 +243,7 @@ mod tests {
             value: 1.0,
             range: (0.5, 20.0),
             integer: false,
-            unit: "1".to_owned(),
+            unit: hyde_units::NamedUnit::usual(hyde_units::Dimension::DIMENSIONLESS),
         };
         let hypothesis = Hypothesis {
             effect: "LeadError".to_owned(),

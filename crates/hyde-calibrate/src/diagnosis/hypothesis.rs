@@ -1,6 +1,7 @@
 //! [`Hypothesis`]: an effect at a site of the model where it fits.
 
 use hyde_program::Program;
+use hyde_units::NamedUnit;
 
 /// Values are on a bound that are so near it, of the range.
 const NEAR: f64 = 1e-6;
@@ -16,11 +17,17 @@ pub struct Knob {
     pub range: (f64, f64),
     /// Whether it counts something.
     pub integer: bool,
-    /// Its unit in SI.
-    pub unit: String,
+    /// The unit that it is declared in.
+    pub unit: NamedUnit,
 }
 
 impl Knob {
+    /// Whether it is a bare number, as an order is.
+    #[must_use]
+    pub fn is_number(&self) -> bool {
+        self.unit.text() == "1"
+    }
+
     /// Whether a value is on a bound of its range that is neither 0 nor what is declared, which are simpler laws.
     #[must_use]
     pub fn is_at_bound(&self, value: f64) -> bool {
@@ -70,14 +77,16 @@ impl Hypothesis {
             return false;
         };
         let stem = |name: &str, ending: char| name.strip_suffix(ending).map(str::to_owned);
-        a.unit == b.unit && stem(&a.name, 's').is_some() && stem(&a.name, 's') == stem(&b.name, 'c')
+        let alike = a.unit.unit().dimension == b.unit.unit().dimension;
+        alike && stem(&a.name, 's').is_some() && stem(&a.name, 's') == stem(&b.name, 'c')
     }
 
     /// How many of its sizes make it what it is: the first, and those of its unit behind that. A spring with a pull beside its
     /// stiffness is a constant force where it has none.
     pub(crate) fn essential(&self) -> usize {
-        let unit = self.sizes.first().map(|first| &first.unit);
-        let alike = |size: &&Knob| Some(&size.unit) == unit;
+        let dimension = |size: &Knob| size.unit.unit().dimension;
+        let first = self.sizes.first().map(dimension);
+        let alike = |size: &&Knob| Some(dimension(size)) == first;
         self.sizes.iter().take_while(alike).count()
     }
 

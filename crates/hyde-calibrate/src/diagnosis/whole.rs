@@ -75,8 +75,7 @@ fn orders(hypotheses: &[Hypothesis], stage: &Stage) -> Vec<String> {
     let each = stage.effects.iter().filter_map(|(effect, path)| {
         let hypothesis = &hypotheses[*effect];
         let shape = &hypothesis.shapes[hypothesis.periodic?];
-        let order = matches!(shape.unit.as_str(), "" | "1");
-        order.then(|| format!("{path}.{}", shape.name))
+        shape.is_number().then(|| format!("{path}.{}", shape.name))
     });
     each.collect()
 }

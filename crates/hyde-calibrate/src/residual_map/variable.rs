@@ -2,7 +2,7 @@
 
 use crate::recording::Recording;
 use hyde_program::Program;
-use hyde_units::Dimension;
+use hyde_units::{Dimension, NamedUnit};
 use std::f64::consts::TAU;
 
 /// Half the time over which a speed is taken, in s: an encoder's steps are finer than the speeds of a drive by then.
@@ -13,7 +13,7 @@ const REVERSAL_S: f64 = 0.2;
 /// Something that innovations may depend on, at the rows that count, record by record; NaN where it is not known.
 pub(super) struct Variable {
     pub(super) name: String,
-    pub(super) unit: String,
+    pub(super) unit: NamedUnit,
     pub(super) values: Vec<Vec<f64>>,
 }
 
@@ -30,7 +30,7 @@ pub(super) fn variables(program: &Program, recordings: &[Recording]) -> Vec<Vari
     };
     let mut found = vec![Variable {
         name: "time".to_owned(),
-        unit: "s".to_owned(),
+        unit: NamedUnit::usual(Dimension::TIME),
         values: each(&time),
     }];
     let mut reversals = false;
@@ -39,7 +39,7 @@ pub(super) fn variables(program: &Program, recordings: &[Recording]) -> Vec<Vari
         let name = &measured.name;
         found.push(Variable {
             name: name.clone(),
-            unit: dimension.usual_unit(),
+            unit: measured.unit.clone(),
             values: each(&|recording| recording.channels[number].clone()),
         });
         let place = dimension == Dimension::LENGTH || dimension == Dimension::ANGLE;
@@ -49,13 +49,13 @@ pub(super) fn variables(program: &Program, recordings: &[Recording]) -> Vec<Vari
         let speed = |recording: &Recording| speed(&recording.channels[number], recording.step_s);
         found.push(Variable {
             name: format!("speed of {name}"),
-            unit: dimension.divide(Dimension::TIME).usual_unit(),
+            unit: NamedUnit::usual(dimension.divide(Dimension::TIME)),
             values: each(&speed),
         });
         if dimension == Dimension::ANGLE {
             found.push(Variable {
                 name: format!("{name} in its turn"),
-                unit: dimension.usual_unit(),
+                unit: measured.unit.clone(),
                 values: each(&|recording| {
                     let angles = recording.channels[number].iter();
                     angles.map(|angle| angle.rem_euclid(TAU)).collect()
@@ -66,7 +66,7 @@ pub(super) fn variables(program: &Program, recordings: &[Recording]) -> Vec<Vari
             reversals = true;
             found.push(Variable {
                 name: format!("time since a reversal of {name}"),
-                unit: "s".to_owned(),
+                unit: NamedUnit::usual(Dimension::TIME),
                 values: each(&|recording| since_reversal(&speed(recording), recording.step_s)),
             });
         }

@@ -239,9 +239,9 @@ mod tests {
     use super::*;
 
     fn knob(value: f64, range: (f64, f64), integer: bool) -> Knob {
-        let (name, unit) = (String::new(), String::new());
+        let unit = hyde_units::NamedUnit::usual(hyde_units::Dimension::DIMENSIONLESS);
         Knob {
-            name,
+            name: String::new(),
             value,
             range,
             integer,

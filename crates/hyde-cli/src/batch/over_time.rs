@@ -1,9 +1,10 @@
 //! Trajectories of a batch: whose rows are where, and all cases as envelopes.
 
+use crate::figures::{drawn_in, shown};
 use hyde_experiment::batch::envelope;
 use hyde_report::Envelope;
 use hyde_signal::{Field, Frame, Values};
-use hyde_units::NamedUnit;
+use hyde_units::{NamedUnit, Unit};
 use std::ops::Range;
 
 /// Instants of an envelope: one for about three pixels.
@@ -57,6 +58,8 @@ impl OverTime {
             if only.is_some_and(|name| name != field.name) {
                 continue;
             }
+            let (unit, of) = drawn(field);
+            let values: Vec<f64> = values.iter().map(|si| of.from_si(*si)).collect();
             let rows = self.cases.iter();
             let rows = rows.map(|(_, rows)| (&self.time[rows.clone()], &values[rows.clone()]));
             let rows: Vec<(&[f64], &[f64])> = rows.collect();
@@ -64,7 +67,7 @@ impl OverTime {
             if !enveloped.time.is_empty() {
                 found.push(Envelope {
                     name: field.name.clone(),
-                    unit: si_unit(field),
+                    unit,
                     time: enveloped.time,
                     quantiles: enveloped.quantiles,
                 });
@@ -97,18 +100,11 @@ pub(crate) fn in_si(field: &Field, values: &Values) -> Option<Vec<f64>> {
     }
 }
 
-/// The SI unit of a column as it is shown; empty of a bare number.
-pub(crate) fn si_unit(field: &Field) -> String {
-    let name = field.unit.as_ref().map_or(String::new(), |named| {
-        let unit = named.unit();
-        // Its own name where that is one of SI: J and N.m, Hz and 1/s are not told from each other by their dimensions.
-        let coherent = unit.to_si(1.0).to_bits() == 1.0_f64.to_bits()
-            && unit.to_si(0.0).to_bits() == 0.0_f64.to_bits();
-        if coherent {
-            named.text().to_owned()
-        } else {
-            unit.dimension.usual_unit()
-        }
-    });
-    crate::figures::shown(&name).to_owned()
+/// The unit that the values of a column are drawn in; none of a bare number.
+pub(crate) fn drawn(field: &Field) -> (String, Unit) {
+    let (name, unit) = field
+        .unit
+        .as_ref()
+        .map_or((String::new(), Unit::ONE), drawn_in);
+    (shown(&name).to_owned(), unit)
 }

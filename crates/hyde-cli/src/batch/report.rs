@@ -1,14 +1,14 @@
 //! What the page of a batch shows, from its data set, its trajectories and its summary: no model is needed.
 
 use super::order::Order;
-use super::over_time::{OverTime, in_si, si_unit, whole_numbers};
+use super::over_time::{OverTime, drawn, in_si, whole_numbers};
 use crate::commands::sweep::word;
 use crate::files;
 use hyde_report::{
     BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, FailedCase, Outcome, Verdict, WorstCase,
 };
 use hyde_signal::{Field, Frame, Values};
-use hyde_units::{NamedUnit, counted, engineering_as, significant};
+use hyde_units::{NamedUnit, Unit, counted, engineering_as, significant};
 use serde_json::Value;
 use std::path::Path;
 
@@ -176,12 +176,9 @@ impl Cases {
         let known = summary["measures"].as_array().into_iter().flatten();
         let measure = |(at, known): (&usize, &Value)| {
             let field = &self.frame.fields[*at];
-            let to_si = |value: f64| {
-                field
-                    .unit
-                    .as_ref()
-                    .map_or(value, |unit| unit.unit().to_si(value))
-            };
+            let own = field.unit.as_ref().map_or(Unit::ONE, NamedUnit::unit);
+            let (_, of) = drawn(field);
+            let in_drawn = |value: f64| of.from_si(own.to_si(value));
             // JSON has no word for infinite.
             let some = known["count"].as_u64().unwrap_or_default() > 0;
             let absent = if some { f64::INFINITY } else { f64::NAN };
@@ -191,7 +188,7 @@ impl Cases {
             CaseMeasure {
                 column: column(field, &self.frame.values[*at], self.failed.len()),
                 quantiles: quantiles
-                    .map(|known| (number(&known["p"]), to_si(number(&known["value"]))))
+                    .map(|known| (number(&known["p"]), in_drawn(number(&known["value"]))))
                     .collect(),
                 correlations: correlations
                     .filter_map(|known| {
@@ -270,12 +267,14 @@ impl Cases {
     }
 }
 
-/// A column as SI values; without numbers, as of a batch of which all cases failed, there are none.
+/// A column as it is drawn; without numbers, as of a batch of which all cases failed, there are none.
 fn column(field: &Field, values: &Values, rows: usize) -> CaseColumn {
+    let (unit, of) = drawn(field);
+    let values = in_si(field, values).unwrap_or_else(|| vec![f64::NAN; rows]);
     CaseColumn {
         name: field.name.clone(),
-        unit: si_unit(field),
-        values: in_si(field, values).unwrap_or_else(|| vec![f64::NAN; rows]),
+        unit,
+        values: values.into_iter().map(|si| of.from_si(si)).collect(),
     }
 }
 

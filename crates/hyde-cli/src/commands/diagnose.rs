@@ -197,7 +197,7 @@ pub(crate) fn hypothesis(candidate: &Candidate) -> Hypothesis {
         value: knob.value,
         range: knob.range.unwrap_or_else(|| around(knob.value)),
         integer: knob.integer,
-        unit: knob.quantity.dimension.usual_unit(),
+        unit: knob.quantity.unit.clone(),
     };
     let marked = |marks: &[&str]| {
         let mut marks = candidate

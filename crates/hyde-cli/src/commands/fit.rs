@@ -12,7 +12,7 @@ use crate::unobservable;
 use crate::watch::Watch;
 use hyde_calibrate::{Fit, Model, Problem, Unsupported};
 use hyde_sim::Reached;
-use hyde_units::{counted, engineering, significant};
+use hyde_units::{counted, engineering_as, engineering_difference, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
@@ -159,16 +159,20 @@ fn text(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> String
         "parameter", "declared", "calibrated", "±", ""
     );
     for parameter in &fit.parameters {
-        let dimension = program.parameter(&parameter.name).map(|(p, _)| p.dimension);
-        let number =
-            |value: f64| dimension.map_or_else(|| significant(value, 5), |d| engineering(value, d));
+        let unit = program.parameter(&parameter.name).map(|(p, _)| &p.unit);
+        let number = |value: f64| {
+            unit.map_or_else(|| significant(value, 5), |unit| engineering_as(value, unit))
+        };
         let half = (parameter.interval.1 - parameter.interval.0) / 2.0;
         let line = format!(
             "  {:<24} {:>13} {:>13} {:>7}  {}",
             parameter.name,
             number(parameter.nominal),
             number(parameter.value),
-            before_after::spread(half, parameter.value, number),
+            before_after::spread(half, parameter.value, |half| unit.map_or_else(
+                || significant(half, 5),
+                |unit| engineering_difference(half, unit)
+            )),
             suspicion(parameter)
         );
         let _ = writeln!(out, "{}", line.trim_end());

@@ -108,7 +108,7 @@ fn effects(told: &Told<'_>) -> Value {
             "site": hypothesis.site,
             "aliases": hypothesis.aliases,
             "size": finding.size.value,
-            "unit": finding.size.unit,
+            "unit": finding.size.unit.si().text(),
             "interval": [finding.size.interval.0, finding.size.interval.1],
             "sizes": all(&finding.sizes),
             "shape": all(&finding.shapes),
@@ -119,7 +119,7 @@ fn effects(told: &Told<'_>) -> Value {
 }
 
 fn quantity(own: &Quantity) -> Value {
-    json!({ "value": own.value, "unit": own.unit, "interval": [own.interval.0, own.interval.1] })
+    json!({ "value": own.value, "unit": own.unit.si().text(), "interval": [own.interval.0, own.interval.1] })
 }
 
 fn parameters(told: &Told<'_>) -> Value {
@@ -155,7 +155,7 @@ fn maps(told: &Told<'_>) -> Value {
         json!({
             "channel": map.channel,
             "over": map.over,
-            "unit": map.unit,
+            "unit": map.unit.si().text(),
             "bins": map.bins,
             "before": map.before,
             "after": map.after,
@@ -186,7 +186,7 @@ fn rejected(told: &Told<'_>) -> Value {
         let size = tried.hypothesis.sizes.first();
         let seen =
             tried.score.detectable.zip(size).map(
-                |(value, size)| json!({ "name": size.name, "value": value, "unit": size.unit }),
+                |(value, size)| json!({ "name": size.name, "value": value, "unit": size.unit.si().text() }),
             );
         json!({
             "effect": tried.hypothesis.effect,

@@ -2,12 +2,12 @@
 
 use super::{Told, named, suspicion, verdict};
 use crate::before_after::{self, Change, RecordErrors};
-use crate::figures::shown;
+use crate::figures::{difference_in, drawn_in, shown};
 use hyde_calibrate::{FittedParameter, ResidualMap, Whiteness};
 use hyde_report::{
     ChannelChange, DiagnosisReport, ErrorChange, MovedParameter, RecordChange, TriedEffect,
 };
-use hyde_units::significant;
+use hyde_units::{Unit, significant};
 
 /// The page as one HTML text.
 pub(crate) fn html(told: &Told<'_>) -> String {
@@ -95,23 +95,27 @@ fn unknown(told: &Told<'_>) -> Vec<[String; 3]> {
 }
 
 fn errors(told: &Told<'_>, record: &RecordErrors) -> RecordChange {
-    let change = |change: Change| ErrorChange {
-        before: change.before,
-        after: change.after,
-        floor: change.floor,
-    };
     let deviations = &told.calibration.observer.deviations;
     let measured = &told.calibration.compiled.program.experiment.measured;
-    let channel = |(number, measured): (usize, &hyde_program::Measured)| ChannelChange {
-        name: measured.name.clone(),
-        unit: shown(&measured.unit.unit().dimension.usual_unit()).to_owned(),
-        innovations: change(record.innovations(number, deviations)),
-        windows: change(record.windows(number)),
-        free: record.free(number).map(change),
-        over_time: (
-            record.before.windows.rms[number].clone(),
-            record.after.windows.rms[number].clone(),
-        ),
+    let channel = |(number, measured): (usize, &hyde_program::Measured)| {
+        let (unit, of) = difference_in(&measured.unit);
+        let change = |change: Change| ErrorChange {
+            before: of.from_si(change.before),
+            after: of.from_si(change.after),
+            floor: of.from_si(change.floor),
+        };
+        let rms = |windows: &[Vec<f64>]| windows[number].iter().map(|si| of.from_si(*si)).collect();
+        ChannelChange {
+            name: measured.name.clone(),
+            unit: shown(&unit).to_owned(),
+            innovations: change(record.innovations(number, deviations)),
+            windows: change(record.windows(number)),
+            free: record.free(number).map(change),
+            over_time: (
+                rms(&record.before.windows.rms),
+                rms(&record.after.windows.rms),
+            ),
+        }
     };
     RecordChange {
         name: record.after.record.clone(),
@@ -125,16 +129,20 @@ fn errors(told: &Told<'_>, record: &RecordErrors) -> RecordChange {
 
 fn moved(told: &Told<'_>, old: &FittedParameter, new: &FittedParameter) -> MovedParameter {
     let program = &told.calibration.compiled.program;
-    let unit = program
-        .parameter(&new.name)
-        .map(|(parameter, _)| parameter.dimension.usual_unit());
-    let of = |own: &FittedParameter| (own.value, (own.interval.1 - own.interval.0) / 2.0);
+    let unit = program.parameter(&new.name).map(|(own, _)| &own.unit);
+    let (unit, drawn) = unit.map_or((String::new(), Unit::ONE), drawn_in);
+    let of = |own: &FittedParameter| {
+        let half = (own.interval.1 - own.interval.0) / 2.0;
+        (drawn.from_si(own.value), drawn.scale.remove(half))
+    };
     MovedParameter {
         name: new.name.clone(),
-        unit: shown(unit.as_deref().unwrap_or("1")).to_owned(),
-        declared: new.nominal,
+        unit: shown(&unit).to_owned(),
+        declared: drawn.from_si(new.nominal),
         // A prior stands for a uniform distribution of the same variance.
-        spread: new.prior.map_or(f64::NAN, |sd| 3.0_f64.sqrt() * sd),
+        spread: new
+            .prior
+            .map_or(f64::NAN, |sd| 3.0_f64.sqrt() * drawn.scale.remove(sd)),
         before: of(old),
         after: of(new),
         suspicion: suspicion(new).to_lowercase(),
@@ -145,13 +153,17 @@ fn moved(told: &Told<'_>, old: &FittedParameter, new: &FittedParameter) -> Moved
 fn maps(told: &Told<'_>) -> Vec<hyde_report::ResidualMap> {
     const SHOWN: usize = 12;
     let beyond = |map: &&ResidualMap| map.excess.0.max(map.excess.1) > 1.0;
-    let shown = told.maps.iter().filter(beyond).take(SHOWN);
-    shown
-        .map(|map| hyde_report::ResidualMap {
+    let listed = told.maps.iter().filter(beyond).take(SHOWN);
+    listed
+        .map(|map| {
+            let (unit, of) = drawn_in(&map.unit);
+            (map, shown(&unit).to_owned(), of)
+        })
+        .map(|(map, unit, of)| hyde_report::ResidualMap {
             channel: map.channel.clone(),
             over: map.over.clone(),
-            unit: shown_unit(&map.unit),
-            bins: map.bins.clone(),
+            unit,
+            bins: map.bins.iter().map(|si| of.from_si(*si)).collect(),
             before: map.before.clone(),
             after: map.after.clone(),
             band: map.band.clone(),
@@ -177,17 +189,14 @@ fn white(own: &Whiteness) -> [String; 5] {
     ]
 }
 
-fn shown_unit(unit: &str) -> String {
-    shown(unit).to_owned()
-}
-
 fn tried(told: &Told<'_>) -> Vec<TriedEffect> {
     let of = |tried: super::Tried<'_>| {
         let size = tried.hypothesis.sizes.first();
-        let visible = tried.score.detectable.zip(size).map(|(value, size)| {
-            let text = format!("{} {}", significant(value, 2), shown(&size.unit));
-            text.trim_end().to_owned()
-        });
+        let visible = tried
+            .score
+            .detectable
+            .zip(size)
+            .map(|(value, size)| verdict::number(value, 2, &size.unit));
         TriedEffect {
             name: named(tried.hypothesis),
             score: tried.score.gain(),

@@ -2,9 +2,10 @@
 
 use super::{Told, named, suspicion, verdict};
 use crate::before_after;
+use crate::figures::{drawn_in, shown};
 use crate::unknown;
 use hyde_calibrate::ResidualMap;
-use hyde_units::significant;
+use hyde_units::{Unit, significant};
 use std::fmt::Write as _;
 
 /// Columns of a terminal.
@@ -82,17 +83,18 @@ fn parameters(out: &mut String, told: &Told<'_>) {
         "parameter", "declared", "before", "after", "±"
     );
     for (old, new) in &told.parameters {
-        let known = program.parameter(&new.name);
-        let unit = known.map_or_else(String::new, |(p, _)| p.dimension.usual_unit());
-        let unit = if unit == "1" { String::new() } else { unit };
-        let half = (new.interval.1 - new.interval.0) / 2.0;
+        let unit = program.parameter(&new.name).map(|(own, _)| &own.unit);
+        let (unit, of) = unit.map_or((String::new(), Unit::ONE), drawn_in);
+        let unit = shown(&unit);
+        let half = of.scale.remove((new.interval.1 - new.interval.0) / 2.0);
+        let value = of.from_si(new.value);
         let line = format!(
             "  {:<18} {:>10} {:>10} {:>10} {:>8} {unit}",
             before_after::shortened(&new.name, 18),
-            significant(new.nominal, 4),
-            significant(old.value, 4),
-            significant(new.value, 4),
-            before_after::spread(half, new.value, |half| significant(half, 2)),
+            significant(of.from_si(new.nominal), 4),
+            significant(of.from_si(old.value), 4),
+            significant(value, 4),
+            before_after::spread(half, value, |half| significant(half, 2)),
         );
         let _ = writeln!(out, "{}", line.trim_end());
         if !suspicion(new).is_empty() {
@@ -113,10 +115,11 @@ fn tried(out: &mut String, told: &Told<'_>) {
     );
     for tried in all.iter().take(TRIED) {
         let size = tried.hypothesis.sizes.first();
-        let seen = tried.score.detectable.zip(size).map(|(value, size)| {
-            let unit = if size.unit == "1" { "" } else { &size.unit };
-            format!("{} {unit}", significant(value, 2))
-        });
+        let seen = tried
+            .score
+            .detectable
+            .zip(size)
+            .map(|(value, size)| verdict::number(value, 2, &size.unit));
         let line = format!(
             "  {:<27} {:>8} {:>8}  {:<18} {}",
             before_after::shortened(&named(tried.hypothesis), 27),

@@ -2,9 +2,10 @@
 
 use super::{Refused, Told, named};
 use crate::before_after::{self, RecordErrors};
+use crate::figures::{drawn_in, shown};
 use crate::unobservable::reason;
 use hyde_calibrate::{Finding, Frozen, Quantity, Verdict};
-use hyde_units::significant;
+use hyde_units::{NamedUnit, significant};
 
 /// One sentence, without the stop at its end.
 pub(super) fn sentence(told: &Told<'_>) -> String {
@@ -65,16 +66,20 @@ fn sized(told: &Told<'_>, finding: &Finding) -> String {
 /// `dF = 12.1 ± 0.3 N`
 pub(super) fn quantity(quantity: &Quantity) -> String {
     let half = (quantity.interval.1 - quantity.interval.0) / 2.0;
-    let unit = match quantity.unit.as_str() {
-        "" | "1" => String::new(),
-        unit => format!(" {unit}"),
-    };
+    let (_, of) = drawn_in(&quantity.unit);
     format!(
-        "{} = {} ± {}{unit}",
+        "{} = {} ± {}",
         quantity.name,
-        significant(quantity.value, 4),
-        significant(half, 2)
+        significant(of.from_si(quantity.value), 4),
+        number(of.to_si(of.scale.remove(half)), 2, &quantity.unit)
     )
+}
+
+/// A value in the unit that it is shown in: `0.012 m`, `6 bar`.
+pub(crate) fn number(si: f64, digits: usize, unit: &NamedUnit) -> String {
+    let (unit, of) = drawn_in(unit);
+    let text = format!("{} {}", significant(of.from_si(si), digits), shown(&unit));
+    text.trim_end().to_owned()
 }
 
 /// What the verdict stands on.

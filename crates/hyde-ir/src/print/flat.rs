@@ -5,7 +5,7 @@ use crate::flat::{
     Action, Equation, FlatModel, Method, Preparation, RecordedResponse, ReductionKind, ScaledColumn,
 };
 
-use crate::{Interpolation, VariableKind};
+use crate::{Interpolation, Quantity, VariableKind};
 use hyde_diag::Sources;
 use std::fmt::Write as _;
 
@@ -80,7 +80,7 @@ impl Printer<'_> {
             if let Some(source) = &parameter.source {
                 let _ = write!(notes, " from {source:?}");
             }
-            let unit = unit(parameter.quantity.unit.text());
+            let unit = unit(&parameter.quantity);
             let origin = comment(&parameter.origin, self.sources);
             let _ = writeln!(out, "  {}{unit} = {value}{notes}{origin}", parameter.name);
         }
@@ -130,7 +130,7 @@ impl Printer<'_> {
                     )
                 }
             };
-            let unit = unit(variable.quantity.unit.text());
+            let unit = unit(&variable.quantity);
             let origin = comment(&variable.origin, self.sources);
             let _ = writeln!(out, "  {kind} {}{dims}{unit}{start}{origin}", variable.name);
         }
@@ -438,10 +438,10 @@ fn heading(out: &mut String, title: &str, empty: bool) {
     }
 }
 
-fn unit(text: &str) -> String {
-    if text.is_empty() || text == "1" {
-        String::new()
-    } else {
-        format!(" [{text}]")
+/// The unit that the values behind it have: that of SI.
+fn unit(quantity: &Quantity) -> String {
+    match quantity.unit.si().text() {
+        "" | "1" => String::new(),
+        text => format!(" [{text}]"),
     }
 }

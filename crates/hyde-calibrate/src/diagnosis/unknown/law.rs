@@ -3,9 +3,9 @@
 use super::factor::{Constant, Factor};
 use super::latent::Carrier;
 use super::seen::{Scales, Seen};
-use super::site::{Kind, Site, Written, si};
+use super::site::{Kind, Site, Written};
 use crate::diagnosis::{Hypothesis, Knob};
-use hyde_units::significant;
+use hyde_units::{Dimension, NamedUnit, significant};
 use std::fmt::Write as _;
 
 /// A product of shapes with one size, or of a wave two.
@@ -184,7 +184,7 @@ impl Law {
                     value: 0.0,
                     range: (-most, most),
                     integer: false,
-                    unit: unit.to_owned(),
+                    unit: named(unit),
                 });
                 sum.push(format!("{own}{product}"));
             }
@@ -273,8 +273,12 @@ fn knob(name: &str, constant: &Constant) -> Knob {
         value: constant.value,
         range: constant.range,
         integer: false,
-        unit: si(constant.unit).to_owned(),
+        unit: named(constant.unit),
     }
+}
+
+fn named(unit: &str) -> NamedUnit {
+    NamedUnit::parse(unit).unwrap_or_else(|_| NamedUnit::usual(Dimension::DIMENSIONLESS))
 }
 
 fn quantity(value: f64, constant: &Constant) -> String {

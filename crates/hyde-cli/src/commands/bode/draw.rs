@@ -100,6 +100,12 @@ fn drawn(title: &str, responses: &[&Response]) -> Figure {
     let Some(first) = responses.first() else {
         return bode_plot(title, ("", ""), &curves, &[]);
     };
+    for curve in &mut curves {
+        let values = curve.response.iter_mut();
+        values.for_each(|(re, im)| (*re, *im) = (*re * first.factor, *im * first.factor));
+        let noise = curve.deviation.iter_mut().flatten();
+        noise.for_each(|value| *value *= first.factor);
+    }
     let band = (
         first.frequency[0],
         first.frequency[first.frequency.len() - 1],

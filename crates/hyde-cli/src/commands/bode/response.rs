@@ -1,6 +1,7 @@
 //! One response of an experiment: of the linearised model, and as measured on the hybrid one.
 
 use super::measured::Compared;
+use crate::figures::{difference_in, shown};
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::{BodeError, Linear, Pole, Poles, SteppedOutput, frequency_response_watched};
 use hyde_program::{Bode, Constant, Program};
@@ -16,8 +17,10 @@ pub(crate) struct Response {
     pub(crate) input: String,
     /// The output, as it is written.
     pub(crate) output: String,
-    /// Output per input.
+    /// Output per input, as it is drawn.
     pub(crate) unit: String,
+    /// Drawn value = SI value times this.
+    pub(crate) factor: f64,
     /// Frequencies of the linearised response in Hz.
     pub(crate) frequency: Vec<f64>,
     /// Its real and imaginary parts, SI.
@@ -73,7 +76,8 @@ pub(crate) fn linearised(
             experiment: experiment.to_owned(),
             input: bode.input.clone(),
             output: name.clone(),
-            unit: unit(program, bode, *output),
+            unit: unit(program, bode, *output).0,
+            factor: unit(program, bode, *output).1,
             frequency: frequency.to_vec(),
             linear: response
                 .into_iter()
@@ -115,19 +119,18 @@ fn resonances(system: &Linear, poles: &Poles, frequency: &[f64]) -> Vec<(f64, f6
         .collect()
 }
 
-/// The unit of an output over that of the input, for people.
-fn unit(program: &Program, bode: &Bode, output: usize) -> String {
+/// The unit of an output over that of the input, for people, with how many of it one of SI is.
+fn unit(program: &Program, bode: &Bode, output: usize) -> (String, f64) {
     let mut parameters = program.parameters.iter();
     let Some(input) = parameters.find(|parameter| parameter.name == bode.input) else {
-        return String::new();
+        return (String::new(), 1.0);
     };
-    let (of, per) = (
-        program.outputs[output].dimension.usual_unit(),
-        input.dimension.usual_unit(),
-    );
-    match (crate::figures::shown(&of), crate::figures::shown(&per)) {
+    let (of, drawn) = difference_in(&program.outputs[output].unit);
+    let (per, given) = difference_in(&input.unit);
+    let text = match (shown(&of), shown(&per)) {
         (of, "") => of.to_owned(),
         ("", per) => format!("1/{per}"),
         (of, per) => format!("{of} per {per}"),
-    }
+    };
+    (text, given.to_si(drawn.from_si(1.0)))
 }

@@ -10,7 +10,7 @@ use crate::settings::Setting;
 use crate::{records, run_failure, summary};
 use hyde_experiment::{Level, Options, SteppedPoint, Steps, parameters, stepped_response};
 use hyde_program::{Constant, Program};
-use hyde_units::{Dimension, NamedUnit, engineering, engineering_as, significant};
+use hyde_units::{Dimension, NamedUnit, engineering_as, engineering_difference, significant};
 use std::fmt::Write as _;
 
 /// Runs the response of that number; puts what came out beside the linearised responses, and tells it. Whether every
@@ -107,11 +107,14 @@ fn told(
     points: &[SteppedPoint],
 ) -> (String, bool) {
     let mut text = String::new();
-    let dimension = program.parameter(&format!("{input}.amplitude"));
-    let dimension = dimension.map_or(Dimension::DIMENSIONLESS, |(parameter, _)| {
-        parameter.dimension
-    });
+    let amplitude = program.parameter(&format!("{input}.amplitude"));
+    let number = NamedUnit::usual(Dimension::DIMENSIONLESS);
+    let unit = amplitude.map_or(&number, |(parameter, _)| &parameter.unit);
     for response in responses {
+        if !response.unit.is_empty() {
+            let (output, unit) = (&response.output, &response.unit);
+            let _ = writeln!(text, "  {output} in dB re 1 {unit}");
+        }
         let _ = writeln!(
             text,
             "  {:<12} {:>12} {:>9} {:>8} {:>10} {:>11}",
@@ -121,9 +124,9 @@ fn told(
             let start = format!(
                 "  {:>9} Hz {:>12}",
                 significant(*f, 4),
-                engineering(*amplitude, dimension)
+                engineering_difference(*amplitude, unit)
             );
-            let norm = found.response.norm();
+            let norm = response.factor * found.response.norm();
             let _ = if norm > 0.0 {
                 writeln!(
                     text,

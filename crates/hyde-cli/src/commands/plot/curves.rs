@@ -3,10 +3,10 @@
 use super::source::Recorded;
 use super::strip;
 use crate::args::PlotArgs;
-use crate::figures::shown;
+use crate::figures::{drawn_in, shown};
 use hyde_report::{Figure, Line, time_panel, time_plot, xy_plot};
 use hyde_signal::{Column, Table};
-use hyde_units::significant;
+use hyde_units::{Agreement, NamedUnit, Unit, significant};
 use std::ops::Range;
 
 /// Panels over one time, with the events of the first source below.
@@ -22,20 +22,22 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Recorded]) -> Result<Figure,
     let mut drawn = Vec::new();
     for panel in &panels {
         let names = listed(panel);
-        let mut unit = OneUnit::default();
-        let mut lines = Vec::new();
+        let mut all = Vec::new();
         for name in &names {
             for source in having(sources, name)? {
-                let column = column(source, name)?;
-                unit.take(name, column)?;
-                let rows = window(args, source.table.time());
-                let x = source.table.time()[rows.clone()].to_vec();
                 let label = label(name, names.len(), &source.name, sources.len());
-                let line = Line::new(label, x, column.values()[rows].to_vec());
-                lines.push(line.with_style(source.style));
+                all.push((label, source, column(source, name)?));
             }
         }
-        drawn.push(time_panel(axis_label(&names), &unit.shown(), lines));
+        let (unit, of) = one_unit(all.iter().map(|(.., column)| *column))?;
+        let line = |(label, source, column): (String, &Recorded, &Column)| {
+            let rows = window(args, source.table.time());
+            let x = source.table.time()[rows.clone()].to_vec();
+            let y = column.values()[rows].iter().map(|si| of.from_si(*si));
+            Line::new(label, x, y.collect()).with_style(source.style)
+        };
+        let lines = all.into_iter().map(line).collect();
+        drawn.push(time_panel(axis_label(&names), shown(&unit), lines));
     }
     let rows = window(args, first.table.time());
     let ends = first.table.time().get(rows).unwrap_or_default();
@@ -58,23 +60,28 @@ pub(super) fn over_each_other(args: &PlotArgs, sources: &[Recorded]) -> Result<F
         if names.len() % 2 == 1 {
             return Err(format!("`{panel}`: write pairs, `y,x` or `y1,x1,y2,x2`"));
         }
-        let (mut x_unit, mut y_unit) = (OneUnit::default(), OneUnit::default());
-        let mut lines = Vec::new();
+        let mut all = Vec::new();
         for (y, x) in &pairs {
             for source in having(sources, y)? {
-                let (of_x, of_y) = (column(source, x)?, column(source, y)?);
-                x_unit.take(x, of_x)?;
-                y_unit.take(y, of_y)?;
-                let rows = window(args, source.table.time());
                 let label = label(y, pairs.len(), &source.name, sources.len());
-                let values = |column: &Column| column.values()[rows.clone()].to_vec();
-                lines.push(Line::new(label, values(of_x), values(of_y)).with_style(source.style));
+                all.push((label, source, column(source, x)?, column(source, y)?));
             }
         }
+        let (x_unit, x_of) = one_unit(all.iter().map(|(_, _, x, _)| *x))?;
+        let (y_unit, y_of) = one_unit(all.iter().map(|(.., y)| *y))?;
+        let line = |(label, source, x, y): (String, &Recorded, &Column, &Column)| {
+            let rows = window(args, source.table.time());
+            let values = |column: &Column, of: Unit| {
+                let values = column.values()[rows.clone()].iter();
+                values.map(|si| of.from_si(*si)).collect()
+            };
+            Line::new(label, values(x, x_of), values(y, y_of)).with_style(source.style)
+        };
+        let lines = all.into_iter().map(line).collect();
         let (ys, xs): (Vec<&str>, Vec<&str>) = pairs.iter().copied().unzip();
-        let x = (axis_label(&xs), x_unit.shown());
-        let y = (axis_label(&ys), y_unit.shown());
-        panels.extend(xy_plot("", (x.0, &x.1), (y.0, &y.1), lines).panels);
+        let x = (axis_label(&xs), shown(&x_unit));
+        let y = (axis_label(&ys), shown(&y_unit));
+        panels.extend(xy_plot("", x, y, lines).panels);
     }
     if panels.is_empty() {
         return Err("which columns? write pairs, `y,x`".to_owned());
@@ -90,29 +97,36 @@ pub(super) fn over_each_other(args: &PlotArgs, sources: &[Recorded]) -> Result<F
     })
 }
 
-/// The unit that all columns along one axis have.
-#[derive(Default)]
-struct OneUnit(Option<String>);
-
-impl OneUnit {
-    fn take(&mut self, name: &str, column: &Column) -> Result<(), String> {
-        let own = si_unit(column);
-        match &self.0 {
-            Some(unit) if *unit != own => Err(format!(
-                "`{name}` is in {own}, the panel in {unit}: give it a panel of its own"
-            )),
-            _ => {
-                self.0 = Some(own);
-                Ok(())
+/// The unit that all columns along one axis are drawn in: the one that they are declared in, that of SI if they differ there.
+fn one_unit<'c>(columns: impl Iterator<Item = &'c Column>) -> Result<(String, Unit), String> {
+    let mut one: Option<(String, Unit)> = None;
+    for column in columns {
+        let (text, unit) = column.unit().map_or((String::new(), Unit::ONE), drawn_in);
+        one = match one {
+            None => Some((text, unit)),
+            Some((known, of)) if known == text => Some((known, of)),
+            Some((known, of)) => {
+                let alike = known.is_empty() == text.is_empty()
+                    && of.dimension.agreement(unit.dimension) == Agreement::Same;
+                if !alike {
+                    return Err(format!(
+                        "`{}` is in {}, the panel in {}: give it a panel of its own",
+                        column.name(),
+                        named(&text),
+                        named(&known)
+                    ));
+                }
+                let si = NamedUnit::usual(of.dimension);
+                Some((si.text().to_owned(), si.unit()))
             }
-        }
+        };
     }
+    Ok(one.unwrap_or((String::new(), Unit::ONE)))
+}
 
-    fn shown(&self) -> String {
-        self.0
-            .as_deref()
-            .map_or_else(String::new, |unit| shown(unit).to_owned())
-    }
+/// The word for a unit in a sentence.
+fn named(unit: &str) -> &str {
+    if unit.is_empty() { "no unit" } else { unit }
 }
 
 /// The columns of a panel.
@@ -198,12 +212,6 @@ fn unknown(table: &Table, name: &str) -> String {
     )
 }
 
-fn si_unit(column: &Column) -> String {
-    column
-        .unit()
-        .map_or(String::new(), |unit| unit.unit().dimension.usual_unit())
-}
-
 /// The first columns, one panel a unit.
 fn choice(table: &Table) -> Vec<String> {
     let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
@@ -212,7 +220,7 @@ fn choice(table: &Table) -> Vec<String> {
         .iter()
         .filter(|column| !matches!(column.name(), "t" | "time"))
     {
-        let unit = si_unit(column);
+        let unit = column.unit().map_or(String::new(), |unit| drawn_in(unit).0);
         match groups.iter_mut().find(|(known, _)| *known == unit) {
             Some((_, list)) if list.len() < 3 => list.push(column.name()),
             Some(_) => {}

@@ -29,7 +29,7 @@ pub(super) fn report(told: &Told<'_>) -> Value {
                 "hidden_wrong": row.hidden_wrong,
                 "taken_for": taken,
                 "detectable": row.detectable,
-                "unit": told.hypotheses[row.hypothesis].sizes.first().map(|size| &size.unit),
+                "unit": told.hypotheses[row.hypothesis].sizes.first().map(|size| size.unit.si().text().to_owned()),
                 "size_found_over_planted": row.ratios,
             })
         })

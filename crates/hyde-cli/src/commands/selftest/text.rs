@@ -2,6 +2,7 @@
 
 use super::Told;
 use super::json::{shown, sums};
+use crate::diagnosis;
 use hyde_calibrate::{Found, Planting, Row};
 use hyde_units::significant;
 use std::collections::BTreeMap;
@@ -50,12 +51,9 @@ pub(super) fn text(told: &Told<'_>) -> String {
 
 fn line(out: &mut String, told: &Told<'_>, row: &Row) {
     let hypothesis = &told.hypotheses[row.hypothesis];
-    let unit = hypothesis.sizes.first().map_or("", |size| &size.unit);
-    let from = row.detectable.map_or_else(String::new, |size| {
-        let unit = if unit == "1" { "" } else { unit };
-        format!("{} {unit}", significant(size, 2))
-            .trim_end()
-            .to_owned()
+    let seen = row.detectable.zip(hypothesis.sizes.first());
+    let from = seen.map_or_else(String::new, |(value, size)| {
+        diagnosis::number(value, 2, &size.unit)
     });
     let hidden = match (row.hidden, row.hidden_wrong) {
         (0, _) => String::new(),
