@@ -122,6 +122,30 @@ fn a_record_that_is_a_link_out_of_its_folder_is_refused() {
     assert!(output.status.success(), "{}", errors(&output));
 }
 
+/// The patterns of studies, and the alternatives of a sweep, are held to the same border.
+#[test]
+#[cfg(unix)]
+fn a_record_of_a_study_that_is_a_link_out_of_its_folder_is_refused() {
+    let (folder, outside) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let far = outside.path().join("fit-1.csv");
+    std::fs::write(&far, "t [s],u [m/s],x [m]\n0,0,0\n1,1,0.5\n").unwrap();
+    std::os::unix::fs::symlink(&far, folder.path().join("fit-1.csv")).unwrap();
+    let model = "package m;\nimport SI.*;\n\nmodel M\n  input Velocity u;\n  parameter Real k = 1 ~ ±10%;\n  \
+                 Length x(start = 0, fixed = true);\nequation\n  der(x) = k*u;\nend M;\n\n\
+                 experiment e(record log) of M\n  stimulus u = log.u;\n  measured log.x = x ~ 1 [mm];\n  solve ida stop log.end;\nend e;\n\n\
+                 calibrate c of M\n  fit e(\"fit-*.csv\");\n  vary uncertain;\nend c;\n\n\
+                 sweep s of e\n  vary record log = {\"fit-1.csv\"};\nend s;\n";
+    std::fs::write(folder.path().join("m.hyde"), model).unwrap();
+    for line in [["fit", "m.hyde", "--json"], ["sweep", "m.hyde", "--json"]] {
+        let output = hyde(folder.path(), &line);
+        assert_eq!(json(&output)["diagnostics"][0]["code"], "E0802", "{line:?}");
+    }
+    // As the help says: the folder in which it is.
+    let data = outside.path().display().to_string();
+    let output = hyde(folder.path(), &["fit", "m.hyde", "--data", &data, "--json"]);
+    assert_ne!(json(&output)["diagnostics"][0]["code"], "E0802");
+}
+
 #[test]
 #[cfg(unix)]
 fn links_that_lead_out_of_the_folder_are_refused() {

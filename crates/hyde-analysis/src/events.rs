@@ -99,15 +99,24 @@ fn add(
                 value,
                 origin: origin.clone(),
             }),
-            None => diagnostics.push(
-                Diagnostic::error(
-                    Code::WrongType,
-                    format!("`{}` is no state", system.flat.variables[var].name),
-                )
-                .label(origin.span, "reinitialised here")
-                .note("it is computed from other variables")
-                .help("reinitialise the state it is computed from"),
-            ),
+            None => {
+                let states = states_behind(dae, var);
+                let names = states.join("`, `");
+                let help = match states.as_slice() {
+                    [] => "no state has a part in it: an event cannot set it".to_owned(),
+                    [_] => format!("reinitialise `{names}`, which it is computed from"),
+                    _ => format!("reinitialise the states that it is computed from: `{names}`"),
+                };
+                diagnostics.push(
+                    Diagnostic::error(
+                        Code::WrongType,
+                        format!("`{}` is not a state", system.flat.variables[var].name),
+                    )
+                    .label(origin.span, "reinitialised here")
+                    .note("it is computed from other variables")
+                    .help(help),
+                );
+            }
         }
     }
     let text = text(dae, condition);
@@ -168,6 +177,35 @@ fn state_target(
     });
     let continuous = dae.variables[var].kind == VariableKind::Continuous;
     (differential && continuous).then_some((Target::State(position), value))
+}
+
+/// The states that a variable is computed from, by name.
+fn states_behind(dae: &Dae, var: VarId) -> Vec<String> {
+    let (mut states, mut seen, mut open) = (Vec::new(), Vec::new(), vec![var]);
+    while let Some(var) = open.pop() {
+        if seen.contains(&var) {
+            continue;
+        }
+        seen.push(var);
+        if let Some(Alias::Of { var, .. }) = alias(dae, var) {
+            open.push(var);
+        }
+        let own = dae.unknowns.iter().find(|block| block.var == var);
+        if own.is_some_and(|block| block.differential) {
+            states.push(dae.variables[var].name.clone());
+            continue;
+        }
+        let definitions = dae.definitions.iter();
+        for definition in definitions.filter(|definition| definition.var == var) {
+            for id in dae.exprs.below(&[definition.value]) {
+                if let Expr::Var(read, _) = dae.exprs[id] {
+                    open.push(read);
+                }
+            }
+        }
+    }
+    states.sort();
+    states
 }
 
 fn text(dae: &Dae, id: ExprId) -> String {

@@ -42,6 +42,7 @@ mod redundant;
 mod regularity;
 mod relations;
 mod segments;
+mod set_model;
 mod sliding;
 mod solve;
 mod split;
@@ -59,13 +60,24 @@ pub use still::{
 
 use hyde_diag::Diagnostics;
 use hyde_ir::{Dae, FlatModel};
+use std::collections::BTreeMap;
 
-/// Analyses a flat model.
+/// Analyses a flat model, of which some parameters are set from outside: whether its equations are redundant is asked of these
+/// values, and nothing else reads them.
 ///
 /// `None` if there were errors; all of them are in `diagnostics`.
-pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
+pub fn analyze(
+    flat: FlatModel,
+    settings: &BTreeMap<String, f64>,
+    diagnostics: &mut Diagnostics,
+) -> Option<Dae> {
+    let set = set_model::with_values(&flat, settings);
+    let is_set = set.is_some();
+    if set.is_some_and(|set| is_redundant(set, diagnostics)) {
+        return None;
+    }
     let mut system = system::System::new(flat);
-    if regularity::refuse(&system, diagnostics) {
+    if !is_set && regularity::refuse(&system, diagnostics) {
         return None;
     }
     derivatives::simplify(&mut system, diagnostics);
@@ -73,7 +85,7 @@ pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
         return None;
     }
     reduce::reduce(&mut system);
-    if redundant::refuse(&mut system, diagnostics) {
+    if !is_set && redundant::refuse(&mut system, diagnostics) {
         return None;
     }
     prescribed::let_move(&mut system, diagnostics);
@@ -93,4 +105,20 @@ pub fn analyze(flat: FlatModel, diagnostics: &mut Diagnostics) -> Option<Dae> {
     partials::differentiate(&mut dae);
     hoist::hoist(&mut dae);
     Some(dae)
+}
+
+/// Reports equations that are redundant, or unknowns that none determines, before and after the index is reduced.
+fn is_redundant(flat: FlatModel, diagnostics: &mut Diagnostics) -> bool {
+    let mut system = system::System::new(flat);
+    if regularity::refuse(&system, diagnostics) {
+        return true;
+    }
+    // What else is wrong is told of the model as it is declared.
+    let mut other = Diagnostics::new();
+    derivatives::simplify(&mut system, &mut other);
+    if other.has_errors() {
+        return false;
+    }
+    reduce::reduce(&mut system);
+    redundant::refuse(&mut system, diagnostics)
 }

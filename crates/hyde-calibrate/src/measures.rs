@@ -125,6 +125,7 @@ fn reason(error: &hyde_experiment::RunError) -> String {
         RunError::NoParameter(name) => format!("the closed loop has no parameter `{name}`"),
         RunError::CannotSet(name, why) => format!("`{name}` cannot be set: {why}"),
         RunError::NotAllowed(name, why) => format!("the value of `{name}` is not allowed: {why}"),
+        RunError::Row(fault) => fault.to_string(),
         RunError::NoGradientBy(name, why) => format!("no gradient by `{name}`: {why}"),
         RunError::TooManyRows { rows, .. } => format!("it has {rows:.1e} rows"),
         RunError::NotANumber { variable, .. } => format!("`{variable}` is not a number"),

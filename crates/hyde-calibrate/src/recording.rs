@@ -2,6 +2,7 @@
 
 use crate::begins_again::begins_again;
 use crate::even_rows::{self, Resampled};
+use hyde_experiment::{RowFault, check_columns};
 use hyde_program::{Constant, Program, RecordValueKind};
 use hyde_signal::{Cursor, Table, wrap};
 use std::collections::BTreeMap;
@@ -24,6 +25,8 @@ pub enum RecordError {
         /// How far apart rows usually are, s.
         usual_s: f64,
     },
+    /// A row has a value that what it drives may not have.
+    Row(Box<RowFault>),
     /// A channel begins again, and what the model has for it goes on: channel, how often, and what it jumps by.
     BeginsAgain(String, usize, f64),
     /// It has fewer rows than an observer needs to settle: record and rows.
@@ -75,6 +78,7 @@ impl Recording {
         program: &Program,
         tables: BTreeMap<String, Table>,
     ) -> Result<Self, RecordError> {
+        check_columns(program, &tables).map_err(RecordError::Row)?;
         let experiment = &program.experiment;
         let base = experiment.measured.first().ok_or(RecordError::NoChannel)?;
         let missing = |(record, column): &(String, String)| {

@@ -304,7 +304,7 @@ pub(crate) struct BodeArgs {
     pub(crate) model: ModelArgs,
     #[command(flatten)]
     pub(crate) about: AboutArgs,
-    /// Leave bode.svg, bode.png and bode.csv in this folder
+    /// Leave bode.svg, bode.png, bode.csv and the page bode.html in this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// The linearised response only: do not run the experiment
@@ -351,7 +351,7 @@ pub(crate) struct ModesArgs {
     /// Number of its values
     #[arg(long, default_value_t = 17)]
     pub(crate) points: usize,
-    /// With `--over`: leave modes.svg, modes.png and modes.csv in this folder
+    /// Leave the page modes.html in this folder; with `--over` modes.svg, modes.png and modes.csv as well
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Find parameters from measured natural frequencies: `--measured 34.7,87.8:0.02`, damping ratios behind a colon

@@ -8,7 +8,8 @@ use crate::settings;
 use hyde_experiment::{
     Assumption, Linear, LinearizeError, ModeShape, Pole, Poles, RunError, mode_shape,
 };
-use hyde_program::Program;
+use hyde_program::{Moment, Program};
+use hyde_report::{Block, Table};
 use hyde_sim::{Failure, PointTime};
 use hyde_units::{Agreement, Dimension, significant};
 use serde_json::{Map, Value, json};
@@ -36,6 +37,23 @@ pub(crate) fn point_time(text: Option<&str>) -> Result<PointTime, String> {
                 false => Err(help()),
             }
         }
+    }
+}
+
+/// Where the experiment says, unless the command line says otherwise; `time` is its time, where that is one.
+pub(crate) fn moment(
+    asked: Option<&str>,
+    at: Moment,
+    time: Option<f64>,
+) -> Result<PointTime, String> {
+    match (asked, at) {
+        (Some(_), _) => point_time(asked),
+        (None, Moment::Start) => Ok(PointTime::Start),
+        (None, Moment::Steady) => Ok(PointTime::Steady),
+        (None, Moment::At) => match time {
+            Some(time) if time >= 0.0 => Ok(PointTime::At(time)),
+            Some(_) | None => Err("`at`: a run has no time below 0".to_owned()),
+        },
     }
 }
 
@@ -190,24 +208,7 @@ pub(crate) fn shares(shape: &ModeShape) -> String {
 
 /// About what it is linearised, with the table of what is assumed there.
 pub(crate) fn text(program: &Program, linear: &Linear, time: PointTime) -> String {
-    let at = match time {
-        PointTime::Start => "at the start".to_owned(),
-        PointTime::At(_) => format!("at {} s of the run", significant(linear.point.t, 4)),
-        PointTime::Steady => format!(
-            "at the steady state, reached at {} s of the run",
-            significant(linear.point.t, 3)
-        ),
-    };
-    let mut text = format!("linearised {at}");
-    if let Some(delayed) = &linear.delayed {
-        let shortest = delayed.times.iter().copied().fold(f64::INFINITY, f64::min);
-        let _ = write!(
-            text,
-            "; delays make modes without end: above about {} Hz some are left out",
-            significant(4.0 / shortest, 2)
-        );
-    }
-    text.push('\n');
+    let mut text = format!("linearised {}\n", place_of(linear, time));
     if linear.assumptions.is_empty() {
         return text;
     }
@@ -215,6 +216,46 @@ pub(crate) fn text(program: &Program, linear: &Linear, time: PointTime) -> Strin
     for assumption in &linear.assumptions {
         let (what, taken) = told(program, linear, assumption);
         let _ = writeln!(text, "  {what:<24} {taken}");
+    }
+    text
+}
+
+/// The same for a page.
+pub(crate) fn blocks(program: &Program, linear: &Linear, time: PointTime) -> Vec<Block> {
+    let mut blocks = vec![Block::Text(format!(
+        "Linearised {}.",
+        place_of(linear, time)
+    ))];
+    if !linear.assumptions.is_empty() {
+        let row = |assumption: &Assumption| {
+            let (what, taken) = told(program, linear, assumption);
+            vec![what, taken]
+        };
+        blocks.push(Block::Table(Table {
+            rows: linear.assumptions.iter().map(row).collect(),
+            ..Table::with_columns(&["assumed there", ""])
+        }));
+    }
+    blocks
+}
+
+/// Where the run is that it is linearised about.
+fn place_of(linear: &Linear, time: PointTime) -> String {
+    let mut text = match time {
+        PointTime::Start => "at the start".to_owned(),
+        PointTime::At(_) => format!("at {} s of the run", significant(linear.point.t, 4)),
+        PointTime::Steady => format!(
+            "at the steady state, reached at {} s of the run",
+            significant(linear.point.t, 3)
+        ),
+    };
+    if let Some(delayed) = &linear.delayed {
+        let shortest = delayed.times.iter().copied().fold(f64::INFINITY, f64::min);
+        let _ = write!(
+            text,
+            "; delays make modes without end: above about {} Hz some are left out",
+            significant(4.0 / shortest, 2)
+        );
     }
     text
 }

@@ -1,15 +1,34 @@
-//! What a run took for granted of its records: told on the console, in JSON and on the page.
+//! What was taken for granted of records and tables: told on the console, in JSON and on the page.
 
+use crate::commands::effects::wrapped;
 use crate::project::Project;
+use crate::records;
 use crate::run_failure::instant;
-use hyde_experiment::Run;
+use hyde_experiment::{Run, extent};
 use hyde_program::Program;
 use hyde_report::{Block, Section};
 use hyde_signal::Table;
 use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
 
 /// All of it, record by record, then where the run begins.
 pub(crate) fn of_run(project: &Project, program: &Program, run: &Run) -> Vec<String> {
+    all(project, program, &run.start, run.stop_s)
+}
+
+/// The same of a model that is looked at with its records, but not run as the experiment says.
+pub(crate) fn of_model(project: &Project, program: &Program, parameters: &[f64]) -> Vec<String> {
+    let tables = records::tables(&project.records);
+    let (start, stop_s) = extent(program, &tables, parameters);
+    all(project, program, &start, stop_s)
+}
+
+fn all(
+    project: &Project,
+    program: &Program,
+    start: &(f64, Option<String>),
+    stop_s: f64,
+) -> Vec<String> {
     let tables = project.records.iter();
     let tables: BTreeMap<&str, &Table> = tables
         .map(|(name, record)| (name.as_str(), &record.table))
@@ -18,9 +37,26 @@ pub(crate) fn of_run(project: &Project, program: &Program, run: &Run) -> Vec<Str
         let all = of_record(program, name, table).into_iter();
         all.map(move |text| format!("record `{name}`: {text}"))
     });
-    let mut all: Vec<String> = own.collect();
-    all.extend(of_start(program, &tables, run));
+    let looked_up = project.tables.iter().flat_map(|table| {
+        let name = table.path.display();
+        let notes = table.notes.iter();
+        notes.map(move |note| format!("table `{name}`: {note}"))
+    });
+    let mut all: Vec<String> = own.chain(looked_up).collect();
+    all.extend(of_start(program, &tables, start, stop_s));
     all
+}
+
+/// One note below the other, for the console.
+pub(crate) fn text(notes: &[String]) -> String {
+    let mut out = String::new();
+    for note in notes {
+        for (number, line) in wrapped(note, 74).iter().enumerate() {
+            let head = if number == 0 { "  note: " } else { "    " };
+            let _ = writeln!(out, "{head}{line}");
+        }
+    }
+    out
 }
 
 /// What was taken for granted of a record, as far as the program reads it.
@@ -44,8 +80,12 @@ pub(crate) fn of_record(program: &Program, name: &str, table: &Table) -> Vec<Str
 }
 
 /// Where the run begins and how far its records reach.
-fn of_start(program: &Program, tables: &BTreeMap<&str, &Table>, run: &Run) -> Vec<String> {
-    let (start_s, record) = &run.start;
+fn of_start(
+    program: &Program,
+    tables: &BTreeMap<&str, &Table>,
+    (start_s, record): &(f64, Option<String>),
+    stop_s: f64,
+) -> Vec<String> {
     let mut all = Vec::new();
     if *start_s != 0.0 {
         all.push(match record {
@@ -70,7 +110,7 @@ fn of_start(program: &Program, tables: &BTreeMap<&str, &Table>, run: &Run) -> Ve
                 instant(begin)
             ));
         }
-        if driving.contains(name) && end < run.stop_s - slack {
+        if driving.contains(name) && end < stop_s - slack {
             all.push(format!(
                 "record `{name}` ends at {}, before the run: its last row is held from then on",
                 instant(end)

@@ -1,11 +1,16 @@
 //! A run that could not go on, as a diagnostic: component, equation, source line, time.
 
+use crate::args::ModelArgs;
 use crate::exit::Exit;
+use crate::project::Project;
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::RunError;
 use hyde_program::Program;
 use hyde_sim::{Failure, FailureKind};
 use hyde_syntax::ast::Experiment;
+
+/// What to do about a row whose value is not allowed.
+pub(crate) const ROW_HELP: &str = "mend the file, or say how its numbers are meant: `stimulus on = file.on > 2.5 [V];`, or declare the input `Real`";
 
 /// The diagnostic of a run that did not start or did not end, and the exit status it leads to.
 pub(crate) fn diagnostic(
@@ -25,6 +30,11 @@ pub(crate) fn diagnostic(
         RunError::NotAllowed(name, why) => {
             let message = format!("the value of `{name}` is not allowed: {why}");
             (cannot_set(program, name, message), Exit::CommandLine)
+        }
+        RunError::Row(fault) => {
+            let diagnostic = Diagnostic::error(Code::NotAllowed, fault.to_string())
+                .label(fault.drives.2, "driven here");
+            (diagnostic.help(ROW_HELP), Exit::Model)
         }
         RunError::NoGradientBy(name, why) => {
             let message = format!("there is no gradient by `{name}`: {why}");
@@ -111,6 +121,19 @@ pub(crate) fn cannot_set(program: &Program, name: &str, message: String) -> Diag
         Some((parameter, _)) => diagnostic.label(parameter.origin.span, "its value is given here"),
         None => diagnostic,
     }
+}
+
+/// Reports why a model cannot be given its parameters.
+pub(crate) fn refused(
+    project: &mut Project,
+    args: &ModelArgs,
+    program: &Program,
+    error: &RunError,
+) -> Exit {
+    let (diagnostic, exit) = diagnostic(error, program, None);
+    project.diagnostics.push(diagnostic);
+    project.finish_with_errors(args);
+    exit
 }
 
 /// Results that fit nowhere, and how far apart rows may be.

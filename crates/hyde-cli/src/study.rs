@@ -3,6 +3,7 @@
 use crate::args::{ModelArgs, StudyArgs};
 use crate::exit::Exit;
 use crate::files;
+use crate::package::links_out;
 use crate::project::{self, Aim, Project, Records, complain};
 use crate::unobservable::{unreadable, unsupported};
 use hyde_calibrate::{CalibrationPlan, Observer, Recording, Source, Varied, Vary};
@@ -263,6 +264,22 @@ fn files_of(
                 )
                 .label(*span, "asked for here")
                 .help(help),
+            );
+            return Vec::new();
+        }
+        if let Some(path) = matching.iter().find(|path| links_out(&folder, path)) {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::NoRecord,
+                    format!("`{}` leads out of its folder by a link", path.display()),
+                )
+                .label(
+                    *span,
+                    "only files below the model's folder or `--data` are read",
+                )
+                .help(
+                    "put the file into the folder, or name the folder in which it is: `--data DIR`",
+                ),
             );
             return Vec::new();
         }

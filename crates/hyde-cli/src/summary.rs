@@ -1,6 +1,5 @@
 //! What a run was, in a few lines for people and as JSON for programs.
 
-use crate::commands::effects::wrapped;
 use crate::project::Project;
 use crate::{assumptions, ledger, start};
 use hyde_compiler::Compiled;
@@ -65,12 +64,9 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
     for (cause, time) in &run.results.sliding {
         let _ = writeln!(out, "  {:<24} sliding {} s", cause, significant(*time, 3));
     }
-    for text in assumptions::of_run(project, program, run) {
-        for (number, line) in wrapped(&text, 74).iter().enumerate() {
-            let head = if number == 0 { "  note: " } else { "    " };
-            let _ = writeln!(out, "{head}{line}");
-        }
-    }
+    out.push_str(&assumptions::text(&assumptions::of_run(
+        project, program, run,
+    )));
     let end = run.results.gradient.as_ref().and_then(|g| g.end.as_ref());
     if let Some(end) = end {
         let _ = writeln!(out, "  {}", end_of_gradient(end));
@@ -174,7 +170,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
     let tables: Vec<Value> = project
         .tables
         .iter()
-        .map(|table| json!({ "path": table.path.to_string_lossy(), "sha256": table.hash, "rows": table.rows }))
+        .map(|table| json!({ "path": table.path.to_string_lossy(), "sha256": table.hash, "rows": table.rows, "assumptions": table.notes }))
         .collect();
     let channels: Vec<Value> = run
         .channels

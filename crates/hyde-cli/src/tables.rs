@@ -14,6 +14,8 @@ pub(crate) struct Table {
     pub(crate) path: PathBuf,
     pub(crate) hash: String,
     pub(crate) rows: usize,
+    /// What was taken for granted of it.
+    pub(crate) notes: Vec<String>,
 }
 
 /// Reads the files of every table into `file`. What is missing or wrong is reported.
@@ -80,6 +82,7 @@ fn of_file(
         path,
         hash: format!("{:x}", Sha256::digest(&content)),
         rows: table.rows(),
+        notes: table.notes().iter().map(ToString::to_string).collect(),
     };
     Ok((read, columns))
 }

@@ -1,5 +1,6 @@
 //! Diagnostics of studies that cannot be: records and models without an observer, and calibrations that learn nothing.
 
+use crate::run_failure;
 use crate::study::Calibration;
 use hyde_calibrate::{Cause, RecordError, Unsupported};
 use hyde_diag::{Code, Diagnostic, Span};
@@ -31,6 +32,7 @@ pub(crate) fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnos
             ),
             "an observer does not guess what was in between: save what is before the gap and what is behind it as two files, and name both, `fit down(\"part-*.csv\");`, or resample the record",
         ),
+        RecordError::Row(fault) => (fault.to_string(), run_failure::ROW_HELP),
         RecordError::BeginsAgain(channel, times, by) => (
             format!(
                 "`{channel}` jumps back by {} {times} times and goes on in between, as an encoder that begins again each turn does; the model's goes on",

@@ -62,7 +62,7 @@ pub fn compile_with(
         flat(request, additions, diagnostics)
     })?;
     let dae = step("analyze", &mut times, || {
-        checked(hyde_analysis::analyze(flat, diagnostics))
+        checked(hyde_analysis::analyze(flat, request.settings, diagnostics))
     })?;
     let states = States::of(&dae);
     let program = step("compile", &mut times, || {
@@ -78,7 +78,7 @@ pub fn compile_with(
 /// The same up to the DAE, for printing.
 pub fn analyze(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<Dae> {
     let flat = flatten(request, diagnostics)?;
-    checked(hyde_analysis::analyze(flat, diagnostics))
+    checked(hyde_analysis::analyze(flat, request.settings, diagnostics))
 }
 
 /// The flat model; refused if parsing found errors.

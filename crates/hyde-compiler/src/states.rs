@@ -1,8 +1,8 @@
 //! [`States`]: what the compiler made of the variables with derivatives, for those who want to know.
 
 use hyde_diag::Origin;
-use hyde_ir::dae::{Choice, Firmness, InitialCondition};
-use hyde_ir::{Dae, StateChoice};
+use hyde_ir::dae::{Alias, Choice, Firmness, InitialCondition};
+use hyde_ir::{Dae, StateChoice, VarId};
 
 /// The states of a model.
 #[derive(Clone, Debug, Default)]
@@ -18,6 +18,23 @@ pub struct States {
     pub filled: Vec<String>,
     /// The number of initial equations; the run tells what each determines.
     pub equations: usize,
+}
+
+/// Whether a variable is equal to a state, as the speed of a body that is joined to the end of a field.
+fn is_state_by_another_name(dae: &Dae, var: VarId) -> bool {
+    let is_state = |other: VarId| {
+        let mut own = dae.unknowns.iter();
+        own.any(|block| block.var == other && block.differential)
+    };
+    let alias = dae.aliases.iter().any(|(own, alias)| {
+        *own == var && matches!(alias, Alias::Of { var, .. } if is_state(*var))
+    });
+    let mut definitions = dae.definitions.iter().filter(|known| known.var == var);
+    alias
+        || definitions.any(|known| match dae.exprs[known.value].access() {
+            Some((other, _, derivative)) => !derivative && is_state(other),
+            None => false,
+        })
 }
 
 impl States {
@@ -50,7 +67,8 @@ impl States {
         // What its author gave a start or a choice was meant as a state.
         let meant = dae.dependent.iter().filter(|d| {
             let variable = &dae.variables[d.var];
-            variable.fixed || variable.state != StateChoice::Open
+            let meant = variable.fixed || variable.state != StateChoice::Open;
+            meant && !is_state_by_another_name(dae, d.var)
         });
         let dependent = meant.map(|d| (dae.dependent_name(d), d.origin.clone()));
         let equations = dae.initial.iter().map(|condition| match condition {

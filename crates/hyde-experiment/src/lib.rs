@@ -12,6 +12,7 @@ mod bode;
 mod budget;
 mod common_period;
 mod compare;
+mod driven_kinds;
 mod flows;
 mod ledger;
 mod limit;
@@ -35,6 +36,7 @@ pub use assumptions::Assumption;
 pub use bode::{BodeError, frequency_response, frequency_response_watched};
 pub use budget::{BudgetOf, Share};
 pub use compare::{Channel, CompareError, prepared, unwrapped};
+pub use driven_kinds::{RowFault, check_columns};
 pub use flows::{FlowLine, flows};
 pub use ledger::{EnergyLedger, LedgerEntry};
 pub use limit::{Answer, LIMIT_LEFT, LIMIT_PART, limit};
@@ -51,7 +53,7 @@ pub use modes::{NaturalMode, modes};
 pub use poles::{Pole, Poles, poles};
 pub use record::read_record;
 pub use run::{
-    Incomplete, Options, Run, RunError, incomplete, parameters, places, record_value, run,
+    Incomplete, Options, Run, RunError, extent, incomplete, parameters, places, record_value, run,
 };
 pub use sampled::{Clocked, Sampled};
 pub use stepped::{Level, SteppedOutput, SteppedPoint, Steps, stepped_response};

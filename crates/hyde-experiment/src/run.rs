@@ -2,6 +2,7 @@
 //! what it is compared with.
 
 use crate::compare::{self, Channel, CompareError};
+use crate::driven_kinds::{RowFault, check_columns};
 use crate::measures::{MeasureValue, measures};
 use hyde_program::{Column, Constant, Measured, Parameter, Program, RecordValue, RecordedResponse};
 use hyde_signal::Table;
@@ -76,6 +77,8 @@ pub enum RunError {
     CannotSet(String, &'static str),
     /// The value of a parameter is not allowed: its name and why.
     NotAllowed(String, String),
+    /// A row of a record has a value that what it drives may not have.
+    Row(Box<RowFault>),
     /// The parameter shapes the equations, or is a whole array: there is no gradient by it. Its name and why.
     NoGradientBy(String, &'static str),
     /// Neither the experiment nor the caller says when to stop.
@@ -270,15 +273,27 @@ pub(crate) fn setup_with<'r>(
     let rtol = constant(Constant::Rtol).unwrap_or(1e-6);
     let atol = constant(Constant::Atol).unwrap_or(ATOL * rtol);
     let max_step_s = constant(Constant::MaxStep).unwrap_or(f64::INFINITY);
-    let (start_s, _) = start(program, records, &parameters);
-    let stop_s = constant(Constant::Stop).filter(|stop| *stop > start_s);
-    let stop_s = stop_s.unwrap_or(start_s + 1.0);
+    let ((start_s, _), stop_s) = extent(program, records, &parameters);
     let mut setup = Setup::new(parameters, records, stop_s);
     setup.start_s = start_s;
     setup.method = program.experiment.method;
     (setup.rtol, setup.atol) = (rtol, atol);
     setup.max_step_s = max_step_s;
     setup
+}
+
+/// When a run starts, with the record that begins there if that is why, and when it ends; in s.
+#[must_use]
+pub fn extent(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    parameters: &[f64],
+) -> ((f64, Option<String>), f64) {
+    let start = start(program, records, parameters);
+    let stop_s = program.kernels.constant(Constant::Stop, parameters);
+    let stop_s = stop_s.filter(|stop| *stop > start.0);
+    let stop_s = stop_s.unwrap_or(start.0 + 1.0);
+    (start, stop_s)
 }
 
 /// When a run starts in s: as the experiment says, else where the last of the records begins that drive the model, else where
@@ -381,6 +396,7 @@ pub fn parameters(
             values.push((place + element, *value));
         }
     }
+    check_columns(program, records).map_err(RunError::Row)?;
     let mut parameters = vec![0.0; program.n_parameters];
     program.kernels.parameters(&values, &mut parameters);
     Ok(parameters)

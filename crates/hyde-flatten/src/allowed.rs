@@ -1,4 +1,4 @@
-//! The values that are allowed: whole numbers for an Integer, `min` and `max`.
+//! The values that are allowed: whole numbers for an Integer, `min` and `max`, and asserts of parameters.
 //!
 //! Of a parameter they are checked here, with what the command line sets; of a variable they are asserts of the run.
 
@@ -81,6 +81,44 @@ impl<'a> Model<'a, '_> {
                 });
                 return;
             }
+        }
+    }
+
+    /// Asserts of parameters alone hold for the values that these have, or there is no need for a run to tell.
+    pub(crate) fn check_asserts(&mut self) {
+        for number in 0..self.flat.asserts.len() {
+            let condition = self.flat.asserts[number].condition;
+            let below = self.flat.exprs.below(&[condition]);
+            let open = below.iter().any(|id| match self.flat.exprs[*id] {
+                Ir::Const(_) | Ir::Unary(..) | Ir::Binary(..) | Ir::If(..) | Ir::NoEvent(_) => {
+                    false
+                }
+                Ir::Param(param, _) => {
+                    let parameter = &self.flat.parameters[param];
+                    parameter.found || self.column_values.contains_key(&parameter.name)
+                }
+                Ir::Var(..)
+                | Ir::Time
+                | Ir::Counter
+                | Ir::Der(..)
+                | Ir::Pre(..)
+                | Ir::Relation(_)
+                | Ir::InMode(..) => true,
+            });
+            if open
+                || self
+                    .current_value(condition)
+                    .is_none_or(|truth| truth != 0.0)
+            {
+                continue;
+            }
+            let assert = &self.flat.asserts[number];
+            let (message, origin) = (assert.message.clone(), assert.origin.span);
+            self.report(
+                Diagnostic::error(Code::AssertFailed, message)
+                    .label(origin, "false for the values that its parameters have")
+                    .help("give them other values: `hyde params FILE` lists them, with where each comes from"),
+            );
         }
     }
 

@@ -197,9 +197,14 @@ impl<'a> Model<'a, '_> {
             else {
                 continue;
             };
-            let Some(clock) = self.instances[*part].clock else {
+            let part = *part;
+            let Some(clock) = self.instances[part].clock else {
                 continue;
             };
+            if self.is_event_clock(clocked) {
+                self.event_clock(clocked, (clock, part), instance);
+                continue;
+            }
             let scope = Scope::new(instance, Setting::Parameter);
             let mut period = None;
             for argument in &clocked.arguments {
@@ -224,7 +229,7 @@ impl<'a> Model<'a, '_> {
                     Some(other) => self.report(
                         Diagnostic::error(Code::BadArguments, format!("a clock has no `{other}`"))
                             .label(argument.value.span, "unknown")
-                            .help("write `clocked name(1 [ms], delay = 0.2 [ms], phase = 0 [s])`"),
+                            .help("write `clocked name(1 [ms], delay = 0.2 [ms], phase = 0 [s])`, or `clocked name(event = angle > next)`"),
                     ),
                 }
             }

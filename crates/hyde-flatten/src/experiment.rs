@@ -106,9 +106,15 @@ impl<'a> Model<'a, '_> {
                     self.flat.experiment.skip = Some(time.id);
                 }
                 ExperimentItem::Bode(bode) => self.bode(bode, root),
-                ExperimentItem::Margins(margins) => self.margins(margins, root),
+                ExperimentItem::Margins(_) => {} // Cut when every stimulus is there.
+
                 ExperimentItem::Figure(figure) => self.figure(figure, root),
                 ExperimentItem::Budget(_) => {} // Each of them is a run of its own, of a changed model.
+            }
+        }
+        for item in &experiment.items {
+            if let ExperimentItem::Margins(margins) = item {
+                self.margins(margins, root);
             }
         }
         self.measured_responses(&experiment.items, root);

@@ -48,6 +48,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) joined: Vec<crate::connect::Connection>,
     /// Connected connectors and signals, in the order written.
     pub(crate) connections: Vec<crate::connect::Connection>,
+    /// Clocks that tick at events: the condition and the variable that is the time of the last tick.
+    pub(crate) event_clocks: BTreeMap<ClockId, (ExprId, VarId)>,
     /// Held variables by clock and source.
     pub(crate) held: BTreeMap<(ClockId, VarId), VarId>,
     /// Delayed variables by what is delayed and the time.
@@ -93,6 +95,7 @@ impl<'a, 'd> Model<'a, 'd> {
             replays: Vec::new(),
             joined: Vec::new(),
             connections: Vec::new(),
+            event_clocks: BTreeMap::new(),
             held: BTreeMap::new(),
             delayed: BTreeMap::new(),
             column_variables: BTreeMap::new(),

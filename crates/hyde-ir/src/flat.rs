@@ -7,7 +7,7 @@ use crate::id::{AutomatonId, ClockId, ColumnId, DelayId, ExprId, IdVec, ParamId,
 use crate::{Column, ExprArena, Index, Parameter, Quantity, Range, Variable};
 pub use figure::{Curve, Figure, FigureKind};
 use hyde_diag::{InstancePath, Origin, Span};
-pub use response::{Bode, Cut, MeasuredResponse, RecordedResponse, ScaledColumn, Stepped};
+pub use response::{Bode, Cut, MeasuredResponse, Moment, RecordedResponse, ScaledColumn, Stepped};
 use std::collections::BTreeMap;
 
 /// `lhs = rhs`, for every value of the counter in the range.

@@ -1,8 +1,8 @@
 //! Variables, parameters and record columns, as both stages hold them.
 
 use crate::id::{ClockId, ColumnId, DelayId, ExprId, VarId};
-use hyde_diag::Origin;
-use hyde_units::{Allowed, Dimension, NamedUnit};
+use hyde_diag::{Origin, Span};
+use hyde_units::{Allowed, Dimension, Kind, NamedUnit};
 
 /// What a value means: its dimension, and the unit in which people read it.
 #[derive(Clone, Debug, PartialEq)]
@@ -234,4 +234,6 @@ pub struct Column {
     pub noise: f64,
     /// The period in s of a clock that gave it, if that ticks several times between two rows.
     pub ticks_s: Option<f64>,
+    /// The Integer or Boolean that it drives: its kind, its name, and where that is said. Every row must have such a value.
+    pub drives: Option<(Kind, String, Span)>,
 }

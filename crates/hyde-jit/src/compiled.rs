@@ -356,6 +356,8 @@ impl Compiled {
             Constant::Wrap(channel) => experiment.measured.get(channel)?.period?,
             Constant::BandFrom(bode) => experiment.bodes.get(bode)?.band?.0,
             Constant::BandTo(bode) => experiment.bodes.get(bode)?.band?.1,
+            Constant::RespondsAt(bode) => experiment.bodes.get(bode)?.at.time()?,
+            Constant::CutAt(cut) => experiment.cuts.get(cut)?.at.time()?,
             Constant::SearchedFrom(cut) => experiment.cuts.get(cut)?.band?.0,
             Constant::SearchedTo(cut) => experiment.cuts.get(cut)?.band?.1,
             Constant::Amplitude(bode) => stepped(bode)?.amplitude,

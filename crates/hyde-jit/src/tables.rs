@@ -204,6 +204,7 @@ fn columns(dae: &Dae) -> Vec<Column> {
             stepped,
             noise: column.noise,
             ticks_s: column.ticks_s,
+            drives: column.drives.clone(),
         })
         .collect()
 }

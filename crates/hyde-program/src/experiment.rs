@@ -122,6 +122,18 @@ pub struct MeasuredResponse {
     pub origin: Origin,
 }
 
+/// Where a run is when it is linearised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Moment {
+    /// At the start.
+    #[default]
+    Start,
+    /// At a time, which is a [`crate::Constant`].
+    At,
+    /// At the steady state.
+    Steady,
+}
+
 /// A frequency response. Its band is a [`crate::Constant`]; without one it is that of what was measured.
 #[derive(Clone, Debug)]
 pub struct Bode {
@@ -131,6 +143,8 @@ pub struct Bode {
     pub input_output: Option<usize>,
     /// Printed name and output of each response.
     pub outputs: Vec<(String, usize)>,
+    /// About what it is linearised.
+    pub at: Moment,
     /// Modes of the linearised system: automaton and mode.
     pub modes: Vec<(usize, usize)>,
     /// Measured by stepped sines as well.
@@ -151,6 +165,8 @@ pub struct Cut {
     pub back: usize,
     /// The clock by which the signal is sampled; `None` of a continuous signal.
     pub clock: Option<usize>,
+    /// About what it is linearised.
+    pub at: Moment,
     /// Modes of the linearised system: automaton and mode.
     pub modes: Vec<(usize, usize)>,
     /// Where it is written.

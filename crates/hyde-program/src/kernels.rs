@@ -116,6 +116,10 @@ pub enum Constant {
     BandFrom(usize),
     /// Upper end of a frequency response in Hz.
     BandTo(usize),
+    /// The time at which the system of a frequency response is linearised, in s.
+    RespondsAt(usize),
+    /// The time at which a loop is linearised, in s.
+    CutAt(usize),
     /// Lower end of the band that is searched for a loop's crossovers, in Hz.
     SearchedFrom(usize),
     /// Upper end of that band in Hz.

@@ -30,7 +30,7 @@ pub use event::{
 };
 pub use experiment::{
     Bode, Curve, Cut, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse,
-    Method, Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped,
+    Method, Moment, Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped,
 };
 pub use given::{Given, Misfit};
 pub use jacobian::{Jacobian, JacobianEntry};

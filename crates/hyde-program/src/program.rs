@@ -6,8 +6,8 @@ use crate::event::{
 use crate::experiment::Experiment;
 use crate::jacobian::{Jacobian, JacobianEntry};
 use crate::kernels::{Function, Kernels};
-use hyde_diag::Origin;
-use hyde_units::{Allowed, Dimension, NamedUnit};
+use hyde_diag::{Origin, Span};
+use hyde_units::{Allowed, Dimension, Kind, NamedUnit};
 use std::sync::{Arc, OnceLock};
 
 /// A block of the solver's vector.
@@ -101,6 +101,8 @@ pub struct Column {
     pub noise: f64,
     /// The period in s of a clock that gave it, if that ticks several times between two rows.
     pub ticks_s: Option<f64>,
+    /// The Integer or Boolean that it drives: its kind, its name, and where that is said. Every row must have such a value.
+    pub drives: Option<(Kind, String, Span)>,
 }
 
 /// Which number of a column.

@@ -4,6 +4,7 @@ use super::inputs::{Inputs, Kind};
 use super::order::{Order, Parts};
 use super::variants::{Source, Variants};
 use crate::args::ModelArgs;
+use crate::assumptions;
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Project, Records, complain, report_errors};
@@ -22,6 +23,8 @@ pub(crate) struct Prepared {
     pub(crate) dataset: Dataset,
     pub(crate) variants: Variants,
     pub(crate) parts: Parts,
+    /// What was taken for granted of records and tables.
+    pub(crate) notes: Vec<String>,
 }
 
 impl Prepared {
@@ -112,6 +115,7 @@ impl Prepared {
         }
         project.print_warnings(&args);
         let parts = order.identity(inputs);
+        let notes = assumptions::of_model(&project, &ready.program, &parameters);
         Ok(Self {
             variants: Variants::new(&dataset),
             args,
@@ -120,6 +124,7 @@ impl Prepared {
             plan,
             dataset,
             parts,
+            notes,
         })
     }
 

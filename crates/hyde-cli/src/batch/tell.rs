@@ -2,6 +2,7 @@
 
 use super::prepare::Prepared;
 use super::work::Took;
+use crate::assumptions;
 use hyde_experiment::batch::{QUANTILES, Summary};
 use hyde_units::{counted, engineering_as, significant};
 use serde_json::{Value, json};
@@ -122,6 +123,7 @@ pub(crate) fn text(batch: &Prepared, summary: &Summary, took: Took, rerun: &str)
             "  and {more} more failed: column `reason` of the data set"
         );
     }
+    out.push_str(&assumptions::text(&batch.notes));
     out
 }
 
@@ -175,6 +177,6 @@ pub(crate) fn json(batch: &Prepared, summary: &Summary, rerun: &str) -> Value {
         "event": "summary", "ok": true, "hyde": env!("CARGO_PKG_VERSION"), "batch": batch.parts.whole.to_string(),
         "sweep": batch.draft.name, "experiment": batch.draft.experiment, "model": batch.project.model,
         "cases": summary.cases, "failed": summary.failed,
-        "measures": measures, "expectations": broken, "worst": worst, "failures": failures,
+        "measures": measures, "expectations": broken, "worst": worst, "failures": failures, "notes": batch.notes,
     })
 }

@@ -158,6 +158,7 @@ impl Source<'_> {
             RunError::NoParameter(_)
             | RunError::CannotSet(..)
             | RunError::NotAllowed(..)
+            | RunError::Row(_)
             | RunError::NoGradientBy(..)
             | RunError::NoStop
             | RunError::EndsBeforeStart { .. }

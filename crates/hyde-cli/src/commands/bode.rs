@@ -6,6 +6,7 @@ mod draw;
 mod margins;
 mod measured;
 mod open_loop;
+mod page;
 mod response;
 mod seen;
 mod stepped;
@@ -14,15 +15,18 @@ use self::measured::Compared;
 use self::response::{Response, band, frequencies, linearised};
 use crate::args::{BodeArgs, ModelArgs, RunArgs};
 use crate::assumed;
+use crate::assumptions;
 use crate::commands::run;
 use crate::exit::Exit;
 use crate::project::{self, Aim, Records, complain, print_output};
 use crate::records;
+use crate::run_failure;
 use crate::summary;
 use crate::watch::Watch;
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::{About, LinearizeError, linearize_about, parameters, poles, swept_response};
-use hyde_program::{Bode, Program};
+use hyde_program::{Bode, Constant, Program};
+use hyde_report::Block;
 use hyde_sim::Reached;
 use hyde_units::significant;
 use serde_json::{Map, Value, json};
@@ -38,6 +42,10 @@ struct Asked {
     margins: Vec<margins::OfLoop>,
     /// Of each, about what it is linearised, what is assumed there, and the poles.
     json: Vec<Map<String, Value>>,
+    /// The same for the page.
+    about: Vec<Block>,
+    /// What was taken for granted of records and tables.
+    notes: Vec<String>,
     text: String,
     /// Every expectation held.
     holds: bool,
@@ -76,7 +84,8 @@ fn responses(args: &BodeArgs) -> Result<(String, bool), Exit> {
             .collect();
         let margins = all.iter().flat_map(|asked| &asked.margins);
         let margins: Vec<Value> = margins.map(margins::json).collect();
-        let answer = json!({ "ok": true, "responses": found, "margins": margins });
+        let notes: Vec<&String> = all.iter().flat_map(|asked| &asked.notes).collect();
+        let answer = json!({ "ok": true, "responses": found, "margins": margins, "notes": notes });
         return Ok((format!("{answer:#}"), holds));
     }
     let mut text: String = all.iter().map(|asked| asked.text.as_str()).collect();
@@ -122,6 +131,10 @@ fn responses(args: &BodeArgs) -> Result<(String, bool), Exit> {
     }
     let loops: Vec<&margins::OfLoop> = all.iter().flat_map(|asked| &asked.margins).collect();
     if let Some(folder) = &args.out {
+        let title = args.title.as_deref().unwrap_or(&all[0].title);
+        let path = page::leave(folder, title, &all)
+            .map_err(|reason| complain(&args.model, Exit::CommandLine, &reason))?;
+        let _ = writeln!(text, "{path}");
         for one in &loops {
             let suffix = match loops.as_slice() {
                 [_] => String::new(),
@@ -166,7 +179,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     }
     let tables = records::tables(&project.records);
     let p = parameters(program, &tables, &project.set())
-        .map_err(|_| wrong("a parameter cannot be set".to_owned()))?;
+        .map_err(|error| run_failure::refused(&mut project, model, program, &error))?;
     let recorded = measured::curves(program, &tables, &p).map_err(|diagnostic| {
         project.diagnostics.push(*diagnostic);
         project.finish_with_errors(model)
@@ -177,7 +190,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     } else {
         Some(run::solved(&RunArgs::of_model(model))?)
     };
-    let time = assumed::point_time(args.about.at.as_deref()).map_err(wrong)?;
+    let at = args.about.at.as_deref();
     let asked_modes = args.about.in_modes.iter();
     let asked_modes = asked_modes.map(|text| assumed::in_mode(program, text));
     let asked_modes: Vec<(usize, usize)> = asked_modes.collect::<Result<_, _>>().map_err(wrong)?;
@@ -187,6 +200,8 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         bodes: Vec::new(),
         margins: Vec::new(),
         json: Vec::new(),
+        about: Vec::new(),
+        notes: Vec::new(),
         text: String::new(),
         holds: true,
     };
@@ -206,6 +221,8 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
             .or_else(|| measured::band(program, number, &recorded))
             .ok_or_else(|| wrong("the band of frequencies is empty".to_owned()))?;
         let frequency = frequencies(band, args.points);
+        let time = program.kernels.constant(Constant::RespondsAt(number), &p);
+        let time = assumed::moment(at, bode.at, time).map_err(wrong)?;
         let about = About {
             time,
             modes: &[&asked_modes[..], &bode.modes].concat(),
@@ -293,6 +310,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         if !asked.text.contains(&about) {
             asked.text.push_str(&about);
         }
+        asked.about.extend(assumed::blocks(program, &system, time));
         asked
             .json
             .push(assumed::json(program, &system, time, &poles));
@@ -304,18 +322,22 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         asked.text.push_str(&errors);
         asked.bodes.push(responses);
     }
-    let about = About {
-        time,
-        modes: &asked_modes,
-        open: false,
-    };
+    let about = (at, &asked_modes[..]);
     let found = margins::all(&name, program, &tables, &p, about, &mut project.diagnostics);
     asked.margins = found.ok_or_else(|| project.finish_with_errors(model))?;
+    asked.notes = assumptions::of_model(&project, program, &p);
+    asked
+        .about
+        .extend(asked.notes.iter().cloned().map(Block::Text));
     for margins in &asked.margins {
         asked.text.push_str(&margins::text(margins));
         if !asked.text.contains(&margins.point) {
             asked.text.push_str(&margins.point);
         }
+    }
+    // A run has told them before.
+    if run.is_none() {
+        asked.text.push_str(&assumptions::text(&asked.notes));
     }
     Ok(asked)
 }

@@ -2,16 +2,19 @@
 
 use super::effects::wrapped;
 use crate::args::{CheckArgs, ModelArgs};
+use crate::assumptions;
 use crate::batch::inputs::Inputs;
 use crate::batch::order::Order;
 use crate::batch::prepare::Prepared;
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Aim, Project, Records, complain, print_output, report_errors};
+use crate::records;
 use crate::render;
 use hyde_calibrate::CalibrationPlan;
 use hyde_compiler::{DiagnosisPlan, States, ideals};
 use hyde_diag::{Diagnostics, Origin, Sources};
+use hyde_program::Program;
 use hyde_syntax::ast::StudyKind;
 use hyde_units::counted;
 use serde_json::{Value, json};
@@ -36,6 +39,7 @@ pub(crate) fn check(args: &CheckArgs) -> Exit {
                 all.choices.extend(found.choices);
                 all.states.extend(found.states);
                 all.warnings.extend(found.warnings);
+                all.notes.extend(found.notes);
             }
             // One object on standard output: it is about the first file at fault.
             Err(failed) if args.json => return failed,
@@ -45,7 +49,7 @@ pub(crate) fn check(args: &CheckArgs) -> Exit {
     if args.model.json {
         print_output(&format!(
             "{:#}",
-            json!({ "ok": true, "checked": all.names, "states": all.states, "diagnostics": all.warnings })
+            json!({ "ok": true, "checked": all.names, "states": all.states, "diagnostics": all.warnings, "notes": all.notes })
         ));
     }
     exit
@@ -61,9 +65,25 @@ struct Found {
     states: Vec<Value>,
     /// Warnings as JSON.
     warnings: Vec<Value>,
+    /// What was taken for granted of records and tables.
+    notes: Vec<String>,
 }
 
 impl Found {
+    /// Notes what is taken for granted of the records of an experiment, once for all experiments that read them.
+    fn note(&mut self, project: &Project, program: &Program) {
+        let tables = records::tables(&project.records);
+        let parameters = hyde_experiment::parameters(program, &tables, &project.set());
+        for note in parameters.map_or_else(
+            |_| Vec::new(),
+            |parameters| assumptions::of_model(project, program, &parameters),
+        ) {
+            if !self.notes.contains(&note) {
+                self.notes.push(note);
+            }
+        }
+    }
+
     fn text(&self, args: &ModelArgs) -> String {
         let names = match self.names.as_slice() {
             [] => "nothing to compile".to_owned(),
@@ -71,6 +91,8 @@ impl Found {
         };
         let mut lines = vec![format!("{}: {names} in order", args.file.display())];
         lines.extend(self.choices.iter().cloned());
+        let notes = assumptions::text(&self.notes);
+        lines.extend(notes.lines().map(str::to_owned));
         lines.join("\n")
     }
 }
@@ -108,6 +130,7 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
                     || format!("model {}", project.model),
                     |experiment| format!("experiment {experiment}"),
                 );
+                found.note(&project, &compiled.program);
                 let unknowns = counted(compiled.program.n_unknowns, "unknown");
                 found.names.push(format!("{what} ({unknowns})"));
                 if !models.contains(&project.model) {

@@ -3,19 +3,23 @@
 
 mod inverse;
 mod over;
+mod page;
 
 use crate::args::{ModelArgs, ModesArgs};
 use crate::assumed;
+use crate::assumptions;
 use crate::exit::Exit;
 use crate::project::{self, Aim, Project, Records, complain, print_output};
 use crate::records;
+use crate::run_failure;
 use crate::settings::Setting;
 use hyde_compiler::Compiled;
 use hyde_experiment::{
     About, Linear, LinearizeError, ModeShape, NaturalMode, Pole, Poles, linearize_about,
     mode_shape, parameters, poles,
 };
-use hyde_program::Program;
+use hyde_program::{Constant, Moment, Program};
+use hyde_report::Block;
 use hyde_signal::Table;
 use hyde_sim::PointTime;
 use hyde_units::significant;
@@ -46,6 +50,8 @@ pub(crate) struct Found {
     pub(crate) unstable: Option<String>,
     /// About what it is linearised, with what is assumed.
     pub(crate) about: String,
+    /// The same for a page.
+    pub(crate) blocks: Vec<Block>,
     /// The unit of each parameter, in SI.
     pub(crate) units: Vec<(String, String)>,
 }
@@ -84,10 +90,16 @@ fn table(args: &ModesArgs) -> Result<String, Exit> {
         }
         return Ok(format!("{value:#}"));
     }
-    Ok(match all.as_slice() {
+    let mut text = match all.as_slice() {
         [one] => with_energy(one, args.real),
         several => side_by_side(several),
-    })
+    };
+    if let Some(folder) = &args.out {
+        let path = page::leave(folder, None, &all)
+            .map_err(|reason| complain(&args.model, Exit::CommandLine, &reason))?;
+        let _ = writeln!(text, "{path}");
+    }
+    Ok(text)
 }
 
 /// An experiment ready to be linearised.
@@ -111,7 +123,7 @@ fn prepared(args: &ModesArgs, model: &ModelArgs, set: Option<&Setting>) -> Resul
     let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
     let tables = records::tables(&project.records);
     let parameters = parameters(program, &tables, &project.set())
-        .map_err(|_| wrong("a parameter cannot be set".to_owned()))?;
+        .map_err(|error| run_failure::refused(&mut project, model, program, &error))?;
     let mut chosen = program
         .experiment
         .bodes
@@ -121,7 +133,17 @@ fn prepared(args: &ModesArgs, model: &ModelArgs, set: Option<&Setting>) -> Resul
     for text in &args.about.in_modes {
         chosen.insert(0, assumed::in_mode(program, text).map_err(wrong)?);
     }
-    let time = assumed::point_time(args.about.at.as_deref()).map_err(wrong)?;
+    let experiment = &program.experiment;
+    let constant = |which| program.kernels.constant(which, &parameters);
+    let of_bode = experiment
+        .bodes
+        .first()
+        .map(|bode| (bode.at, Constant::RespondsAt(0)));
+    let of_cut = || Some((experiment.cuts.first()?.at, Constant::CutAt(0)));
+    let (moment, time) = of_bode
+        .or_else(of_cut)
+        .map_or((Moment::Start, None), |(at, time)| (at, constant(time)));
+    let time = assumed::moment(args.about.at.as_deref(), moment, time).map_err(wrong)?;
     Ok(Prepared {
         project,
         compiled,
@@ -173,7 +195,9 @@ pub(crate) fn found(
     let listed: Vec<Value> = listed
         .map(|(mode, shape)| json(program, &linear, mode, shape.as_ref()))
         .collect();
+    let notes = assumptions::of_model(&project, program, &p);
     let mut json = assumed::json(program, &linear, time, &poles);
+    json.insert("notes".to_owned(), notes.clone().into());
     json.insert("modes".to_owned(), listed.into());
     let unit = |parameter: &hyde_program::Parameter| {
         (parameter.name.clone(), parameter.dimension.usual_unit())
@@ -185,7 +209,15 @@ pub(crate) fn found(
         shapes,
         json,
         unstable: assumed::unstable(program, &p, &linear, &poles),
-        about: loop_told(program, &linear, &poles) + &assumed::text(program, &linear, time),
+        about: loop_told(program, &linear, &poles)
+            + &assumed::text(program, &linear, time)
+            + &assumptions::text(&notes),
+        blocks: [
+            vec![Block::Text(loop_told(program, &linear, &poles))],
+            assumed::blocks(program, &linear, time),
+            notes.into_iter().map(Block::Text).collect(),
+        ]
+        .concat(),
         real: poles.real(),
     })
 }

@@ -3,8 +3,9 @@
 use crate::args::ParamsArgs;
 use crate::exit::Exit;
 use crate::figures::shown;
-use crate::project::{self, Aim, Records, complain, print_output};
+use crate::project::{self, Aim, Records, print_output};
 use crate::records;
+use crate::run_failure;
 use hyde_experiment::parameters;
 use hyde_program::{Parameter, Prior};
 use hyde_units::{counted, significant};
@@ -29,7 +30,7 @@ fn listed(args: &ParamsArgs) -> Result<String, Exit> {
     let program = &compiled.program;
     let tables = records::tables(&project.records);
     let values = parameters(program, &tables, &project.set())
-        .map_err(|_| complain(&args.model, Exit::CommandLine, "a parameter cannot be set"))?;
+        .map_err(|error| run_failure::refused(&mut project, &args.model, program, &error))?;
     let wanted: Vec<&Parameter> = program
         .parameters
         .iter()

@@ -37,7 +37,7 @@ pub(super) fn class(class: &Class, number: usize, library: &Library, links: &Lin
                 links,
                 tables: Default::default(),
             };
-            members.of_elements(elements, number, None, 0);
+            members.of_elements(elements, number, None, &[]);
             html += &members.html();
             html += &written(&equations(elements, library));
             html += &marks(elements);
@@ -117,24 +117,25 @@ impl<'l> Members<'l> {
         elements: &'l [Element],
         number: usize,
         from: Option<&str>,
-        depth: usize,
+        below: &[&'l Class],
     ) {
         for element in elements {
             match element {
-                Element::Extends(base, _) if depth < 20 => {
+                Element::Extends(base, _) => {
                     if let Some((number, class)) = self.links.class(number, base)
                         && let ClassBody::Long { elements, .. } = &class.body
+                        && !below.iter().any(|known| std::ptr::eq(*known, class))
                     {
-                        self.of_elements(elements, number, Some(&class.name.text), depth + 1);
+                        let below = [below, &[class]].concat();
+                        self.of_elements(elements, number, Some(&class.name.text), &below);
                     }
                 }
                 Element::Declaration(declaration) => self.declaration(declaration, number, from),
                 Element::Clocked(clocked) => {
                     let name = format!("in `{}`", clocked.name.text);
-                    self.of_elements(&clocked.elements, number, Some(&name), depth + 1);
+                    self.of_elements(&clocked.elements, number, Some(&name), below);
                 }
-                Element::Extends(..)
-                | Element::Domain(_)
+                Element::Domain(_)
                 | Element::Discretize(_)
                 | Element::Modes(_)
                 | Element::Equation(_)

@@ -73,10 +73,13 @@ impl<'l> Links<'l> {
     /// The unit that a type is printed in.
     pub(super) fn unit(&self, from: usize, name: &Reference) -> String {
         let (mut from, mut name) = (from, name);
-        for _ in 0..20 {
-            let Some((number, item)) = self.quantity(from, name) else {
+        let mut seen = Vec::new();
+        while let Some((number, item)) = self.quantity(from, name) {
+            // A type of itself has no unit.
+            if seen.contains(&(number, &item.name.text)) {
                 break;
-            };
+            }
+            seen.push((number, &item.name.text));
             if let Some(unit) = &item.unit {
                 return escaped(&unit.text);
             }

@@ -20,25 +20,42 @@ impl<'a> Model<'a, '_> {
         let Some([a]) = self.exactly("der", args, span) else {
             return self.poison(span);
         };
-        if matches!(scope.setting, Setting::Clocked | Setting::Parameter) {
+        if scope.setting == Setting::Parameter {
             self.report(
                 Diagnostic::error(Code::ClockBorder, "no derivative exists here")
-                    .label(
-                        span,
-                        if scope.setting == Setting::Clocked {
-                            "in a clocked part"
-                        } else {
-                            "of a parameter"
-                        },
-                    )
-                    .help("in a clocked part take a difference: `(x - pre(x))/interval()`"),
+                    .label(span, "of a parameter"),
             );
             return self.poison(span);
+        }
+        if scope.setting == Setting::Clocked {
+            return self.difference(a, scope, span);
         }
         let inner = self.value(a, scope);
         let dim = inner.dim.divide(&Dim::known(Dimension::TIME));
         let id = self.time_derivative(inner.id, span);
         self.typed(id, dim, span)
+    }
+
+    /// In a clocked part, `der(x)` is the difference to the last tick over the time since then: backward Euler.
+    fn difference(&mut self, a: &'a Expr, scope: &Scope<'a>, span: Span) -> Typed {
+        let inner = self.value(a, scope);
+        let clock = self.instances[scope.instance].clock;
+        if let (Some(clock), Ir::Var(var, index)) = (clock, self.flat.exprs[inner.id])
+            && self.flat.variables[var].kind == VariableKind::Clocked(clock)
+        {
+            let exprs = &mut self.flat.exprs;
+            let before = exprs.add(Ir::Pre(var, index));
+            let change = exprs.minus(inner.id, before);
+            let id = exprs.over(change, self.flat.clocks[clock].period);
+            return self.typed(id, inner.dim.divide(&Dim::known(Dimension::TIME)), span);
+        }
+        let written = hyde_syntax::format_expression(a);
+        self.report(
+            Diagnostic::error(Code::ClockBorder, format!("`{written}` is not a variable of this clocked part"))
+                .label(span, "in a clocked part `der` is the difference to the last tick")
+                .help(format!("say what it was before the first tick: `Real u(start = …) = {written};`, and write `der(u)`")),
+        );
+        self.poison(span)
     }
 
     pub(crate) fn time_derivative(&mut self, id: ExprId, span: Span) -> ExprId {

@@ -5,7 +5,7 @@ use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::lower::Resolved;
 use crate::model::{Model, listed};
 use hyde_diag::{Code, Diagnostic, MadeBy};
-use hyde_ir::flat::Bode;
+use hyde_ir::flat::{Bode, Moment};
 use hyde_ir::{ExprId, Quantity};
 use hyde_syntax::ast::{self, Reference};
 use hyde_units::Dimension;
@@ -33,18 +33,11 @@ impl<'a> Model<'a, '_> {
         let mut list = Vec::new();
         for output in outputs {
             let typed = self.value(output, &scope);
-            let dimension = self
-                .dimensions
-                .resolve(&typed.dim)
-                .as_known()
-                .unwrap_or(Dimension::DIMENSIONLESS);
-            list.push((
-                hyde_syntax::format_expression(output),
-                typed.id,
-                Quantity::usual(dimension),
-            ));
+            let quantity = self.shown_quantity(&typed);
+            list.push((hyde_syntax::format_expression(output), typed.id, quantity));
         }
         let band = Some(self.band(band, root));
+        let at = self.moment(bode.at.as_ref(), root);
         let modes = self.chosen_modes(&bode.modes);
         let origin = self.origin(root, input.span).made_by(MadeBy::Experiment);
         let names: Vec<&str> = list.iter().map(|(name, ..)| name.as_str()).collect();
@@ -57,9 +50,36 @@ impl<'a> Model<'a, '_> {
             outputs: list,
             band,
             stepped,
+            at,
             modes,
             origin,
         });
+    }
+
+    /// Where the run is when it is linearised: `at 0.3 [s]`, `at start`, `at steady`.
+    pub(super) fn moment(&mut self, at: Option<&'a ast::Expr>, root: InstanceId) -> Moment {
+        let Some(at) = at else {
+            return Moment::Start;
+        };
+        if let ast::ExprKind::Reference(reference) = &at.kind {
+            match reference.as_word() {
+                Some("start") => return Moment::Start,
+                Some("steady") => return Moment::Steady,
+                Some(_) | None => {}
+            }
+        }
+        let time = self.value(at, &Scope::new(root, Setting::Parameter));
+        self.agree_time(&time, "a run is linearised at a time, this relates", root);
+        Moment::At(time.id)
+    }
+
+    /// How a value is shown: what stands alone in the unit that it is declared with.
+    pub(super) fn shown_quantity(&mut self, typed: &Typed) -> Quantity {
+        let dimension = self.dimensions.resolve(&typed.dim).as_known();
+        let usual = Quantity::usual(dimension.unwrap_or(Dimension::DIMENSIONLESS));
+        let declared = self.quantity_of(typed.id).cloned();
+        let known = declared.filter(|known| known.unit.text() != "1");
+        known.unwrap_or(usual)
     }
 
     /// The ends of a band of frequencies in Hz.

@@ -33,6 +33,7 @@ enum Giver {
 impl<'a> Model<'a, '_> {
     pub(super) fn margins(&mut self, margins: &'a ast::Margins, root: InstanceId) {
         let band = margins.band.as_ref().map(|band| self.band(band, root));
+        let at = self.moment(margins.at.as_ref(), root);
         let modes = self.chosen_modes(&margins.modes);
         for signal in &margins.signals {
             let Some((var, giver)) = self.giver_of(signal, root) else {
@@ -51,6 +52,7 @@ impl<'a> Model<'a, '_> {
                 back,
                 clock,
                 band,
+                at,
                 modes: modes.clone(),
                 origin,
             });
@@ -151,7 +153,7 @@ impl<'a> Model<'a, '_> {
                 (at, equation.rhs)
             }
         };
-        let Some((clock, sampled)) = self.of_held_values(from) else {
+        let Some((clock, sampled)) = self.of_held_values(from, &mut vec![var]) else {
             self.flat.equations[at].rhs = self.flat.exprs.plus(from, d);
             return (from, None);
         };
@@ -179,21 +181,39 @@ impl<'a> Model<'a, '_> {
         (lhs, Some(clock))
     }
 
-    /// Of an expression that is made of the held values of one clock alone: the same of what they hold, and the clock.
-    fn of_held_values(&mut self, id: ExprId) -> Option<(ClockId, ExprId)> {
+    /// Of an expression that is made of the held values of one clock alone, or of variables that are: the same of what they
+    /// hold, and the clock. `seen` are the variables on the way there: one that comes again is in a loop.
+    fn of_held_values(&mut self, id: ExprId, seen: &mut Vec<VarId>) -> Option<(ClockId, ExprId)> {
         let mut memo = HashMap::new();
         let mut found = None;
         for below in self.flat.exprs.below(&[id]) {
             match self.flat.exprs[below] {
                 Ir::Var(var, Index::SCALAR) => {
-                    let VariableKind::Held(clock, source) = self.flat.variables[var].kind else {
-                        return None;
+                    let (clock, sampled) = match self.flat.variables[var].kind {
+                        VariableKind::Held(clock, source) => (clock, self.flat.exprs.var(source)),
+                        VariableKind::Continuous if !seen.contains(&var) => {
+                            seen.push(var);
+                            let given = match self.given_by(var, below)? {
+                                Giver::Left(at) => self.flat.equations[at].rhs,
+                                Giver::Right(at) => self.flat.equations[at].lhs,
+                                Giver::Clocked(_) => return None,
+                            };
+                            let found = self.of_held_values(given, seen);
+                            seen.pop();
+                            found?
+                        }
+                        VariableKind::Continuous
+                        | VariableKind::Discrete
+                        | VariableKind::Clocked(_)
+                        | VariableKind::Column(..)
+                        | VariableKind::Delayed(_)
+                        | VariableKind::Reduction(_) => return None,
                     };
                     if found.is_some_and(|known| known != clock) {
                         return None;
                     }
                     found = Some(clock);
-                    memo.insert(below, self.flat.exprs.var(source));
+                    memo.insert(below, sampled);
                 }
                 Ir::Const(_)
                 | Ir::Param(..)

@@ -4,7 +4,6 @@ use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic};
-use hyde_ir::Quantity;
 use hyde_ir::flat::{Curve, Figure, FigureKind};
 use hyde_syntax::ast::{self, Argument, Expr, ExprKind};
 use hyde_units::Dimension;
@@ -127,16 +126,10 @@ impl<'a> Model<'a, '_> {
             ..Scope::new(root, Setting::Report)
         };
         let typed = self.value(expr, &scope);
-        let dimension = self.dimensions.resolve(&typed.dim).as_known();
-        // What stands alone is drawn in the unit that it is declared with.
-        let declared = self.quantity_of(typed.id).cloned();
-        let usual = Quantity::usual(dimension.unwrap_or(Dimension::DIMENSIONLESS));
         let curve = Curve {
             name: hyde_syntax::format_expression(expr),
             value: typed.id,
-            quantity: declared
-                .filter(|known| known.unit.text() != "1")
-                .unwrap_or(usual),
+            quantity: self.shown_quantity(&typed),
         };
         (curve, typed)
     }

@@ -148,6 +148,7 @@ impl<'a> Model<'a, '_> {
             scale: (1.0, 0.0),
             noise: 0.0,
             ticks_s: None,
+            drives: None,
         });
         let dim = match &unit {
             Some(unit) => Dim::known(unit.unit().dimension),

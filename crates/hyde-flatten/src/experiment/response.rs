@@ -6,8 +6,8 @@ use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::lower::Resolved;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy};
+use hyde_ir::VarId;
 use hyde_ir::flat::{Bode, MeasuredResponse, Preparation, RecordedResponse, ScaledColumn};
-use hyde_ir::{Quantity, VarId};
 use hyde_syntax::ast::{Channel, ExperimentItem, Expr, ExprKind};
 use hyde_units::Dimension;
 
@@ -276,24 +276,23 @@ impl<'a> Model<'a, '_> {
                 return (number, output);
             }
         }
-        let dimension = self.dimensions.resolve(&value.dim).as_known();
-        let quantity = Quantity::usual(dimension.unwrap_or(Dimension::DIMENSIONLESS));
-        let output = (name.to_owned(), value.id, quantity);
+        let output = (name.to_owned(), value.id, self.shown_quantity(value));
         let bodes = &mut self.flat.experiment.bodes;
         let own = |bode: &Bode| bode.input == input && bode.band.is_none();
         if let Some(number) = bodes.iter().position(own) {
             bodes[number].outputs.push(output);
             return (number, bodes[number].outputs.len() - 1);
         }
-        // It is linearised in the modes in which that input is looked at elsewhere.
-        let modes = bodes.iter().find(|bode| bode.input == input);
-        let modes = modes.map_or_else(Vec::new, |bode| bode.modes.clone());
+        // It is linearised where and in the modes in which that input is looked at elsewhere.
+        let other = bodes.iter().find(|bode| bode.input == input);
+        let (at, modes) = other.map_or_else(Default::default, |bode| (bode.at, bode.modes.clone()));
         let origin = self.origin(root, value.span).made_by(MadeBy::Experiment);
         self.flat.experiment.bodes.push(Bode {
             input,
             outputs: vec![output],
             band: None,
             stepped: None,
+            at,
             modes,
             origin,
         });

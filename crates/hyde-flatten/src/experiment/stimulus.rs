@@ -8,7 +8,7 @@ use hyde_diag::{Code, Diagnostic, MadeBy, Origin};
 use hyde_ir::flat::{Equation, Preparation};
 use hyde_ir::{Expr as Ir, ExprId, Id as _, Parameter, Quantity, Range, VarId, VariableKind};
 use hyde_syntax::ast::Drive;
-use hyde_units::Allowed;
+use hyde_units::{Allowed, Kind};
 
 impl<'a> Model<'a, '_> {
     /// `stimulus r = e`: drives a free input.
@@ -52,7 +52,9 @@ impl<'a> Model<'a, '_> {
         let boolean = self.flat.variables[var].boolean;
         let mut value = self.lower(&drive.value, &scope);
         if boolean && !value.truth {
-            value = self.truth_of_column(value);
+            value = self.counted_column(value, Kind::Boolean, word);
+        } else if self.notes(var).integer {
+            value = self.counted_column(value, Kind::Integer, word);
         }
         let lhs = self.flat.exprs.var(var);
         let left = Typed {
@@ -123,8 +125,8 @@ impl<'a> Model<'a, '_> {
         self.flat.exprs.below(&[value]).into_iter().any(column)
     }
 
-    /// A column that drives a Boolean: true from 0.5 on, held between its rows.
-    fn truth_of_column(&mut self, value: Typed) -> Typed {
+    /// A column that drives a Boolean or an Integer is held between its rows; the run looks at the value of each.
+    fn counted_column(&mut self, value: Typed, kind: Kind, input: &str) -> Typed {
         let Ir::Var(var, index) = self.flat.exprs[value.id] else {
             return value;
         };
@@ -132,7 +134,15 @@ impl<'a> Model<'a, '_> {
             return value;
         };
         let (_, held) = self.column_variables[&column];
+        self.flat.columns[column].drives = Some((kind, input.to_owned(), value.span));
         let number = self.flat.exprs.add(Ir::Var(held, index));
+        if kind == Kind::Integer {
+            self.variables[held.index()].integer = true;
+            return Typed {
+                id: number,
+                ..value
+            };
+        }
         let half = self.flat.exprs.constant(0.5);
         Typed {
             id: self.flat.exprs.binary(hyde_ir::BinaryOp::Gt, number, half),

@@ -5,6 +5,29 @@ use crate::Quantity;
 use crate::id::{AutomatonId, ClockId, ColumnId, ExprId, VarId};
 use hyde_diag::Origin;
 
+/// Where a run is when it is linearised.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Moment {
+    /// At the start.
+    #[default]
+    Start,
+    /// At a time in s, of parameters alone.
+    At(ExprId),
+    /// At the steady state.
+    Steady,
+}
+
+impl Moment {
+    /// The time, if it is one.
+    #[must_use]
+    pub fn time(self) -> Option<ExprId> {
+        match self {
+            Self::At(time) => Some(time),
+            Self::Start | Self::Steady => None,
+        }
+    }
+}
+
 /// `bode from input to outputs over f1 .. f2`.
 #[derive(Clone, Debug)]
 pub struct Bode {
@@ -16,6 +39,8 @@ pub struct Bode {
     pub band: Option<(ExprId, ExprId)>,
     /// Measured by stepped sines as well.
     pub stepped: Option<Stepped>,
+    /// About what it is linearised.
+    pub at: Moment,
     /// Modes of the linearised system: automaton and mode.
     pub modes: Vec<(AutomatonId, usize)>,
     /// Where it is written.
@@ -35,6 +60,8 @@ pub struct Cut {
     pub clock: Option<ClockId>,
     /// From and to in Hz, of parameters alone.
     pub band: Option<(ExprId, ExprId)>,
+    /// About what it is linearised.
+    pub at: Moment,
     /// Modes of the linearised system: automaton and mode.
     pub modes: Vec<(AutomatonId, usize)>,
     /// Where it is written.

@@ -6,7 +6,7 @@ use hyde_ir::dae::Dae;
 use hyde_ir::flat;
 use hyde_ir::{Expr, ExprId, Id as _, VariableKind};
 use hyde_program::{
-    Bode, Cut, Experiment, Measure, Measured, MeasuredResponse, Method, Preparation,
+    Bode, Cut, Experiment, Measure, Measured, MeasuredResponse, Method, Moment, Preparation,
     RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped,
 };
 
@@ -111,6 +111,7 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
                     input: name,
                     input_output,
                     outputs,
+                    at: moment(bode.at),
                     modes: chosen_modes(&bode.modes),
                     stepped: bode.stepped.as_ref().map(|stepped| Stepped {
                         keep: stepped.keep.map(|(output, _)| output),
@@ -133,6 +134,7 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
                 input: cut.input.clone(),
                 back,
                 clock: cut.clock.map(|clock| clock.index()),
+                at: moment(cut.at),
                 modes: chosen_modes(&cut.modes),
                 origin: cut.origin.clone(),
             })
@@ -150,6 +152,14 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
             flat::Method::Esdirk => Method::Esdirk,
             flat::Method::Auto => Method::Auto,
         },
+    }
+}
+
+fn moment(at: flat::Moment) -> Moment {
+    match at {
+        flat::Moment::Start => Moment::Start,
+        flat::Moment::At(_) => Moment::At,
+        flat::Moment::Steady => Moment::Steady,
     }
 }
 

@@ -93,9 +93,9 @@ pub enum ExperimentItem {
     Every(Expr),
     /// `skip 50 [ms]`
     Skip(Expr),
-    /// `bode from u to y over 1 .. 50 [Hz] in guide = slip;`
+    /// `bode from u to y over 1 .. 50 [Hz] at 0.3 [s] in guide = slip;`
     Bode(Bode),
-    /// `margins of cnc.control.i_ref over 1 .. 500 [Hz] in guide = slip;`
+    /// `margins of cnc.control.i_ref over 1 .. 500 [Hz] at steady in guide = slip;`
     Margins(Margins),
     /// `figure lag = r - s, {guide.a.f, screw.F} in 0.8 [s] .. 1 [s] "the reversal";`
     Figure(Figure),
@@ -129,7 +129,7 @@ pub struct Ideal {
     pub doc: Option<String>,
 }
 
-/// `bode from u to y over 1 .. 50 [Hz] in guide = slip;`
+/// `bode from u to y over 1 .. 50 [Hz] at 0.3 [s] in guide = slip;`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bode {
     /// The driven input.
@@ -140,17 +140,21 @@ pub struct Bode {
     pub band: Range,
     /// `by stepped(…)`: the name and its arguments.
     pub steps: Option<(Name, Vec<Argument>)>,
+    /// About what it is linearised: a time, `start` or `steady`; the start if left out.
+    pub at: Option<Expr>,
     /// The modes in which the linearised system is taken: instance and mode.
     pub modes: Vec<(Reference, Name)>,
 }
 
-/// `margins of cnc.control.i_ref over 1 .. 500 [Hz] in guide = slip;`
+/// `margins of cnc.control.i_ref over 1 .. 500 [Hz] at steady in guide = slip;`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Margins {
     /// The signals at which the loop is cut, one at a time.
     pub signals: Vec<Reference>,
     /// The band of frequencies that is searched; that of the loop's dynamics if left out.
     pub band: Option<Range>,
+    /// About what it is linearised: a time, `start` or `steady`; the start if left out.
+    pub at: Option<Expr>,
     /// The modes in which the linearised system is taken: instance and mode.
     pub modes: Vec<(Reference, Name)>,
 }

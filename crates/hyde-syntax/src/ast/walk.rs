@@ -167,10 +167,12 @@ fn of_experiment<'a>(experiment: &'a Experiment, visit: &mut dyn FnMut(&'a Expr)
                 if let Some((_, arguments)) = &bode.steps {
                     of_arguments(arguments, visit);
                 }
+                bode.at.iter().for_each(&mut *visit);
             }
             ExperimentItem::Margins(margins) => {
                 let band = margins.band.iter();
                 band.for_each(|band| of_range(band, visit));
+                margins.at.iter().for_each(&mut *visit);
             }
             ExperimentItem::Figure(figure) => {
                 figure

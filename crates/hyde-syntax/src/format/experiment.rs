@@ -108,7 +108,7 @@ impl Printer {
             ExperimentItem::Skip(time) => format!("skip {};", expression(time)),
             ExperimentItem::Bode(bode) => {
                 let outputs: Vec<String> = bode.outputs.iter().map(expression).collect();
-                let modes = in_modes(&bode.modes);
+                let (at, modes) = (point(bode.at.as_ref()), in_modes(&bode.modes));
                 let (input, band) = (reference(&bode.input), range(&bode.band));
                 let steps = bode
                     .steps
@@ -117,7 +117,7 @@ impl Printer {
                         format!(" by {}{}", name.text, optional_arguments(arguments))
                     });
                 format!(
-                    "bode from {input} to {} over {band}{steps}{modes};",
+                    "bode from {input} to {} over {band}{steps}{at}{modes};",
                     outputs.join(", ")
                 )
             }
@@ -125,8 +125,8 @@ impl Printer {
                 let signals: Vec<String> = margins.signals.iter().map(reference).collect();
                 let band = margins.band.as_ref();
                 let band = band.map_or_else(String::new, |band| format!(" over {}", range(band)));
-                let modes = in_modes(&margins.modes);
-                format!("margins of {}{band}{modes};", signals.join(", "))
+                let (at, modes) = (point(margins.at.as_ref()), in_modes(&margins.modes));
+                format!("margins of {}{band}{at}{modes};", signals.join(", "))
             }
             ExperimentItem::Figure(figure) => {
                 let panels: Vec<String> = figure.panels.iter().map(expression).collect();
@@ -158,6 +158,11 @@ impl Printer {
         };
         self.line(&line);
     }
+}
+
+/// ` at 0.3 [s]`, or nothing.
+fn point(at: Option<&Expr>) -> String {
+    at.map_or_else(String::new, |at| format!(" at {}", expression(at)))
 }
 
 /// ` in guide = slip`, or nothing.

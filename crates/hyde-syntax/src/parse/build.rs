@@ -166,5 +166,6 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_budget
             | R::kw_vary
             | R::kw_skip
+            | R::kw_at
     )
 }

@@ -3,8 +3,9 @@
 use super::Parser;
 use super::build::{Builder, Node, has, parts, significant};
 use crate::ast::{
-    Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, LayoutSetting, Margins, Name,
-    Part, RecordItem, Reference, SettingValue, Study, StudyItem, StudyKind, Variation, Varied,
+    Bode, Channel, Drive, Experiment, ExperimentItem, Expr, Figure, Ideal, LayoutSetting, Margins,
+    Name, Part, RecordItem, Reference, SettingValue, Study, StudyItem, StudyKind, Variation,
+    Varied,
 };
 use crate::grammar::Rule;
 use crate::recover;
@@ -235,7 +236,7 @@ impl Builder<'_> {
         let mut inner = parts(node);
         let input = self.reference(inner.next()?);
         let (mut outputs, mut band, mut modes) = (Vec::new(), None, Vec::new());
-        let mut steps = None;
+        let (mut steps, mut at) = (None, None);
         for part in inner {
             match part.as_rule() {
                 Rule::range => band = self.range(part),
@@ -245,6 +246,7 @@ impl Builder<'_> {
                     let arguments = words.next().map(|list| self.arguments(list));
                     steps = Some((name, arguments.unwrap_or_default()));
                 }
+                Rule::at_point => at = self.point(part),
                 Rule::in_modes => modes = self.in_modes(part),
                 _ => outputs.push(self.expression(part)),
             }
@@ -254,6 +256,7 @@ impl Builder<'_> {
             outputs,
             band: band?,
             steps,
+            at,
             modes,
         }))
     }
@@ -262,16 +265,23 @@ impl Builder<'_> {
         let mut margins = Margins {
             signals: Vec::new(),
             band: None,
+            at: None,
             modes: Vec::new(),
         };
         for part in parts(node) {
             match part.as_rule() {
                 Rule::range => margins.band = self.range(part),
+                Rule::at_point => margins.at = self.point(part),
                 Rule::in_modes => margins.modes = self.in_modes(part),
                 _ => margins.signals.push(self.reference(part)),
             }
         }
         ExperimentItem::Margins(margins)
+    }
+
+    /// `at 0.3 [s]`, `at steady`
+    fn point(&mut self, node: Node<'_>) -> Option<Expr> {
+        parts(node).next().map(|part| self.expression(part))
     }
 
     /// `in guide = slip, clutch = locked`

@@ -30,7 +30,8 @@ pub(crate) fn leave(
 /// Below this coherence nothing of the input is seen in the output: left out of magnitude and phase.
 const LEAST: f64 = 0.02;
 
-fn drawn(title: &str, responses: &[&Response]) -> Figure {
+/// The figure of them.
+pub(crate) fn drawn(title: &str, responses: &[&Response]) -> Figure {
     let mut experiments: Vec<&str> = Vec::new();
     for response in responses {
         if !experiments.contains(&response.experiment.as_str()) {

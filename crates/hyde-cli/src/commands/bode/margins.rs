@@ -7,6 +7,7 @@ use hyde_experiment::{
     About, CutError, DelayMargin, Margins, Pole, linearize_about, margins, poles,
 };
 use hyde_program::{Constant, Cut, Program};
+use hyde_report::Block;
 use hyde_signal::Table;
 use hyde_syntax::ast::Item;
 use hyde_units::significant;
@@ -29,6 +30,7 @@ pub(crate) struct OfLoop {
     pub(crate) unstable: Vec<Pole>,
     /// About what it is linearised, with what is assumed there; and that as JSON.
     pub(crate) point: String,
+    pub(crate) about: Vec<Block>,
     assumptions: Value,
     /// The band was asked for.
     given: bool,
@@ -62,13 +64,13 @@ pub(crate) fn all(
     program: &Program,
     tables: &BTreeMap<String, Table>,
     p: &[f64],
-    about: About<'_>,
+    asked: (Option<&str>, &[(usize, usize)]),
     diagnostics: &mut Diagnostics,
 ) -> Option<Vec<OfLoop>> {
     let cuts = program.experiment.cuts.iter().enumerate();
     let found: Vec<Option<OfLoop>> = cuts
         .map(|(number, cut)| {
-            let of = one(experiment, program, (number, cut), tables, p, about);
+            let of = one(experiment, program, (number, cut), tables, p, asked);
             of.map_err(|diagnostic| diagnostics.push(*diagnostic)).ok()
         })
         .collect();
@@ -81,7 +83,7 @@ fn one(
     (number, cut): (usize, &Cut),
     tables: &BTreeMap<String, Table>,
     p: &[f64],
-    about: About<'_>,
+    (asked, modes): (Option<&str>, &[(usize, usize)]),
 ) -> Result<OfLoop, Box<Diagnostic>> {
     if program.experiment.differentiated.contains(&cut.input) {
         let message = format!(
@@ -94,15 +96,21 @@ fn one(
         return Err(Box::new(diagnostic.help(help)));
     }
     let input = std::slice::from_ref(&cut.input);
+    let constant = |which| program.kernels.constant(which, p);
+    let time = assumed::moment(asked, cut.at, constant(Constant::CutAt(number)));
+    let time = time.map_err(|reason| {
+        let diagnostic = Diagnostic::error(Code::NoResponse, reason);
+        Box::new(diagnostic.label(cut.origin.span, "linearised there"))
+    })?;
     let about = About {
-        modes: &[about.modes, &cut.modes].concat(),
-        ..about
+        time,
+        modes: &[modes, &cut.modes].concat(),
+        open: false,
     };
     let linear = linearize_about(program, tables, p, input, about).map_err(|error| {
         let diagnostic = Diagnostic::error(Code::NoResponse, assumed::why_not(&error));
         Box::new(diagnostic.label(cut.origin.span, "the loop has no response here"))
     })?;
-    let constant = |which| program.kernels.constant(which, p);
     let band = constant(Constant::SearchedFrom(number)).zip(constant(Constant::SearchedTo(number)));
     let found = margins(program, &linear, cut, band).map_err(|error| refused(cut, error))?;
     Ok(OfLoop {
@@ -110,6 +118,7 @@ fn one(
         signal: cut.signal.clone(),
         unstable: poles(&linear).unstable(),
         point: assumed::text(program, &linear, about.time),
+        about: assumed::blocks(program, &linear, about.time),
         assumptions: assumed::listed(program, &linear),
         found,
         given: band.is_some(),

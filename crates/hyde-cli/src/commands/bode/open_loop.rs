@@ -18,13 +18,7 @@ pub(crate) fn leave(
     of: &OfLoop,
 ) -> Result<Vec<String>, String> {
     files::make_folder(folder)?;
-    let title = format!("{title}: loop cut at {}", of.signal);
-    let curve = open_loop(of);
-    let figures = [
-        ("open-loop", bode(&title, of, &curve)),
-        ("nyquist", nyquist_plot(title.as_str(), &curve)),
-        ("nichols", nichols_plot(title.as_str(), &curve)),
-    ];
+    let figures = figures(title, of);
     let mut names = Vec::new();
     for (stem, figure) in &figures {
         let svg = folder.join(format!("{stem}{suffix}.svg"));
@@ -42,6 +36,17 @@ pub(crate) fn leave(
         csv.as_bytes(),
     )?;
     Ok(names)
+}
+
+/// The figures of the open loop, with the stems of their files.
+pub(crate) fn figures(title: &str, of: &OfLoop) -> [(&'static str, Figure); 3] {
+    let title = format!("{title}: loop cut at {}", of.signal);
+    let curve = open_loop(of);
+    [
+        ("open-loop", bode(&title, of, &curve)),
+        ("nyquist", nyquist_plot(title.as_str(), &curve)),
+        ("nichols", nichols_plot(title.as_str(), &curve)),
+    ]
 }
 
 /// The curve with the crossovers that decide.

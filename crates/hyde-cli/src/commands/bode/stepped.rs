@@ -37,7 +37,7 @@ pub(crate) fn measured(
     let wrong = |reason: &str| complain(args, Exit::Model, reason);
     let tables = records::tables(&project.records);
     let p = parameters(program, &tables, &project.set())
-        .map_err(|_| wrong("a parameter cannot be set"))?;
+        .map_err(|error| run_failure::refused(project, args, program, &error))?;
     let steps = steps(program, number, &p).ok_or_else(|| {
         wrong(
             "`by stepped` needs a positive amplitude, two points or more, and two periods or more",

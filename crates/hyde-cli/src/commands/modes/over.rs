@@ -1,6 +1,6 @@
 //! `hyde modes --over`: natural frequencies over a parameter, as a table and a figure.
 
-use super::{Found, found};
+use super::{Found, found, page};
 use crate::args::{ModelArgs, ModesArgs};
 use crate::exit::Exit;
 use crate::figures::shown;
@@ -48,9 +48,9 @@ pub(super) fn table(
         text(&rows, &from.path, &unit)
     };
     if let Some(folder) = &args.out {
-        leave(folder, &rows, &from.path, &unit).map_err(|reason| wrong(&reason))?;
+        let page = leave(folder, &rows, &from.path, &unit).map_err(|reason| wrong(&reason))?;
         if !args.model.json {
-            let _ = writeln!(text, "{}", folder.join("modes.svg").display());
+            let _ = writeln!(text, "{}\n{page}", folder.join("modes.svg").display());
         }
     }
     Ok(text)
@@ -133,7 +133,7 @@ fn json(rows: &[Row], path: &str) -> String {
     )
 }
 
-fn leave(folder: &Path, rows: &[Row], path: &str, unit: &str) -> Result<(), String> {
+fn leave(folder: &Path, rows: &[Row], path: &str, unit: &str) -> Result<String, String> {
     files::make_folder(folder)?;
     let figure = drawn(rows, path, unit);
     files::write(&folder.join("modes.svg"), to_svg(&figure).as_bytes())?;
@@ -147,7 +147,9 @@ fn leave(folder: &Path, rows: &[Row], path: &str, unit: &str) -> Result<(), Stri
             }
         }
     }
-    files::write(&folder.join("modes.csv"), csv.as_bytes())
+    files::write(&folder.join("modes.csv"), csv.as_bytes())?;
+    let first = rows.first().map_or(&[][..], |(_, all)| all);
+    page::leave(folder, Some(figure), first)
 }
 
 /// A panel for each mode, lowest at the bottom; a colour for each experiment.

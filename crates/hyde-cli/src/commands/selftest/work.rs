@@ -83,6 +83,7 @@ pub(super) fn reason(error: &SelftestError) -> String {
             RunError::NotAllowed(name, cause) => {
                 format!("the value of `{name}` is not allowed: {cause}")
             }
+            RunError::Row(fault) => fault.to_string(),
             RunError::TooManyRows { rows, .. } => format!("it has {rows:.1e} rows"),
             RunError::NotANumber { variable, .. } => format!("`{variable}` is not a number"),
             RunError::NoStop => "its experiment does not say when to stop".to_owned(),
