@@ -4,7 +4,7 @@ use crate::commands::effects::wrapped;
 use crate::project::Project;
 use crate::records;
 use crate::run_failure::instant;
-use hyde_experiment::{Run, extent};
+use hyde_experiment::{Run, extent, is_over_frequency};
 use hyde_program::Program;
 use hyde_report::{Block, Section};
 use hyde_signal::Table;
@@ -99,7 +99,8 @@ fn of_start(
     let driving: BTreeSet<&str> = program.columns.iter().map(|c| c.record.as_str()).collect();
     let measured = program.experiment.measured.iter();
     let measured: BTreeSet<&str> = measured.map(|m| m.source.0.as_str()).collect();
-    for (name, table) in tables {
+    let over_time = |name: &str| !is_over_frequency(program, name);
+    for (name, table) in tables.iter().filter(|(name, _)| over_time(name)) {
         let (Some(&begin), Some(&end)) = (table.time().first(), table.time().last()) else {
             continue;
         };

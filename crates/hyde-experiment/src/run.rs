@@ -296,6 +296,16 @@ pub fn extent(
     (start, stop_s)
 }
 
+/// Whether a record is a measured frequency response: its first column is the frequency, not the time.
+#[must_use]
+pub fn is_over_frequency(program: &Program, record: &str) -> bool {
+    let mut responses = program.experiment.measured_responses.iter();
+    responses.any(|response| match &response.source {
+        RecordedResponse::Complex(of, _) | RecordedResponse::Polar(of, _) => of.record == record,
+        RecordedResponse::Periodic(..) => false,
+    })
+}
+
 /// When a run starts in s: as the experiment says, else where the last of the records begins that drive the model, else where
 /// the first begins that it is compared with, else at 0. With it the record that begins there.
 fn start(
@@ -311,18 +321,8 @@ fn start(
         let own = |m: &Measured| m.source.0 == column.record && m.source.1 == column.column;
         measured.iter().any(own)
     };
-    // The first column of a measured frequency response is the frequency.
-    let over_frequency = |record: &String| {
-        let mut responses = program.experiment.measured_responses.iter();
-        responses.any(|response| match &response.source {
-            RecordedResponse::Complex(of, _) | RecordedResponse::Polar(of, _) => {
-                of.record == *record
-            }
-            RecordedResponse::Periodic(..) => false,
-        })
-    };
     let begin = |record: &String| {
-        let table = records.get(record).filter(|_| !over_frequency(record))?;
+        let table = records.get(record).filter(|_| !is_over_frequency(program, record))?;
         Some((*table.time().first()?, record.clone()))
     };
     let driving = program.columns.iter();
