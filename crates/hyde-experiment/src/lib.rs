@@ -53,7 +53,8 @@ pub use modes::{NaturalMode, modes};
 pub use poles::{Pole, Poles, poles};
 pub use record::read_record;
 pub use run::{
-    Incomplete, Options, Run, RunError, extent, incomplete, is_over_frequency, parameters, places, record_value, run,
+    Incomplete, Options, Run, RunError, extent, incomplete, is_over_frequency, parameters, places,
+    record_value, run,
 };
 pub use sampled::{Clocked, Sampled};
 pub use stepped::{Level, SteppedOutput, SteppedPoint, Steps, stepped_response};

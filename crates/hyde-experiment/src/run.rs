@@ -322,7 +322,9 @@ fn start(
         measured.iter().any(own)
     };
     let begin = |record: &String| {
-        let table = records.get(record).filter(|_| !is_over_frequency(program, record))?;
+        let table = records
+            .get(record)
+            .filter(|_| !is_over_frequency(program, record))?;
         Some((*table.time().first()?, record.clone()))
     };
     let driving = program.columns.iter();
