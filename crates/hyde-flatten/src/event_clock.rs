@@ -108,10 +108,8 @@ impl<'a> Model<'a, '_> {
             let free = waiting.iter().position(|own| {
                 let reads = |var: VarId| waiting.iter().any(|other| other.var == var);
                 let below = self.flat.exprs.below(&[own.value]);
-                !below.iter().any(|id| match self.flat.exprs[*id] {
-                    Ir::Var(var, _) => reads(var),
-                    _ => false,
-                })
+                let mut read = below.iter().filter_map(|id| self.flat.exprs[*id].access());
+                !read.any(|(var, ..)| reads(var))
             });
             let Some(free) = free else {
                 self.report_circle(&waiting);
@@ -133,13 +131,10 @@ impl<'a> Model<'a, '_> {
         rhs: ExprId,
         equation: &Equation,
     ) -> Result<Assignment, Box<Diagnostic>> {
-        let own = |id: ExprId| match self.flat.exprs[id] {
-            Ir::Var(var, index)
-                if self.flat.variables[var].kind == VariableKind::Clocked(clock) =>
-            {
-                Some((var, index))
-            }
-            _ => None,
+        let own = |id: ExprId| {
+            let (var, index, derivative) = self.flat.exprs[id].access()?;
+            let clocked = self.flat.variables[var].kind == VariableKind::Clocked(clock);
+            (clocked && !derivative).then_some((var, index))
         };
         let found = own(lhs)
             .map(|target| (target, rhs))
