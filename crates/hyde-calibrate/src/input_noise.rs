@@ -182,6 +182,7 @@ mod tests {
             stepped,
             noise,
             ticks_s: None,
+            drives: None,
         }
     }
 
