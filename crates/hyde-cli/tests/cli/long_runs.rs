@@ -121,6 +121,28 @@ fn a_run_that_fails_keeps_its_rows_marked_as_incomplete() {
     }
 }
 
+/// Each row of a table is a branch of the equations: more than compile in seconds are refused, and what the help says runs.
+#[test]
+fn a_table_of_too_many_rows_is_refused() {
+    let folder = Folder::new();
+    let model = FALLS.replace("-1 [1/s]", "-table(time, \"law.csv\", \"t\", \"rate\")");
+    let model = folder.file("falls.hyde", &model);
+    let rows = |count: u32| -> String {
+        let lines = (0..count).map(|k| format!("{k},1\n"));
+        std::iter::once("t [s],rate [1/s]\n".to_owned())
+            .chain(lines)
+            .collect()
+    };
+    folder.file("law.csv", &rows(30_000));
+    let check = hyde(&["check", &model]);
+    assert_eq!(status(&check), 1);
+    let told = errors(&check);
+    assert!(told.contains("30000 rows: a table has 20000"), "{told}");
+    assert!(told.contains("keep one row of 2"), "{told}");
+    folder.file("law.csv", &rows(200));
+    assert_eq!(status(&hyde(&["check", &model])), 0);
+}
+
 #[test]
 fn what_keeps_nothing_of_what_is_unfinished_ends_at_once() {
     let folder = Folder::new();

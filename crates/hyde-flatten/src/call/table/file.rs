@@ -12,6 +12,9 @@ use hyde_units::NamedUnit;
 
 type Column = (String, Option<NamedUnit>, Vec<f64>);
 
+/// Rows of a file at most: more take minutes to compile.
+const MAX_ROWS: usize = 20_000;
+
 impl<'a> Model<'a, '_> {
     /// The places and values of a table's file.
     pub(super) fn file_points(
@@ -50,6 +53,19 @@ impl<'a> Model<'a, '_> {
                 )
                 .label(path.span, "a table has two points at least"),
             );
+            return None;
+        }
+        if xs.2.len() > MAX_ROWS {
+            let message = format!(
+                "`{written}` has {} rows: a table has {MAX_ROWS} at most, for each becomes a branch of the equations",
+                xs.2.len()
+            );
+            let thin = xs.2.len().div_ceil(MAX_ROWS);
+            let help = format!(
+                "keep one row of {thin}; what depends on time alone may be a record, which has any number of rows"
+            );
+            let diagnostic = Diagnostic::error(Code::BadShape, message);
+            self.report(diagnostic.label(path.span, "too many rows").help(help));
             return None;
         }
         if let Some(row) = (1..xs.2.len()).find(|&row| xs.2[row - 1] >= xs.2[row]) {
