@@ -38,6 +38,8 @@ pub enum Factor {
     Worked(f64),
     /// In proportion to place.
     Place,
+    /// The magnitude of place.
+    PlaceMagnitude,
     /// The square of place.
     PlaceSquare,
     /// The same with its sign.
@@ -91,6 +93,7 @@ impl Factor {
             Self::Lagged(a) => format!("the {speed}, {} s late", n(a)),
             Self::Worked(a) => format!("the {speed}'s magnitude, {} s late", n(a)),
             Self::Place => format!("the {place}"),
+            Self::PlaceMagnitude => format!("the {place}'s magnitude"),
             Self::PlaceSquare => format!("the {place}'s square"),
             Self::PlaceSignedSquare => format!("the {place}'s square with its sign"),
             Self::PlaceCube => format!("the {place}'s third power"),
@@ -112,6 +115,7 @@ impl Factor {
             | Self::Square
             | Self::Cube
             | Self::Place
+            | Self::PlaceMagnitude
             | Self::PlaceSquare
             | Self::PlaceSignedSquare
             | Self::PlaceCube
@@ -141,6 +145,7 @@ impl Factor {
             | Self::Square
             | Self::Cube
             | Self::Place
+            | Self::PlaceMagnitude
             | Self::PlaceSquare
             | Self::PlaceSignedSquare
             | Self::PlaceCube
@@ -174,6 +179,7 @@ impl Factor {
             | Self::Square
             | Self::Cube
             | Self::Place
+            | Self::PlaceMagnitude
             | Self::PlaceSquare
             | Self::PlaceSignedSquare
             | Self::PlaceCube
@@ -225,6 +231,7 @@ impl Factor {
             Self::Lagged(tau) => vec![late(course, tau, &|v| v / v1)],
             Self::Worked(tau) => vec![late(course, tau, &|v| v.abs() / v1)],
             Self::Place => place(&|x| x / x1),
+            Self::PlaceMagnitude => place(&|x| x.abs() / x1),
             Self::PlaceSquare => place(&|x| (x / x1) * (x / x1)),
             Self::PlaceSignedSquare => place(&|x| x * x.abs() / (x1 * x1)),
             Self::PlaceCube => place(&|x| (x / x1).powi(3)),
@@ -266,6 +273,7 @@ impl Factor {
             Self::Lagged(_) => format!("late_{a}/{v}1"),
             Self::Worked(_) => format!("worked_{a}/{v}1"),
             Self::Place => format!("{x}/x1"),
+            Self::PlaceMagnitude => format!("noEvent(abs({x}))/x1"),
             Self::PlaceSquare => format!("({x}/x1)^2"),
             Self::PlaceSignedSquare => format!("{x}*noEvent(abs({x}))/x1^2"),
             Self::PlaceCube => format!("({x}/x1)^3"),
@@ -306,6 +314,7 @@ impl Factor {
             | Self::Bell(_)
             | Self::SpeedBump(..)
             | Self::Place
+            | Self::PlaceMagnitude
             | Self::PlaceSquare
             | Self::PlaceSignedSquare
             | Self::PlaceCube
@@ -341,6 +350,7 @@ impl Factor {
             | Self::Square
             | Self::Cube
             | Self::Place
+            | Self::PlaceMagnitude
             | Self::PlaceSquare
             | Self::PlaceSignedSquare
             | Self::PlaceCube
@@ -395,9 +405,11 @@ impl Factor {
             | Self::Cube
             | Self::Lagged(_)
             | Self::Worked(_) => [true, false, false],
-            Self::Place | Self::PlaceSquare | Self::PlaceSignedSquare | Self::PlaceCube => {
-                [false, true, false]
-            }
+            Self::Place
+            | Self::PlaceMagnitude
+            | Self::PlaceSquare
+            | Self::PlaceSignedSquare
+            | Self::PlaceCube => [false, true, false],
             Self::Time => [false, false, true],
             Self::Switching(_)
             | Self::Turning(_)

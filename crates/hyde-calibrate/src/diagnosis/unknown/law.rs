@@ -258,6 +258,7 @@ fn mark(factor: Factor, kind: Kind, names: &[String]) -> String {
         Factor::Wave(_) if kind.turns() => format!("angle({first})"),
         Factor::Wave(_) | Factor::Bump(..) | Factor::Step(..) => format!("position({first})"),
         Factor::Place
+        | Factor::PlaceMagnitude
         | Factor::PlaceSquare
         | Factor::PlaceSignedSquare
         | Factor::PlaceCube

@@ -259,6 +259,7 @@ fn first_steps(term: &Summand, seen: &Seen, turns: bool) -> Vec<f64> {
             | Factor::Square
             | Factor::Cube
             | Factor::Place
+            | Factor::PlaceMagnitude
             | Factor::PlaceSquare
             | Factor::PlaceSignedSquare
             | Factor::PlaceCube
@@ -326,6 +327,7 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
     let mut others: Vec<Vec<Factor>> = vec![
         Vec::new(),
         vec![Factor::Place],
+        vec![Factor::PlaceMagnitude],
         vec![Factor::PlaceSquare],
         vec![Factor::Time],
     ];
