@@ -5,14 +5,16 @@ use crate::results::{Event, EventKind};
 use crate::setup::Setup;
 use hyde_diag::Origin;
 
-/// So many intervals must have become shorter each time, fewer if they shrink evenly, and those to come add up to so small a
-/// part of the first one.
+/// So many intervals must have become shorter each time, fewer if they shrink evenly.
 const LEAST_COUNT: u64 = 12;
 const LEAST_EVEN: u64 = 4;
 const EVEN: f64 = 0.05;
 /// Of intervals that shrink unevenly the slowest of so many ratios tells what is still to come.
 const RATIOS: usize = 6;
+/// What is still to come is nothing if it is this part of the first interval. A stroke, or a guard, may yet lead to a mode of
+/// rest; a switch in the equations leads to none, and instants that are close run together into one.
 const NOTHING: f64 = 1e-6;
+const NOTHING_OF_A_SWITCH: f64 = 1e-4;
 /// So many instants with events within a billionth of the run are no solution any more.
 const MAX_AT_ONCE: u64 = 2000;
 const AT_ONCE: f64 = 1e-9;
@@ -72,7 +74,11 @@ impl Hurry {
                 self.series.push((cause, origin, series));
                 continue;
             };
-            if let Some(sum_s) = series.next(t) {
+            let nothing = match matches!(event.kind, EventKind::Relation(_)) {
+                true => NOTHING_OF_A_SWITCH,
+                false => NOTHING,
+            };
+            if let Some(sum_s) = series.next(t, nothing) {
                 let cause = event.cause.clone();
                 return Some(FailureKind::Zeno { cause, sum_s });
             }
@@ -127,8 +133,8 @@ impl Hurry {
 
 impl Series {
     /// Takes note of the next event. If they have become ever faster down to nothing: the time in s that they add up to, with
-    /// intervals that shrink as the last did.
-    fn next(&mut self, t: f64) -> Option<f64> {
+    /// intervals that shrink as the last did. What is still to come is `nothing` if it is that part of the first.
+    fn next(&mut self, t: f64, nothing: f64) -> Option<f64> {
         let interval = t - self.last;
         let ratio = interval / self.interval;
         if interval < self.interval {
@@ -151,7 +157,7 @@ impl Series {
             return None;
         };
         let rest = interval * slowest / (1.0 - slowest);
-        (rest < NOTHING * self.first).then_some(t + rest)
+        (rest < nothing * self.first).then_some(t + rest)
     }
 }
 
@@ -164,7 +170,7 @@ mod tests {
         let (mut series, mut t) = (Series::default(), 0.0);
         intervals.find_map(|interval| {
             t += interval;
-            series.next(t)
+            series.next(t, NOTHING)
         })
     }
 
