@@ -311,11 +311,12 @@ fn a_coupling_that_becomes_stiffer_is_found_and_written() {
     assert_eq!(found["effects"][0]["site"], "coupling");
     assert!(law.contains("wrap T by T + M*(twist/x1)^3;"), "{law}");
     assert!(law.contains("x1 = 2 [mrad]"), "{law}");
-    // The stiffness beside it answers most of a cube: the record does not tell the size further.
+    // The stiffness beside it answers most of a cube, and what drives the axis is known to its digits alone: the record does
+    // not tell the size further.
     let interval = &found["effects"][0]["interval"];
     let (low, high) = (interval[0].as_f64().unwrap(), interval[1].as_f64().unwrap());
     assert!((1.0..2.0).contains(&low), "{interval}");
-    assert!((2.0..3.5).contains(&high), "{interval}");
+    assert!((2.0..4.5).contains(&high), "{interval}");
 }
 
 #[test]

@@ -327,7 +327,6 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
     let mut others: Vec<Vec<Factor>> = vec![
         Vec::new(),
         vec![Factor::Place],
-        vec![Factor::PlaceMagnitude],
         vec![Factor::PlaceSquare],
         vec![Factor::Time],
     ];
@@ -342,6 +341,8 @@ fn dictionary(felt: &Felt) -> Vec<Summand> {
         for part in [0.03, 0.1, 0.3] {
             others.push(vec![Factor::Yielding(part * travel)]);
         }
+    } else {
+        others.push(vec![Factor::PlaceMagnitude]);
     }
     let mut places: Vec<Vec<Factor>> = Vec::new();
     for count in [10, 24] {
