@@ -113,7 +113,7 @@ pub struct Diagnosis {
     pub unexplained: bool,
     /// What that is, as far as it could be told.
     pub unknown: Option<super::Unknown>,
-    /// The observer that all models were compared by, where it is not that of the inquiry ([`super::holding`]).
+    /// The observer that all models were compared by, where it is not that of the inquiry: that of the model found.
     pub observer: Option<Observer>,
     /// Readings that were held for a while: they ask for forces that no drive knows, and no law is sought of them.
     pub frozen: Vec<Frozen>,
