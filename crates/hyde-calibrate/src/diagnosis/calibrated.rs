@@ -51,11 +51,7 @@ pub(super) fn calibrate_found(
         ..fitted.solution
     };
     let mut hypotheses = inquiry.hypotheses.to_vec();
-    let law = diagnosis
-        .unknown
-        .as_ref()
-        .and_then(|own| own.found.as_ref());
-    hypotheses.extend(law.map(|law| law.hypothesis.clone()));
+    hypotheses.extend(diagnosis.law().map(|law| law.hypothesis.clone()));
     let stage = Stage { solution, ..fitted };
     diagnosis.take(stage, &hypotheses);
     let last = diagnosis.findings.last().cloned();

@@ -102,11 +102,10 @@ impl Diagnosis {
         };
     }
 
-    /// Whether a finding explains a part of what is missing that is worth a word.
-    fn is_a_part(&self, inquiry: &Inquiry<'_>, finding: usize) -> Result<bool, Unsupported> {
-        let less = self.without(inquiry, finding)?;
+    /// Whether what the model has beside one with fewer findings explains a part of what is missing that is worth a word.
+    fn explains_a_part_beside(&self, less: &FoundModel) -> bool {
         let gained = excess(&less.stage.solution) - excess(&self.after);
-        Ok(gained >= A_PART * excess(&self.before))
+        gained >= A_PART * excess(&self.before)
     }
 }
 
@@ -124,10 +123,10 @@ pub(super) fn only_told(
         && diagnosis.law().is_none()
         && number < diagnosis.findings.len()
     {
-        if diagnosis.is_a_part(inquiry, number)? {
+        let less = diagnosis.without(inquiry, number)?;
+        if diagnosis.explains_a_part_beside(&less) {
             number += 1;
         } else {
-            let less = diagnosis.without(inquiry, number)?;
             diagnosis.keep(inquiry, less);
         }
     }

@@ -34,9 +34,8 @@ pub(super) fn sentence(told: &Told<'_>) -> String {
             }
         },
         Verdict::Unknown => {
-            let unknown = told.found.unknown.as_ref();
             let names = names.join(", then ");
-            match unknown.and_then(|unknown| unknown.found.as_ref()) {
+            match told.found.law() {
                 Some(_) => {
                     let more = match told.found.unexplained {
                         true => ", and something more",
