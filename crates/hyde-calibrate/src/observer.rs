@@ -150,7 +150,7 @@ pub(crate) enum When {
 pub(crate) fn run(
     plant: &mut Plant<'_>,
     observer: &Observer,
-    mut visit: impl FnMut(&Plant<'_>, usize, &[f64]),
+    mut visit: impl FnMut(&mut Plant<'_>, usize, &[f64]),
 ) {
     let _end = run_while(plant, observer, |plant, row, when, error| {
         if matches!(when, When::Before) {

@@ -43,7 +43,7 @@ pub(crate) fn windows(
             let mut known = error.to_vec();
             forget_missing(&mut known);
             let mut increment = vec![0.0; plant.places.states.len()];
-            set_product(&plant.configuration().gain, &known, &mut increment);
+            set_product(observer.gain_in(plant), &known, &mut increment);
             starts.push((Start::of(plant), increment));
         }
     });
