@@ -83,6 +83,8 @@ pub const FIGURES: &[Figure] = &[
     selftest::TOP1,
     selftest::FALSE_ALARMS_RACK,
     selftest::TOP1_RACK,
+    selftest::FALSE_ALARMS_LINEAR,
+    selftest::TOP1_LINEAR,
     selftest::HOLDS_ZERO,
     selftest::COVERAGE,
     diagnosis::RIGHT,

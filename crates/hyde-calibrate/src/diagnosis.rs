@@ -20,6 +20,7 @@
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
 //! whole          orders of angles that are likelier whole numbers                         diagnosis/whole.rs
 //! holding        an observer that holds the modes of what was found, too                 diagnosis/holding.rs
+//! edges          what an effect with modes may leave of what it explains                  diagnosis/edges.rs
 //! claims         the last gate: what is claimed is told from its neutral value            diagnosis/claims.rs
 //! calibrated     a model with states of its own calibrated with a gain for them           diagnosis/calibrated.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
@@ -29,6 +30,7 @@ mod apart;
 mod calibrated;
 mod claims;
 mod contest;
+mod edges;
 mod exchange;
 mod finding;
 mod forward;

@@ -242,8 +242,8 @@ fn inputs(calibration: &Calibration) -> Vec<String> {
         match column.ticks_s {
             Some(period_s) => Some(format!(
                 "{name} is of a clock that ticks every {}, several times between two rows, which the record does not have: it is held \
-                 for a row and taken as known to {known} (SI), as the innovations show it; to know it better, simulate the loop, drive the model by a \
-                 measured column, or record faster",
+                 for a row and taken as known to {known} (SI), as the innovations show it; to know it better, drive the model by a column that was \
+                 measured, or record every tick",
                 engineering(period_s, Dimension::TIME)
             )),
             None if column.noise > 0.0 => Some(format!("{name} drives the model and is taken as known to {known} (SI)")),

@@ -1,6 +1,6 @@
 //! `false_alarms_of_100`, `planted_top1_percent`, `claims_whose_interval_holds_zero`, `interval_coverage_percent`: what the verdicts
-//! of a diagnosis are worth, on the small axis; the first two on a rack as well; and [`record`], which plants the whole library
-//! there. The command is this program itself; finished cases are kept below
+//! of a diagnosis are worth, on the small axis; the first two on a rack and on a linear motor as well; and [`record`], which
+//! plants the whole library there. The command is this program itself; finished cases are kept below
 //! `target/selftest`, by seed, so that an interrupted measurement goes on.
 
 use super::promise::{Figure, Measured, Promise, Session};
@@ -37,6 +37,20 @@ pub(super) const TOP1_RACK: Figure = Figure {
     measure: |session| top1(session, Axis::Rack),
 };
 
+pub(super) const FALSE_ALARMS_LINEAR: Figure = Figure {
+    name: "false_alarms_of_50_linear",
+    unit: "sets",
+    promise: Promise::AtMost(1.0),
+    measure: |session| false_alarms(session, Axis::Linear, "50"),
+};
+
+pub(super) const TOP1_LINEAR: Figure = Figure {
+    name: "planted_top1_linear",
+    unit: "%",
+    promise: Promise::AtLeast(97.0),
+    measure: |session| top1(session, Axis::Linear),
+};
+
 pub(super) const HOLDS_ZERO: Figure = Figure {
     name: "claims_whose_interval_holds_zero",
     unit: "claims",
@@ -58,6 +72,8 @@ enum Axis {
     Small,
     /// A rack and pinion with two encoders.
     Rack,
+    /// A linear motor whose speed loop ticks four times in a tick of its position loop.
+    Linear,
 }
 
 impl Axis {
@@ -65,6 +81,7 @@ impl Axis {
         match self {
             Self::Small => "tests/models/small_axis/axis.hyde",
             Self::Rack => "tests/models/rack_axis/axis.hyde",
+            Self::Linear => "tests/models/linear_axis/axis.hyde",
         }
     }
 
@@ -73,6 +90,7 @@ impl Axis {
         match self {
             Self::Small => "",
             Self::Rack => "rack",
+            Self::Linear => "linear",
         }
     }
 }

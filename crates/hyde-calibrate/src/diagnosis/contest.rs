@@ -33,9 +33,9 @@ impl Forward<'_> {
             ground,
             hypotheses,
             build,
-            gates,
             ..
         } = *self;
+        let gates = self.gates_on(stage);
         let begun: Vec<Begun<'_>> = scores
             .into_par_iter()
             .filter_map(|score| begin(ground, stage, hypotheses, score, build, true))

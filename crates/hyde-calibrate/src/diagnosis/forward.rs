@@ -7,6 +7,7 @@
 
 use super::apart::Alternative;
 use super::contest::Contest;
+use super::edges::{left_at_edges, settled};
 use super::hypothesis::{Build, Hypothesis};
 use super::pair::pair;
 use super::projection::Projection;
@@ -81,6 +82,8 @@ pub(crate) struct Forward<'s> {
     pub(crate) build: &'s Build<'s>,
     pub(crate) max_effects: usize,
     pub(crate) gates: Gates,
+    /// The model as it is declared, calibrated.
+    pub(crate) declared: &'s Stage,
     pub(crate) rounds: Vec<Round>,
 }
 
@@ -110,7 +113,7 @@ impl<'s> Forward<'s> {
     /// The end of a branch, or that of its first round's runner-up, if that is better.
     pub(crate) fn followed(&mut self, branch: Branch) -> Result<Branch, Unsupported> {
         let first = self.follow(branch)?;
-        if explained(&first.stage.solution) {
+        if settled(self.declared, &first.stage) {
             return Ok(first);
         }
         let Some(second) = self.runner_up(&first)? else {
@@ -168,6 +171,14 @@ impl<'s> Forward<'s> {
     /// The numbers of all hypotheses.
     fn all(&self) -> Vec<usize> {
         (0..self.hypotheses.len()).collect()
+    }
+
+    /// The gates of what is added to a stage.
+    pub(super) fn gates_on(&self, stage: &Stage) -> Gates {
+        Gates {
+            left: left_at_edges(self.declared, stage),
+            ..self.gates
+        }
     }
 
     /// Scores of some hypotheses, the best first; what was tried for them counts.
@@ -249,7 +260,7 @@ impl<'s> Forward<'s> {
         let scanner = self.scanner(stage, &tracks, &projection);
         let known = branch.scores.take();
         let scores = known.unwrap_or_else(|| self.scored(&scanner, &self.all()));
-        let gates = self.gates;
+        let gates = self.gates_on(stage);
         let Contest { trials, accepted } = self.fitted(stage, &scores);
         // The stage with what is taken in, and what the records cannot tell from each of that.
         let next = match accepted {

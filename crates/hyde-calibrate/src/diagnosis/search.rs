@@ -8,6 +8,7 @@
 
 use super::calibrated::calibrate_found;
 use super::claims::only_told;
+use super::edges::settled;
 use super::finding::{Finding, findings};
 use super::forward::{Branch, Forward, Taken};
 use super::holding::holding;
@@ -45,6 +46,8 @@ pub struct Gates {
     pub tried: usize,
     /// Number of innovations.
     pub innovations: usize,
+    /// What effects known so far may leave, which is no gain of another one.
+    pub left: f64,
 }
 
 impl Gates {
@@ -62,7 +65,7 @@ impl Gates {
     /// What a gain on what was not fitted has to reach beside that.
     #[must_use]
     pub fn material(&self) -> f64 {
-        MATERIAL * self.innovations as f64
+        self.left.max(MATERIAL * self.innovations as f64)
     }
 }
 
@@ -199,7 +202,9 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
         gates: Gates {
             tried: 1,
             innovations,
+            left: 0.0,
         },
+        declared: &declared,
         rounds: Vec::new(),
     };
     let mut branch = Branch::of(declared.clone());
@@ -219,7 +224,7 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
     }
     // A law of one term that explains what no effect does alone, or beside another, spares the rest of the search.
     let (mut law, mut places) = (None, None);
-    if frozen.is_empty() && !explained(&branch.stage.solution) {
+    if frozen.is_empty() && !settled(&declared, &branch.stage) {
         places = Places::of(inquiry, &declared)?;
         let looked = places.as_ref();
         let best = looked.and_then(|own| own.plain_law(&branch.stage, search.gates));
@@ -239,7 +244,7 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
                 search.step(&mut branch)?;
             }
         }
-        if frozen.is_empty() && !explained(&branch.stage.solution) {
+        if frozen.is_empty() && !settled(&declared, &branch.stage) {
             law = beside(inquiry, &search.rounds[0], &branch.stage, search.gates)?;
         }
         if law.is_none() {

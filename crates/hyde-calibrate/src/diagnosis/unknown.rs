@@ -36,6 +36,7 @@ pub(crate) use places::{Answer, Places};
 pub use seen::{Scales, Seen};
 pub use site::{Kind, Site, Written};
 
+use super::edges::settled;
 use super::finding::Finding;
 use super::hypothesis::Hypothesis;
 use super::inquiry::Inquiry;
@@ -98,10 +99,10 @@ pub(super) fn propose(
     places: Option<Places<'_>>,
     gates: Gates,
 ) -> Result<(), Unsupported> {
-    if !(diagnosis.unexplained || is_chain(inquiry, diagnosis)) {
+    let last = diagnosis.stage();
+    if settled(declared, &last) && !is_chain(inquiry, diagnosis) {
         return Ok(());
     }
-    let last = diagnosis.stage();
     let places = match places {
         Some(places) => Some(places),
         None => Places::of(inquiry, declared)?,

@@ -76,6 +76,7 @@ impl Reference {
             gates: Gates {
                 tried: NODES,
                 innovations,
+                left: 0.0,
             },
             recordings,
             observer,

@@ -1,0 +1,25 @@
+//! [`left_at_edges`]: what an effect with modes of its own may leave of what it explains.
+//!
+//! The innovations of a play are not of one variance: while it is open the observer knows less, and right after it closes it
+//! still does. All rows are weighed alike, so a model that is right leaves a part of what the play explains, at the edges of
+//! its modes. No other effect and no law is made of that part.
+
+use super::hypothesis::brings_modes;
+use super::search::{excess, explained};
+use super::stage::Stage;
+
+/// The part that may be left.
+const LEFT: f64 = 2e-3;
+
+/// What effects that a stage has beyond the declared model may leave of the sum of squares; 0 of those without modes.
+pub(super) fn left_at_edges(declared: &Stage, stage: &Stage) -> f64 {
+    match brings_modes(&stage.program, &declared.program) {
+        true => LEFT * (declared.solution.data - stage.solution.data).max(0.0),
+        false => 0.0,
+    }
+}
+
+/// Whether a stage leaves nothing to seek another kind of answer for: innovations are noise, but for what edges leave.
+pub(super) fn settled(declared: &Stage, stage: &Stage) -> bool {
+    explained(&stage.solution) || excess(&stage.solution) <= left_at_edges(declared, stage)
+}
