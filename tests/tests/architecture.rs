@@ -49,6 +49,20 @@ const EDGES: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "study",
+        &[
+            "calibrate",
+            "compiler",
+            "diag",
+            "experiment",
+            "program",
+            "signal",
+            "sim",
+            "syntax",
+            "units",
+        ],
+    ),
+    (
         "report",
         &["calibrate", "diag", "experiment", "signal", "units"],
     ),
@@ -271,7 +285,7 @@ fn unsafe_code_is_in_two_crates_and_says_why() {
 }
 
 #[test]
-fn the_command_line_alone_touches_the_machine() {
+fn the_command_line_alone_touches_the_machine_but_for_the_files_a_study_reads() {
     let doors = [
         "std::fs",
         "std::env::",
@@ -286,7 +300,8 @@ fn the_command_line_alone_touches_the_machine() {
     let mut wrong = Vec::new();
     for file in sources() {
         let product = file.path.starts_with("crates/") && file.path.contains("/src/");
-        if !product || file.path.starts_with("crates/hyde-cli/") {
+        let doors_open = ["crates/hyde-cli/", "crates/hyde-study/src/world.rs"];
+        if !product || doors_open.iter().any(|own| file.path.starts_with(own)) {
             continue;
         }
         // Examples in the documentation may print; code of tests may do what it likes.

@@ -6,10 +6,9 @@ mod study;
 pub(crate) use batch::{Engine, SweepArgs, TableFormat};
 pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 
-use crate::batch::inputs::{Inputs, Kind};
-use crate::files;
 use clap::{Args, Parser, Subcommand, ValueEnum};
-use std::path::{Path, PathBuf};
+use hyde_study::Inputs;
+use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Hyde: feed drives as equations.
@@ -110,20 +109,6 @@ impl ModelArgs {
             quiet: false,
             whole_library: false,
             inputs: None,
-        }
-    }
-
-    /// Reads a file of the model: `asker` is the place of the file that names it, if one does.
-    pub(crate) fn read(
-        &self,
-        kind: Kind,
-        asker: &str,
-        name: &str,
-        path: &Path,
-    ) -> Result<Vec<u8>, String> {
-        match &self.inputs {
-            Some(inputs) => inputs.read(kind, asker, name, path),
-            None => files::read(path),
         }
     }
 }

@@ -3,14 +3,15 @@
 use crate::args::ModelArgs;
 use crate::exit::Exit;
 use crate::project::Project;
-use crate::run_failure;
-use crate::settings;
+use crate::project::Told as _;
 use hyde_experiment::{
     Assumption, Linear, LinearizeError, ModeShape, Pole, Poles, RunError, mode_shape,
 };
 use hyde_program::{Moment, Program};
 use hyde_report::{Block, Table};
 use hyde_sim::{Failure, PointTime};
+use hyde_study::run_failure;
+use hyde_study::settings;
 use hyde_units::{Agreement, Dimension, significant};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
@@ -95,10 +96,10 @@ pub(crate) fn no_point(
     program: &Program,
     failure: Box<Failure>,
 ) -> Exit {
-    let (diagnostic, exit) = run_failure::diagnostic(&RunError::Failed(failure), program, None);
+    let (diagnostic, fault) = run_failure::diagnostic(&RunError::Failed(failure), program, None);
     project.diagnostics.push(diagnostic);
     project.finish_with_errors(model);
-    exit
+    fault.into()
 }
 
 /// Why a model could not be linearised.

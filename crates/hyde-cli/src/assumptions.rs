@@ -2,12 +2,11 @@
 
 use crate::commands::effects::wrapped;
 use crate::project::Project;
-use crate::records;
-use crate::run_failure::instant;
 use hyde_experiment::{Run, extent, is_over_frequency};
 use hyde_program::Program;
 use hyde_report::{Block, Section};
 use hyde_signal::Table;
+use hyde_study::run_failure::instant;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
@@ -18,7 +17,7 @@ pub(crate) fn of_run(project: &Project, program: &Program, run: &Run) -> Vec<Str
 
 /// The same of a model that is looked at with its records, but not run as the experiment says.
 pub(crate) fn of_model(project: &Project, program: &Program, parameters: &[f64]) -> Vec<String> {
-    let tables = records::tables(&project.records);
+    let tables = hyde_study::tables(&project.records);
     let (start, stop_s) = extent(program, &tables, parameters);
     all(project, program, &start, stop_s)
 }

@@ -10,7 +10,6 @@
 //! trajectories.
 
 pub(crate) mod asked;
-pub(crate) mod inputs;
 pub(crate) mod merge;
 pub(crate) mod order;
 pub(crate) mod over_time;

@@ -3,13 +3,12 @@
 use crate::assumptions::of_record;
 use crate::diagnosis::wrapped;
 use crate::project::Project;
-use crate::records;
-use crate::study::Calibration;
 use crate::unknown;
 use hyde_calibrate::{FreeMeasure, Measures, Model, Observer, Recording, Unsupported, Written};
 use hyde_compiler::{Additions, Candidate, Form, Request};
 use hyde_diag::Diagnostics;
 use hyde_program::Program;
+use hyde_study::Calibration;
 use hyde_units::{Dimension, NamedUnit, engineering, engineering_difference, significant};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
@@ -83,7 +82,7 @@ pub(crate) fn closed(
 ) -> Option<(Program, Program)> {
     let all = project.set().into_iter().chain(values.iter().cloned());
     let settings: BTreeMap<String, f64> = all.collect();
-    let headers = records::headers(&project.records);
+    let headers = hyde_study::headers(&project.records);
     let texts = written.iter().map(|one| one.text.as_str());
     let (sources, file) = hyde_compiler::with_written(&project.sources, &project.file, texts)?;
     let own = file.files.first()?.0;
@@ -242,8 +241,8 @@ fn inputs(calibration: &Calibration) -> Vec<String> {
         match column.ticks_s {
             Some(period_s) => Some(format!(
                 "{name} is of a clock that ticks every {}, several times between two rows, which the record does not have: it is held \
-                 for a row and taken as known to {known} (SI), as the innovations show it; to know it better, drive the model by a column that was \
-                 measured, or record every tick",
+                 for a row and taken as known to {known} (SI), as the innovations show it; to know it better, drive the model by a \
+                 measured column, or record faster",
                 engineering(period_s, Dimension::TIME)
             )),
             None if column.noise > 0.0 => Some(format!("{name} drives the model and is taken as known to {known} (SI)")),

@@ -24,14 +24,13 @@ pub(crate) use verdict::number;
 
 use crate::before_after::RecordErrors;
 use crate::project::Project;
-use crate::records;
-use crate::study::Calibration;
 use crate::unknown;
 use hyde_calibrate::{
     Cause, Diagnosis, FittedParameter, Hypothesis, Innovations, Rejection, ResidualMap, Score,
     Trial, Whiteness, fitted_parameters, residual_maps, whiteness,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Written};
+use hyde_study::Calibration;
 use std::collections::BTreeMap;
 
 /// A diagnosis with all that is told of it.
@@ -159,7 +158,7 @@ fn hindered(
     found: &Diagnosis,
 ) -> Vec<(usize, String)> {
     let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
-    let headers = records::headers(&project.records);
+    let headers = hyde_study::headers(&project.records);
     let request = project.request(&settings, &headers, Form::Observed);
     let scores = || {
         found

@@ -1,119 +1,38 @@
 //! Files: read whole, written whole or not at all.
 
+pub(crate) use hyde_study::world::reason;
+use hyde_study::world::{self, Disk, World as _};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
 
 /// Reads a file; the error says which and why.
-#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {
-    std::fs::read(path).map_err(|error| format!("`{}`: {}", path.display(), reason(&error)))
+    Disk.read(path)
 }
 
 /// Reads a text file.
 pub(crate) fn read_text(path: &Path) -> Result<String, String> {
-    as_text(path, read(path)?)
-}
-
-/// The content of a file as text, without the byte order mark that some editors put before it.
-pub(crate) fn as_text(path: &Path, bytes: Vec<u8>) -> Result<String, String> {
-    let text = String::from_utf8(bytes)
-        .map_err(|_| format!("`{}` is not UTF-8 text: save it as UTF-8", path.display()))?;
-    Ok(match text.strip_prefix('\u{feff}') {
-        Some(rest) => rest.to_owned(),
-        None => text,
-    })
+    world::read_text(&Disk, path)
 }
 
 /// Whether there is a file.
 pub(crate) fn is_file(path: &Path) -> bool {
-    path.is_file()
+    Disk.is_file(path)
 }
 
 /// Whether there is a folder.
 pub(crate) fn is_folder(path: &Path) -> bool {
-    path.is_dir()
+    Disk.is_folder(path)
 }
 
 /// The path without links and dots, if there is something.
-#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
 pub(crate) fn real(path: &Path) -> Option<PathBuf> {
-    std::fs::canonicalize(path).ok()
+    Disk.real(path)
 }
 
-/// The files with an ending below a folder, in the order of their names. Hidden folders, links to folders, and folders
-/// that have a file called `border` are not entered.
-#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
+/// The files with an ending below a folder, in the order of their names: see [`world::below`].
 pub(crate) fn below(folder: &Path, ending: &str, border: &str) -> Vec<PathBuf> {
-    let here = if folder.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        folder
-    };
-    let mut found = Vec::new();
-    for entry in std::fs::read_dir(here).into_iter().flatten().flatten() {
-        let path = folder.join(entry.file_name());
-        let hidden = entry.file_name().to_string_lossy().starts_with('.');
-        let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
-        if is_folder && !hidden && !path.join(border).is_file() {
-            found.extend(below(&path, ending, border));
-        } else if !is_folder && path.extension().is_some_and(|end| end == ending) {
-            found.push(path);
-        }
-    }
-    found.sort();
-    found
-}
-
-/// The files below a folder that a pattern names, in the order of their names: `*` and `?` stand for any characters of one
-/// file's or folder's name. A pattern that leaves the folder names none.
-#[allow(clippy::disallowed_methods, reason = "the command line opens files")]
-pub(crate) fn matching(folder: &Path, pattern: &str) -> Vec<PathBuf> {
-    let mut found = vec![folder.to_path_buf()];
-    for part in Path::new(pattern).components() {
-        let std::path::Component::Normal(part) = part else {
-            if part == std::path::Component::CurDir {
-                continue;
-            }
-            return Vec::new();
-        };
-        let part = part.to_string_lossy();
-        let mut next = Vec::new();
-        for place in found {
-            let here = if place.as_os_str().is_empty() {
-                Path::new(".")
-            } else {
-                &place
-            };
-            for entry in std::fs::read_dir(here).into_iter().flatten().flatten() {
-                if fits(&entry.file_name().to_string_lossy(), &part) {
-                    next.push(place.join(entry.file_name()));
-                }
-            }
-        }
-        found = next;
-    }
-    found.retain(|path| path.is_file());
-    found.sort();
-    found
-}
-
-/// Whether a name is one that a pattern stands for.
-fn fits(name: &str, pattern: &str) -> bool {
-    let (name, pattern): (Vec<char>, Vec<char>) =
-        (name.chars().collect(), pattern.chars().collect());
-    // Whether the rest of the pattern from `p` stands for the rest of the name from `n`, from the end backwards.
-    let mut rest = vec![vec![false; pattern.len() + 1]; name.len() + 1];
-    rest[name.len()][pattern.len()] = true;
-    for n in (0..=name.len()).rev() {
-        for p in (0..pattern.len()).rev() {
-            rest[n][p] = match pattern[p] {
-                '*' => rest[n][p + 1] || (n < name.len() && rest[n + 1][p]),
-                '?' => n < name.len() && rest[n + 1][p + 1],
-                other => n < name.len() && name[n] == other && rest[n + 1][p + 1],
-            };
-        }
-    }
-    rest[0][0]
+    world::below(&Disk, folder, ending, border)
 }
 
 /// The beginning of the name of a file that is being written.
@@ -241,16 +160,4 @@ fn make_readable(file: &tempfile::NamedTempFile) -> std::io::Result<()> {
 #[cfg(not(unix))]
 fn make_readable(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
     Ok(())
-}
-
-/// An error in words.
-pub(crate) fn reason(error: &std::io::Error) -> String {
-    const WORDS: [(ErrorKind, &str); 4] = [
-        (ErrorKind::NotFound, "no such file or folder"),
-        (ErrorKind::PermissionDenied, "permission denied"),
-        (ErrorKind::StorageFull, "the disk is full"),
-        (ErrorKind::ReadOnlyFilesystem, "the disk is read-only"),
-    ];
-    let known = WORDS.iter().find(|(kind, _)| *kind == error.kind());
-    known.map_or_else(|| error.to_string(), |(_, words)| (*words).to_owned())
 }

@@ -5,10 +5,12 @@
 //! the text of the user's.
 
 use crate::files;
-use crate::package::Roots;
 use crate::project::Project;
 use hyde_diag::{Diagnostics, Sources};
+use hyde_study::Roots;
+use hyde_study::world::{Disk, World};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// What stands before a new model.
 pub(crate) struct Head {
@@ -96,7 +98,13 @@ fn place(folder: &Path, stem: &str) -> Option<Place> {
     let rest = folder.strip_prefix(above.unwrap_or(Path::new(""))).ok()?;
     let file = there.join(rest).join(format!("{stem}.hyde"));
     let marker = there.join(format!("{stem}.hyde"));
-    let roots = Roots::of(&marker, &mut Sources::new(), &mut Diagnostics::new());
+    let world: Arc<dyn World> = Arc::new(Disk);
+    let roots = Roots::of(
+        &world,
+        &marker,
+        &mut Sources::new(),
+        &mut Diagnostics::new(),
+    );
     let name = roots.name_at(&file)?;
     let root = roots.roots.into_iter().next()?;
     Some(Place {

@@ -1,7 +1,8 @@
-//! The `hyde` command. This crate alone opens files, reads the arguments, and prints.
+//! The `hyde` command. This crate alone reads the arguments, prints, and writes files; what a command computes is a function
+//! of `hyde-study`.
 //!
-//! Each command is a file in `commands/`; what they share is loading a model with its records (`project`), rendering
-//! diagnostics (`render`), and writing files whole or not at all (`files`).
+//! Each command is a file in `commands/`; what they share is printing what is wrong with a model and its records (`project`,
+//! `study`), rendering diagnostics (`render`), and writing files whole or not at all (`files`).
 
 mod args;
 mod asked_figures;
@@ -20,20 +21,14 @@ mod ledger;
 mod left_model;
 mod limits;
 mod output;
-mod package;
 mod pages;
 mod project;
-mod records;
 pub mod render;
 mod report;
-mod run_failure;
-mod settings;
 mod start;
 mod study;
 mod summary;
-mod tables;
 mod unknown;
-mod unobservable;
 mod watch;
 
 use args::{Arguments, Command};

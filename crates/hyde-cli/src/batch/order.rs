@@ -1,9 +1,9 @@
 //! [`Order`]: what a batch is asked to be, as its folder keeps it: with the order and the files beside it, any process makes
 //! the same cases, wherever it runs and whatever became of the model's own files.
 
-use super::inputs::{Content, Inputs, Key, Kind};
 use crate::files;
 use hyde_experiment::batch::{Identity, digest};
+use hyde_study::{Content, Inputs, Key, Kind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};

@@ -1,15 +1,14 @@
 //! From an order to its plan: the model loaded, its first variant compiled, the cases laid out, the identity known.
 
-use super::inputs::{Inputs, Kind};
 use super::order::{Order, Parts};
 use super::variants::{Source, Variants};
 use crate::args::ModelArgs;
 use crate::assumptions;
 use crate::exit::Exit;
-use crate::files;
-use crate::project::{self, Project, Records, complain, report_errors};
-use hyde_diag::{Code, Diagnostic, Diagnostics, Sources};
+use crate::project::{self, Asked, Loaded, Project, Records, Told as _, complain, report_errors};
+use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::batch::{Dataset, Draft, Model, Plan, record_files};
+use hyde_study::{Inputs, Kind};
 use hyde_syntax::ast::{Study, StudyKind};
 use std::path::Path;
 use std::sync::Arc;
@@ -17,6 +16,7 @@ use std::sync::Arc;
 /// A batch that can be solved.
 pub(crate) struct Prepared {
     pub(crate) args: ModelArgs,
+    pub(crate) asked: Asked,
     pub(crate) project: Project,
     pub(crate) draft: Draft,
     pub(crate) plan: Plan,
@@ -42,9 +42,19 @@ impl Prepared {
         args.data.clone_from(&order.data);
         (args.json, args.quiet) = (json, quiet);
         args.inputs = Some(Arc::clone(inputs));
-        let study = study(&args, &order.sweep)?;
+        let loaded = project::parsed(&args)?;
+        if loaded.diagnostics.has_errors() {
+            return Err(project::refused(&args, &loaded.refused()));
+        }
+        let study = study(&loaded, &order.sweep);
+        let study = study.map_err(|reason| complain(&args, Exit::CommandLine, &reason))?;
         args.experiment = Some(study.of.dotted());
-        let mut project = project::load(&args, needed)?;
+        let asked = project::asked(&args)?;
+        let project = loaded.choose(&asked, needed);
+        let mut project = project.map_err(|reason| complain(&args, Exit::CommandLine, &reason))?;
+        if project.diagnostics.has_errors() {
+            return Err(project.finish_with_errors(&args));
+        }
         if project.experiment.is_none() {
             return Err(Exit::Done); // Its records are not there, which was to be no error.
         }
@@ -59,7 +69,7 @@ impl Prepared {
         draft.keep.extend(order.keep.iter().cloned());
         let source = Source {
             project: &project,
-            args: &args,
+            asked: &asked,
             draft: &draft,
         };
         let first = vec![0; draft.choices().count()];
@@ -70,16 +80,16 @@ impl Prepared {
         let cases = match &draft.cases {
             None => None,
             Some(name) => {
-                Some(table(&args, name).map_err(|why| complain(&args, Exit::Model, &why))?)
+                Some(table(&asked, name).map_err(|why| complain(&args, Exit::Model, &why))?)
             }
         };
         let parameters = hyde_experiment::parameters(&ready.program, &ready.tables, &project.set());
         let parameters = match parameters {
             Ok(parameters) => parameters,
             Err(error) => {
-                let (diagnostic, exit) =
-                    crate::run_failure::diagnostic(&error, &ready.program, None);
-                return Err(complain(&args, exit, &diagnostic.message));
+                let (diagnostic, fault) =
+                    hyde_study::run_failure::diagnostic(&error, &ready.program, None);
+                return Err(complain(&args, fault.into(), &diagnostic.message));
             }
         };
         let model = Model {
@@ -119,6 +129,7 @@ impl Prepared {
         Ok(Self {
             variants: Variants::new(&dataset),
             args,
+            asked,
             project,
             draft,
             plan,
@@ -132,7 +143,7 @@ impl Prepared {
     pub(crate) fn source(&self) -> Source<'_> {
         Source {
             project: &self.project,
-            args: &self.args,
+            asked: &self.asked,
             draft: &self.draft,
         }
     }
@@ -144,17 +155,9 @@ impl Prepared {
 }
 
 /// The sweep that is meant: the one named, or the file's only one.
-fn study(args: &ModelArgs, name: &str) -> Result<Study, Exit> {
-    let text = args
-        .read(Kind::Model, "", "", &args.file)
-        .and_then(|bytes| files::as_text(&args.file, bytes))
-        .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let (file, _) = project::loaded(args, &mut sources, &text, &mut diagnostics);
-    if diagnostics.has_errors() {
-        return Err(report_errors(args, &sources, &diagnostics));
-    }
-    let all: Vec<&Study> = file
+fn study(loaded: &Loaded, name: &str) -> Result<Study, String> {
+    let all: Vec<&Study> = loaded
+        .file
         .studies()
         .filter(|study| study.kind == StudyKind::Sweep)
         .collect();
@@ -172,25 +175,24 @@ fn study(args: &ModelArgs, name: &str) -> Result<Study, Exit> {
         } else {
             names.join(", ")
         };
-        let reason = match name {
+        match name {
             "" => format!("which sweep? the file has {has}"),
             name => format!("the file has no sweep `{name}`; it has {has}"),
-        };
-        complain(args, Exit::CommandLine, &reason)
+        }
     })
 }
 
 /// The table of cases: looked for as records are.
-fn table(args: &ModelArgs, name: &str) -> Result<hyde_signal::Table, String> {
-    if !crate::package::is_inside(name) {
+fn table(asked: &Asked, name: &str) -> Result<hyde_signal::Table, String> {
+    if !hyde_study::is_inside(name) {
         return Err(format!("`{name}` leaves the model's folder"));
     }
-    let root = args
+    let root = asked
         .data
         .clone()
-        .or_else(|| args.file.parent().map(Path::to_path_buf));
+        .or_else(|| asked.file.parent().map(Path::to_path_buf));
     let path = root.unwrap_or_default().join(name);
-    let bytes = args.read(Kind::Record, "", &path.to_string_lossy(), &path)?;
+    let bytes = asked.read(Kind::Record, "", &path.to_string_lossy(), &path)?;
     // A table of cases has no time: its rows are only counted.
     hyde_signal::read_whole(&bytes, &hyde_signal::Layout::every(1.0))
         .map_err(|error| format!("`{}`: {error}", path.display()))

@@ -1,9 +1,6 @@
 //! The programs of a batch: one for each variant, compiled when its first case comes and kept for the others.
 
-use crate::args::ModelArgs;
 use crate::project::{Project, Records};
-use crate::records;
-use crate::run_failure;
 use hyde_compiler::{Backend, Form, Request};
 use hyde_diag::{Diagnostic, Diagnostics, Severity};
 use hyde_experiment::RunError;
@@ -13,6 +10,7 @@ use hyde_experiment::batch::{
 use hyde_program::Program;
 use hyde_signal::Table;
 use hyde_sim::FailureKind;
+use hyde_study::{Asked, run_failure};
 use hyde_syntax::ast::Name;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -68,7 +66,7 @@ impl Variants {
 /// What variants are made of.
 pub(crate) struct Source<'p> {
     pub(crate) project: &'p Project,
-    pub(crate) args: &'p ModelArgs,
+    pub(crate) asked: &'p Asked,
     pub(crate) draft: &'p Draft,
 }
 
@@ -81,7 +79,7 @@ impl Source<'_> {
     ) -> Result<Ready, Diagnostics> {
         let Self {
             project,
-            args,
+            asked,
             draft,
         } = self;
         let (file, model) = varied(&project.file, draft, &project.model, options);
@@ -96,10 +94,9 @@ impl Source<'_> {
             .find(|e| e.name.text == draft.experiment)
             .map(|experiment| {
                 let mut experiment = experiment.clone();
-                let mut args = (*args).clone();
+                let mut asked = (*asked).clone();
                 for (record, path) in others {
-                    args.records
-                        .retain(|text| !text.starts_with(&format!("{record}=")));
+                    asked.records.retain(|(name, _)| *name != record);
                     for item in experiment
                         .records
                         .iter_mut()
@@ -112,14 +109,14 @@ impl Source<'_> {
                         });
                     }
                 }
-                records::read(&experiment, &args, Records::Needed, &mut diagnostics)
+                hyde_study::read_records(&experiment, &asked, Records::Needed, &mut diagnostics)
             });
         let read = match read {
             Some(Ok(read)) if !diagnostics.has_errors() => read,
             Some(Ok(_)) => return Err(diagnostics),
             Some(Err(_)) | None => BTreeMap::new(), // Told when the project was loaded.
         };
-        let headers = records::headers(&read);
+        let headers = hyde_study::headers(&read);
         let request = Request {
             sources: &project.sources,
             file: &file,
@@ -135,7 +132,7 @@ impl Source<'_> {
         match hyde_compiler::compile(&request, &mut diagnostics) {
             Some(compiled) => Ok(Ready {
                 program: compiled.program,
-                tables: records::tables(&read),
+                tables: hyde_study::tables(&read),
             }),
             None => Err(diagnostics),
         }

@@ -18,9 +18,7 @@ use crate::assumed;
 use crate::assumptions;
 use crate::commands::run;
 use crate::exit::Exit;
-use crate::project::{self, Aim, Records, complain, print_output};
-use crate::records;
-use crate::run_failure;
+use crate::project::{self, Aim, Records, Told as _, complain, print_output};
 use crate::summary;
 use crate::watch::Watch;
 use hyde_diag::{Code, Diagnostic};
@@ -159,7 +157,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         return Err(project.finish_with_errors(model));
     }
     let margins_alone = args.margins || !args.cut.is_empty();
-    let compiled = project.compile(model, Aim::Linearize)?;
+    let compiled = project.compile_or_report(model, Aim::Linearize)?;
     project.print_warnings(model);
     let program = &compiled.program;
     let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
@@ -177,9 +175,9 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         let reason = "the experiment asks for no response: write `bode from u to y over 1 .. 50 [Hz];` or `margins of SIGNAL;`";
         return Err(wrong(reason.to_owned()));
     }
-    let tables = records::tables(&project.records);
+    let tables = hyde_study::tables(&project.records);
     let p = parameters(program, &tables, &project.set())
-        .map_err(|error| run_failure::refused(&mut project, model, program, &error))?;
+        .map_err(|error| project.report_refused(model, program, &error))?;
     let recorded = measured::curves(program, &tables, &p).map_err(|diagnostic| {
         project.diagnostics.push(*diagnostic);
         project.finish_with_errors(model)

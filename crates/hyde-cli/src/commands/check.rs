@@ -3,18 +3,17 @@
 use super::effects::wrapped;
 use crate::args::{CheckArgs, ModelArgs};
 use crate::assumptions;
-use crate::batch::inputs::Inputs;
 use crate::batch::order::Order;
 use crate::batch::prepare::Prepared;
 use crate::exit::Exit;
 use crate::files;
-use crate::project::{self, Aim, Project, Records, complain, print_output, report_errors};
-use crate::records;
+use crate::project::{self, Aim, Project, Records, Told as _, print_output};
 use crate::render;
 use hyde_calibrate::CalibrationPlan;
 use hyde_compiler::{DiagnosisPlan, States, ideals};
-use hyde_diag::{Diagnostics, Origin, Sources};
+use hyde_diag::Origin;
 use hyde_program::Program;
+use hyde_study::Inputs;
 use hyde_syntax::ast::StudyKind;
 use hyde_units::counted;
 use serde_json::{Value, json};
@@ -72,7 +71,7 @@ struct Found {
 impl Found {
     /// Notes what is taken for granted of the records of an experiment, once for all experiments that read them.
     fn note(&mut self, project: &Project, program: &Program) {
-        let tables = records::tables(&project.records);
+        let tables = hyde_study::tables(&project.records);
         let parameters = hyde_experiment::parameters(program, &tables, &project.set());
         for note in parameters.map_or_else(
             |_| Vec::new(),
@@ -118,7 +117,7 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
         };
         let compiled = match project.diagnostics.has_errors() {
             true => Err(Exit::Model),
-            false => project.compile_silently(aim),
+            false => project.compile(aim).map_err(Exit::from),
         };
         let compiled = compiled.and_then(|compiled| {
             check_ideals(&mut project, aim)?;
@@ -180,7 +179,7 @@ fn check_ideals(project: &mut Project, aim: Aim) -> Result<(), Exit> {
     let asked = experiments.filter(|known| known.name.text == name);
     for ideal in asked.flat_map(ideals) {
         project.file = own.idealised(&name, |other| other.name.text == ideal.name.text);
-        project.compile_silently(aim)?;
+        project.compile(aim)?;
     }
     project.file = own;
     Ok(())
@@ -219,11 +218,9 @@ fn sweeps(args: &ModelArgs, project: &Project) -> Result<Vec<String>, Exit> {
 
 /// Whether a file has diagnoses.
 fn has_diagnoses(args: &ModelArgs) -> Result<bool, Exit> {
-    let text = files::read_text(&args.file)
-        .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let (file, _) = project::loaded(args, &mut sources, &text, &mut diagnostics);
-    Ok(file
+    let loaded = project::parsed(args)?;
+    Ok(loaded
+        .file
         .studies()
         .any(|study| study.kind == StudyKind::Diagnose))
 }
@@ -311,18 +308,16 @@ pub(crate) fn each(args: &ModelArgs, folder: bool) -> Result<Vec<ModelArgs>, Exi
     if args.experiment.is_some() || args.model.is_some() {
         return Ok(vec![args.clone()]);
     }
-    let text = files::read_text(&args.file)
-        .map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let (file, _) = project::loaded(args, &mut sources, &text, &mut diagnostics);
-    let names: Vec<String> = file
+    let loaded = project::parsed(args)?;
+    let names: Vec<String> = loaded
+        .file
         .experiments()
         .map(|experiment| experiment.name.text.clone())
         .collect();
     if names.is_empty() {
-        let nothing = folder && file.models().next().is_none();
-        if nothing && diagnostics.has_errors() {
-            return Err(report_errors(args, &sources, &diagnostics));
+        let nothing = folder && loaded.file.models().next().is_none();
+        if nothing && loaded.diagnostics.has_errors() {
+            return Err(project::refused(args, &loaded.refused()));
         }
         return Ok(if nothing {
             Vec::new()

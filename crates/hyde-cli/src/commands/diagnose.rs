@@ -1,19 +1,17 @@
 //! `hyde diagnose`: finds the effect that a model lacks.
 
-use crate::args::{DiagnoseArgs, ModelArgs, StudyArgs};
+use crate::args::DiagnoseArgs;
 use crate::diagnosis::{self, Told};
 use crate::exit::Exit;
 use crate::files;
 use crate::left_model;
-use crate::project::{self, complain, print_output};
-use crate::records;
-use crate::study::{self, Calibration};
+use crate::project::{Told as _, complain, print_output};
+use crate::study;
 use crate::unknown;
-use crate::unobservable;
 use hyde_calibrate::{Cause, Hypothesis, Inquiry, Knob, Solution, Unsupported, fitted_parameters};
-use hyde_compiler::{Candidate, DiagnosisPlan, Form};
-use hyde_diag::{Diagnostics, Sources};
-use hyde_syntax::ast::{Study, StudyKind};
+use hyde_compiler::{Candidate, Form};
+use hyde_study::Calibration;
+use hyde_study::unobservable;
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -25,19 +23,11 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
     if let Err(reason) = args.study.use_jobs().and(folder) {
         return complain(&model_args, Exit::CommandLine, &reason);
     }
-    let plan = match plan(&args.study) {
-        Ok(plan) => plan,
+    let (plan, mut calibration) = match study::diagnosis(&args.study) {
+        Ok(diagnosis) => diagnosis,
         Err(exit) => return exit,
     };
-    let of_calibration = StudyArgs {
-        study: Some(plan.calibration.clone()),
-        ..args.study.clone()
-    };
-    let mut calibration = match study::load(&of_calibration, true) {
-        Ok(calibration) => calibration,
-        Err(exit) => return exit,
-    };
-    let candidates = match calibration.project.candidates(&model_args) {
+    let candidates = match calibration.project.candidates_or_report(&model_args) {
         Ok(candidates) => candidates,
         Err(exit) => return exit,
     };
@@ -50,7 +40,7 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
     let found = {
         let project = &calibration.project;
         let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
-        let headers = records::headers(&project.records);
+        let headers = hyde_study::headers(&project.records);
         let request = project.request(&settings, &headers, Form::Observed);
         let author = |known: &[usize], written: &[hyde_calibrate::Written]| {
             unknown::built(&request, &candidates, known, written)
@@ -163,31 +153,6 @@ fn model(folder: &Path, user: &Path, told: &Told<'_>) -> String {
 
 fn model_file(told: &Told<'_>) -> String {
     format!("{}.hyde", told.written.model)
-}
-
-/// The block that the arguments name.
-pub(crate) fn plan(args: &StudyArgs) -> Result<DiagnosisPlan, Exit> {
-    // Effects of packages that the model itself need not use may be named.
-    let model_args = ModelArgs {
-        whole_library: true,
-        ..args.model_args()
-    };
-    let text = files::read_text(&args.file)
-        .map_err(|reason| complain(&model_args, Exit::CommandLine, &reason))?;
-    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-    let (file, _) = project::loaded(&model_args, &mut sources, &text, &mut diagnostics);
-    if diagnostics.has_errors() {
-        return Err(project::report_errors(&model_args, &sources, &diagnostics));
-    }
-    let studies: Vec<&Study> = file
-        .studies()
-        .filter(|study| study.kind == StudyKind::Diagnose)
-        .collect();
-    let study = study::chosen(&studies, args.study.as_deref(), "diagnosis")
-        .map_err(|reason| complain(&model_args, Exit::CommandLine, &reason))?;
-    let name = study.name.text.clone();
-    DiagnosisPlan::read(&file, &name, &mut diagnostics)
-        .ok_or_else(|| project::report_errors(&model_args, &sources, &diagnostics))
 }
 
 /// A candidate as the search takes it.

@@ -3,13 +3,15 @@
 use crate::args::{DocArgs, ModelArgs};
 use crate::exit::Exit;
 use crate::files;
-use crate::package::{MANIFEST, Manifest, Roots};
 use crate::pages::{Library, pages};
 use crate::project::{complain, print_output, report_errors};
 use hyde_diag::{Diagnostics, FileId, Sources};
+use hyde_study::world::{Disk, World};
+use hyde_study::{MANIFEST, Manifest, Roots};
 use hyde_syntax::ast;
 use hyde_units::counted;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Writes a page for each package and an index of them, each file whole or not at all.
 pub(crate) fn doc(args: &DocArgs) -> Exit {
@@ -71,7 +73,8 @@ fn of_path(path: &Path, model: &ModelArgs) -> Result<Library, Exit> {
             )));
         }
         let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
-        let roots = Roots::at(path, &mut sources, &mut diagnostics);
+        let world: Arc<dyn World> = Arc::new(Disk);
+        let roots = Roots::at(&world, path, &mut sources, &mut diagnostics);
         let manifest = roots.roots.first().and_then(|root| root.manifest.as_ref());
         let Some(manifest) = manifest.filter(|_| !diagnostics.has_errors()) else {
             return Err(report_errors(model, &sources, &diagnostics));

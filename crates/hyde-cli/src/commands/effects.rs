@@ -4,7 +4,7 @@
 use super::effects_check;
 use crate::args::{EffectsArgs, ModelArgs};
 use crate::exit::Exit;
-use crate::project::{self, Records, print_output};
+use crate::project::{self, Records, Told as _, print_output};
 use hyde_compiler::{Candidate, Knob};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -30,7 +30,7 @@ fn listed(args: &EffectsArgs) -> Result<String, Exit> {
     };
     let mut project = project::load(&args, Records::IfThere)?;
     project.experiment = None;
-    let candidates = project.candidates(&args)?;
+    let candidates = project.candidates_or_report(&args)?;
     if args.json {
         let list: Vec<_> = candidates.iter().map(as_json).collect();
         return Ok(format!("{:#}", json!({ "ok": true, "candidates": list })));

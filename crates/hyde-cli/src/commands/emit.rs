@@ -2,8 +2,7 @@
 
 use crate::args::{EmitArgs, StageName};
 use crate::exit::Exit;
-use crate::project::{self, Records, print_output};
-use crate::records;
+use crate::project::{self, Records, Told as _, print_output};
 use hyde_compiler::{Backend, Form, Request, Stage};
 
 /// Prints the result of a stage.
@@ -13,7 +12,7 @@ pub(crate) fn emit(args: &EmitArgs) -> Exit {
         Err(exit) => return exit,
     };
     let settings = project.set().into_iter().collect();
-    let headers = records::headers(&project.records);
+    let headers = hyde_study::headers(&project.records);
     let request = Request {
         sources: &project.sources,
         file: &project.file,

@@ -6,12 +6,13 @@ use crate::diagnosis::{suspicion, wrapped};
 use crate::exit::Exit;
 use crate::files;
 use crate::left_model;
-use crate::project::{complain, print_output};
-use crate::study::{self, Calibration};
-use crate::unobservable;
+use crate::project::{Told as _, complain, print_output};
+use crate::study;
 use crate::watch::Watch;
 use hyde_calibrate::{Fit, Model, Problem, Unsupported};
 use hyde_sim::Reached;
+use hyde_study::Calibration;
+use hyde_study::unobservable;
 use hyde_units::{counted, engineering_as, engineering_difference, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -24,7 +25,7 @@ pub(crate) fn fit(args: &FitArgs) -> Exit {
     if let Err(reason) = args.study.use_jobs().and(folder) {
         return complain(&args.study.model_args(), Exit::CommandLine, &reason);
     }
-    let mut calibration = match study::load(&args.study, false) {
+    let mut calibration = match study::calibration(&args.study) {
         Ok(calibration) => calibration,
         Err(exit) => return exit,
     };

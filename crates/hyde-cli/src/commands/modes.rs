@@ -9,10 +9,7 @@ use crate::args::{ModelArgs, ModesArgs};
 use crate::assumed;
 use crate::assumptions;
 use crate::exit::Exit;
-use crate::project::{self, Aim, Project, Records, complain, print_output};
-use crate::records;
-use crate::run_failure;
-use crate::settings::Setting;
+use crate::project::{self, Aim, Project, Records, Told as _, complain, print_output};
 use hyde_compiler::Compiled;
 use hyde_experiment::{
     About, Linear, LinearizeError, ModeShape, NaturalMode, Pole, Poles, linearize_about,
@@ -22,6 +19,7 @@ use hyde_program::{Constant, Moment, Program};
 use hyde_report::Block;
 use hyde_signal::Table;
 use hyde_sim::PointTime;
+use hyde_study::settings::Setting;
 use hyde_units::significant;
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
@@ -117,13 +115,13 @@ struct Prepared {
 fn prepared(args: &ModesArgs, model: &ModelArgs, set: Option<&Setting>) -> Result<Prepared, Exit> {
     let mut project = project::load(model, Records::Needed)?;
     project.settings.extend(set.cloned());
-    let compiled = project.compile(model, Aim::Linearize)?;
+    let compiled = project.compile_or_report(model, Aim::Linearize)?;
     project.print_warnings(model);
     let program = &compiled.program;
     let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
-    let tables = records::tables(&project.records);
+    let tables = hyde_study::tables(&project.records);
     let parameters = parameters(program, &tables, &project.set())
-        .map_err(|error| run_failure::refused(&mut project, model, program, &error))?;
+        .map_err(|error| project.report_refused(model, program, &error))?;
     let mut chosen = program
         .experiment
         .bodes

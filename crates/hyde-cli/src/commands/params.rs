@@ -3,9 +3,7 @@
 use crate::args::ParamsArgs;
 use crate::exit::Exit;
 use crate::figures::shown;
-use crate::project::{self, Aim, Records, print_output};
-use crate::records;
-use crate::run_failure;
+use crate::project::{self, Aim, Records, Told as _, print_output};
 use hyde_experiment::parameters;
 use hyde_program::{Parameter, Prior};
 use hyde_units::{counted, significant};
@@ -26,11 +24,12 @@ pub(crate) fn params(args: &ParamsArgs) -> Exit {
 fn listed(args: &ParamsArgs) -> Result<String, Exit> {
     let mut project = project::load(&args.model, Records::IfThere)?;
     let alone = project.experiment.is_none();
-    let compiled = project.compile(&args.model, if alone { Aim::Linearize } else { Aim::Run })?;
+    let compiled =
+        project.compile_or_report(&args.model, if alone { Aim::Linearize } else { Aim::Run })?;
     let program = &compiled.program;
-    let tables = records::tables(&project.records);
+    let tables = hyde_study::tables(&project.records);
     let values = parameters(program, &tables, &project.set())
-        .map_err(|error| run_failure::refused(&mut project, &args.model, program, &error))?;
+        .map_err(|error| project.report_refused(&args.model, program, &error))?;
     let wanted: Vec<&Parameter> = program
         .parameters
         .iter()

@@ -5,16 +5,16 @@ use crate::exit::Exit;
 use crate::files;
 use crate::interruption;
 use crate::project::{
-    self, Aim, Project, Records, complain, print_diagnostics, print_error, print_output,
+    self, Aim, Project, Records, Told as _, complain, print_diagnostics, print_error, print_output,
 };
-use crate::records;
 use crate::watch::Watch;
-use crate::{asked_figures, forces, render, report, run_failure, summary};
+use crate::{asked_figures, forces, render, report, summary};
 use hyde_compiler::Compiled;
 use hyde_experiment::{Options, Run, RunError};
 use hyde_program::Program;
 use hyde_signal::{Column, csv, parquet};
 use hyde_sim::{Reached, Results};
+use hyde_study::run_failure;
 use hyde_units::{NamedUnit, significant};
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -62,7 +62,7 @@ pub(crate) fn solved_of(
             return Err(complain(&args.model, Exit::CommandLine, &reason));
         }
     }
-    let compiled = project.compile(
+    let compiled = project.compile_or_report(
         &args.model,
         if args.ledger { Aim::Ledger } else { Aim::Run },
     )?;
@@ -78,7 +78,7 @@ pub(crate) fn solved_of(
         interrupted: interruption::interrupted(),
         reached: Arc::default(),
     };
-    let tables = records::tables(&project.records);
+    let tables = hyde_study::tables(&project.records);
     let start = std::time::Instant::now();
     let watch = watch(args, &options.reached);
     let outcome = hyde_experiment::run(&compiled.program, &tables, &options);
@@ -275,7 +275,8 @@ fn failed(
     let name = project.experiment.as_deref();
     let mut experiments = project.file.experiments();
     let experiment = experiments.find(|known| name == Some(known.name.text.as_str()));
-    let (diagnostic, exit) = run_failure::diagnostic(error, &compiled.program, experiment);
+    let (diagnostic, fault) = run_failure::diagnostic(error, &compiled.program, experiment);
+    let exit = Exit::from(fault);
     let reason = diagnostic.message.clone();
     if exit == Exit::Interrupted {
         complain(&args.model, exit, &diagnostic.message);
@@ -285,7 +286,7 @@ fn failed(
     }
     // The rows so far are kept, marked as incomplete.
     if let (Some(folder), RunError::Failed(failure)) = (&args.out, error) {
-        let (program, tables) = (&compiled.program, records::tables(&project.records));
+        let (program, tables) = (&compiled.program, hyde_study::tables(&project.records));
         let run = hyde_experiment::incomplete(program, &tables, options, failure, reason);
         let kept = run
             .map_err(|_| "nothing of this run can be kept".to_owned())

@@ -15,14 +15,14 @@ mod records;
 mod text;
 mod work;
 
-use crate::args::{CaseKind, SelftestArgs, StudyArgs};
+use crate::args::{CaseKind, SelftestArgs};
 use crate::batch::store::Store;
 use crate::commands::diagnose;
 use crate::exit::Exit;
 use crate::files;
 use crate::interruption;
-use crate::project::{complain, print_error, print_output};
-use crate::study::{self, Calibration};
+use crate::project::{Told as _, complain, print_error, print_output};
+use crate::study;
 use crate::unknown;
 use hyde_calibrate::{
     Asked, Axis, Case, Hypothesis, Planting, SelftestError, Size, Tally, Written, cases, tally,
@@ -30,6 +30,7 @@ use hyde_calibrate::{
 use hyde_compiler::{Candidate, DiagnosisPlan};
 use hyde_experiment::batch::{Identity, digest};
 use hyde_signal::Table;
+use hyde_study::Calibration;
 use hyde_units::counted;
 use models::Models;
 use serde_json::json;
@@ -61,13 +62,8 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
     let refused = |reason: String| complain(&model_args, Exit::CommandLine, &reason);
     args.study.use_jobs().map_err(refused)?;
     let asked = asked(args).map_err(refused)?;
-    let plan = diagnose::plan(&args.study)?;
-    let of_calibration = StudyArgs {
-        study: Some(plan.calibration.clone()),
-        ..args.study.clone()
-    };
-    let mut calibration = study::load(&of_calibration, true)?;
-    let candidates = calibration.project.candidates(&model_args)?;
+    let (plan, mut calibration) = study::diagnosis(&args.study)?;
+    let candidates = calibration.project.candidates_or_report(&model_args)?;
     let sites = unknown::sites(&candidates);
     let candidates: Vec<Candidate> = candidates
         .into_iter()

@@ -2,7 +2,6 @@
 
 use crate::args::{Engine, RunArgs, SweepArgs};
 use crate::batch::asked::{asked_for_nothing, from_source, ordered, written};
-use crate::batch::inputs::Inputs;
 use crate::batch::merge::merge;
 use crate::batch::order::Order;
 use crate::batch::prepare::Prepared;
@@ -15,8 +14,9 @@ use crate::exit::Exit;
 use crate::files;
 use crate::interruption;
 use crate::project::{Records, print_error, print_output};
-use crate::settings::Setting;
 use hyde_experiment::batch::{indices, shards, varied};
+use hyde_study::Inputs;
+use hyde_study::settings::Setting;
 use hyde_units::counted;
 use serde_json::json;
 use std::ops::RangeInclusive;

@@ -7,9 +7,9 @@
 
 use super::verdict;
 use crate::before_after::{self, Change, RecordErrors};
-use crate::study::Calibration;
 use hyde_calibrate::{Diagnosis, FoundModel, Hypothesis, Inquiry, Model, Quantity, Unsupported};
 use hyde_compiler::Candidate;
+use hyde_study::Calibration;
 use hyde_units::engineering;
 
 /// An error grew if its square did by so many standard deviations of its mean over parts of the record.

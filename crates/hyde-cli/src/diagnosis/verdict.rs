@@ -3,8 +3,8 @@
 use super::{Refused, Told, named};
 use crate::before_after::{self, RecordErrors};
 use crate::figures::{drawn_in, shown};
-use crate::unobservable::reason;
 use hyde_calibrate::{Finding, Frozen, Quantity, Verdict};
+use hyde_study::unobservable::reason;
 use hyde_units::{NamedUnit, significant};
 
 /// One sentence, without the stop at its end.

@@ -5,11 +5,12 @@ use super::{seen, watch};
 use crate::args::ModelArgs;
 use crate::exit::Exit;
 use crate::interruption::interrupted;
-use crate::project::{Aim, Project, complain};
-use crate::settings::Setting;
-use crate::{records, run_failure, summary};
+use crate::project::{Aim, Project, Told as _, complain};
+use crate::summary;
 use hyde_experiment::{Level, Options, SteppedPoint, Steps, parameters, stepped_response};
 use hyde_program::{Constant, Program};
+use hyde_study::run_failure;
+use hyde_study::settings::Setting;
 use hyde_units::{Dimension, NamedUnit, engineering_as, engineering_difference, significant};
 use std::fmt::Write as _;
 
@@ -28,16 +29,16 @@ pub(crate) fn measured(
     let hertz = NamedUnit::usual(Dimension::FREQUENCY);
     let frequency = Setting::of(format!("{input}.frequency"), 1.0, Some(hertz));
     project.settings.push(frequency);
-    let compiled = project.compile_silently(Aim::Run);
+    let compiled = project.compile(Aim::Run);
     project.settings.pop();
     let compiled = compiled.inspect_err(|_| {
         project.finish_with_errors(args);
     })?;
     let program = &compiled.program;
     let wrong = |reason: &str| complain(args, Exit::Model, reason);
-    let tables = records::tables(&project.records);
+    let tables = hyde_study::tables(&project.records);
     let p = parameters(program, &tables, &project.set())
-        .map_err(|error| run_failure::refused(project, args, program, &error))?;
+        .map_err(|error| project.report_refused(args, program, &error))?;
     let steps = steps(program, number, &p).ok_or_else(|| {
         wrong(
             "`by stepped` needs a positive amplitude, two points or more, and two periods or more",
@@ -56,10 +57,10 @@ pub(crate) fn measured(
     let points = match points {
         Ok(points) => points,
         Err(error) => {
-            let (diagnostic, exit) = run_failure::diagnostic(&error, program, None);
+            let (diagnostic, fault) = run_failure::diagnostic(&error, program, None);
             project.diagnostics.push(diagnostic);
             project.finish_with_errors(args);
-            return Err(exit);
+            return Err(fault.into());
         }
     };
     for (output, response) in responses.iter_mut().enumerate() {

@@ -4,12 +4,13 @@ use super::{Prepared, prepared};
 use crate::args::ModesArgs;
 use crate::assumed;
 use crate::exit::Exit;
+use crate::project::Told as _;
 use crate::project::complain;
-use crate::run_failure;
 use hyde_experiment::{
     Combination, MeasuredMode, ModeFit, ModeFitError, ModeFitRequest, fit_modes,
 };
 use hyde_program::Program;
+use hyde_study::run_failure;
 use hyde_units::significant;
 use serde_json::json;
 use std::fmt::Write as _;
@@ -41,10 +42,10 @@ pub(super) fn fitted(args: &ModesArgs) -> Result<String, Exit> {
     let fit = match fit_modes(&request) {
         Ok(fit) => fit,
         Err(ModeFitError::Parameter(error)) => {
-            let (diagnostic, exit) = run_failure::diagnostic(&error, program, None);
+            let (diagnostic, fault) = run_failure::diagnostic(&error, program, None);
             project.diagnostics.push(diagnostic);
             project.finish_with_errors(&args.model);
-            return Err(exit);
+            return Err(fault.into());
         }
         Err(error) => return Err(wrong(reason(&error, &measured))),
     };

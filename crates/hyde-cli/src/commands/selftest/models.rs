@@ -2,7 +2,6 @@
 //! effect at a time: these are made once.
 
 use crate::project::Project;
-use crate::records;
 use crate::unknown;
 use hyde_calibrate::{Built, Written};
 use hyde_compiler::{Additions, Candidate, Form, Header, Request};
@@ -24,7 +23,7 @@ pub(super) struct Models<'a> {
 impl<'a> Models<'a> {
     pub(super) fn new(project: &'a Project, candidates: &'a [Candidate]) -> Self {
         Self {
-            headers: records::headers(&project.records),
+            headers: hyde_study::headers(&project.records),
             observed: Mutex::default(),
             project,
             candidates,

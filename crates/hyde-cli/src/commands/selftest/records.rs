@@ -2,9 +2,9 @@
 
 use super::work;
 use crate::files;
-use crate::study::Calibration;
 use hyde_calibrate::{Axis, Case, tables_of};
 use hyde_signal::Table;
+use hyde_study::Calibration;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;

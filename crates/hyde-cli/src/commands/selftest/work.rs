@@ -3,10 +3,10 @@
 use super::kept::{self, Kept};
 use crate::batch::progress::Progress;
 use crate::batch::store::Store;
-use crate::unobservable;
 use hyde_calibrate::{Axis, Case, SelftestError, Simulated, try_case};
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_experiment::RunError;
+use hyde_study::unobservable;
 use hyde_units::significant;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};

@@ -10,29 +10,34 @@
 
 mod manifest;
 
-use crate::files;
+use crate::world::{World, below, read_text};
 use hyde_diag::{Code, Diagnostic, Diagnostics, Sources};
-pub(crate) use manifest::Manifest;
+pub use manifest::Manifest;
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 use std::path::{Component, Path, PathBuf};
+use std::sync::Arc;
 
 /// The name of a manifest.
-pub(crate) const MANIFEST: &str = "hyde.toml";
+pub const MANIFEST: &str = "hyde.toml";
 
 /// A folder that packages are found in, with what its manifest says.
-pub(crate) struct Root {
+#[derive(Debug)]
+pub struct Root {
     /// As printed.
-    pub(crate) folder: PathBuf,
+    pub folder: PathBuf,
     /// `None` of a model without one.
-    pub(crate) manifest: Option<Manifest>,
+    pub manifest: Option<Manifest>,
     /// The roots that it depends on, by the name of their manifest.
     dependencies: Vec<usize>,
 }
 
 /// The packages that a model can import: its own root first, then all that it depends on, near or far.
-pub(crate) struct Roots {
-    pub(crate) roots: Vec<Root>,
+#[derive(Debug)]
+pub struct Roots {
+    world: Arc<dyn World>,
+    /// The model's own root first.
+    pub roots: Vec<Root>,
     /// The root of each file that was found, by its place.
     owners: RefCell<BTreeMap<String, usize>>,
 }
@@ -40,23 +45,36 @@ pub(crate) struct Roots {
 impl Roots {
     /// The root of a model's file, found by the nearest manifest in its folder or above, and what it depends on. What is
     /// wrong with a manifest is reported.
-    pub(crate) fn of(file: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
+    pub fn of(
+        world: &Arc<dyn World>,
+        file: &Path,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Self {
         let beside = file.parent().unwrap_or(Path::new("")).to_path_buf();
-        match nearest_manifest(&beside) {
-            Some(folder) => Self::at(&folder, sources, diagnostics),
-            None => Self::new(vec![Root {
-                folder: beside,
-                manifest: None,
-                dependencies: Vec::new(),
-            }]),
+        match nearest_manifest(world.as_ref(), &beside) {
+            Some(folder) => Self::at(world, &folder, sources, diagnostics),
+            None => Self::new(
+                world,
+                vec![Root {
+                    folder: beside,
+                    manifest: None,
+                    dependencies: Vec::new(),
+                }],
+            ),
         }
     }
 
     /// The root of a folder with a manifest.
-    pub(crate) fn at(folder: &Path, sources: &mut Sources, diagnostics: &mut Diagnostics) -> Self {
+    pub fn at(
+        world: &Arc<dyn World>,
+        folder: &Path,
+        sources: &mut Sources,
+        diagnostics: &mut Diagnostics,
+    ) -> Self {
         let mut roots = vec![Root {
             folder: lexical(folder),
-            manifest: manifest::read(folder, sources, diagnostics),
+            manifest: manifest::read(world.as_ref(), folder, sources, diagnostics),
             dependencies: Vec::new(),
         }];
         let mut at = 0;
@@ -65,12 +83,14 @@ impl Roots {
             let wanted: Vec<_> = wanted.flat_map(|m| m.dependencies.clone()).collect();
             for dependency in wanted {
                 let folder = lexical(&roots[at].folder.join(&dependency.path));
-                let known = roots.iter().position(|root| same(&root.folder, &folder));
+                let known = roots
+                    .iter()
+                    .position(|root| same(world.as_ref(), &root.folder, &folder));
                 let number = match known {
                     Some(number) => number,
-                    None if files::is_file(&folder.join(MANIFEST)) => {
+                    None if world.is_file(&folder.join(MANIFEST)) => {
                         roots.push(Root {
-                            manifest: manifest::read(&folder, sources, diagnostics),
+                            manifest: manifest::read(world.as_ref(), &folder, sources, diagnostics),
                             folder,
                             dependencies: Vec::new(),
                         });
@@ -90,18 +110,19 @@ impl Roots {
             }
             at += 1;
         }
-        Self::new(roots)
+        Self::new(world, roots)
     }
 
-    fn new(roots: Vec<Root>) -> Self {
+    fn new(world: &Arc<dyn World>, roots: Vec<Root>) -> Self {
         Self {
+            world: Arc::clone(world),
             roots,
             owners: RefCell::default(),
         }
     }
 
     /// The place and text of a package, as the file at `importer` may import it.
-    pub(crate) fn find(
+    pub fn find(
         &self,
         importer: &str,
         package: &str,
@@ -109,12 +130,12 @@ impl Roots {
         let own = self.owner(importer);
         let mut found: Vec<(usize, PathBuf)> = Vec::new();
         for number in std::iter::once(own).chain(self.roots[own].dependencies.iter().copied()) {
-            let places = self.roots[number].places(package)?;
+            let places = self.roots[number].places(self.world.as_ref(), package)?;
             found.extend(places.into_iter().map(|place| (number, place)));
         }
         match found.as_slice() {
             [(number, place)] => {
-                let text = files::read_text(place)
+                let text = read_text(self.world.as_ref(), place)
                     .map_err(|reason| Diagnostic::error(Code::NotDeclared, reason))?;
                 let place = place.to_string_lossy().into_owned();
                 self.owners.borrow_mut().insert(place.clone(), *number);
@@ -137,7 +158,7 @@ impl Roots {
     fn beyond(&self, own: usize, package: &str) -> Result<Option<(String, String)>, Diagnostic> {
         for (number, root) in self.roots.iter().enumerate() {
             let known = number == own || self.roots[own].dependencies.contains(&number);
-            if known || root.places(package)?.is_empty() {
+            if known || root.places(self.world.as_ref(), package)?.is_empty() {
                 continue;
             }
             let name = root.manifest.as_ref().map_or("", |m| m.name.as_str());
@@ -155,14 +176,14 @@ impl Roots {
     }
 
     /// The path of a data file that the file at `importer` names.
-    pub(crate) fn data(&self, importer: &str, path: &str) -> Result<PathBuf, Diagnostic> {
+    pub fn data(&self, importer: &str, path: &str) -> Result<PathBuf, Diagnostic> {
         let root = &self.roots[self.owner(importer)];
         if !is_inside(path) {
             return Err(leaves(path, "the package's folder"));
         }
         let Some(manifest) = &root.manifest else {
             let place = root.folder.join(path);
-            return match links_out(&root.folder, &place) {
+            return match links_out(self.world.as_ref(), &root.folder, &place) {
                 true => Err(leaves(path, "the model's folder")),
                 false => Ok(place),
             };
@@ -184,7 +205,7 @@ impl Roots {
     }
 
     /// The packages of the model's own root, by name, each with its file; none without a manifest.
-    pub(crate) fn own_packages(&self) -> Vec<(String, PathBuf)> {
+    pub fn own_packages(&self) -> Vec<(String, PathBuf)> {
         let root = &self.roots[0];
         let Some(manifest) = &root.manifest else {
             return Vec::new();
@@ -192,9 +213,9 @@ impl Roots {
         let mut found = Vec::new();
         for folder in &manifest.folders {
             let top = inside(&root.folder, folder);
-            for place in files::below(&top, "hyde", MANIFEST) {
+            for place in below(self.world.as_ref(), &top, "hyde", MANIFEST) {
                 if let Ok(name) = place.strip_prefix(&top)
-                    && !links_out(&top, &place)
+                    && !links_out(self.world.as_ref(), &top, &place)
                 {
                     found.push((dotted(name), place));
                 }
@@ -205,17 +226,19 @@ impl Roots {
     }
 
     /// The name that a file of the model's own root has by its place.
-    pub(crate) fn name_of(&self, file: &Path) -> Option<String> {
+    pub fn name_of(&self, file: &Path) -> Option<String> {
         let packages = self.own_packages();
-        let found = packages.into_iter().find(|(_, place)| same(place, file));
+        let found = packages
+            .into_iter()
+            .find(|(_, place)| same(self.world.as_ref(), place, file));
         found.map(|(name, _)| name)
     }
 
     /// The name that a file at a place without links has, or would have if it were there.
-    pub(crate) fn name_at(&self, file: &Path) -> Option<String> {
+    pub fn name_at(&self, file: &Path) -> Option<String> {
         let root = &self.roots[0];
         let folders = root.manifest.iter().flat_map(|manifest| &manifest.folders);
-        let mut tops = folders.filter_map(|folder| files::real(&inside(&root.folder, folder)));
+        let mut tops = folders.filter_map(|folder| self.world.real(&inside(&root.folder, folder)));
         tops.find_map(|top| file.strip_prefix(&top).ok().map(dotted))
     }
 
@@ -226,7 +249,7 @@ impl Roots {
 
 impl Root {
     /// The files that a package may be in: one below each of the folders, where it is there.
-    fn places(&self, package: &str) -> Result<Vec<PathBuf>, Diagnostic> {
+    fn places(&self, world: &dyn World, package: &str) -> Result<Vec<PathBuf>, Diagnostic> {
         let file = format!("{}.hyde", package.replace('.', "/"));
         let folders = match &self.manifest {
             Some(manifest) => manifest.folders.clone(),
@@ -236,10 +259,10 @@ impl Root {
         for folder in folders {
             let top = inside(&self.folder, &folder);
             let place = top.join(&file);
-            if !files::is_file(&place) {
+            if !world.is_file(&place) {
                 continue;
             }
-            if links_out(&top, &place) {
+            if links_out(world, &top, &place) {
                 return Err(leaves(&place.to_string_lossy(), "its folder"));
             }
             found.push(place);
@@ -249,19 +272,19 @@ impl Root {
 }
 
 /// Whether a path stays below where it starts, links apart.
-pub(crate) fn is_inside(path: &str) -> bool {
+pub fn is_inside(path: &str) -> bool {
     let mut parts = Path::new(path).components();
     parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
 }
 
 /// Whether a path that is there leads out of a folder by a link.
-pub(crate) fn links_out(folder: &Path, path: &Path) -> bool {
+pub fn links_out(world: &dyn World, folder: &Path, path: &Path) -> bool {
     let folder = if folder.as_os_str().is_empty() {
         Path::new(".")
     } else {
         folder
     };
-    match (files::real(folder), files::real(path)) {
+    match (world.real(folder), world.real(path)) {
         (Some(folder), Some(path)) => !path.starts_with(folder),
         _ => false,
     }
@@ -272,8 +295,10 @@ fn leaves(path: &str, folder: &str) -> Diagnostic {
         .help("put the file into the folder: nothing outside it is read")
 }
 
-fn same(a: &Path, b: &Path) -> bool {
-    files::real(a).is_some_and(|real| files::real(b) == Some(real))
+fn same(world: &dyn World, a: &Path, b: &Path) -> bool {
+    world
+        .real(a)
+        .is_some_and(|real| world.real(b) == Some(real))
 }
 
 /// A folder below another; `.` is that one itself.
@@ -294,16 +319,16 @@ fn dotted(file: &Path) -> String {
 }
 
 /// The nearest folder with a manifest, going up.
-fn nearest_manifest(start: &Path) -> Option<PathBuf> {
+fn nearest_manifest(world: &dyn World, start: &Path) -> Option<PathBuf> {
     let here = if start.as_os_str().is_empty() {
         Path::new(".")
     } else {
         start
     };
-    let depth = files::real(here)?.components().count();
+    let depth = world.real(here)?.components().count();
     let mut folder = start.to_path_buf();
     for _ in 0..depth {
-        if files::is_file(&folder.join(MANIFEST)) {
+        if world.is_file(&folder.join(MANIFEST)) {
             return Some(folder);
         }
         folder = match folder.file_name() {

@@ -5,20 +5,20 @@ use hyde_units::NamedUnit;
 
 /// A value set from outside.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Setting {
+pub struct Setting {
     /// Full name of the parameter.
-    pub(crate) path: String,
+    pub path: String,
     /// SI.
-    pub(crate) value: f64,
+    pub value: f64,
     /// The unit it was written in; `None` where none was.
-    pub(crate) unit: Option<NamedUnit>,
+    pub unit: Option<NamedUnit>,
     /// It was written as `true` or `false`.
-    pub(crate) truth: bool,
+    pub truth: bool,
 }
 
 impl Setting {
     /// A value in SI.
-    pub(crate) fn of(path: String, value: f64, unit: Option<NamedUnit>) -> Self {
+    pub fn of(path: String, value: f64, unit: Option<NamedUnit>) -> Self {
         Self {
             path,
             value,
@@ -29,7 +29,7 @@ impl Setting {
 }
 
 /// Reads `saddle.M=320 [kg]`, with or without brackets and blanks.
-pub(crate) fn parse(text: &str) -> Result<Setting, String> {
+pub fn parse(text: &str) -> Result<Setting, String> {
     let (path, value) = text
         .split_once('=')
         .ok_or_else(|| format!("`{text}`: write `path=value [unit]`"))?;
@@ -64,7 +64,7 @@ pub(crate) fn parse(text: &str) -> Result<Setting, String> {
 }
 
 /// Whether a setting fits a parameter; what to write instead if not.
-pub(crate) fn check(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
+pub fn check(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
     let given = Given {
         value: setting.value,
         unit: setting.unit.as_ref(),

@@ -1,7 +1,7 @@
 //! The records of an experiment: which files they are, and their tables.
 
-use crate::args::ModelArgs;
-use crate::batch::inputs::Kind;
+use crate::asked::Asked;
+use crate::inputs::Kind;
 use crate::package::links_out;
 use crate::project::Records;
 use hyde_compiler::Header;
@@ -13,26 +13,33 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// A record that was read.
-pub(crate) struct Record {
-    pub(crate) path: PathBuf,
-    pub(crate) hash: String,
-    pub(crate) table: Table,
+#[derive(Debug)]
+pub struct Record {
+    /// Where it is.
+    pub path: PathBuf,
+    /// SHA-256 of its content.
+    pub hash: String,
+    /// Its columns over time.
+    pub table: Table,
 }
 
 /// Reads every record of an experiment. What is missing or wrong is reported and left out.
-pub(crate) fn read(
+///
+/// # Errors
+/// A record is asked for that the experiment does not have.
+pub fn read(
     experiment: &Experiment,
-    args: &ModelArgs,
+    asked: &Asked,
     needed: Records,
     diagnostics: &mut Diagnostics,
 ) -> Result<BTreeMap<String, Record>, String> {
-    let given = given(args, experiment)?;
+    let given = given(asked, experiment)?;
     let mut found = BTreeMap::new();
     for item in &experiment.records {
-        let Some(path) = path_of(item, &given, args, needed, diagnostics) else {
+        let Some(path) = path_of(item, &given, asked, needed, diagnostics) else {
             continue;
         };
-        let content = match args.read(Kind::Record, "", &path.to_string_lossy(), &path) {
+        let content = match asked.read(Kind::Record, "", &path.to_string_lossy(), &path) {
             Ok(content) => content,
             Err(reason) => {
                 diagnostics.push(missing(item, needed, &reason));
@@ -56,7 +63,7 @@ pub(crate) fn read(
 }
 
 /// The headers of records, for the compiler.
-pub(crate) fn headers(records: &BTreeMap<String, Record>) -> BTreeMap<String, Header> {
+pub fn headers(records: &BTreeMap<String, Record>) -> BTreeMap<String, Header> {
     records
         .iter()
         .map(|(name, record)| {
@@ -82,55 +89,49 @@ pub(crate) fn headers(records: &BTreeMap<String, Record>) -> BTreeMap<String, He
 }
 
 /// The tables of records, for the run.
-pub(crate) fn tables(records: &BTreeMap<String, Record>) -> BTreeMap<String, Table> {
+pub fn tables(records: &BTreeMap<String, Record>) -> BTreeMap<String, Table> {
     records
         .iter()
         .map(|(name, record)| (name.clone(), record.table.clone()))
         .collect()
 }
 
-/// `--record NAME=PATH`; a name that the experiment does not have is a mistake of the command line.
-fn given(args: &ModelArgs, experiment: &Experiment) -> Result<BTreeMap<String, PathBuf>, String> {
-    let mut found = BTreeMap::new();
-    for text in &args.records {
-        let (name, path) = text
-            .split_once('=')
-            .ok_or_else(|| format!("`--record {text}`: write `NAME=PATH`"))?;
-        if !experiment
-            .records
-            .iter()
-            .any(|record| record.name.text == name)
-        {
-            let known: Vec<String> = experiment
-                .records
-                .iter()
-                .map(|record| format!("`{}`", record.name.text))
-                .collect();
-            let known = if known.is_empty() {
-                "none".to_owned()
-            } else {
-                known.join(", ")
+/// The files that were named for records; a name that the experiment does not have is a mistake of whoever asks.
+fn given<'a>(
+    asked: &'a Asked,
+    experiment: &Experiment,
+) -> Result<BTreeMap<&'a str, &'a Path>, String> {
+    let records = experiment.records.iter();
+    let known: Vec<&str> = records.map(|record| record.name.text.as_str()).collect();
+    for (name, _) in &asked.records {
+        if !known.contains(&name.as_str()) {
+            let quoted: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+            let has = match quoted.is_empty() {
+                true => "none".to_owned(),
+                false => quoted.join(", "),
             };
             return Err(format!(
-                "the experiment `{}` has no record `{name}`; it has {known}",
+                "the experiment `{}` has no record `{name}`; it has {has}",
                 experiment.name.text
             ));
         }
-        found.insert(name.to_owned(), PathBuf::from(path));
     }
-    Ok(found)
+    let files = asked.records.iter();
+    Ok(files
+        .map(|(name, path)| (name.as_str(), path.as_path()))
+        .collect())
 }
 
 /// The file of a record: as given, else its default, below `--data` or beside the model.
 fn path_of(
     item: &RecordItem,
-    given: &BTreeMap<String, PathBuf>,
-    args: &ModelArgs,
+    given: &BTreeMap<&str, &Path>,
+    asked: &Asked,
     needed: Records,
     diagnostics: &mut Diagnostics,
 ) -> Option<PathBuf> {
-    if let Some(path) = given.get(&item.name.text) {
-        return Some(path.clone());
+    if let Some(path) = given.get(item.name.text.as_str()) {
+        return Some(path.to_path_buf());
     }
     let Some(default) = &item.default else {
         diagnostics.push(missing(item, needed, "no file is given"));
@@ -160,13 +161,13 @@ fn path_of(
         );
         return None;
     }
-    let root = args
+    let root = asked
         .data
         .clone()
-        .or_else(|| args.file.parent().map(Path::to_path_buf))
+        .or_else(|| asked.file.parent().map(Path::to_path_buf))
         .unwrap_or_default();
     let path = root.join(relative);
-    if links_out(&root, &path) {
+    if links_out(asked.world.as_ref(), &root, &path) {
         let message = format!("`{}` leads out of its folder by a link", default.text);
         let diagnostic = Diagnostic::error(Code::NoRecord, message)
             .label(

@@ -13,7 +13,7 @@
 //! ```
 
 use super::{MANIFEST, is_inside, links_out};
-use crate::files;
+use crate::world::{World, read_text};
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -21,23 +21,31 @@ use std::path::Path;
 use toml::Spanned;
 
 /// A manifest that was read.
-pub(crate) struct Manifest {
-    pub(crate) name: String,
-    pub(crate) version: String,
-    pub(crate) description: String,
-    pub(crate) licence: String,
+#[derive(Debug)]
+pub struct Manifest {
+    /// The package that its files begin with.
+    pub name: String,
+    /// Three numbers.
+    pub version: String,
+    /// What it is, in a line; may be empty.
+    pub description: String,
+    /// May be empty.
+    pub licence: String,
     /// Below the manifest's folder; `.` is that itself.
-    pub(crate) folders: Vec<String>,
+    pub folders: Vec<String>,
     /// Below the manifest's folder.
-    pub(crate) data: Vec<String>,
-    pub(crate) dependencies: Vec<Dependency>,
+    pub data: Vec<String>,
+    /// Packages that its files may import beside its own.
+    pub dependencies: Vec<Dependency>,
 }
 
 /// `name = "../path"`
-#[derive(Clone)]
-pub(crate) struct Dependency {
-    pub(crate) name: String,
-    pub(crate) path: String,
+#[derive(Clone, Debug)]
+pub struct Dependency {
+    /// The name of its manifest.
+    pub name: String,
+    /// Relative to this manifest's folder.
+    pub path: String,
     span: Span,
 }
 
@@ -60,12 +68,13 @@ struct Written {
 
 /// Reads the manifest of a folder; what is wrong with it is reported.
 pub(super) fn read(
+    world: &dyn World,
     folder: &Path,
     sources: &mut Sources,
     diagnostics: &mut Diagnostics,
 ) -> Option<Manifest> {
     let path = folder.join(MANIFEST);
-    let text = match files::read_text(&path) {
+    let text = match read_text(world, &path) {
         Ok(text) => text,
         Err(reason) => {
             diagnostics.push(Diagnostic::error(Code::BadManifest, reason));
@@ -82,6 +91,7 @@ pub(super) fn read(
     };
     let before = diagnostics.error_count();
     let mut reader = Reader {
+        world,
         folder,
         id,
         diagnostics,
@@ -91,6 +101,7 @@ pub(super) fn read(
 }
 
 struct Reader<'r> {
+    world: &'r dyn World,
     folder: &'r Path,
     id: FileId,
     diagnostics: &'r mut Diagnostics,
@@ -156,7 +167,7 @@ impl Reader<'_> {
     fn below(&mut self, path: &Spanned<String>, folder: bool) {
         let written = path.get_ref();
         let place = self.folder.join(written);
-        if !is_inside(written) || links_out(self.folder, &place) {
+        if !is_inside(written) || links_out(self.world, self.folder, &place) {
             let diagnostic = Diagnostic::error(
                 Code::NotDeclared,
                 format!("`{written}` leads out of the package's folder"),
@@ -164,12 +175,10 @@ impl Reader<'_> {
             .label(self.span(path), "outside")
             .help("put it below the manifest; the packages of other folders are `[dependencies]`");
             self.diagnostics.push(diagnostic);
-        } else if !(if folder {
-            files::is_folder
-        } else {
-            files::is_file
-        })(&place)
-        {
+        } else if !(match folder {
+            true => self.world.is_folder(&place),
+            false => self.world.is_file(&place),
+        }) {
             let what = if folder { "folder" } else { "file" };
             self.wrong(
                 path,

@@ -1,8 +1,6 @@
 //! A run that could not go on, as a diagnostic: component, equation, source line, time.
 
-use crate::args::ModelArgs;
-use crate::exit::Exit;
-use crate::project::Project;
+use crate::refused::Fault;
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::RunError;
 use hyde_program::Program;
@@ -10,31 +8,31 @@ use hyde_sim::{Failure, FailureKind};
 use hyde_syntax::ast::Experiment;
 
 /// What to do about a row whose value is not allowed.
-pub(crate) const ROW_HELP: &str = "mend the file, or say how its numbers are meant: `stimulus on = file.on > 2.5 [V];`, or declare the input `Real`";
+pub const ROW_HELP: &str = "mend the file, or say how its numbers are meant: `stimulus on = file.on > 2.5 [V];`, or declare the input `Real`";
 
-/// The diagnostic of a run that did not start or did not end, and the exit status it leads to.
-pub(crate) fn diagnostic(
+/// The diagnostic of a run that did not start or did not end, and what is at fault.
+pub fn diagnostic(
     error: &RunError,
     program: &Program,
     experiment: Option<&Experiment>,
-) -> (Diagnostic, Exit) {
+) -> (Diagnostic, Fault) {
     match error {
         RunError::NoParameter(name) => (
             Diagnostic::error(Code::BadSet, format!("the model has no parameter `{name}`")),
-            Exit::CommandLine,
+            Fault::Asked,
         ),
         RunError::CannotSet(name, why) => {
             let message = format!("`{name}` cannot be set: {why}");
-            (cannot_set(program, name, message), Exit::CommandLine)
+            (cannot_set(program, name, message), Fault::Asked)
         }
         RunError::NotAllowed(name, why) => {
             let message = format!("the value of `{name}` is not allowed: {why}");
-            (cannot_set(program, name, message), Exit::CommandLine)
+            (cannot_set(program, name, message), Fault::Asked)
         }
         RunError::Row(fault) => {
             let diagnostic = Diagnostic::error(Code::NotAllowed, fault.to_string())
                 .label(fault.drives.2, "driven here");
-            (diagnostic.help(ROW_HELP), Exit::Model)
+            (diagnostic.help(ROW_HELP), Fault::Model)
         }
         RunError::NoGradientBy(name, why) => {
             let message = format!("there is no gradient by `{name}`: {why}");
@@ -46,7 +44,7 @@ pub(crate) fn diagnostic(
                 None => diagnostic,
             };
             let help = "vary it by `--set`, run by run";
-            (diagnostic.help(help), Exit::CommandLine)
+            (diagnostic.help(help), Fault::Asked)
         }
         RunError::NoStop => no_stop(experiment),
         RunError::EndsBeforeStart {
@@ -55,14 +53,14 @@ pub(crate) fn diagnostic(
             record,
         } => (
             ends_before_start(*start_s, *stop_s, record.as_deref(), experiment),
-            Exit::Model,
+            Fault::Model,
         ),
         RunError::NotPositive(what, value) => (
             Diagnostic::error(
                 Code::BadSolve,
                 format!("{what} must be positive, not {value}"),
             ),
-            Exit::Model,
+            Fault::Model,
         ),
         RunError::TooManyRows {
             rows,
@@ -70,7 +68,7 @@ pub(crate) fn diagnostic(
             least_s,
         } => (
             too_many_rows((*rows, *columns), *least_s, experiment),
-            Exit::Model,
+            Fault::Model,
         ),
         RunError::Compare(error) => {
             let message = format!(
@@ -84,7 +82,7 @@ pub(crate) fn diagnostic(
                 Some(channel) => diagnostic.label(channel.origin.span, "measured here"),
                 None => diagnostic,
             };
-            (diagnostic, Exit::Model)
+            (diagnostic, Fault::Model)
         }
         RunError::NotANumber {
             measure,
@@ -101,39 +99,26 @@ pub(crate) fn diagnostic(
                 Some(known) => diagnostic.label(known.origin.span, "read here"),
                 None => diagnostic,
             };
-            (diagnostic, Exit::Expectation)
+            (diagnostic, Fault::Expectation)
         }
         RunError::Failed(failure) => {
-            let exit = if failure.kind == FailureKind::Interrupted {
-                Exit::Interrupted
+            let fault = if failure.kind == FailureKind::Interrupted {
+                Fault::Interrupted
             } else {
-                Exit::Solver
+                Fault::Solver
             };
-            (failed(failure, program), exit)
+            (failed(failure, program), fault)
         }
     }
 }
 
 /// A value that cannot be set, at the parameter it was meant for.
-pub(crate) fn cannot_set(program: &Program, name: &str, message: String) -> Diagnostic {
+pub fn cannot_set(program: &Program, name: &str, message: String) -> Diagnostic {
     let diagnostic = Diagnostic::error(Code::BadSet, message);
     match program.parameter(name) {
         Some((parameter, _)) => diagnostic.label(parameter.origin.span, "its value is given here"),
         None => diagnostic,
     }
-}
-
-/// Reports why a model cannot be given its parameters.
-pub(crate) fn refused(
-    project: &mut Project,
-    args: &ModelArgs,
-    program: &Program,
-    error: &RunError,
-) -> Exit {
-    let (diagnostic, exit) = diagnostic(error, program, None);
-    project.diagnostics.push(diagnostic);
-    project.finish_with_errors(args);
-    exit
 }
 
 /// Results that fit nowhere, and how far apart rows may be.
@@ -159,18 +144,18 @@ fn too_many_rows(
     ))
 }
 
-fn no_stop(experiment: Option<&Experiment>) -> (Diagnostic, Exit) {
+fn no_stop(experiment: Option<&Experiment>) -> (Diagnostic, Fault) {
     let diagnostic = Diagnostic::error(Code::NoStop, "it is not said when the run ends");
     match experiment {
         Some(experiment) => (
             diagnostic
                 .label(experiment.name.span, "this experiment has no `stop`")
                 .help("write `solve ida(rtol = 1e-6) stop 1 [s];`, or `stop file.end` for the end of a record"),
-            Exit::Model,
+            Fault::Model,
         ),
         None => (
             diagnostic.help("a model without an experiment is run with `--stop 1`"),
-            Exit::CommandLine,
+            Fault::Asked,
         ),
     }
 }
@@ -204,7 +189,7 @@ fn ends_before_start(
 }
 
 /// A time in s with all digits that tell it from others.
-pub(crate) fn instant(time_s: f64) -> String {
+pub fn instant(time_s: f64) -> String {
     format!("{} s", hyde_units::significant(time_s, 10))
 }
 

@@ -1,7 +1,7 @@
 //! [`Inputs`]: every file that a model is made from, as it was read: to tell whether two batches are one, and to make the
 //! same model elsewhere, or later when the files have changed.
 
-use crate::files;
+use crate::world::World;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Mutex, PoisonError};
@@ -11,7 +11,7 @@ use std::sync::{Mutex, PoisonError};
     Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize,
 )]
 #[serde(rename_all = "lowercase")]
-pub(crate) enum Kind {
+pub enum Kind {
     /// The user's file.
     Model,
     /// A package that a file names.
@@ -23,14 +23,14 @@ pub(crate) enum Kind {
 }
 
 /// Which file is meant: what it is, the place of the file that names it, and the name there.
-pub(crate) type Key = (Kind, String, String);
+pub type Key = (Kind, String, String);
 
 /// A file: the place it was read from, and its content.
-pub(crate) type Content = (String, Vec<u8>);
+pub type Content = (String, Vec<u8>);
 
 /// Files that were read, or that are to be read instead of those of the disk.
 #[derive(Debug, Default)]
-pub(crate) struct Inputs {
+pub struct Inputs {
     replayed: bool,
     /// Stands below the model's own file, as if it were written there.
     below: String,
@@ -39,12 +39,12 @@ pub(crate) struct Inputs {
 
 impl Inputs {
     /// Notes what is read.
-    pub(crate) fn recording() -> Self {
+    pub fn recording() -> Self {
         Self::default()
     }
 
     /// The same with a text below the model's file.
-    pub(crate) fn recording_with(below: String) -> Self {
+    pub fn recording_with(below: String) -> Self {
         Self {
             below,
             ..Self::default()
@@ -52,7 +52,7 @@ impl Inputs {
     }
 
     /// Gives these files and no others.
-    pub(crate) fn replaying(files: BTreeMap<Key, Content>) -> Self {
+    pub fn replaying(files: BTreeMap<Key, Content>) -> Self {
         Self {
             replayed: true,
             files: Mutex::new(files),
@@ -61,13 +61,14 @@ impl Inputs {
     }
 
     /// Whether the files are not those of the disk.
-    pub(crate) fn is_replayed(&self) -> bool {
+    pub fn is_replayed(&self) -> bool {
         self.replayed
     }
 
     /// Reads a file.
     pub(crate) fn read(
         &self,
+        world: &dyn World,
         kind: Kind,
         asker: &str,
         name: &str,
@@ -79,7 +80,7 @@ impl Inputs {
                 format!("`{}` is not among the files of the batch", path.display())
             });
         }
-        let mut content = files::read(path)?;
+        let mut content = world.read(path)?;
         if kind == Kind::Model {
             content.extend_from_slice(self.below.as_bytes());
         }
@@ -93,7 +94,7 @@ impl Inputs {
     }
 
     /// Notes a file that was read otherwise.
-    pub(crate) fn note(&self, kind: Kind, asker: &str, name: &str, content: Content) {
+    pub fn note(&self, kind: Kind, asker: &str, name: &str, content: Content) {
         let key = (kind, asker.to_owned(), name.to_owned());
         self.files
             .lock()
@@ -102,7 +103,7 @@ impl Inputs {
     }
 
     /// A file that is known.
-    pub(crate) fn found(&self, kind: Kind, asker: &str, name: &str) -> Option<Content> {
+    pub fn found(&self, kind: Kind, asker: &str, name: &str) -> Option<Content> {
         let key = (kind, asker.to_owned(), name.to_owned());
         self.files
             .lock()
@@ -112,7 +113,7 @@ impl Inputs {
     }
 
     /// All of them.
-    pub(crate) fn all(&self) -> BTreeMap<Key, Content> {
+    pub fn all(&self) -> BTreeMap<Key, Content> {
         self.files
             .lock()
             .unwrap_or_else(PoisonError::into_inner)

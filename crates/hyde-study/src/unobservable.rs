@@ -1,13 +1,13 @@
 //! Diagnostics of studies that cannot be: records and models without an observer, and calibrations that learn nothing.
 
+use crate::calibration::Calibration;
 use crate::run_failure;
-use crate::study::Calibration;
 use hyde_calibrate::{Cause, RecordError, Unsupported};
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_units::{Dimension, engineering, engineering_difference, significant};
 
 /// Why a record cannot be observed.
-pub(crate) fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnostic {
+pub fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnostic {
     let time = |seconds: f64| engineering(seconds, Dimension::TIME);
     let (cause, help) = match error {
         RecordError::NoChannel => (
@@ -58,7 +58,7 @@ pub(crate) fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnos
 }
 
 /// Why a program has no fixed-step form.
-pub(crate) fn unsupported(error: &Unsupported, span: Span) -> Diagnostic {
+pub fn unsupported(error: &Unsupported, span: Span) -> Diagnostic {
     let (cause, help) = match error {
         Unsupported::Clock(part) => (
             format!("the clocked part `{part}` closes the loop"),
@@ -86,7 +86,7 @@ pub(crate) fn unsupported(error: &Unsupported, span: Span) -> Diagnostic {
 }
 
 /// Why a calibration learned nothing.
-pub(crate) fn unlearned(calibration: &Calibration, causes: &[Cause]) -> Diagnostic {
+pub fn unlearned(calibration: &Calibration, causes: &[Cause]) -> Diagnostic {
     let names: Vec<String> = calibration
         .varied
         .iter()
@@ -114,7 +114,7 @@ pub(crate) fn unlearned(calibration: &Calibration, causes: &[Cause]) -> Diagnost
 }
 
 /// A cause in a sentence.
-pub(crate) fn reason(calibration: &Calibration, cause: &Cause) -> String {
+pub fn reason(calibration: &Calibration, cause: &Cause) -> String {
     match cause {
         Cause::Held {
             mode: (automaton, mode),

@@ -1,7 +1,7 @@
 //! The files of tables: which they are, and their columns.
 
-use crate::args::ModelArgs;
-use crate::batch::inputs::Kind;
+use crate::asked::Asked;
+use crate::inputs::Kind;
 use crate::package::Roots;
 use hyde_compiler::{File, TableFile};
 use hyde_diag::{Code, Diagnostic, Diagnostics, Sources, Span};
@@ -10,25 +10,29 @@ use sha2::{Digest, Sha256};
 use std::path::PathBuf;
 
 /// A table's file that was read.
-pub(crate) struct Table {
-    pub(crate) path: PathBuf,
-    pub(crate) hash: String,
-    pub(crate) rows: usize,
+#[derive(Clone, Debug)]
+pub struct Table {
+    /// Where it is.
+    pub path: PathBuf,
+    /// SHA-256 of its content.
+    pub hash: String,
+    /// Number of rows.
+    pub rows: usize,
     /// What was taken for granted of it.
-    pub(crate) notes: Vec<String>,
+    pub notes: Vec<String>,
 }
 
 /// Reads the files of every table into `file`. What is missing or wrong is reported.
 pub(crate) fn read(
     file: &mut File,
-    args: &ModelArgs,
+    asked: &Asked,
     roots: &Roots,
     sources: &Sources,
     diagnostics: &mut Diagnostics,
 ) -> Vec<Table> {
     let mut found: Vec<Table> = Vec::new();
     for (id, name, span) in file.tables_named() {
-        match of_file(args, roots, &sources.get(id).name, &name, span) {
+        match of_file(asked, roots, &sources.get(id).name, &name, span) {
             Ok((table, columns)) => {
                 file.tables.insert((id, name), TableFile { columns });
                 if found.iter().all(|known| known.path != table.path) {
@@ -44,20 +48,21 @@ pub(crate) fn read(
 type Columns = Vec<(String, Option<hyde_units::NamedUnit>, Vec<f64>)>;
 
 fn of_file(
-    args: &ModelArgs,
+    asked: &Asked,
     roots: &Roots,
     importer: &str,
     name: &str,
     span: Span,
 ) -> Result<(Table, Columns), Diagnostic> {
-    let path = match &args.inputs {
+    let path = match &asked.inputs {
         Some(inputs) if inputs.is_replayed() => PathBuf::from(name),
         Some(_) | None => roots
             .data(importer, name)
             .map_err(|diagnostic| diagnostic.label(span, "named here"))?,
     };
     let content =
-        args.read(Kind::Table, importer, name, &path)
+        asked
+            .read(Kind::Table, importer, name, &path)
             .map_err(|reason| {
                 Diagnostic::error(Code::NotDeclared, format!("a table has no file: {reason}"))
             .label(span, "named here")

@@ -1,0 +1,43 @@
+//! Studies of a model as functions from data to data. Nothing here prints, exits or reads arguments: the command line does,
+//! and an editor or another program stands on the same functions.
+//!
+//! ```text
+//! world          where files are: the disk, memory, unsaved buffers      world.rs
+//! asked          which model, with what set from outside                 asked.rs
+//! inputs         every file a model is made from, as it was read         inputs.rs
+//! package        packages beyond the library, and their manifests        package.rs
+//! settings       a parameter set from outside                            settings.rs
+//! tables         the files of lookup tables                              tables.rs
+//! records        the records of an experiment                            records.rs
+//! project        a file parsed once; its model, experiment, program      project.rs
+//! calibration    a calibration with its records and its observer         calibration.rs
+//! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
+//! run_failure    a run that could not go on, as a diagnostic             run_failure.rs
+//! unobservable   a study that cannot be, as a diagnostic                 unobservable.rs
+//! refused        why a study has no answer                               refused.rs
+//! ```
+//! Start reading at [`load`] in `project.rs`.
+
+mod asked;
+mod calibration;
+mod diagnosis;
+mod inputs;
+mod package;
+mod project;
+mod records;
+mod refused;
+pub mod run_failure;
+pub mod settings;
+mod tables;
+pub mod unobservable;
+pub mod world;
+
+pub use asked::Asked;
+pub use calibration::{Calibration, calibration, chosen};
+pub use diagnosis::diagnosis;
+pub use inputs::{Content, Inputs, Key, Kind};
+pub use package::{MANIFEST, Manifest, Root, Roots, is_inside, links_out};
+pub use project::{Aim, Loaded, Project, Records, files_of, load};
+pub use records::{Record, headers, read as read_records, tables};
+pub use refused::{Fault, Refused};
+pub use tables::Table;

@@ -1,0 +1,402 @@
+//! A model on its way to a program: file, experiment, records, settings.
+
+use crate::asked::Asked;
+use crate::inputs::Kind;
+use crate::package::{MANIFEST, Roots};
+use crate::records::{self, Record};
+use crate::refused::{Fault, Refused};
+use crate::run_failure;
+use crate::settings::{self, Setting};
+use crate::tables::{self, Table};
+use crate::world::{as_text, read_text};
+use hyde_compiler::{Backend, Candidate, Compiled, File, Form, Header, Request};
+use hyde_diag::{Diagnostics, Sources};
+use hyde_syntax::ast::Experiment;
+use sha2::{Digest, Sha256};
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+
+/// A loaded file with what was chosen of it.
+pub struct Project {
+    /// The texts.
+    pub sources: Sources,
+    /// The trees.
+    pub file: File,
+    /// SHA-256 of the file's text.
+    pub hash: String,
+    /// The model.
+    pub model: String,
+    /// The experiment, if there is one whose records are there.
+    pub experiment: Option<String>,
+    /// Its records, by name.
+    pub records: BTreeMap<String, Record>,
+    /// The tables that the file names.
+    pub tables: Vec<Table>,
+    /// What is set from outside.
+    pub settings: Vec<Setting>,
+    /// What is wrong so far, and what is only told.
+    pub diagnostics: Diagnostics,
+}
+
+/// What becomes of an experiment whose records are not there.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Records {
+    /// It cannot be run: an error.
+    Needed,
+    /// Its model is checked alone, with a warning.
+    IfThere,
+}
+
+/// A file that was parsed, with the packages and tables it names: see [`crate::package`].
+pub struct Loaded {
+    /// The texts.
+    pub sources: Sources,
+    /// The trees.
+    pub file: File,
+    /// SHA-256 of the file's text.
+    pub hash: String,
+    /// The tables it names.
+    pub tables: Vec<Table>,
+    /// What is wrong so far.
+    pub diagnostics: Diagnostics,
+}
+
+/// Loads what is asked. What is wrong in the files stays in the project's diagnostics.
+///
+/// # Errors
+/// What is asked cannot be: no such file, experiment, model or record.
+pub fn load(asked: &Asked, needed: Records) -> Result<Project, String> {
+    Loaded::of(asked)?.choose(asked, needed)
+}
+
+impl Loaded {
+    /// Parses the file that is asked for, once.
+    ///
+    /// # Errors
+    /// It cannot be read.
+    pub fn of(asked: &Asked) -> Result<Self, String> {
+        if asked.world.is_folder(&asked.file) {
+            return Err(format!(
+                "`{}` is a folder: name a file in it; `hyde check` and `hyde test` take folders with a `{MANIFEST}`",
+                asked.file.display()
+            ));
+        }
+        let bytes = asked.read(Kind::Model, "", "", &asked.file)?;
+        Ok(Self::of_text(asked, &as_text(&asked.file, bytes)?))
+    }
+
+    /// Parses a text as the file that is asked for.
+    #[must_use]
+    pub fn of_text(asked: &Asked, text: &str) -> Self {
+        let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+        let roots = Roots::of(&asked.world, &asked.file, &mut sources, &mut diagnostics);
+        let own = asked.file.to_string_lossy();
+        let searched = match roots.roots.first().and_then(|root| root.manifest.as_ref()) {
+            Some(_) => "in this package or its dependencies",
+            None => "beside the file",
+        };
+        let all = || {
+            let packages = roots.own_packages().into_iter();
+            let others = packages.filter(|(_, place)| *place != asked.file);
+            others
+                .filter_map(|(name, place)| {
+                    Some((name, read_text(asked.world.as_ref(), &place).ok()?))
+                })
+                .collect()
+        };
+        let packages =
+            hyde_compiler::Packages {
+                find: &|importer, package| match &asked.inputs {
+                    Some(inputs) if inputs.is_replayed() => {
+                        let found = inputs.found(Kind::Package, importer, package);
+                        Ok(found
+                            .and_then(|(place, text)| Some((place, String::from_utf8(text).ok()?))))
+                    }
+                    Some(inputs) => {
+                        let found = roots.find(importer, package)?;
+                        if let Some((place, text)) = &found {
+                            let content = (place.clone(), text.clone().into_bytes());
+                            inputs.note(Kind::Package, importer, package, content);
+                        }
+                        Ok(found)
+                    }
+                    None => roots.find(importer, package),
+                },
+                all: &all,
+                searched,
+                whole_library: asked.whole_library,
+            };
+        let mut file = hyde_compiler::load(&mut sources, &own, text, &packages, &mut diagnostics);
+        if let Some((id, tree)) = file.files.first()
+            && let Some(name) = roots.name_of(&asked.file)
+        {
+            hyde_compiler::check_name(&sources, *id, tree, &name, &mut diagnostics);
+        }
+        let tables = tables::read(&mut file, asked, &roots, &sources, &mut diagnostics);
+        Self {
+            sources,
+            file,
+            hash: format!("{:x}", Sha256::digest(text.as_bytes())),
+            tables,
+            diagnostics,
+        }
+    }
+
+    /// The file as a refusal, with what is wrong in it.
+    #[must_use]
+    pub fn refused(self) -> Refused {
+        Refused::Model {
+            sources: Box::new(self.sources),
+            diagnostics: self.diagnostics,
+            fault: Fault::Model,
+        }
+    }
+
+    /// Chooses the model and the experiment that are asked for, and reads its records.
+    ///
+    /// # Errors
+    /// There is no such experiment, model or record.
+    pub fn choose(self, asked: &Asked, needed: Records) -> Result<Project, String> {
+        let Self {
+            sources,
+            file,
+            hash,
+            tables,
+            diagnostics,
+        } = self;
+        let mut project = Project {
+            sources,
+            hash,
+            model: String::new(),
+            experiment: None,
+            records: BTreeMap::new(),
+            tables,
+            settings: asked.settings.clone(),
+            diagnostics,
+            file,
+        };
+        if project.diagnostics.has_errors() {
+            return Ok(project);
+        }
+        let experiment = choose(&project, asked)?.cloned();
+        project.model = match (&asked.model, &experiment) {
+            (Some(model), _) => model.clone(),
+            (None, Some(experiment)) => experiment.model.dotted(),
+            (None, None) => match project.file.models().last() {
+                Some(model) => model.to_owned(),
+                None => return Err("the file has no model".to_owned()),
+            },
+        };
+        if let Some(experiment) = &experiment {
+            project.experiment = Some(experiment.name.text.clone());
+            project.records = records::read(experiment, asked, needed, &mut project.diagnostics)?;
+            if project.diagnostics.has_errors() {
+                return Ok(project);
+            }
+            if project.records.len() < experiment.records.len() {
+                project.experiment = None;
+            }
+        }
+        Ok(project)
+    }
+}
+
+/// The files that are meant: the one named, or those of the package in the folder named.
+///
+/// # Errors
+/// The folder has no manifest, or one with mistakes.
+pub fn files_of(asked: &Asked) -> Result<Vec<PathBuf>, Refused> {
+    if !asked.world.is_folder(&asked.file) {
+        return Ok(vec![asked.file.clone()]);
+    }
+    if !asked.world.is_file(&asked.file.join(MANIFEST)) {
+        let folder = asked.file.display();
+        return Err(Refused::Asked(format!(
+            "the folder `{folder}` has no `{MANIFEST}`"
+        )));
+    }
+    let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
+    let roots = Roots::at(&asked.world, &asked.file, &mut sources, &mut diagnostics);
+    if diagnostics.has_errors() {
+        return Err(Refused::Model {
+            sources: Box::new(sources),
+            diagnostics,
+            fault: Fault::Model,
+        });
+    }
+    let packages = roots.own_packages().into_iter();
+    Ok(packages.map(|(_, file)| file).collect())
+}
+
+/// What a program is for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Aim {
+    /// A run.
+    Run,
+    /// A run with the energy ledger, and to check everything that is written.
+    Ledger,
+    /// The linearised model, its inputs free, with the energies of its parts.
+    Linearize,
+    /// What an observer runs: replays made, measured channels alone reported.
+    Observe,
+}
+
+impl Project {
+    /// Compiles; what is wrong stays in the project's diagnostics.
+    ///
+    /// # Errors
+    /// What is at fault.
+    pub fn compile(&mut self, aim: Aim) -> Result<Compiled, Fault> {
+        let settings = self
+            .settings
+            .iter()
+            .map(|setting| (setting.path.clone(), setting.value))
+            .collect();
+        let headers = records::headers(&self.records);
+        let request = Request {
+            sources: &self.sources,
+            file: &self.file,
+            model: &self.model,
+            experiment: self.experiment.as_deref(),
+            settings: &settings,
+            records: &headers,
+            free_inputs: aim == Aim::Linearize,
+            ledger: matches!(aim, Aim::Ledger | Aim::Linearize),
+            form: match aim {
+                Aim::Observe => Form::Observed,
+                Aim::Run | Aim::Ledger | Aim::Linearize => Form::Run,
+            },
+            backend: Backend::Native,
+        };
+        let compiled = hyde_compiler::compile(&request, &mut self.diagnostics);
+        let Some(compiled) = compiled else {
+            return Err(Fault::Model);
+        };
+        for setting in &self.settings {
+            let checked = match compiled.program.parameter(&setting.path) {
+                Some((parameter, _)) => settings::check(setting, parameter),
+                None => Err(unknown_parameter(&compiled, &setting.path)),
+            };
+            if let Err(reason) = checked {
+                let diagnostic = run_failure::cannot_set(&compiled.program, &setting.path, reason);
+                self.diagnostics.push(diagnostic);
+                return Err(Fault::Asked);
+            }
+        }
+        Ok(compiled)
+    }
+
+    /// Which effects fit where on the model, as long as that is in order; what is wrong stays in the project's diagnostics.
+    pub fn candidates(&mut self) -> Option<Vec<Candidate>> {
+        let request = Request {
+            sources: &self.sources,
+            file: &self.file,
+            model: &self.model,
+            experiment: None,
+            settings: &BTreeMap::new(),
+            records: &BTreeMap::new(),
+            free_inputs: true,
+            ledger: false,
+            form: Form::Run,
+            backend: Backend::Native,
+        };
+        hyde_compiler::candidates(&request, &mut self.diagnostics)
+    }
+
+    /// What is asked of the compiler for the project in a form, with these settings and the headers of its records.
+    pub fn request<'a>(
+        &'a self,
+        settings: &'a BTreeMap<String, f64>,
+        records: &'a BTreeMap<String, Header>,
+        form: Form,
+    ) -> Request<'a> {
+        Request {
+            sources: &self.sources,
+            file: &self.file,
+            model: &self.model,
+            experiment: self.experiment.as_deref(),
+            settings,
+            records,
+            free_inputs: false,
+            ledger: false,
+            form,
+            backend: Backend::Native,
+        }
+    }
+
+    /// The plain values set from outside, as the run takes them.
+    pub fn set(&self) -> Vec<(String, f64)> {
+        self.settings
+            .iter()
+            .map(|setting| (setting.path.clone(), setting.value))
+            .collect()
+    }
+
+    /// The project as a refusal, with what is wrong in it.
+    #[must_use]
+    pub fn refused(self, fault: Fault) -> Refused {
+        Refused::Model {
+            sources: Box::new(self.sources),
+            diagnostics: self.diagnostics,
+            fault,
+        }
+    }
+}
+
+/// The experiment meant: the one named, or the file's only one.
+fn choose<'p>(project: &'p Project, asked: &Asked) -> Result<Option<&'p Experiment>, String> {
+    let all: Vec<&Experiment> = project.file.experiments().collect();
+    if let Some(name) = &asked.experiment {
+        let found = all
+            .iter()
+            .copied()
+            .find(|experiment| experiment.name.text == *name);
+        return found.map(Some).ok_or_else(|| {
+            let known: Vec<String> = all
+                .iter()
+                .map(|experiment| format!("`{}`", experiment.name.text))
+                .collect();
+            match known.as_slice() {
+                [] => format!("the file has no experiment `{name}`; it has none"),
+                _ => format!(
+                    "the file has no experiment `{name}`; it has {}",
+                    known.join(", ")
+                ),
+            }
+        });
+    }
+    match all.as_slice() {
+        _ if asked.model.is_some() => Ok(None),
+        [] => Ok(None),
+        [only] => Ok(Some(only)),
+        several => {
+            let known: Vec<String> = several
+                .iter()
+                .map(|experiment| format!("`{}`", experiment.name.text))
+                .collect();
+            Err(format!(
+                "which experiment? the file has {}",
+                known.join(", ")
+            ))
+        }
+    }
+}
+
+fn unknown_parameter(compiled: &Compiled, path: &str) -> String {
+    let last = path.rsplit('.').next().unwrap_or(path);
+    let near: Vec<&str> = compiled
+        .program
+        .parameters
+        .iter()
+        .map(|parameter| parameter.name.as_str())
+        .filter(|name| name.rsplit('.').next() == Some(last))
+        .take(3)
+        .collect();
+    if near.is_empty() {
+        return format!("the model has no parameter `{path}`");
+    }
+    format!(
+        "the model has no parameter `{path}`; did you mean `{}`?",
+        near.join("`, `")
+    )
+}
