@@ -60,6 +60,10 @@ pub(crate) enum Command {
     Doc(DocArgs),
     /// Explain a diagnostic code
     Explain(ExplainArgs),
+    /// Print the completion script of a shell: `hyde completions bash > ~/.local/share/bash-completion/completions/hyde`
+    Completions(CompletionsArgs),
+    /// Write the manual pages of all commands: `hyde man --out ~/.local/share/man/man1`
+    Man(ManArgs),
 }
 
 /// A model in a file, with what is set from outside.
@@ -422,4 +426,17 @@ pub(crate) struct DocArgs {
 pub(crate) struct ExplainArgs {
     /// The code, `E0503`; all codes if left out
     pub(crate) code: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CompletionsArgs {
+    /// The shell
+    pub(crate) shell: clap_complete::Shell,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ManArgs {
+    /// Write the pages into this folder
+    #[arg(long, value_name = "DIR", default_value = "man1")]
+    pub(crate) out: PathBuf,
 }

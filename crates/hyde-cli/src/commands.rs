@@ -3,6 +3,7 @@
 pub(crate) mod bode;
 pub(crate) mod budget;
 pub(crate) mod check;
+pub(crate) mod completions;
 pub(crate) mod diagnose;
 pub(crate) mod doc;
 pub(crate) mod effects;
@@ -10,6 +11,7 @@ mod effects_check;
 pub(crate) mod emit;
 pub(crate) mod explain;
 pub(crate) mod fit;
+pub(crate) mod man;
 pub(crate) mod modes;
 pub(crate) mod params;
 pub(crate) mod plot;

@@ -79,6 +79,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Trend(args) => commands::trend::trend(args),
         Command::Doc(args) => commands::doc::doc(args),
         Command::Explain(args) => commands::explain::explain(args),
+        Command::Completions(args) => commands::completions::completions(args),
+        Command::Man(args) => commands::man::man(args),
     };
     output::ended(code).into()
 }
