@@ -235,7 +235,7 @@ fn timeless(text: &str) -> String {
         if line.ends_with(" a second") {
             return line.split("; ").next().unwrap().to_owned();
         }
-        let line = line.split("; the remainders are ").next().unwrap();
+        let line = line.split("; balance error ").next().unwrap();
         line.trim_end().to_owned()
     };
     let lines: Vec<String> = text.lines().map(masked).collect();

@@ -99,8 +99,8 @@ fn a_failed_assert_tells_the_value_that_broke_it() {
 fn without_rounding(shown: &str) -> String {
     let line = |line: &str| match (line.find("` is "), line.ends_with(" there")) {
         (Some(at), true) => format!("{}` is … there\n", &line[..at]),
-        _ => match line.split_once("down to a step of ") {
-            Some((start, _)) => format!("{start}down to a step of …\n"),
+        _ => match line.split_once("even with a step of ") {
+            Some((start, _)) => format!("{start}even with a step of …\n"),
             None => format!("{line}\n"),
         },
     };

@@ -153,7 +153,10 @@ fn assignments(
                 .collect();
             let mut diagnostic = Diagnostic::error(
                 Code::ClockedLoop,
-                format!("{} depend on each other at one tick", names.join(", ")),
+                format!(
+                    "{} depend on each other in a loop at one tick",
+                    names.join(", ")
+                ),
             );
             for &number in &component {
                 diagnostic = diagnostic.label(solved[number].origin.span, "in the circle");
@@ -186,11 +189,11 @@ fn report_unmatched(
             diagnostics.push(
                 Diagnostic::error(
                     Code::TooManyEquations,
-                    "this equation determines nothing new at the tick",
+                    "this equation is redundant at the tick",
                 )
                 .label(
                     item.equation.origin.span,
-                    "what it names is determined by others",
+                    "other equations determine all its variables",
                 )
                 .help("remove it"),
             );
@@ -212,7 +215,7 @@ fn report_unmatched(
             Diagnostic::error(
                 code,
                 format!(
-                    "nothing determines `{}` at the ticks of `{tick}`",
+                    "no equation determines `{}` at the ticks of `{tick}`",
                     variable.name
                 ),
             )
@@ -259,7 +262,7 @@ fn order_clocks(dae: &mut Dae, diagnostics: &mut Diagnostics) {
                 diagnostic =
                     diagnostic.label(dae.ticks[clocks[number]].origin.span, "in the circle");
             }
-            diagnostics.push(diagnostic.help("let one of them sample what the other holds: `sample(hold(…))` is the value before"));
+            diagnostics.push(diagnostic.help("let one of them sample the held output of the other: `sample(hold(…))` is the previous value"));
         }
         dae.tick_order
             .extend(component.into_iter().map(|number| clocks[number]));

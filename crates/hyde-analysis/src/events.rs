@@ -103,8 +103,8 @@ fn add(
                 let states = states_behind(dae, var);
                 let names = states.join("`, `");
                 let help = match states.as_slice() {
-                    [] => "no state has a part in it: an event cannot set it".to_owned(),
-                    [_] => format!("reinitialise `{names}`, which it is computed from"),
+                    [] => "it does not depend on any state: an event cannot set it".to_owned(),
+                    [_] => format!("reinitialise `{names}`, from which it is computed"),
                     _ => format!("reinitialise the states that it is computed from: `{names}`"),
                 };
                 diagnostics.push(

@@ -306,10 +306,10 @@ fn too_many(
         let name = &dae.unknown_name(condition.position);
         diagnostic = diagnostic.label(condition.origin.span, format!("`{name}` is fixed here"));
     }
-    diagnostics.push(
-        diagnostic
-            .help("take `fixed = true` from the states that an initial equation is to determine"),
-    );
+    diagnostics
+        .push(diagnostic.help(
+            "remove `fixed = true` from the states that an initial equation is to determine",
+        ));
 }
 
 /// Joined states with different fixed start values (I1).
@@ -352,7 +352,7 @@ fn refuse_conflicts(dae: &Dae, system: &mut System, diagnostics: &mut Diagnostic
                 Diagnostic::error(
                     Code::ConflictingStarts,
                     format!(
-                        "`{}` and `{}` are joined and start at different values",
+                        "`{}` and `{}` are rigidly joined and have different start values",
                         a.name, b.name
                     ),
                 )
@@ -362,7 +362,7 @@ fn refuse_conflicts(dae: &Dae, system: &mut System, diagnostics: &mut Diagnostic
                     "both are `{}`",
                     dae.variables[cell.0].element_name(cell.1)
                 ))
-                .help("give both the same start value, or take `fixed` from one"),
+                .help("give both the same start value, or remove `fixed` from one"),
             );
         }
     }

@@ -40,7 +40,7 @@ pub(crate) fn refuse(system: &System, unknowns: &[Segment], diagnostics: &mut Di
             )
             .label(
                 branch.origin.span,
-                "this equation fixes one by the others, in this mode alone",
+                "this equation determines one from the others, but only in this mode",
             );
             let diagnostic = match component {
                 Some((part, span)) => diagnostic.label(span, format!("in `{part}`")),
@@ -48,8 +48,8 @@ pub(crate) fn refuse(system: &System, unknowns: &[Segment], diagnostics: &mut Di
             };
             diagnostics.push(
                 diagnostic
-                    .note("states are chosen for all modes at once; a mode may fix a state to a number, no more")
-                    .help("put a stiff spring and a damper in the mode's place, or make the relative motion a state and fix that"),
+                    .note("Hyde chooses the states for all modes together; a mode may only fix a state to a number")
+                    .help("replace the mode by a stiff spring and a damper, or make the relative motion a state and fix that"),
             );
         }
     }

@@ -186,8 +186,8 @@ fn refuse_two_pins(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
                     diagnostics.push(
                         diagnostic
                             .label(branch.origin.span, "by this equation of its mode")
-                            .note("two set-valued frictions on one body, or on bodies that are rigidly joined, share their force in no definite way")
-                            .help("make one an effect of the other, or put a stiffness between them"),
+                            .note("two set-valued frictions on one body, or on rigidly joined bodies, have no unique distribution of the force")
+                            .help("make one an effect of the other, or put a spring between them"),
                     );
                 }
                 None => seen.push((cell, slot.automaton, branch.origin.clone())),
@@ -261,7 +261,7 @@ fn no_force(
     let origin = &system.flat.automata[automaton].modes[mode].origin;
     Diagnostic::error(
         Code::BadPin,
-        format!("the mode `{name}` fixes `{state}`, but nothing holds it"),
+        format!("the mode `{name}` fixes `{state}`, but no force holds it"),
     )
     .label(
         origin.span,

@@ -111,12 +111,12 @@ fn told(system: &System, slot: usize, mode: usize) -> Diagnostic {
     );
     let diagnostic = match system.component(&branch.origin) {
         Some((part, span)) => {
-            diagnostic.label(span, format!("`{part}` rubs on what moves as it is told"))
+            diagnostic.label(span, format!("`{part}` acts on a prescribed motion"))
         }
         None => diagnostic,
     };
     diagnostic
-        .label(automaton.origin.span, format!("`{mode}` is passed where the motion is at rest"))
-        .note("at rest its force is whatever the drive leaves open: that of the first mode that gives one is taken")
+        .label(automaton.origin.span, format!("`{mode}` is skipped while the motion is at rest"))
+        .note("at rest its force is not determined by the prescribed motion: Hyde uses the force of the first mode that gives one")
         .help("to see it stick, drive the body by a force, or put a `SpringDamper` between the drive and the friction")
 }

@@ -109,7 +109,7 @@ fn too_many(dae: &Dae, group: usize, diagnostics: &mut Diagnostics) {
             diagnostic = diagnostic.label(origin.span, "a constraint between them");
         }
         diagnostics.push(diagnostic.help(format!(
-            "of these variables {states} can be states; say `{word}` of {most} at most"
+            "at most {states} of these variables can be states; write `{word}` for at most {most}"
         )));
     }
 }
@@ -123,7 +123,7 @@ fn refused(dae: &Dae, system: &System, var: VarId, wanted: bool) -> Diagnostic {
     };
     let message = match wanted {
         true => format!("`{name}` cannot be a state"),
-        false => format!("`{name}` is a state: there is no other to take"),
+        false => format!("`{name}` must be a state: there is no alternative"),
     };
     let place = system.component(&variable.origin);
     let said = format!("`state = {}`", variable.state.word());
@@ -136,8 +136,8 @@ fn refused(dae: &Dae, system: &System, var: VarId, wanted: bool) -> Diagnostic {
     };
     if !wanted {
         return diagnostic
-            .note("no constraint gives it by other states, so it has to be integrated")
-            .help(format!("take `{}` from it", variable.state.word()));
+            .note("no constraint determines it from other states, so it has to be integrated")
+            .help(format!("remove `{}`", variable.state.word()));
     }
     let mut root = (var, 0);
     while let Some(Alias::Of { var, element, .. }) = system.aliases.get(&root) {
@@ -145,8 +145,8 @@ fn refused(dae: &Dae, system: &System, var: VarId, wanted: bool) -> Diagnostic {
     }
     if let Some(Alias::Value(_)) = system.aliases.get(&root) {
         return diagnostic
-            .note("what it equals is known and constant")
-            .help("take the choice from it, or free it");
+            .note("its value is known and constant")
+            .help("remove the choice, or free it");
     }
     let Some(dependent) = dae.dependent.iter().find(|d| (d.var, d.element) == root) else {
         return diagnostic
@@ -155,7 +155,7 @@ fn refused(dae: &Dae, system: &System, var: VarId, wanted: bool) -> Diagnostic {
     };
     diagnostic = diagnostic.label(
         dependent.origin.span,
-        "this equation gives it by others, which are states",
+        "this equation determines it from other states",
     );
     let others = given_by(system, root);
     let fixed = fixed_by_modes(system);
@@ -169,17 +169,18 @@ fn refused(dae: &Dae, system: &System, var: VarId, wanted: bool) -> Diagnostic {
     if !held.is_empty() {
         return diagnostic
             .note(format!(
-                "modes hold {} still, as a friction that sticks does: what they hold has to be a state",
+                "modes fix {}, as a sticking friction does: a variable that a mode fixes has to be a state",
                 crate::regularity::and(&held)
             ))
-            .help(format!("take `state = {word}` from it"));
+            .help(format!("remove `state = {word}`"));
     }
     diagnostic.help(match others.iter().any(also_chosen) {
-        true => {
-            "say `prefer` or `always` of it alone among those that the equation ties".to_owned()
-        }
+        true => "write `prefer` or `always` only for it among the variables of this constraint"
+            .to_owned(),
         false => {
-            format!("take `state = {word}` from it, or say `avoid` of one that the equation ties")
+            format!(
+                "remove `state = {word}`, or write `avoid` for another variable of this constraint"
+            )
         }
     })
 }

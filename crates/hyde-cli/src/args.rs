@@ -11,7 +11,7 @@ use hyde_study::Inputs;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Hyde: feed drives as equations.
+/// Hyde: an equation language and compiler for machine-tool feed drives.
 #[derive(Debug, Parser)]
 #[command(name = "hyde", version, about, max_term_width = 100, after_help = AFTER)]
 pub(crate) struct Arguments {
@@ -19,44 +19,44 @@ pub(crate) struct Arguments {
     pub(crate) command: Command,
 }
 
-const AFTER: &str = "Exit status: 0 done; 1 the model or its data are at fault; 2 the command line is; 3 the solver \
-                     could not go on; 4 an `expect` did not hold; 130 interrupted.";
+const AFTER: &str = "Exit status: 0 success; 1 error in the model or its data; 2 error in the command line; 3 the \
+                     solver failed; 4 an `expect` did not hold; 130 interrupted.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Check a file, or the files of a package: every experiment and sweep, or the last model, without running it
+    /// Check a file or a package without running it: every experiment and sweep, or the last model
     Check(CheckArgs),
-    /// Run an experiment, compare it with its records, and test its expectations
+    /// Run an experiment, compare it with its records, and check its expectations
     Run(RunArgs),
-    /// Tell what each imperfection of a model contributes to the measures of an experiment
+    /// List the contribution of each imperfection of a model to the measures of an experiment
     Budget(BudgetArgs),
-    /// Run the variants of a sweep, on all cores or on a cluster; run again to go on where it ended
+    /// Run the cases of a sweep on all cores or on a cluster; run the command again to resume
     Sweep(SweepArgs),
-    /// Print what a stage of the compiler makes of a model
+    /// Print a model after one stage of the compiler
     Emit(EmitArgs),
     /// Plot columns of results or of a record
     Plot(PlotArgs),
-    /// Make the page of a batch: what its inputs do to its measures, what failed, and which cases to look at
+    /// Write the HTML page of a batch: influence of inputs on measures, failed cases, notable cases
     Report(ReportArgs),
-    /// Frequency response: linearised, and as measured on the full model by the experiment's sweep or by stepped sines
+    /// Compute frequency responses: linearised, and measured on the full model by a sweep or by stepped sines
     Bode(BodeArgs),
-    /// Natural frequencies and dampings of the linearised model, and parameters from measured ones
+    /// List natural frequencies and damping ratios of the linearised model, or find parameters from measured ones
     Modes(ModesArgs),
     /// List the parameters with their values, units, priors and sources
     Params(ParamsArgs),
-    /// List the effects of the library and of the file, and where on the model each fits
+    /// List the effects of the library and of the file, and the sites of the model where each fits
     Effects(EffectsArgs),
-    /// Calibrate a model on records: parameters with their intervals, errors before and after
+    /// Calibrate a model on records: parameters with confidence intervals, errors before and after
     Fit(FitArgs),
-    /// Find the effect that a model lacks: which, where, how large, how sure
+    /// Find the effects that are missing in a model: their sites, sizes and confidence intervals
     Diagnose(DiagnoseArgs),
-    /// Plant every known effect in simulated records of this axis, and count what its diagnosis makes of them
+    /// Measure how reliable a diagnosis is: plant known effects in simulated records and count the correct verdicts
     Selftest(SelftestArgs),
-    /// How sizes and parameters went from one diagnosis to the next
+    /// Track effect sizes and parameters across diagnoses
     Trend(TrendArgs),
-    /// Run every experiment of a file or a package, and test what it expects and that its effects vanish
+    /// Run every experiment of a file or a package; check its expectations and that its effects vanish at size 0
     Test(TestArgs),
-    /// Write the pages of a package, of a file, or of the library
+    /// Write HTML documentation of a package, of a file, or of the library
     Doc(DocArgs),
     /// Explain a diagnostic code
     Explain(ExplainArgs),
@@ -69,20 +69,20 @@ pub(crate) enum Command {
 /// A model in a file, with what is set from outside.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct ModelArgs {
-    /// The model's file
+    /// File of the model
     pub(crate) file: PathBuf,
-    /// The experiment; the file's only one if left out
+    /// Name of the experiment; optional if the file has only one
     pub(crate) experiment: Option<String>,
-    /// The model; that of the experiment, or the last of the file, if left out
+    /// Name of the model [default: the model of the experiment, or the last of the file]
     #[arg(long, value_name = "NAME")]
     pub(crate) model: Option<String>,
     /// Set a parameter: `--set saddle.M='320 [kg]'` (repeatable)
     #[arg(long = "set", value_name = "PATH=VALUE [UNIT]")]
     pub(crate) settings: Vec<String>,
-    /// Give a record of the experiment its file: `--record file=strokes.csv` (repeatable)
+    /// Set the file of a record of the experiment: `--record file=strokes.csv` (repeatable)
     #[arg(long = "record", value_name = "NAME=PATH")]
     pub(crate) records: Vec<String>,
-    /// Look for the experiment's records below this folder instead of beside the model
+    /// Folder of the records [default: the folder of the model]
     #[arg(long, value_name = "DIR")]
     pub(crate) data: Option<PathBuf>,
     /// Print one JSON object on standard output and nothing else
@@ -127,28 +127,28 @@ pub(crate) struct CheckArgs {
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// Stop at this time in s instead of the experiment's
+    /// Stop time in s, instead of that of the experiment
     #[arg(long, value_name = "SECONDS")]
     pub(crate) stop: Option<f64>,
-    /// Relative tolerance instead of the experiment's
+    /// Relative tolerance, instead of that of the experiment
     #[arg(long)]
     pub(crate) rtol: Option<f64>,
-    /// Absolute tolerance in SI instead of the experiment's
+    /// Absolute tolerance in SI units, instead of that of the experiment
     #[arg(long)]
     pub(crate) atol: Option<f64>,
-    /// Leave results, events.csv, summary.json and report.html in this folder
+    /// Write results, events.csv, summary.json and report.html to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Form of the results
+    /// File format of the results
     #[arg(long, value_enum, default_value_t = Format::Csv)]
     pub(crate) format: Format,
-    /// Tell where every joule came from and where it went
+    /// Print the energy balance of every component
     #[arg(long)]
     pub(crate) ledger: bool,
-    /// Tell the force, torque or current of every connection
+    /// Print the force, torque or current of every connection
     #[arg(long)]
     pub(crate) forces: bool,
-    /// Leave the derivatives of every column by these parameters beside it
+    /// Add the derivatives of every column with respect to these parameters to the results
     #[arg(long, value_name = "PARAMETERS", value_delimiter = ',')]
     pub(crate) gradient: Vec<String>,
 }
@@ -174,19 +174,19 @@ impl RunArgs {
 pub(crate) struct BudgetArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// Leave budget.csv in this folder
+    /// Write budget.csv to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }
 
-/// Form of results.
+/// File format of results.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
-    /// `results.csv`, a header of `name [unit]` columns
+    /// `results.csv`, with a header of `name [unit]` columns
     Csv,
-    /// `results.parquet`, the same numbers with the units in the metadata
+    /// `results.parquet`, the same numbers, with units in the metadata
     Parquet,
-    /// `results.json`, one list a column
+    /// `results.json`, one list per column
     Json,
 }
 
@@ -194,10 +194,10 @@ pub(crate) enum Format {
 pub(crate) struct EmitArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// The stage
+    /// Stage of the compiler
     #[arg(long, value_enum)]
     pub(crate) stage: StageName,
-    /// Show only the lines in which it differs from that of another model of the file
+    /// Show only the differences from another model of the file
     #[arg(long, value_name = "MODEL")]
     pub(crate) against: Option<String>,
 }
@@ -205,84 +205,84 @@ pub(crate) struct EmitArgs {
 /// A stage of the compiler.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum StageName {
-    /// The tree, as source text
+    /// The syntax tree, printed as source text
     Ast,
-    /// Every variable and equation of every instance
+    /// All variables and equations of all instances
     Flat,
-    /// What became of every variable, and the order of solution
+    /// The role of each variable, and the order of solution
     Structure,
-    /// The system in full
+    /// The complete DAE
     Dae,
-    /// Cranelift IR, the same on every machine
+    /// Cranelift IR, identical on every machine
     Clif,
-    /// Assembly of this machine
+    /// Assembly code for this machine
     Asm,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct ReportArgs {
-    /// The folder that `sweep --out` left
+    /// Folder written by `sweep --out`
     pub(crate) folder: PathBuf,
-    /// The page's file; `report.html` in the folder if left out
+    /// File of the page [default: `report.html` in the folder]
     #[arg(long, value_name = "PATH")]
     pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct PlotArgs {
-    /// A CSV, Parquet or JSON file of results, a record, a response that `bode --out` left, or a folder of `run
-    /// --out` or `sweep --out`
+    /// Results (CSV, Parquet or JSON), a record, a response from `bode --out`, or a folder from `run --out` or
+    /// `sweep --out`
     pub(crate) results: PathBuf,
-    /// The columns of each panel, separated by commas: `motor.w,screw.w[0]`; a choice if left out
+    /// Columns of each panel, separated by commas: `motor.w,screw.w[0]` [default: a selection]
     pub(crate) panels: Vec<String>,
-    /// The columns of each panel are pairs, the first over the second: `table.y,table.x`
+    /// Plot pairs of columns, the first of a pair over the second: `table.y,table.x`
     #[arg(long)]
     pub(crate) xy: bool,
-    /// With `--xy`: both axes in one scale
+    /// With `--xy`: use the same scale on both axes
     #[arg(long, requires = "xy")]
     pub(crate) equal: bool,
-    /// Other results in the same panels, dashed (repeatable)
+    /// Plot other results in the same panels, dashed (repeatable)
     #[arg(long, value_name = "RESULTS")]
     pub(crate) with: Vec<PathBuf>,
-    /// Of a batch these cases, each a line; if left out all as quantiles over time, up to 8 as lines
+    /// For a batch: plot these cases as lines [default: quantiles over time; lines for up to 8 cases]
     #[arg(long, value_name = "N,…", value_delimiter = ',')]
     pub(crate) cases: Vec<usize>,
-    /// Whose modes stand below, separated by commas: `guide,nut.contact`; those that change most if left out
+    /// Show the modes of these components below the plot: `guide,nut.contact` [default: those that change most]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     pub(crate) modes: Vec<String>,
-    /// The figure's file, `.svg` or `.png`
+    /// File of the figure, `.svg` or `.png`
     #[arg(long, value_name = "PATH", default_value = "plot.svg")]
     pub(crate) out: PathBuf,
     /// Title of the figure
     #[arg(long)]
     pub(crate) title: Option<String>,
-    /// Width of the figure in mm; 169, or 122 with `--xy`, if left out
+    /// Width of the figure in mm [default: 169, or 122 with `--xy`]
     #[arg(long, value_name = "MM")]
     pub(crate) width: Option<f64>,
-    /// Height of each panel between its axes in mm
+    /// Height of each panel in mm, between its axes
     #[arg(long, value_name = "MM")]
     pub(crate) height: Option<f64>,
-    /// Pixels to the inch of a PNG
+    /// Resolution of a PNG in pixels per inch
     #[arg(long, value_name = "N", default_value_t = 300.0)]
     pub(crate) dpi: f64,
-    /// Only from this time in s
+    /// Start of the plot in s
     #[arg(long, value_name = "SECONDS")]
     pub(crate) from: Option<f64>,
-    /// Only to this time in s
+    /// End of the plot in s
     #[arg(long, value_name = "SECONDS")]
     pub(crate) to: Option<f64>,
-    /// The records have no time column: time between their rows in s
+    /// Sampling period in s of records without a time column
     #[arg(long, value_name = "SECONDS")]
     pub(crate) every: Option<f64>,
 }
 
-/// About what a model is linearised.
+/// The operating point of a linearisation.
 #[derive(Debug, Args)]
 pub(crate) struct AboutArgs {
-    /// Linearise where the run is at a time, `--at '0.3 [s]'`, at `start`, or at the `steady` state
+    /// Operating point: a time of the run, `--at '0.3 [s]'`, or `start`, or `steady`
     #[arg(long, value_name = "TIME")]
     pub(crate) at: Option<String>,
-    /// Take an automaton in a mode: `--in guide=slip` (repeatable)
+    /// Linearise with a component in this mode: `--in guide=slip` (repeatable)
     #[arg(long = "in", value_name = "NAME=MODE")]
     pub(crate) in_modes: Vec<String>,
 }
@@ -293,22 +293,22 @@ pub(crate) struct BodeArgs {
     pub(crate) model: ModelArgs,
     #[command(flatten)]
     pub(crate) about: AboutArgs,
-    /// Leave bode.svg, bode.png, bode.csv and the page bode.html in this folder
+    /// Write bode.svg, bode.png, bode.csv and the page bode.html to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// The linearised response only: do not run the experiment
+    /// Compute only the linearised response; do not run the experiment
     #[arg(long)]
     pub(crate) linear: bool,
-    /// Draw the responses of another experiment of the file in the same figures, and tell where they part (repeatable)
+    /// Plot the responses of another experiment of the file in the same figures, and list the differences (repeatable)
     #[arg(long, value_name = "EXPERIMENT")]
     pub(crate) with: Vec<String>,
-    /// The stability margins that the experiment asks for alone, without its responses and its run
+    /// Compute only the stability margins of the experiment, without its responses and its run
     #[arg(long)]
     pub(crate) margins: bool,
-    /// The margins of the loop cut at a signal: `--cut cnc.control.i_ref` (repeatable)
+    /// Compute the margins of the loop opened at this signal: `--cut cnc.control.i_ref` (repeatable)
     #[arg(long, value_name = "SIGNAL")]
     pub(crate) cut: Vec<String>,
-    /// Title of the figures instead of what the experiment says of itself
+    /// Title of the figures [default: the description of the experiment]
     #[arg(long)]
     pub(crate) title: Option<String>,
     /// Number of frequencies of the linearised response
@@ -322,28 +322,28 @@ pub(crate) struct ModesArgs {
     pub(crate) model: ModelArgs,
     #[command(flatten)]
     pub(crate) about: AboutArgs,
-    /// The plant alone: what clocks hold stays as it is
+    /// Analyse only the plant; outputs of clocked controllers stay constant
     #[arg(long)]
     pub(crate) open: bool,
-    /// List the poles that do not oscillate as well
+    /// Also list real poles, which do not oscillate
     #[arg(long)]
     pub(crate) real: bool,
-    /// Only below this frequency in Hz
+    /// List only modes below this frequency in Hz
     #[arg(long, value_name = "HZ")]
     pub(crate) below: Option<f64>,
-    /// Put those of another experiment of the file beside them (repeatable)
+    /// Also list the modes of another experiment of the file (repeatable)
     #[arg(long, value_name = "EXPERIMENT")]
     pub(crate) with: Vec<String>,
-    /// Over a parameter: `--over screw.xn='0.1 .. 0.9 [m]'`
+    /// List the modes over a range of a parameter: `--over screw.xn='0.1 .. 0.9 [m]'`
     #[arg(long, value_name = "PATH=FROM..TO [UNIT]")]
     pub(crate) over: Option<String>,
-    /// Number of its values
+    /// Number of values in the range of `--over`
     #[arg(long, default_value_t = 17)]
     pub(crate) points: usize,
-    /// Leave the page modes.html in this folder; with `--over` modes.svg, modes.png and modes.csv as well
+    /// Write the page modes.html to this folder; with `--over` also modes.svg, modes.png and modes.csv
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Find parameters from measured natural frequencies: `--measured 34.7,87.8:0.02`, damping ratios behind a colon
+    /// Find parameters from measured natural frequencies and, after a colon, damping ratios: `--measured 34.7,87.8:0.02`
     #[arg(
         long,
         value_name = "HZ[:RATIO],…",
@@ -359,7 +359,7 @@ pub(crate) struct ModesArgs {
         requires = "measured"
     )]
     pub(crate) vary: Vec<String>,
-    /// The number of the mode of each frequency, from 1 as `hyde modes` lists them; by order and nearness if left out
+    /// Mode number of each frequency, counted from 1 as in the list of `hyde modes` [default: the nearest, in order]
     #[arg(
         long,
         value_name = "NUMBER,…",
@@ -389,7 +389,7 @@ pub(crate) struct ModesArgs {
 pub(crate) struct ParamsArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// Only those without a source
+    /// List only parameters without a source
     #[arg(long)]
     pub(crate) unsourced: bool,
 }
@@ -398,7 +398,7 @@ pub(crate) struct ParamsArgs {
 pub(crate) struct EffectsArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// Run the limit test of every size in the file's experiments: an effect has to vanish with its size
+    /// Test in the experiments of the file that every effect vanishes as its size goes to 0
     #[arg(long)]
     pub(crate) check: bool,
 }
@@ -414,17 +414,17 @@ pub(crate) struct DocArgs {
     /// A file, or a folder with a manifest
     #[arg(required_unless_present = "library")]
     pub(crate) path: Option<PathBuf>,
-    /// The packages of the library instead
+    /// Document the packages of the library instead
     #[arg(long, conflicts_with = "path")]
     pub(crate) library: bool,
-    /// Leave the pages in this folder
+    /// Write the pages to this folder
     #[arg(long, value_name = "DIR", default_value = "doc")]
     pub(crate) out: PathBuf,
 }
 
 #[derive(Debug, Args)]
 pub(crate) struct ExplainArgs {
-    /// The code, `E0503`; all codes if left out
+    /// The code, such as `E0503` [default: list all codes]
     pub(crate) code: Option<String>,
 }
 

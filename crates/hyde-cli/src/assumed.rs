@@ -120,7 +120,7 @@ pub(crate) fn why_not(error: &LinearizeError) -> String {
             "the algebraic variables are not determined in these modes".to_owned()
         }
         LinearizeError::Failed(failure) => {
-            format!("there is no operating point: {:?}", failure.kind)
+            format!("no operating point was found: {:?}", failure.kind)
         }
     }
 }
@@ -254,7 +254,7 @@ fn place_of(linear: &Linear, time: PointTime) -> String {
         let shortest = delayed.times.iter().copied().fold(f64::INFINITY, f64::min);
         let _ = write!(
             text,
-            "; delays make modes without end: above about {} Hz some are left out",
+            "; because of its delays it has infinitely many modes: above about {} Hz some are omitted",
             significant(4.0 / shortest, 2)
         );
     }
@@ -268,7 +268,7 @@ fn told(program: &Program, linear: &Linear, assumption: &Assumption) -> (String,
             let automaton = &program.automata[mode.automaton];
             let (run, taken) = (&automaton.modes[mode.of_run], &automaton.modes[mode.taken]);
             let told = match mode.asked {
-                true => format!("{taken}, as asked for; in the run {run}"),
+                true => format!("{taken}, as requested; in the run {run}"),
                 false => format!(
                     "{taken}, in the run {run} (`--in {}={run}`)",
                     automaton.name
@@ -278,7 +278,7 @@ fn told(program: &Program, linear: &Linear, assumption: &Assumption) -> (String,
         }
         Assumption::Switch { condition, taken } => (
             format!("`{condition}`"),
-            format!("at its switch, taken as {taken}"),
+            format!("at its switching point, taken as {taken}"),
         ),
         Assumption::Event {
             condition,
@@ -290,7 +290,7 @@ fn told(program: &Program, linear: &Linear, assumption: &Assumption) -> (String,
                     let mode = linear.point.z[automaton.place] as usize;
                     format!("{}, at its exit", automaton.modes[mode])
                 }
-                None => "at its switch, taken as not yet true".to_owned(),
+                None => "at its switching point, taken as not yet true".to_owned(),
             };
             let name = automaton.map(|automaton| program.automata[automaton].name.clone());
             match name {
@@ -300,11 +300,11 @@ fn told(program: &Program, linear: &Linear, assumption: &Assumption) -> (String,
         }
         Assumption::Slide(condition) => (
             format!("`{condition}`"),
-            "the run slides there, one side is taken".to_owned(),
+            "the run slides along it; one side is taken".to_owned(),
         ),
         Assumption::Kink(name) => (
             name.clone(),
-            "an expression without events is at its kink, one side is taken".to_owned(),
+            "an expression without events is at its kink; one side is taken".to_owned(),
         ),
     }
 }

@@ -66,12 +66,12 @@ pub(crate) fn of_record(program: &Program, name: &str, table: &Table) -> Vec<Str
     let without: BTreeSet<&str> = used.map(|(_, column)| column).filter(bare).collect();
     if !without.is_empty() {
         let list: Vec<String> = without.iter().map(|column| format!("`{column}`")).collect();
-        let (has, is) = match list.len() {
-            1 => ("has", "it is"),
-            _ => ("have", "they are"),
+        let (has, is, them) = match list.len() {
+            1 => ("has", "it is", "it"),
+            _ => ("have", "they are", "them"),
         };
         all.push(format!(
-            "{} {has} no unit: {is} taken in SI units of what the experiment compares or drives with",
+            "{} {has} no unit: {is} read in the SI unit of the variable that the experiment compares or drives with {them}",
             list.join(", ")
         ));
     }
@@ -106,19 +106,19 @@ fn of_start(
         let slack = table.mean_step().unwrap_or(0.0);
         if driving.contains(name) && begin > start_s + slack {
             all.push(format!(
-                "record `{name}` begins at {}, later than the run: its first row is held until then",
+                "record `{name}` begins at {}, later than the run: its first sample is held until then",
                 instant(begin)
             ));
         }
         if driving.contains(name) && end < stop_s - slack {
             all.push(format!(
-                "record `{name}` ends at {}, before the run: its last row is held from then on",
+                "record `{name}` ends at {}, before the run: its last sample is held from then on",
                 instant(end)
             ));
         }
         if measured.contains(name) && begin < start_s - slack {
             all.push(format!(
-                "record `{name}` begins at {}, before the run: the rows before the run are not compared",
+                "record `{name}` begins at {}, before the run: its samples before the run are not compared",
                 instant(begin)
             ));
         }

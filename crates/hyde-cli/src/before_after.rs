@@ -212,13 +212,15 @@ fn told(calibration: &Calibration, recording: &Recording) -> Vec<String> {
             count => format!(" and {count} other states"),
         };
         found.push(format!(
-            "its first rows are not where the model starts: the observer begins with {name} = {value} (SI){others} as they show"
+            "its first samples differ from the initial state of the model: the observer starts with {name} = {value} (SI){others} taken from \
+             them"
         ));
     }
     if let Some(own) = &recording.resampled {
         let time = |seconds: f64| engineering(seconds, Dimension::TIME);
         found.push(format!(
-            "the rows of `{}` are {} to {} apart, uneven from {} on: the observer reads measured columns every {}, on straight lines between rows",
+            "the samples of `{}` are {} to {} apart, unevenly spaced from {} on: the observer resamples the measured columns every {} by linear \
+             interpolation",
             own.record,
             time(own.spacing_s.0),
             time(own.spacing_s.1),
@@ -240,12 +242,12 @@ fn inputs(calibration: &Calibration) -> Vec<String> {
         let known = significant(*deviation, 3);
         match column.ticks_s {
             Some(period_s) => Some(format!(
-                "{name} is of a clock that ticks every {}, several times between two rows, which the record does not have: it is held \
-                 for a row and taken as known to {known} (SI), as the innovations show it; to know it better, drive the model by a \
-                 measured column, or record faster",
+                "{name} comes from a clock that ticks every {}, several times between two samples, and the record does not contain these \
+                 values: each sample is held until the next, with an uncertainty of {known} (SI) estimated from the innovations; to reduce it, \
+                 drive the model with a measured column, or record faster",
                 engineering(period_s, Dimension::TIME)
             )),
-            None if column.noise > 0.0 => Some(format!("{name} drives the model and is taken as known to {known} (SI)")),
+            None if column.noise > 0.0 => Some(format!("{name} drives the model, with an uncertainty of {known} (SI)")),
             None => None,
         }
     });
@@ -261,7 +263,12 @@ fn linearised(observer: &Observer) -> Option<String> {
         )
     });
     let each: Vec<String> = each.collect();
-    (!each.is_empty()).then(|| format!("the gain of the observer is that of {}", each.join(", ")))
+    (!each.is_empty()).then(|| {
+        format!(
+            "the gain of the observer is computed for {}",
+            each.join(", ")
+        )
+    })
 }
 
 /// The errors as JSON; numbers are SI.
@@ -326,7 +333,7 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
     let mut out = String::new();
     let _ = writeln!(
         out,
-        "  {:<32} {:>9} {:>9}   about 1 is noise",
+        "  {:<32} {:>9} {:>9}   1 is noise",
         "mean square of innovations", "before", "after"
     );
     for record in records {
@@ -356,7 +363,7 @@ pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> Strin
         |out: &mut String, title: &str, of: &dyn Fn(&RecordErrors, usize) -> Option<Change>| {
             let _ = writeln!(
                 out,
-                "\n  {:<32} {:>11} {:>11}   times the floor",
+                "\n  {:<32} {:>11} {:>11}   rel. to noise floor",
                 format!("{title}{where_}"),
                 "before",
                 "after"

@@ -177,8 +177,8 @@ impl Tried<'_> {
     /// Why it was not taken in.
     pub(crate) fn reason(&self) -> &'static str {
         match self.trial {
-            None => "score too small",
-            Some(trial) => trial.rejected.map_or("gains less", reason),
+            None => "predicted too small",
+            Some(trial) => trial.rejected.map_or("smaller improvement", reason),
         }
     }
 }
@@ -190,13 +190,13 @@ pub(crate) fn named(hypothesis: &Hypothesis) -> String {
 
 fn reason(rejection: Rejection) -> &'static str {
     match rejection {
-        Rejection::Score => "score too small",
-        Rejection::Gain => "gain too small",
-        Rejection::Folds => "not on unseen rows",
-        Rejection::Bound => "on a bound",
-        Rejection::Behind => "behind the best",
-        Rejection::TooGood => "more than it can",
-        Rejection::Twice => "there already",
+        Rejection::Score => "predicted too small",
+        Rejection::Gain => "below the threshold",
+        Rejection::Folds => "not cross-validated",
+        Rejection::Bound => "at a bound",
+        Rejection::Behind => "worse than the best",
+        Rejection::TooGood => "implausibly large",
+        Rejection::Twice => "already in the model",
     }
 }
 
@@ -205,11 +205,11 @@ pub(crate) fn suspicion(parameter: &FittedParameter) -> &'static str {
     if parameter.at_bound {
         "AT ITS BOUND"
     } else if parameter.left_range {
-        "LEFT ITS RANGE"
+        "OUT OF RANGE"
     } else if parameter.silent {
         "NO EFFECT"
     } else if parameter.untold {
-        "not told"
+        "prior only"
     } else {
         ""
     }

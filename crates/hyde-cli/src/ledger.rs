@@ -67,13 +67,13 @@ pub(crate) fn text(ledger: &EnergyLedger) -> String {
     if total.at_events.abs() > NOTHING * ledger.passed {
         let _ = writeln!(
             out,
-            "  of what is stored {} J came at events",
+            "  change of stored energy at events: {} J",
             significant(total.at_events, 4)
         );
     }
     let _ = writeln!(
         out,
-        "  {} J passed; the remainders are {} of that",
+        "  energy transferred: {} J; balance error relative to it: {}",
         significant(ledger.passed, 4),
         significant(ledger.closure(), 2)
     );

@@ -32,7 +32,7 @@ pub(crate) fn check_folder(folder: &Path) -> Result<(), String> {
     };
     match place {
         Some(place) if !place.name.split('.').all(is_word) => Err(format!(
-            "`{}` is below a folder of the package `{}`, where the place of a model is its name, and no package can be called so: use a folder with a name such as `found`",
+            "`{}` is below a folder of the package `{}`, where the path of a file is its package name, and this path is not a valid name: use a folder with a name such as `found`",
             folder.display(),
             place.of
         )),

@@ -82,7 +82,7 @@ pub(crate) fn tested(args: &ModelArgs, size: &Size) -> Result<Tested, Exit> {
     };
     if size.value == 0.0 {
         return Ok(skipped(
-            "it is 0 and has no range: write `in 0 .. …` behind it",
+            "it is 0 and has no range: write `in 0 .. …` after it",
         ));
     }
     let plain = at(0.0)?;
@@ -102,7 +102,7 @@ pub(crate) fn tested(args: &ModelArgs, size: &Size) -> Result<Tested, Exit> {
             .map(|answer| answer.left())
             .max_by(f64::total_cmp);
         let Some(worst) = worst else {
-            return Ok(failed.unwrap_or_else(|| skipped("not seen in any state")));
+            return Ok(failed.unwrap_or_else(|| skipped("it changes no state")));
         };
         let test = Tested {
             name: name.clone(),
@@ -111,7 +111,7 @@ pub(crate) fn tested(args: &ModelArgs, size: &Size) -> Result<Tested, Exit> {
                 false => Verdict::Failed,
             },
             found: format!(
-                "{} of it leaves {} of its effect, at most {} may",
+                "at {} of its size, {} of its effect remains (limit {})",
                 percent(LIMIT_PART),
                 percent(worst),
                 percent(LIMIT_LEFT)

@@ -172,8 +172,8 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
     }
     if let Some(incomplete) = &run.incomplete {
         let text = format!(
-            "This run did not reach its end at {} s: {}. Results, events and figures end at {} s. There are no measures, \
-             expectations and errors.",
+            "This run did not reach its end at {} s: {}. Results, events and figures end at {} s. Measures, \
+             expectations and errors are not available.",
             significant(run.stop_s, 7),
             incomplete.reason,
             significant(incomplete.reached_s, 7)

@@ -19,7 +19,7 @@ pub(crate) fn lines(program: &Program, yielded: &[Yielded]) -> Vec<String> {
             Firmness::Free | Firmness::Open => "free".to_owned(),
             Firmness::Guess => format!("guess {start}"),
             Firmness::Default | Firmness::Given => {
-                format!("the fixed start {start} of its component yields")
+                format!("instead of the fixed start {start} of its component")
             }
         };
         format!("found at the start: {name} = {value} ({was})")

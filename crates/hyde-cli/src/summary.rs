@@ -47,7 +47,7 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
     let filled: Vec<&str> = filled.map(String::as_str).collect();
     if !filled.is_empty() {
         let list = filled.join(", ");
-        let _ = writeln!(out, "  nothing but `start` says where {list} begins");
+        let _ = writeln!(out, "  initial value from `start` alone: {list}");
     }
     for line in start::lines(program, &run.results.yielded) {
         let _ = writeln!(out, "  {line}");

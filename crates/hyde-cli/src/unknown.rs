@@ -78,7 +78,7 @@ pub(crate) fn hindrance(request: &Request<'_>, candidates: &[Candidate], number:
         .iter()
         .find(|own| own.severity == Severity::Error);
     error.map_or_else(
-        || "its runs cannot be made".to_owned(),
+        || "the model with it cannot be run".to_owned(),
         |error| error.message.clone(),
     )
 }
@@ -111,7 +111,7 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
             let seen = &own.law.seen;
             let _ = writeln!(
                 out,
-                "\n  seen at {}: speeds to {}, places {} to {}, times {} to {} (SI)",
+                "\n  operating range at {}: speed to {}, position {} to {}, time {} to {} (SI)",
                 own.law.site.path,
                 significant(seen.speed, 3),
                 significant(seen.place.0, 3),
@@ -121,7 +121,7 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
             );
             let _ = writeln!(
                 out,
-                "  gain {}, {} on unseen rows; {} of what the best row of the map gains",
+                "  improvement {}, {} in cross-validation; {} of that of the best line below",
                 significant(own.gain, 3),
                 significant(own.fold_gain, 3),
                 significant(own.share, 3)
@@ -129,19 +129,19 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
             for (term, share) in &own.equivalents {
                 let _ = writeln!(
                     out,
-                    "  nearly as good: {} ({} of the first term's gain)",
+                    "  nearly as good: {} ({} of the improvement of the first term)",
                     named(term, own.law.site.kind),
                     significant(*share, 3)
                 );
             }
         }
         None => {
-            let _ = writeln!(out, "\n  {}; the map is the answer", no_law(found));
+            let _ = writeln!(out, "\n  {}; see the table below", no_law(found));
         }
     }
     let _ = writeln!(
         out,
-        "\n  map of {} at {}: what any function of it gains, and by chance",
+        "\n  {} at {} as a function of: improvement, and that by chance",
         unknown.map.site.kind.words().what,
         unknown.map.site.path
     );
@@ -166,14 +166,14 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
 /// The row of a map for waves too short for its panels.
 pub(crate) fn wave(map: &Map) -> String {
     let [place, speed] = map.site.kind.variables();
-    format!("wave over {place}, or {speed} times one")
+    format!("wave over {place}, or {speed} times a wave")
 }
 
 /// Why there is no law.
 fn no_law(found: &Diagnosis) -> &'static str {
     match found.frozen.as_slice() {
-        [] => "no formula is worth its constants",
-        _ => "no formula is sought where a reading was held",
+        [] => "no formula improves the fit enough to justify its constants",
+        _ => "no formula is searched for because a sensor reading was frozen",
     }
 }
 
@@ -184,7 +184,7 @@ pub(crate) fn most_like(unknown: &Unknown) -> Option<String> {
     let best = told.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
     let (what, path) = (map.site.kind.words().what, &map.site.path);
     let variable = best.variable.name(map.site.kind);
-    Some(format!("{what} at {path} that goes with {variable}"))
+    Some(format!("{what} at {path} that depends on {variable}"))
 }
 
 /// The same as JSON; numbers are SI.

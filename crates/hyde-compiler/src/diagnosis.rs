@@ -54,8 +54,8 @@ impl DiagnosisPlan {
         for item in &study.items {
             let StudyItem::Setting(setting, values) = item else {
                 diagnostics.push(
-                    wrong(study.name.span, "a diagnosis varies nothing itself")
-                        .help("write `vary` in the calibration that it is of"),
+                    wrong(study.name.span, "a diagnosis has no `vary`")
+                        .help("write `vary` in its calibration"),
                 );
                 continue;
             };
@@ -69,7 +69,7 @@ impl DiagnosisPlan {
                 "max_effects" => match whole(values) {
                     Some(count @ 1..=20) => plan.max_effects = usize::try_from(count).unwrap_or(1),
                     Some(_) | None => diagnostics.push(
-                        wrong(setting.span, "how many effects may be claimed?")
+                        wrong(setting.span, "`max_effects` needs a number")
                             .help("write a number from 1 to 20: `max_effects 3;`"),
                     ),
                 },
@@ -86,11 +86,9 @@ impl DiagnosisPlan {
             }
         }
         if plan.candidates.is_empty() && diagnostics.error_count() == before {
-            diagnostics.push(
-                wrong(plan.span, "nothing says which effects may be tried").help(
-                    "write `candidates Effects.*;`, and the packages of your own effects behind it",
-                ),
-            );
+            diagnostics.push(wrong(plan.span, "the diagnosis has no `candidates`").help(
+                "write `candidates Effects.*;`, followed by the packages of your own effects",
+            ));
         }
         (diagnostics.error_count() == before).then_some(plan)
     }
@@ -131,7 +129,7 @@ fn check_calibration(file: &File, study: &Study, diagnostics: &mut Diagnostics) 
             Code::BadDiagnosis,
             format!("the file has no calibration `{wanted}`"),
         )
-        .label(study.of.span, "a diagnosis begins with a calibrated model")
+        .label(study.of.span, "a diagnosis needs a calibrated model")
         .help(help),
     );
 }
@@ -175,7 +173,7 @@ fn pattern(
             | ExprKind::Comprehension(_)
             | ExprKind::Slice(..) => {
                 diagnostics.push(
-                    wrong(setting.span, "candidates are effects")
+                    wrong(setting.span, "candidates must be effects")
                         .label(expr.span, "names none")
                         .help("write `Effects.*` or the name of an effect"),
                 );

@@ -134,7 +134,7 @@ fn find(
                     format!("the package `{name}` is in the library and in `{place}`"),
                 )
                 .label(span, "which of them?")
-                .help("call yours otherwise, and its file as well"),
+                .help("rename yours, and its file as well"),
             );
             None
         }
@@ -162,12 +162,12 @@ pub fn check_name(
             Code::PackagePath,
             format!("the package in `{place}` is called `{}`", path.dotted()),
         )
-        .label(path.span, format!("its place says `{name}`")),
+        .label(path.span, format!("its path requires `{name}`")),
         None => Diagnostic::error(
             Code::PackagePath,
-            format!("`{place}` does not say which package it is"),
+            format!("`{place}` does not declare its package"),
         )
-        .label(Span::new(id, 0, 0), format!("its place says `{name}`")),
+        .label(Span::new(id, 0, 0), format!("its path requires `{name}`")),
     };
     diagnostics.push(diagnostic.help(format!(
         "write `package {name};`, or move the file: the package `a.b` is in `a/b.hyde`"
@@ -282,7 +282,7 @@ impl File {
                     .collect();
                 let diagnostic = Diagnostic::error(
                     Code::UnknownType,
-                    format!("no package is called `{package}`"),
+                    format!("there is no package `{package}`"),
                 )
                 .label(
                     span,

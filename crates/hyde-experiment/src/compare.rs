@@ -91,7 +91,7 @@ pub(crate) fn channels(
             }
         }
         if time.is_empty() {
-            return Err(error("no row of the record lies within the run"));
+            return Err(error("no sample of the record lies within the run"));
         }
         let difference: Vec<f64> = of_record
             .iter()
@@ -163,7 +163,7 @@ pub fn prepared(measured: &Measured, table: &Table, values: &[f64]) -> Result<Ve
         let step_s = table
             .period()
             .or_else(|| table.mean_step())
-            .ok_or("its record has a single row")?;
+            .ok_or("its record has only one sample")?;
         // A drifting clock is no harm, a gap is.
         let even = table
             .time()

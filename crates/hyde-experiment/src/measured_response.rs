@@ -103,7 +103,7 @@ pub fn measured_curve(
     if let Some(deviation) = &measured.deviation {
         let values = column(deviation, records).map_err(error)?;
         if values.len() != curve.frequency_hz.len() {
-            return Err(error("its noise is of another record".to_owned()));
+            return Err(error("its noise is in another record".to_owned()));
         }
         curve.deviation = values;
     }
@@ -135,7 +135,7 @@ fn over_frequency(
     let frequency_hz = table(a, records)?.time().to_vec();
     let rising = frequency_hz.windows(2).all(|pair| pair[0] < pair[1]);
     if !rising || frequency_hz.first().is_none_or(|first| *first <= 0.0) {
-        return Err("the first column of its record is no rising frequency".to_owned());
+        return Err("the first column of its record is not an increasing frequency".to_owned());
     }
     let (a, b) = (column(a, records)?, column(b, records)?);
     let pairs = a.into_iter().zip(b);
@@ -180,7 +180,7 @@ impl Rows {
         let step_s = table
             .period()
             .or_else(|| table.mean_step())
-            .ok_or("its record has a single row")?;
+            .ok_or("its record has only one sample")?;
         let time = table.time();
         if time
             .windows(2)
@@ -199,7 +199,7 @@ impl Rows {
     fn period(&self, input: &[f64], declared: Option<f64>) -> Result<usize, String> {
         let Some(time_s) = declared else {
             return period(input).ok_or_else(|| {
-                "no period was found in its input: there must be two whole ones behind what is skipped; or give the period, `response(file.u, file.y, 1 [s])`".to_owned()
+                "no period was found in its input: the record needs two whole periods after the skipped part; or give the period, `response(file.u, file.y, 1 [s])`".to_owned()
             });
         };
         let samples = time_s * self.rate_hz;
@@ -213,7 +213,7 @@ impl Rows {
             ));
         }
         if whole > input.len() as f64 {
-            return Err("its record is shorter than a period behind what is skipped".to_owned());
+            return Err("after the skipped part its record is shorter than a period".to_owned());
         }
         Ok(whole as usize)
     }

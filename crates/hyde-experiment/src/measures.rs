@@ -45,7 +45,7 @@ impl Missing {
                 format!("`{variable}` is not a number, first at {t} s")
             }
             Self::Nothing(text) => format!("`{text}` has no value in this run"),
-            Self::Undefined => "its own arithmetic gives no number, as 0/0 does".to_owned(),
+            Self::Undefined => "its arithmetic gives no number, like 0/0".to_owned(),
         }
     }
 }

@@ -64,9 +64,12 @@ fn period_s(expr: &Expr) -> Result<f64, Diagnostic> {
     literal_time(expr)
         .filter(|&period| period > 0.0)
         .ok_or_else(|| {
-            Diagnostic::error(Code::BadRecord, "the time between rows is no positive time")
-                .label(expr.span, "a number with a unit of time is expected")
-                .help("write `every 1 [ms]`")
+            Diagnostic::error(
+                Code::BadRecord,
+                "the sampling period is not a positive time",
+            )
+            .label(expr.span, "a number with a unit of time is expected")
+            .help("write `every 1 [ms]`")
         })
 }
 

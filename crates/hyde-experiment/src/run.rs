@@ -387,7 +387,7 @@ pub fn parameters(
             ..
         } = *parameter;
         if found {
-            let why = "it is found by an initial equation: `fixed = false`";
+            let why = "an initial equation determines it: `fixed = false`";
             return Err(RunError::CannotSet(name.clone(), why));
         }
         if is_final {

@@ -187,7 +187,7 @@ impl<'a> Model<'a, '_> {
         }
         let name = short(&self.flat.variables[var].name).to_owned();
         self.report(
-            Diagnostic::error(Code::NotAllowed, format!("`{name}` is an Integer, and its value may not be whole"))
+            Diagnostic::error(Code::NotAllowed, format!("`{name}` is an Integer, and its value may not be an integer"))
                 .label(value.span, "may have a fraction")
                 .help(format!("round it where values are sampled or set, `integer(…)`, or declare `{name}` as `Real`")),
         );

@@ -253,9 +253,9 @@ impl<'a> Model<'a, '_> {
                 self.report(
                     Diagnostic::error(
                         Code::FieldUse,
-                        "an integral stands in an account of the energy ledger, as a term of its own",
+                        "an integral over a domain is allowed only as a separate term of an energy account",
                     )
-                    .label(span, "no term of an account")
+                    .label(span, "not a term of an energy account")
                     .help("write `stored Energy kinetic = integral(rho*A*v^2/2, bar);`; over time: `measure Energy loss = integral(P);`"),
                 );
                 self.poison(span)
@@ -263,7 +263,7 @@ impl<'a> Model<'a, '_> {
             _ => {
                 let diagnostic = Diagnostic::error(
                     Code::UnknownFunction,
-                    format!("no function is called `{name}`"),
+                    format!("there is no function `{name}`"),
                 )
                 .label(function.span, "not known");
                 let near = nearest(name, ALL.iter().copied());
@@ -300,7 +300,7 @@ impl<'a> Model<'a, '_> {
         self.report(
             Diagnostic::error(
                 Code::UnknownFunction,
-                format!("no function is called `{}`", function.dotted()),
+                format!("there is no function `{}`", function.dotted()),
             )
             .label(function.span, "not known")
             .help(help),

@@ -134,7 +134,7 @@ impl<'a> Model<'a, '_> {
                     self.report(
                         Diagnostic::error(
                             Code::BadConnection,
-                            format!("`{}` is no connector", side.dotted()),
+                            format!("`{}` is not a connector", side.dotted()),
                         )
                         .label(side.span, "cannot be connected"),
                     );
@@ -171,7 +171,7 @@ impl<'a> Model<'a, '_> {
                         .label(side.span, format!("a `{b}`"))
                         .label(connectors[0].2.span, format!("a `{a}`"))
                         .help(format!(
-                            "connect like with like; from `{a}` to `{b}` leads a component that has both"
+                            "connect connectors of the same type; between `{a}` and `{b}` use a component that has both"
                         ));
                     self.report(diagnostic);
                     return;

@@ -230,15 +230,22 @@ impl Dimensions {
         match a.agreement(b) {
             Agreement::Same => None,
             Agreement::AngleDiffers => Some(
-                Diagnostic::warning(Code::AngleMismatch, format!("{} {} and {}", demand.what, short(a), short(b)))
-                    .label(left, format!("this is {}", short(a)))
-                    .label(right, format!("this is {}", short(b)))
-                    .note("the two differ only in how often an angle is in them: Hz counts turns, rad/s radians")
-                    .help(turns::repair(demand.what, a, b, &demand.said)),
+                Diagnostic::warning(
+                    Code::AngleMismatch,
+                    format!("{} {} and {}", demand.what, short(a), short(b)),
+                )
+                .label(left, format!("this is {}", short(a)))
+                .label(right, format!("this is {}", short(b)))
+                .note(
+                    "the two differ only in the power of the angle: Hz counts turns, rad/s radians",
+                )
+                .help(turns::repair(demand.what, a, b, &demand.said)),
             ),
             Agreement::Different => {
-                let diagnostic =
-                    Diagnostic::error(Code::UnitMismatch, format!("{} {} and {}", demand.what, short(a), short(b)));
+                let diagnostic = Diagnostic::error(
+                    Code::UnitMismatch,
+                    format!("{} {} and {}", demand.what, short(a), short(b)),
+                );
                 let diagnostic = if left == right {
                     diagnostic.label(right, format!("this is {}, not {}", named(b), named(a)))
                 } else {
@@ -247,7 +254,8 @@ impl Dimensions {
                         .label(right, format!("this is {}", named(b)))
                 };
                 let (instance, names) = in_scope(demand.instance);
-                let known = |(name, dim): (String, Dim)| Some((name, self.resolve(&dim).as_known()?));
+                let known =
+                    |(name, dim): (String, Dim)| Some((name, self.resolve(&dim).as_known()?));
                 let names: Vec<(String, Dimension)> = names.into_iter().filter_map(known).collect();
                 let diagnostic = if instance.as_str().is_empty() {
                     diagnostic
@@ -275,7 +283,7 @@ impl Dimensions {
 /// An unknown dimension to a power that no exact dimension has.
 fn no_root(exponent: Exponent, demand: &Demand) -> Diagnostic {
     let (left, right) = demand.spans;
-    let message = format!("no dimension to the power {exponent} makes the two sides agree");
+    let message = format!("no dimension to the power {exponent} makes the two sides equal");
     let diagnostic = Diagnostic::error(Code::UnitMismatch, message);
     let diagnostic = match left == right {
         true => diagnostic,
@@ -355,7 +363,7 @@ fn repair(
     }
     if same(a.multiply(b), Dimension::DIMENSIONLESS) {
         return Some(format!(
-            "a unit belongs to the number before it alone: write `20 [{0}]/3`, not `20/3 [{0}]`",
+            "a unit belongs only to the number before it: write `20 [{0}]/3`, not `20/3 [{0}]`",
             a.usual_unit()
         ));
     }
@@ -367,11 +375,11 @@ fn repair(
     });
     if let Some((name, _)) = upside_down {
         return Some(format!(
-            "`{name}` is the reciprocal of what fits; a unit belongs to the number before it alone: write `1 [UNIT]/3`, not `1/3 [UNIT]`"
+            "`{name}` is the reciprocal of the required dimension; a unit belongs only to the number before it: write `1 [UNIT]/3`, not `1/3 [UNIT]`"
         ));
     }
     Some(format!(
-        "the first divided by the second is {}: a factor of that dimension is missing or too many",
+        "the first divided by the second is {}: a factor of that dimension is missing or redundant",
         short(ratio)
     ))
 }

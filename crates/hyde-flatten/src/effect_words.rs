@@ -14,8 +14,8 @@ pub(crate) const MARKS: [(&str, &str); 12] = [
     ("direction", ""),
     ("reversal", ""),
     ("offset", ""),
-    ("position", "a period or a place"),
-    ("angle", "a number of times a turn"),
+    ("position", "a period or a position"),
+    ("angle", "a number per turn"),
     ("resonance", "a frequency"),
     ("time", "a time"),
     ("current", ""),
@@ -75,10 +75,10 @@ impl<'a> Model<'a, '_> {
         let Some((_, of)) = MARKS.iter().find(|(name, _)| *name == mark.text) else {
             let diagnostic = Diagnostic::error(
                 Code::UnknownName,
-                format!("`{}` is no mark that an effect leaves", mark.text),
+                format!("`{}` is not a signature of an effect", mark.text),
             )
             .label(mark.span, "not known");
-            let known = format!("the marks are `{}`", all.join("`, `"));
+            let known = format!("the signatures are `{}`", all.join("`, `"));
             self.report(match nearest(&mark.text, all.iter().copied()) {
                 Some(near) => diagnostic
                     .help(format!("did you mean `{near}`?"))
@@ -89,7 +89,7 @@ impl<'a> Model<'a, '_> {
         };
         let wrong = |span: Span, message: String, help: String| {
             Diagnostic::error(Code::BadArguments, message)
-                .label(span, "what this mark is measured by")
+                .label(span, "the shape that defines this signature")
                 .help(help)
         };
         let found = match arguments {
@@ -98,7 +98,7 @@ impl<'a> Model<'a, '_> {
             _ if of.is_empty() => {
                 self.report(wrong(
                     mark.span,
-                    format!("`{}` has no number of its own", mark.text),
+                    format!("`{}` takes no shape", mark.text),
                     format!("write `{}` alone", mark.text),
                 ));
                 return;
@@ -106,7 +106,7 @@ impl<'a> Model<'a, '_> {
             _ => {
                 self.report(wrong(
                     mark.span,
-                    format!("`{}` is measured by one shape", mark.text),
+                    format!("`{}` takes one shape", mark.text),
                     format!("write {of}: `{}(…)`", mark.text),
                 ));
                 return;
@@ -123,7 +123,7 @@ impl<'a> Model<'a, '_> {
             shapes => format!("its shapes are {}", listed(shapes)),
         };
         let message = format!(
-            "`{}` has no such shape for its mark `{}`",
+            "`{}` has no such shape for its signature `{}`",
             class.name.text, mark.text
         );
         self.report(wrong(found.value.span, message, help));
@@ -161,16 +161,16 @@ impl<'a> Model<'a, '_> {
         let found = self.names.class(file, name);
         let diagnostic = match found {
             Some((_, other)) if std::ptr::eq(other, class) => {
-                Diagnostic::error(Code::WrongType, "an effect is not taken for itself")
-                    .label(name.span, "this is the effect it stands in")
-                    .help("name others that leave the same mark, or leave the line out")
+                Diagnostic::error(Code::WrongType, "an effect cannot be confused with itself")
+                    .label(name.span, "this is the effect itself")
+                    .help("name other effects with the same signature, or remove the line")
             }
             Some((_, other)) if other.kind == ClassKind::Effect => return,
             Some((_, other)) => Diagnostic::error(
                 Code::WrongType,
-                format!("`{}` is no effect", other.name.text),
+                format!("`{}` is not an effect", other.name.text),
             )
-            .label(name.span, "only effects are taken for each other"),
+            .label(name.span, "only effects can be confused with each other"),
             None => self.names.unknown(file, name),
         };
         self.report(diagnostic);

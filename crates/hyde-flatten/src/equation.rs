@@ -139,7 +139,7 @@ impl<'a> Model<'a, '_> {
                 self.report(
                     Diagnostic::error(Code::Misplaced, "`reinit` outside an event")
                         .label(state.span, "when?")
-                        .help("write it in `when … then`, or behind an exit of a mode"),
+                        .help("write it in `when … then`, or after an exit of a mode"),
                 );
                 Vec::new()
             }

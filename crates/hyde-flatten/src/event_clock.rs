@@ -180,7 +180,7 @@ impl<'a> Model<'a, '_> {
             let tick = &self.flat.clocks[clock].name;
             let diagnostic = Diagnostic::error(
                 code,
-                format!("nothing determines `{name}` at the ticks of `{tick}`"),
+                format!("no equation determines `{name}` at the ticks of `{tick}`"),
             )
             .label(variable.origin.span, "declared here")
             .help(format!(
@@ -195,7 +195,10 @@ impl<'a> Model<'a, '_> {
             .iter()
             .map(|own| format!("`{}`", self.flat.variables[own.var].name))
             .collect();
-        let message = format!("{} depend on each other at one tick", names.join(", "));
+        let message = format!(
+            "{} depend on each other in a loop at one tick",
+            names.join(", ")
+        );
         let mut diagnostic = Diagnostic::error(Code::ClockedLoop, message);
         for own in waiting {
             diagnostic = diagnostic.label(own.origin.span, "in the circle");

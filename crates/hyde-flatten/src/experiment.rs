@@ -137,7 +137,7 @@ impl<'a> Model<'a, '_> {
                     let diagnostic = Diagnostic::error(Code::Duplicate, message)
                         .label(name.span, "here again")
                         .label(first.span, "here first")
-                        .help("give it a name of its own, or write all that is changed into one: `play(a.gap = 0, b.gap = 0)`");
+                        .help("give it another name, or combine all changes in one: `play(a.gap = 0, b.gap = 0)`");
                     self.report(diagnostic);
                 }
                 known.push(name);
@@ -152,7 +152,7 @@ impl<'a> Model<'a, '_> {
             "auto" => Method::Auto,
             other => {
                 self.report(
-                    Diagnostic::error(Code::BadSolve, format!("no method is called `{other}`"))
+                    Diagnostic::error(Code::BadSolve, format!("there is no method `{other}`"))
                         .label(method.span, "not known")
                         .help("methods are `ida`, `esdirk` and `auto`: `solve ida(rtol = 1e-6)`"),
                 );

@@ -150,7 +150,7 @@ impl<'a> Model<'a, '_> {
                     Code::Cycle,
                     format!("`{}` contains itself", class.name.text),
                 )
-                .label(class.name.span, "instantiated inside itself without end")
+                .label(class.name.span, "contains itself")
                 .help("a model cannot be a component of itself"),
             );
             return id;
@@ -158,7 +158,7 @@ impl<'a> Model<'a, '_> {
         if self.depth(id) > MAX_PARTS {
             self.endless.push(class);
             self.too_deep(
-                format!("more than {MAX_PARTS} parts are nested in each other"),
+                format!("more than {MAX_PARTS} components are nested"),
                 (class.name.span, "instantiated inside that many others"),
                 "put parts beside each other and connect them",
             );
@@ -278,7 +278,7 @@ impl<'a> Model<'a, '_> {
                         name.text
                     ),
                     (name.span, "its chain of `extends` is too long"),
-                    "leave classes out that only pass on what they extend",
+                    "remove classes that add nothing to the class they extend",
                 );
             }
             return;

@@ -33,7 +33,8 @@ impl<'a> Model<'a, '_> {
             }
             ExprKind::String(_) => {
                 self.report(
-                    Diagnostic::error(Code::WrongType, "a text is no value").label(span, "a text"),
+                    Diagnostic::error(Code::WrongType, "a text is not a value")
+                        .label(span, "a text"),
                 );
                 self.poison(span)
             }
@@ -73,7 +74,7 @@ impl<'a> Model<'a, '_> {
         let typed = self.lower(expr, scope);
         if !typed.truth && typed.dim != Dim::Any {
             self.report(
-                Diagnostic::error(Code::WrongType, "a condition is expected, this is a number")
+                Diagnostic::error(Code::WrongType, "expected Boolean, found number")
                     .label(expr.span, "a number")
                     .help(format!(
                         "compare it: `{} > 0`",
@@ -89,7 +90,7 @@ impl<'a> Model<'a, '_> {
         let typed = self.lower(expr, scope);
         if typed.truth {
             self.report(
-                Diagnostic::error(Code::WrongType, "a number is expected, this is a condition")
+                Diagnostic::error(Code::WrongType, "expected number, found Boolean")
                     .label(expr.span, "true or false")
                     .help("write `if … then 1 else 0`"),
             );
@@ -145,7 +146,7 @@ impl<'a> Model<'a, '_> {
     pub(crate) fn same_kind(&mut self, a: &Typed, b: &Typed) {
         if a.truth != b.truth && a.dim != Dim::Any && b.dim != Dim::Any {
             self.report(
-                Diagnostic::error(Code::WrongType, "a truth and a number stand together")
+                Diagnostic::error(Code::WrongType, "a Boolean and a number are combined")
                     .label(a.span, if a.truth { "true or false" } else { "a number" })
                     .label(b.span, if b.truth { "true or false" } else { "a number" }),
             );
@@ -155,7 +156,7 @@ impl<'a> Model<'a, '_> {
     pub(crate) fn not_constant(&mut self, what: &str, span: Span) {
         self.report(
             Diagnostic::error(Code::NotConstant, format!("{what} changes during the run"))
-                .label(span, "only numbers and parameters may stand here"),
+                .label(span, "only numbers and parameters are allowed here"),
         );
     }
 }

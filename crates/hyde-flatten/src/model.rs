@@ -378,7 +378,7 @@ impl<'a, 'd> Model<'a, 'd> {
         };
         let diagnostic = Diagnostic::error(
             Code::UnknownName,
-            format!("nothing is called `{word}` in {place}"),
+            format!("there is no `{word}` in {place}"),
         )
         .label(
             whole

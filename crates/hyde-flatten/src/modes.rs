@@ -247,7 +247,7 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(
                     Code::UnknownName,
-                    format!("no mode is called `{}` here", name.text),
+                    format!("there is no mode `{}` here", name.text),
                 )
                 .label(name.span, "not known")
                 .help(format!("the modes are {}", listed(&known))),
@@ -282,8 +282,8 @@ impl<'a> Model<'a, '_> {
                     format!("{} here", count(mode.equations.len())),
                 )
                 .label(first_span, format!("{} here", count(first.equations.len())))
-                .note("a mode replaces equations by equations: the unknowns stay the same")
-                .help("say in every mode what the others say: a force that vanishes is `F = 0`"),
+                .note("the modes replace each other's equations: each must determine the same unknowns")
+                .help("write an equation for the same variables in every mode: for a force that vanishes, `F = 0`"),
             );
         }
     }

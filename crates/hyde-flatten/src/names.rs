@@ -140,7 +140,7 @@ impl<'a> Names<'a> {
         known.extend(["Real", "Integer", "Boolean"]);
         let diagnostic = Diagnostic::error(
             Code::UnknownType,
-            format!("no type or model is called `{text}` here"),
+            format!("there is no type or model `{text}` here"),
         )
         .label(name.span, "not known in this file");
         if let Some(help) = hyde_syntax::instead_of(&text) {
@@ -148,8 +148,7 @@ impl<'a> Names<'a> {
         }
         match nearest(&text, known.iter().copied()) {
             Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-            None => diagnostic
-                .help("declare it, or import the package it is in: `import Rotational.*;`"),
+            None => diagnostic.help("declare it, or import its package: `import Rotational.*;`"),
         }
     }
 

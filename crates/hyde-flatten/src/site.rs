@@ -85,7 +85,7 @@ impl Model<'_, '_> {
             self.report(
                 Diagnostic::error(
                     Code::WrongType,
-                    format!("`{name}` does not say what it is for"),
+                    format!("`{name}` does not declare its host"),
                 )
                 .label(effect.name.span, "no `on TYPE` follows")
                 .help(format!(
@@ -104,8 +104,8 @@ impl Model<'_, '_> {
         let site_name = written(site);
         let parts = self.parts_that_are(host, class);
         let fits = match parts.as_slice() {
-            [] => "`hyde effects FILE` tells where each effect fits".to_owned(),
-            [part] => format!("`{site_name}.{part}` is one"),
+            [] => "`hyde effects FILE` lists the sites where each effect fits".to_owned(),
+            [part] => format!("`{site_name}.{part}` is such a component"),
             [part, other, ..] => format!("`{site_name}.{part}` and `{site_name}.{other}` are such"),
         };
         self.report(
@@ -128,8 +128,8 @@ impl Model<'_, '_> {
                 effect.name.text
             ),
         )
-        .label(added, "nothing here to join")
-        .help("let it be `on` the connector's type, or `wrap` a site of the model");
+        .label(added, "not a connector")
+        .help("declare it `on` the type of the connector, or `wrap` a site of the model");
         let diagnostic = match host_of(effect) {
             Some(wanted) => diagnostic.label(wanted.span, format!("`{own}` is a model")),
             None => diagnostic,

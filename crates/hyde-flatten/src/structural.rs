@@ -28,9 +28,9 @@ impl<'a> Model<'a, '_> {
         let value = self.structural_number(scope, expr)?;
         if value.fract() != 0.0 || value.abs() > 1e15 {
             self.report(
-                Diagnostic::error(Code::NotConstant, format!("{value} is no whole number"))
+                Diagnostic::error(Code::NotConstant, format!("{value} is not an integer"))
                     .label(expr.span, "counts something")
-                    .help("write a whole number, or an `Integer` parameter"),
+                    .help("write an integer, or an `Integer` parameter"),
             );
             return None;
         }
@@ -47,8 +47,8 @@ impl<'a> Model<'a, '_> {
         let value = self.evaluate(typed.id);
         if value.is_none() && self.diagnostics.error_count() == errors {
             self.report(
-                Diagnostic::error(Code::NotConstant, "this must be known before the run")
-                    .label(expr.span, "is not made of numbers and parameters alone"),
+                Diagnostic::error(Code::NotConstant, "the expression is not constant")
+                    .label(expr.span, "only numbers and parameters are allowed here"),
             );
         }
         value
@@ -108,11 +108,11 @@ impl<'a> Model<'a, '_> {
         if structural && parameter.found {
             let (name, span) = (parameter.name.clone(), parameter.origin.span);
             let message =
-                format!("`{name}` is found at the start, and must be known before the run");
+                format!("`{name}` is not constant: it is computed at the start of the run");
             self.report(
                 Diagnostic::error(Code::NotConstant, message)
-                    .label(span, "`fixed = false`: an initial equation finds it")
-                    .help("give it a value, and leave out `fixed = false`: it decides a size, a branch or a mesh"),
+                    .label(span, "`fixed = false`: an initial equation determines it")
+                    .help("give it a value and remove `fixed = false`: a size, a branch or a mesh depends on it"),
             );
             return None;
         }

@@ -81,15 +81,15 @@ impl Model<'_, '_> {
                     self.report(
                         Diagnostic::warning(
                             Code::AngleMismatch,
-                            "the 2*pi of the turn stands here twice",
+                            "the factor 2*pi for one turn is applied twice",
                         )
                         .label(
                             one.span,
                             "2*pi times a quantity per radian: the advance of a turn",
                         )
                         .label(other.span, "times an angle in radians")
-                        .note("units like mm/rev are converted to m/rad as they are read")
-                        .help("leave the `2*pi` out"),
+                        .note("units such as mm/rev are converted to m/rad when they are read")
+                        .help("remove the `2*pi`"),
                     );
                     return Turns::Plain;
                 }
@@ -121,9 +121,9 @@ impl Model<'_, '_> {
                         a.dim.as_known().map_or_else(String::new, short)
                     ),
                 )
-                .label(b.span, "takes the turn once more")
-                .note("units like mm/rev are converted to m/rad as they are read")
-                .help("leave the `2*pi` out"),
+                .label(b.span, "divides by the turn again")
+                .note("units such as mm/rev are converted to m/rad when they are read")
+                .help("remove the `2*pi`"),
             );
         }
         match a.turns {
@@ -149,9 +149,9 @@ impl Model<'_, '_> {
             return None;
         };
         (has != wanted).then(|| {
-            Diagnostic::warning(Code::AngleMismatch, "a quantity per radian times turns a second: 2*pi is lost")
+            Diagnostic::warning(Code::AngleMismatch, "a quantity per radian times turns per second: a factor 2*pi is missing")
                 .label(lost.span, "per radian, times a frequency")
-                .note("Hz and 1/min count turns; units like mm/rev are converted to m/rad as they are read")
+                .note("Hz and 1/min count turns; units such as mm/rev are converted to m/rad when they are read")
                 .help(format!(
                     "write `2*pi*{}`, or give the frequency the unit of an angular velocity: `rpm`, `rev/s`",
                     self.text_as_factor(lost)
@@ -168,7 +168,7 @@ impl Model<'_, '_> {
         self.report(
             Diagnostic::warning(
                 Code::AngleMismatch,
-                format!("`{function}` of a number of turns: 2*pi is lost"),
+                format!("`{function}` of a number of turns: a factor 2*pi is missing"),
             )
             .label(argument.span, "a frequency times a time counts turns")
             .help(format!("write `{function}(2*pi*{text})`")),
@@ -249,7 +249,7 @@ pub(crate) fn repair(what: &str, a: Dimension, b: Dimension, said: &(Said, Said)
     instead(first)
         .or_else(|| instead(second).filter(|_| !bound))
         .unwrap_or_else(|| match turns(&left) || turns(&right) {
-            true => "multiply what counts turns by 2*pi, or give the angle its unit: `1 [rad]`, `1 [rev]`".to_owned(),
+            true => "multiply the number of turns by 2*pi, or give the angle its unit: `1 [rad]`, `1 [rev]`".to_owned(),
             false => "check which of the two is per radian".to_owned(),
         })
 }

@@ -37,7 +37,7 @@ impl Model<'_, '_> {
             }
             let new = self.value(by, &scope);
             let declared = self.typed(value.id, self.dim(var), value.span);
-            self.agree(&declared, &new, "the site and what wraps it are", effect);
+            self.agree(&declared, &new, "the site and its wrapper are", effect);
             let leaf = self.flat.exprs.var(var);
             let mut memo = HashMap::from([(leaf, value.id)]);
             value.id = self.flat.exprs.rewrite(new.id, &mut memo, |_, _, _| None);

@@ -154,7 +154,7 @@ impl DiagnosisReport {
             ("Verdict", self.verdict_blocks()),
             ("Error before and after", self.error_blocks()),
             ("Error over time", self.time_blocks()),
-            ("What is left depends on", self.map_blocks()),
+            ("Residual maps", self.map_blocks()),
             ("Parameters", self.parameter_blocks()),
             ("Tried and rejected", self.tried_blocks()),
             ("The new model", self.model_blocks()),
@@ -172,18 +172,23 @@ impl DiagnosisReport {
         if !self.effects.is_empty() {
             blocks.push(Block::Table(Table {
                 rows: self.effects.iter().map(|row| row.to_vec()).collect(),
-                ..Table::with_columns(&["effect", "site", "quantities", "not told from"])
+                ..Table::with_columns(&[
+                    "effect",
+                    "site",
+                    "quantities",
+                    "cannot be distinguished from",
+                ])
             }));
         }
         if !self.unknown.is_empty() {
             blocks.push(Block::Table(Table {
                 rows: self.unknown.iter().map(|row| row.to_vec()).collect(),
                 note: Some(
-                    "What is left by all effects known, as a force or a reading at a site: how much of the sum \
-                     of squares any function of a variable would take away, and by chance."
+                    "The residual that no known effect explains, as a force or a sensor error at a site: how much the best \
+                     function of each variable reduces the sum of squares, and how much it would by chance."
                         .to_owned(),
                 ),
-                ..Table::with_columns(&["a function of", ">gain", ">by chance"])
+                ..Table::with_columns(&["function of", ">improvement", ">by chance"])
             }));
         }
         let note = |doubt: &String| Verdict {
@@ -212,7 +217,7 @@ impl DiagnosisReport {
                 })
                 .collect(),
             note: Some(
-                "Mean square of whitened innovations, one row ahead: about 1 where all is known."
+                "Mean square of the whitened innovations, one sample ahead. A complete model gives about 1."
                     .to_owned(),
             ),
             ..Table::with_columns(&["record", ">before", ">after"])
@@ -234,7 +239,14 @@ impl DiagnosisReport {
             }
         }
         let heads = [
-            "record", "channel", "rms of", "unit", ">before", ">after", ">floor", ">before",
+            "record",
+            "channel",
+            "rms of",
+            "unit",
+            ">before",
+            ">after",
+            ">noise floor",
+            ">before",
             ">after",
         ];
         let missing: Vec<&str> = self
@@ -244,12 +256,12 @@ impl DiagnosisReport {
             .filter(|why| !why.is_empty())
             .collect();
         let mut note =
-            "The last two columns are multiples of the floor: what noise and rounding would leave \
-             if the model were the axis. Windows run freely for 100 ms from a fitted start; the free \
-             run is that of the whole record with the loop closed, below 100 Hz."
+            "The last two columns are relative to the noise floor: the error that noise and rounding \
+             alone would cause if the model were exact. Each window is a simulation of 100 ms without correction, from a \
+             fitted initial state. The free run is a simulation of the whole record with the loop closed, compared below 100 Hz."
                 .to_owned();
         if let Some(why) = missing.first() {
-            note = format!("{note} There is no free run of some records: {why}.");
+            note = format!("{note} Some records have no free run: {why}.");
         }
         blocks.push(Block::Table(Table {
             rows,
@@ -288,20 +300,22 @@ impl DiagnosisReport {
         if !self.whiteness.is_empty() {
             let heads = [
                 "channel",
-                ">row to row before",
+                ">autocorrelation before",
                 ">after",
-                "goes most with",
+                "most correlated with",
                 ">correlation",
             ];
             blocks.push(Block::Table(Table {
                 rows: self.whiteness.iter().map(|row| row.to_vec()).collect(),
-                note: Some("Correlations of innovations; those of noise are 0.".to_owned()),
+                note: Some(
+                    "Correlations of the innovations from one sample to the next; white noise has 0.".to_owned(),
+                ),
                 ..Table::with_columns(&heads)
             }));
         }
-        let text = "The mean of innovations over time and motion, in their standard deviations; over \
-                    frequency their power beyond an even one. What lies inside the grey band is chance: so far went \
-                    the same innovations in 99 draws of the signs of their blocks of 50 ms.";
+        let text = "The mean of the innovations over time and motion, in standard deviations; over frequency, their power \
+                    relative to a flat spectrum. Values inside the grey band may be due to chance: the band covers the \
+                    same innovations in 99 random draws of the signs of their blocks of 50 ms.";
         if !self.maps.is_empty() {
             blocks.push(Block::Text(text.to_owned()));
         }
@@ -331,8 +345,8 @@ impl DiagnosisReport {
         let table = Table {
             rows: self.parameters.iter().map(row).collect(),
             note: Some(
-                "Intervals hold the value with 95 %. A parameter that left what was declared, or \
-                 that stands on a bound, may stand in for something that the model lacks."
+                "Intervals are 95 % confidence intervals. A parameter outside its declared range, or at a bound, may \
+                 compensate for an effect that the model lacks."
                     .to_owned(),
             ),
             ..Table::with_columns(&["parameter", "unit", ">declared", ">before", ">after", ""])
@@ -364,17 +378,17 @@ impl DiagnosisReport {
         };
         let heads = [
             "effect and site",
-            ">score",
-            ">gain",
-            ">unseen",
-            "because",
-            "would be seen from",
+            ">predicted",
+            ">fitted",
+            ">cross-validated",
+            "reason",
+            "smallest detectable size",
         ];
         vec![Block::Table(Table {
             rows: self.tried.iter().map(row).collect(),
             note: Some(
-                "Score: what the sum of squares would lose by a first estimate. Gain: what it lost \
-                 by a fit. Unseen: what it lost on rows that were not fitted."
+                "Improvement of the sum of squares. Predicted: a first linear estimate. Fitted: after a fit. \
+                 Cross-validated: on samples that were left out of the fit."
                     .to_owned(),
             ),
             ..Table::with_columns(&heads)

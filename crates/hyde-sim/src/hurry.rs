@@ -126,7 +126,7 @@ impl Hurry {
         }
         let span_s = t - *start;
         (*start, *count) = (t, 0);
-        let told = format!("{STEPS} steps took it {span_s:.1e} s further");
+        let told = format!("{STEPS} steps advanced it by only {span_s:.1e} s");
         (span_s < NO_FURTHER * (setup.stop_s - setup.start_s)).then_some(FailureKind::Solver(told))
     }
 }

@@ -228,11 +228,11 @@ impl<'a> Integrator<'a> {
                 FailureKind::NotFinite
             }
             hyde_ida::FailureKind::ErrorTest => FailureKind::Solver(format!(
-                "the error of a step stays too large, down to a step of {:.1e} s",
+                "the error of a step remains too large even with a step of {:.1e} s",
                 failed.step_s
             )),
             hyde_ida::FailureKind::Convergence => FailureKind::Solver(format!(
-                "Newton's method does not converge, down to a step of {:.1e} s",
+                "Newton's method does not converge even with a step of {:.1e} s",
                 failed.step_s
             )),
             hyde_ida::FailureKind::SingularJacobian => {

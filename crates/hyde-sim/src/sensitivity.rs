@@ -212,7 +212,7 @@ fn refuse(state: &State<'_>, directions: &[Vec<f64>], t: f64) -> Result<(), Box<
     let program = state.program;
     if let Some(found) = program.parameters.iter().find(|parameter| parameter.found) {
         let what = format!(
-            "the parameter `{}`, which an initial equation finds",
+            "the parameter `{}`, which an initial equation determines",
             found.name
         );
         return Err(Failure::new(FailureKind::NoGradient(what), t).at_origin(&found.origin));

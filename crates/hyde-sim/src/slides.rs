@@ -330,7 +330,7 @@ impl Instant<'_, '_> {
         if self.acts_linearly() {
             Verdict::Slides
         } else {
-            Verdict::Cannot("what the condition switches acts on the motion in no linear way")
+            Verdict::Cannot("the switched terms do not act linearly on the motion")
         }
     }
 
@@ -450,4 +450,5 @@ impl Instant<'_, '_> {
     }
 }
 
-const NO_ROW: &str = "the equations that it switches leave no force or rate free to hold it there";
+const NO_ROW: &str =
+    "the switched equations contain no free force or rate that could hold it there";

@@ -250,8 +250,8 @@ fn files_of(
                         counted(experiment.records.len(), "record")
                     ),
                 )
-                .label(pattern.span, "there is no record for this pattern")
-                .help("give one pattern a record: `fit bench(\"fit-*.csv\");`"),
+                .label(pattern.span, "no record is assigned to this pattern")
+                .help("name the record of the pattern: `fit bench(file = \"fit-*.csv\");`"),
             );
             return Vec::new();
         };
@@ -291,14 +291,14 @@ fn files_of(
             diagnostics.push(
                 Diagnostic::error(
                     Code::NoRecord,
-                    format!("`{}` leads out of its folder by a link", path.display()),
+                    format!("`{}` is a link to a file outside its folder", path.display()),
                 )
                 .label(
                     *span,
                     "only files below the model's folder or `--data` are read",
                 )
                 .help(
-                    "put the file into the folder, or name the folder in which it is: `--data DIR`",
+                    "move the file into the folder, or name its folder: `--data DIR`",
                 ),
             );
             return Vec::new();
@@ -315,7 +315,7 @@ fn files_of(
                     ),
                 )
                 .label(*span, "asked for here")
-                .help("give every record as many files, or one file"),
+                .help("give every record the same number of files, or one file"),
             );
             return Vec::new();
         }
@@ -406,7 +406,7 @@ fn varied(
                             "no parameter of the model is uncertain",
                         )
                         .label(*span, "asked for here")
-                        .help("say how well one is known: `parameter Mass M = 310 [kg] ~ ±8%;`"),
+                        .help("declare the uncertainty of a parameter: `parameter Mass M = 310 [kg] ~ ±8%;`"),
                     );
                 }
                 found.extend(uncertain);
@@ -416,7 +416,7 @@ fn varied(
                 let problem = match program.parameter(name) {
                     None => Some("no such parameter".to_owned()),
                     Some((parameter, _)) if parameter.structural => {
-                        Some("it shapes the equations: each value is a model of its own".to_owned())
+                        Some("it changes the structure of the equations: each value is a separate model".to_owned())
                     }
                     Some((parameter, _)) if parameter.is_final => Some("it is final".to_owned()),
                     Some((parameter, _)) => bounds.as_ref().and_then(|(from, to, unit)| {

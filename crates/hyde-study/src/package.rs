@@ -149,7 +149,7 @@ impl Roots {
                     second.display()
                 ),
             )
-            .help("call one of the two otherwise, and its file as well")),
+            .help("rename one of the two, and its file as well")),
             [] => self.beyond(own, package),
         }
     }
@@ -164,7 +164,7 @@ impl Roots {
             let name = root.manifest.as_ref().map_or("", |m| m.name.as_str());
             return Err(Diagnostic::error(
                 Code::NotDeclared,
-                format!("the package `{package}` is in `{name}`, which is no dependency here"),
+                format!("the package `{package}` is in `{name}`, which is not a dependency here"),
             )
             .help(format!(
                 "add it to `{}`, below `[dependencies]`: `\"{name}\" = \"…/{name}\"`, the path to `{}`",
@@ -291,8 +291,8 @@ pub fn links_out(world: &dyn World, folder: &Path, path: &Path) -> bool {
 }
 
 fn leaves(path: &str, folder: &str) -> Diagnostic {
-    Diagnostic::error(Code::NotDeclared, format!("`{path}` leads out of {folder}"))
-        .help("put the file into the folder: nothing outside it is read")
+    Diagnostic::error(Code::NotDeclared, format!("`{path}` is outside {folder}"))
+        .help("move the file into the folder: Hyde reads no file outside it")
 }
 
 fn same(world: &dyn World, a: &Path, b: &Path) -> bool {

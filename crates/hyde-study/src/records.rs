@@ -168,14 +168,14 @@ fn path_of(
         .unwrap_or_default();
     let path = root.join(relative);
     if links_out(asked.world.as_ref(), &root, &path) {
-        let message = format!("`{}` leads out of its folder by a link", default.text);
+        let message = format!("`{}` is a link to a file outside its folder", default.text);
         let diagnostic = Diagnostic::error(Code::NoRecord, message)
             .label(
                 default.span,
                 "only files below the model's folder or `--data` are read",
             )
             .help(format!(
-                "put the file into the folder, or give it on the command line: `--record {}=PATH`",
+                "move the file into the folder, or give it on the command line: `--record {}=PATH`",
                 item.name.text
             ));
         diagnostics.push(diagnostic);
@@ -191,7 +191,7 @@ fn missing(item: &RecordItem, needed: Records, reason: &str) -> Diagnostic {
         Records::Needed => Diagnostic::error(Code::NoRecord, message),
         Records::IfThere => Diagnostic::warning(
             Code::NoRecord,
-            format!("{message}; the model is checked without its experiment"),
+            format!("{message}; only the model is checked, without its experiment"),
         ),
     };
     diagnostic

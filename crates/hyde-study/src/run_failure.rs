@@ -8,7 +8,7 @@ use hyde_sim::{Failure, FailureKind};
 use hyde_syntax::ast::Experiment;
 
 /// What to do about a row whose value is not allowed.
-pub const ROW_HELP: &str = "mend the file, or say how its numbers are meant: `stimulus on = file.on > 2.5 [V];`, or declare the input `Real`";
+pub const ROW_HELP: &str = "correct the file, or convert its numbers: `stimulus on = file.on > 2.5 [V];`, or declare the input as `Real`";
 
 /// The diagnostic of a run that did not start or did not end, and what is at fault.
 pub fn diagnostic(
@@ -43,7 +43,7 @@ pub fn diagnostic(
                 }
                 None => diagnostic,
             };
-            let help = "vary it by `--set`, run by run";
+            let help = "vary it with `--set` in separate runs";
             (diagnostic.help(help), Fault::Asked)
         }
         RunError::NoStop => no_stop(experiment),
@@ -139,13 +139,13 @@ fn too_many_rows(
     };
     let written = significant(10.0_f64.powf(least_s.log10().ceil()), 1);
     diagnostic.help(format!(
-        "write `every {written} [s]` or more, or leave `every` out: events have rows of their own, and measures do not \
-         depend on rows"
+        "write `every {written} [s]` or more, or leave `every` out: events are always recorded, and measures do \
+         not depend on the sampling of the results"
     ))
 }
 
 fn no_stop(experiment: Option<&Experiment>) -> (Diagnostic, Fault) {
-    let diagnostic = Diagnostic::error(Code::NoStop, "it is not said when the run ends");
+    let diagnostic = Diagnostic::error(Code::NoStop, "the end of the run is not defined");
     match experiment {
         Some(experiment) => (
             diagnostic
@@ -172,7 +172,7 @@ fn ends_before_start(
             Code::BadSolve,
             format!("the run would end at {stop}, but its record `{record}` begins at {start}"),
         )
-        .note("a run begins where its record begins, and its time is that of the record")
+        .note("a run begins at the first sample of its record and uses the time of the record")
         .help(format!(
             "write `stop {record}.begin + 1 [s]` for a run of 1 s, or `stop {record}.end` for the whole record"
         )),
@@ -212,13 +212,13 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
                 (
                     Code::InitialFailed,
                     format!("{what} {at}"),
-                    "check the start values, and that these equations have a solution there",
+                    "check the start values, and whether these equations have a solution there",
                 )
             } else {
                 (
                     Code::InitialFailed,
                     format!(
-                        "{what} {at}: nothing determines {}{more} here",
+                        "{what} {at}: no equation determines {}{more} here",
                         list.join(", ")
                     ),
                     "these equations depend on each other there: look for a factor that is 0, a massless part that only \
@@ -228,26 +228,23 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
         }
         FailureKind::Solver(reason) => (
             Code::SolverFailed,
-            format!("the solver could not go on {at}: {reason}"),
-            "look for a jump that is no event, as of an `if` in an array equation or below `noEvent`, or for a stiffness beyond the others",
+            format!("the solver failed {at}: {reason}"),
+            "look for a jump without an event, such as an `if` in an array equation or inside `noEvent`, or for a stiffness far larger than the others",
         ),
         FailureKind::NotFinite => (
             Code::NotFinite,
             format!("an equation has no finite value {at}"),
-            "look for a division by zero or a root of a negative number",
+            "look for a division by zero or the square root of a negative number",
         ),
         FailureKind::Chattering(causes) => {
             let list: Vec<String> = causes.iter().map(|cause| format!("`{cause}`")).collect();
             (
                 Code::Chattering,
-                format!(
-                    "events follow each other without end {at}: {}",
-                    list.join(", ")
-                ),
+                format!("endless sequence of events {at}: {}", list.join(", ")),
                 if causes.len() > 1 {
-                    "each of these conditions makes the other true: leave a gap between them"
+                    "each of these conditions makes the other true: leave a gap between their thresholds"
                 } else {
-                    "what happens there leaves the condition true: add a mode of rest, such as `mode lying { v = 0; exit … }`"
+                    "the condition remains true after the event: add a mode for rest, such as `mode lying { v = 0; exit … }`"
                 },
             )
         }
@@ -259,16 +256,16 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
                     "both sides of {} lead back to it {at}, and {why}",
                     list.join(" and ")
                 ),
-                "give the switch a width, two thresholds with a gap between them, or a mode of its own for staying there",
+                "give the switch a hysteresis (two thresholds with a gap between them), or add a mode in which the state stays there",
             )
         }
         FailureKind::Zeno { cause, sum_s } => (
             Code::TooManyEvents,
             format!(
-                "`{cause}` changes faster and faster {at}: infinitely often before about {} s",
+                "`{cause}` changes faster and faster {at} and would change infinitely often before about {} s",
                 hyde_units::significant(*sum_s, 7)
             ),
-            "add a mode of rest that is entered once it is slow enough, such as `mode lying { v = 0; exit … }`",
+            "add a mode for rest that is entered below a small speed, such as `mode lying { v = 0; exit … }`",
         ),
         FailureKind::TooManyEvents { count, span_s } => (
             Code::TooManyEvents,
@@ -276,7 +273,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
                 "events come {count} times within {} s {at}",
                 hyde_units::significant(*span_s, 2)
             ),
-            "add a mode that rests where these conditions meet, such as `mode stuck { v = 0; exit … }`",
+            "add a mode in which the state rests where these conditions meet, such as `mode stuck { v = 0; exit … }`",
         ),
         FailureKind::Impact(name, from, to) => (
             Code::ImpactOnPin,
@@ -285,7 +282,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
                 hyde_units::significant(*from, 4),
                 hyde_units::significant(*to, 4)
             ),
-            "if the impact is meant, write `impact` behind the exit; else leave the mode at rest",
+            "if an impact is intended, write `impact` after the exit; otherwise leave the mode at rest",
         ),
         FailureKind::Overdetermined(fixed) => {
             let list: Vec<String> = fixed
@@ -296,23 +293,25 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             (
                 Code::TooManyConditions,
                 match list.is_empty() {
-                    true => "nothing that may yield can meet an initial equation".to_owned(),
+                    true => {
+                        "no start value that may change can satisfy an initial equation".to_owned()
+                    }
                     false => format!(
                         "an initial equation and the fixed start of {} determine the same",
                         list.join(", ")
                     ),
                 },
-                "leave out the initial equation, or say `fixed = false` of a state that it is to determine",
+                "remove the initial equation, or set `fixed = false` for a state that it is to determine",
             )
         }
         FailureKind::Start(name, wanted, found) => (
             Code::StartContradicted,
             format!(
-                "`{name}` is to start at {}, but the other conditions make it {}",
+                "`{name}` has the start value {}, but the other conditions require {}",
                 hyde_units::significant(*wanted, 6),
                 hyde_units::significant(*found, 6)
             ),
-            "give the start values that belong together, or leave out the one that follows from the others",
+            "give consistent start values, or remove the one that follows from the others",
         ),
         FailureKind::Assert(message) => (
             Code::AssertFailed,
@@ -321,26 +320,26 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
         ),
         FailureKind::NoGradient(what) => (
             Code::NoGradient,
-            format!("no gradient passes {what}"),
-            "take the differences of runs with `--set`, or leave it out of the model",
+            format!("the gradient cannot be computed through {what}"),
+            "use differences of runs with `--set`, or remove it from the model",
         ),
         FailureKind::NotSteady(name, rate) => (
             Code::SolverFailed,
             format!(
-                "there is no steady state {at}: `{name}` still changes, by {} SI units a second",
+                "no steady state is reached {at}: `{name}` still changes by {} SI units per second",
                 hyde_units::significant(*rate, 3)
             ),
-            "take the operating point at a time of the run: `--at '0.3 [s]'`",
+            "use a time of the run as the operating point: `--at '0.3 [s]'`",
         ),
         FailureKind::Interrupted => (
             Code::SolverFailed,
             format!("the run was interrupted {at}"),
-            "what was finished is kept",
+            "the finished part is kept",
         ),
         FailureKind::Input(message) => (
             Code::NoColumn,
             message.clone(),
-            "give the record that has it",
+            "give the record that contains it",
         ),
     };
     let mut diagnostic = Diagnostic::error(code, message);

@@ -46,7 +46,7 @@ pub fn parse(text: &str) -> Result<Setting, String> {
     let number: f64 = value[..end]
         .trim()
         .parse()
-        .map_err(|_| format!("`{text}`: `{}` is no number", &value[..end]))?;
+        .map_err(|_| format!("`{text}`: `{}` is not a number", &value[..end]))?;
     if !number.is_finite() {
         return Err(format!("`{text}`: the number must be finite"));
     }
@@ -103,7 +103,7 @@ mod tests {
         assert_eq!((setting.path.as_str(), setting.value), ("saddle.M", 320.0));
         assert_eq!(
             parse("gap=12um").unwrap_err(),
-            "`gap=12um`: `12um` is no number"
+            "`gap=12um`: `12um` is not a number"
         );
         assert_eq!(parse("gap = 12 um").unwrap().value, 12e-6);
         assert_eq!(parse("n=3").unwrap().unit, None);

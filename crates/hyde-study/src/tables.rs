@@ -66,7 +66,7 @@ fn of_file(
             .map_err(|reason| {
                 Diagnostic::error(Code::NotDeclared, format!("a table has no file: {reason}"))
             .label(span, "named here")
-            .help("the path is relative to the manifest's folder, or to the model's without one")
+            .help("the path is relative to the folder of the manifest, or, without a manifest, to that of the model")
             })?;
     // A table has no time: its rows are only counted.
     let table = hyde_signal::read_whole(&content, &Layout::every(1.0)).map_err(|error| {

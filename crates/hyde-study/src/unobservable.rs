@@ -11,12 +11,12 @@ pub fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnostic {
     let time = |seconds: f64| engineering(seconds, Dimension::TIME);
     let (cause, help) = match error {
         RecordError::NoChannel => (
-            "its experiment measures nothing".to_owned(),
-            "write what the record has of the model: `measured log.w = rotor.w ~ 0.5 [rad/s];`",
+            "its experiment has no measured channel".to_owned(),
+            "declare which variable a column measures: `measured log.w = rotor.w ~ 0.5 [rad/s];`",
         ),
         RecordError::NoColumn(record, column) => (
             format!("the record `{record}` has no column `{column}`"),
-            "write the name as it stands in the header of the record",
+            "write the name as in the header of the record",
         ),
         RecordError::Gap {
             record,
@@ -25,28 +25,30 @@ pub fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnostic {
             usual_s,
         } => (
             format!(
-                "the record `{record}` has no rows from {} to {}, and its rows are usually {} apart",
+                "the record `{record}` has a gap: no sample from {} to {}, while its samples are usually {} apart",
                 time(*from_s),
                 time(*to_s),
                 time(*usual_s)
             ),
-            "an observer does not guess what was in between: save what is before the gap and what is behind it as two files, and name both, `fit down(\"part-*.csv\");`, or resample the record",
+            "an observer does not interpolate across a gap: save the parts before and after the gap as two files and name both, `fit down(\"part-*.csv\");`, or resample the record",
         ),
         RecordError::Row(fault) => (fault.to_string(), run_failure::ROW_HELP),
         RecordError::BeginsAgain(channel, times, by) => (
             format!(
-                "`{channel}` jumps back by {} {times} times and goes on in between, as an encoder that begins again each turn does; the model's goes on",
+                "`{channel}` jumps back by {} {times} times, like an encoder that wraps once per revolution, but the variable of the model does not wrap",
                 significant(*by, 4)
             ),
-            "let the model begin again too, and they are compared modulo that: `measured log.phi = mod(rotor.phi, 2*pi*1 [rad]);`, or unwrap the record first",
+            "wrap the variable of the model too, so that both are compared modulo one revolution: `measured log.phi = mod(rotor.phi, 2*pi*1 [rad]);`, or unwrap the record first",
         ),
         RecordError::Short(_, rows) => (
-            format!("it has {rows} rows, and an observer settles in 150: it needs 300"),
-            "record longer, or more often",
+            format!(
+                "it has {rows} samples; an observer needs at least 300, because the first 150 are for settling"
+            ),
+            "record for longer, or at a higher rate",
         ),
         RecordError::Preparation(channel, cause) => (
             format!("the channel `{channel}`: {cause}"),
-            "change how `measured` prepares the column",
+            "change the preparation of the column in the `measured` declaration",
         ),
     };
     Diagnostic::error(
@@ -62,18 +64,18 @@ pub fn unsupported(error: &Unsupported, span: Span) -> Diagnostic {
     let (cause, help) = match error {
         Unsupported::Clock(part) => (
             format!("the clocked part `{part}` closes the loop"),
-            "replay what it puts out: `replay motor.i_ref = file.i_ref;` in the experiment",
+            "replace its output by the recorded one: `replay motor.i_ref = file.i_ref;` in the experiment",
         ),
         Unsupported::Delay => (
-            "it delays what depends on states".to_owned(),
-            "an observer delays only what the record drives the model with: replay what is delayed, `replay x = file.x;`",
+            "a `delay` depends on states".to_owned(),
+            "an observer can delay only recorded inputs: replace the delayed variable by its record, `replay x = file.x;`",
         ),
         Unsupported::ChosenStates => (
-            "its states are chosen while running".to_owned(),
-            "this version observes no model whose bodies are tied by changing constraints",
+            "its states are chosen during the run".to_owned(),
+            "this version cannot observe a model whose bodies are joined by changing constraints",
         ),
         Unsupported::Start(cause) => (
-            format!("it has no start: {cause}"),
+            format!("its initial state cannot be computed: {cause}"),
             "run its experiment first: `hyde run FILE`",
         ),
     };
@@ -95,7 +97,7 @@ pub fn unlearned(calibration: &Calibration, causes: &[Cause]) -> Diagnostic {
     let mut diagnostic = Diagnostic::error(
         Code::NothingLearned,
         format!(
-            "the calibration `{}` learns nothing: no innovation depends on {}",
+            "the calibration `{}` cannot determine any parameter: no innovation depends on {}",
             calibration.plan.name,
             names.join(", ")
         ),
@@ -108,8 +110,8 @@ pub fn unlearned(calibration: &Calibration, causes: &[Cause]) -> Diagnostic {
         .iter()
         .any(|cause| matches!(cause, Cause::Held { .. }));
     diagnostic.help(match held {
-        true => "drive the model with what moved the axis, `stimulus F = file.force;`, and measure what moves",
-        false => "record a motion in which these parameters matter, or `vary` others",
+        true => "drive the model with the recorded input that moved the axis, `stimulus F = file.force;`, and declare a channel that moves as `measured`",
+        false => "record a motion that these parameters influence, or `vary` others",
     })
 }
 
@@ -121,7 +123,7 @@ pub fn reason(calibration: &Calibration, cause: &Cause) -> String {
             state,
             record,
         } => format!(
-            "the observer stands still: `{automaton}` is in mode `{mode}` in all samples of {record}, which holds `{state}`"
+            "the observer does not move: `{automaton}` is in mode `{mode}` in all samples of {record}, and this mode fixes `{state}`"
         ),
         Cause::Astray {
             channel,
@@ -131,7 +133,7 @@ pub fn reason(calibration: &Calibration, cause: &Cause) -> String {
             let channel = &calibration.compiled.program.experiment.measured[*channel];
             let shown = |value| engineering_difference(value, &channel.unit);
             format!(
-                "the observer does not follow {record}: the innovations of `{}` are {}, and the signal itself varies by {}",
+                "the observer does not follow {record}: the rms of the innovations of `{}` is {}, and the signal itself varies by only {}",
                 channel.name,
                 shown(rms.0),
                 shown(rms.1)

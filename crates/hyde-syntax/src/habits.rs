@@ -135,7 +135,7 @@ const fn word(
     }
 }
 
-const ASSIGNMENTS: &str = "write each assignment as an equation, `y = 2*x;`, a choice as `y = if x > 0 then x else 0;`; what changes at instants is set by `when x > 1 then … end when;` or in a `clocked` part";
+const ASSIGNMENTS: &str = "write each assignment as an equation, `y = 2*x;`, and a choice as `y = if x > 0 then x else 0;`; for variables that change at events write `when x > 1 then … end when;` or a `clocked` part";
 const LOOP: &str = "Hyde has no loops that run: equations over a range are `for i in 1:n loop … end for;`, sums are `sum(x)`";
 const HANDED_DOWN: &str = "hand it to the parts that need it: `Part part(g = g);` with `parameter Real g;` in the part, or connect it";
 const OPEN_TO_ALL: &str =
@@ -147,7 +147,7 @@ static WORDS: [Habit; 30] = [
     word(
         "algorithm",
         Place::First,
-        "Hyde has no `algorithm` sections: what it has are equations",
+        "Hyde has no `algorithm` sections, only equations",
         ASSIGNMENTS,
     ),
     word(
@@ -226,7 +226,7 @@ static WORDS: [Habit; 30] = [
         "enumeration",
         Place::Call,
         "Hyde has no `enumeration`",
-        "what a part can be in are its modes, `modes initial open { mode open { … } mode shut { … } }`; a choice is an Integer parameter",
+        "write the states of a part as modes, `modes initial open { mode open { … } mode shut { … } }`, and a choice as an Integer parameter",
     ),
     word(
         "within",
@@ -263,7 +263,7 @@ static WORDS: [Habit; 30] = [
     word(
         "initial",
         Place::Call,
-        "`initial()` is not known: what holds at the start are equations",
+        "Hyde has no `initial()`: conditions at the start are equations",
         "write `initial equation` and the equations below it",
     ),
     word("while", Place::First, "Hyde has no `while`", LOOP),
@@ -342,7 +342,7 @@ static SIGNS: [Habit; 8] = [
     word(
         "'",
         Place::Inside,
-        "a name is not written in quotes",
+        "a name cannot be written in quotes",
         "names have letters, digits and `_`: `x_ref`",
     ),
 ];
@@ -350,7 +350,7 @@ static SIGNS: [Habit; 8] = [
 static ALIAS: Habit = word(
     "=",
     Place::Inside,
-    "an import has no other name",
+    "an import cannot be renamed",
     "import a package whole, `import SI.*;`, and use its names as they are: `Mass m;`",
 );
 

@@ -48,7 +48,7 @@ fn without_end(text: &str, file: FileId) -> Option<Diagnostic> {
     let (what, help) = if opened == "\"" {
         (
             "text",
-            "end it with `\"`; where this one does, a text before it has no end",
+            "end it with `\"`; if it has an end, an earlier text is not closed",
         )
     } else {
         ("comment", "end it with `*/`")
@@ -134,9 +134,9 @@ impl<'a> Parser<'a> {
             )
             .label(
                 span,
-                "the limit of 60 brackets or 500 operators is passed here",
+                "the limit of 60 nested brackets or 500 operators is exceeded here",
             )
-            .help("give parts of it names of their own: `Real part = …;`"),
+            .help("give parts of it separate names: `Real part = …;`"),
         );
         self.at = end;
         true
@@ -208,7 +208,7 @@ impl<'a> Parser<'a> {
             .unwrap_or(&expected);
         if hint.is_none() && expected.contains("a name") && words::is_reserved(&found) {
             return Diagnostic::error(Code::Syntax, format!("{found} cannot be a name"))
-                .label(span, "this is a word of the language")
+                .label(span, "this is a keyword of the language")
                 .help("choose another name");
         }
         let diagnostic =

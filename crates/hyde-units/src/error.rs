@@ -100,17 +100,17 @@ impl UnitError {
             UnitErrorKind::Unexpected { expected, found } => {
                 format!("expected {expected}, found `{found}`")
             }
-            UnitErrorKind::Factor { number } => format!("a unit has no factor like `{number}`"),
-            UnitErrorKind::TwoReadings { .. } => {
-                "a product after `/` can be read in two ways".to_owned()
+            UnitErrorKind::Factor { number } => {
+                format!("a unit cannot contain a factor such as `{number}`")
             }
+            UnitErrorKind::TwoReadings { .. } => "a product after `/` is ambiguous".to_owned(),
             UnitErrorKind::Offset { symbol } => {
-                format!("`{symbol}` has a zero point of its own and fits no product")
+                format!("`{symbol}` has an offset zero point and cannot be part of a product")
             }
             UnitErrorKind::Exponent { exponent } => {
                 format!("the exponent `{exponent}` is too large or not exact")
             }
-            UnitErrorKind::TooDeep => "too many parentheses in each other".to_owned(),
+            UnitErrorKind::TooDeep => "too many nested parentheses".to_owned(),
             UnitErrorKind::OutOfRange => "the factor to SI is out of range".to_owned(),
         }
     }

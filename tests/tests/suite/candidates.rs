@@ -252,7 +252,7 @@ fn an_effect_that_cannot_be_put_on_the_model_is_told() {
         .iter()
         .filter_map(|own| own.as_str())
         .collect();
-    let told = "Broken at a was not tried, for it cannot be put on the model: ";
+    let told = "Broken at a was not tried because it cannot be added to the model: ";
     assert!(doubts.iter().any(|own| own.starts_with(told)), "{doubts:?}");
     assert!(!doubts.iter().any(|own| own.contains("Slow")), "{doubts:?}");
 }

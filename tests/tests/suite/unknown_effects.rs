@@ -439,6 +439,6 @@ fn of_a_reading_that_was_held_no_law_is_made() {
             r#"{"channel":"phi","from_s":2.0,"record":"fit-1.csv","to_s":2.099}"#,
         ]
     );
-    let told = "phi of fit-1.csv reads the same from 1 to 1.099 s";
+    let told = "phi of fit-1.csv is constant from 1 to 1.099 s";
     assert!(found["doubts"][0].as_str().unwrap().starts_with(told));
 }

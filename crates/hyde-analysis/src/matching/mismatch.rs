@@ -87,7 +87,7 @@ pub(crate) fn unbound_input(system: &System, input: VarId) -> Diagnostic {
     let name = &variable.name;
     Diagnostic::error(
         Code::UnboundInput,
-        format!("the input `{name}` has nothing to read"),
+        format!("the input `{name}` has no source"),
     )
     .placed(
         system,
@@ -193,35 +193,32 @@ fn constrained(system: &System, node: Node) -> Diagnostic {
     }
     let origin = origin(system, node);
     if names.is_empty() {
-        return Diagnostic::error(
-            Code::TooManyEquations,
-            "this equation determines nothing new",
-        )
-        .placed(
-            system,
-            &origin,
-            "an equation too many in this component",
-            "all it names is known without it",
-        )
-        .help("remove it, or what gives its variables their values");
+        return Diagnostic::error(Code::TooManyEquations, "this equation is redundant")
+            .placed(
+                system,
+                &origin,
+                "an equation too many in this component",
+                "other equations determine all its variables",
+            )
+            .help("remove it, or the equations that determine its variables");
     }
     let list: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     let diagnostic = Diagnostic::error(
         Code::Constrained,
         format!("{} are constrained to each other", list.join(" and ")),
     )
-    .label(origin.span, "this equation fixes one by the others");
+    .label(origin.span, "this equation determines one from the others");
     if sides(system, node)
         .iter()
         .any(|(range, ..)| *range != Range::SCALAR)
     {
         return diagnostic
-            .note("between whole arrays a constraint is differentiated where it gives one of them: `x[i] = …`")
+            .note("a constraint between whole arrays can be differentiated if it is solved for one of them: `x[i] = …`")
             .help("solve it for one of the arrays, or put a stiffness between the parts");
     }
     diagnostic
         .note("each of them is a state with an equation for its derivative: the model needs index reduction")
-        .help("put a stiffness between the parts, or describe the joined parts by one of the states")
+        .help("put a spring between the parts, or describe the joined parts by one of the states")
 }
 
 /// Labels in the user's own file for what lies in a component of a library.
@@ -288,7 +285,8 @@ fn too_many(
             .collect();
         diagnostic = diagnostic.note(format!("in {}", list.join(", ")));
     }
-    diagnostic.help("remove one of them, or put something elastic between the parts that both fix")
+    diagnostic
+        .help("remove one of them, or put a spring between the parts that both of them constrain")
 }
 
 /// The name of an unknown: of a whole array with its bounds.

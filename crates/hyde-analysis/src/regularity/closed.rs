@@ -30,7 +30,7 @@ pub(crate) fn held_once_more(system: &System, constraints: Vec<Node>) -> Diagnos
         [] | [_] => "constraints".to_owned(),
         several => and(several),
     };
-    let message = format!("{who} hold each other once more than they can be held");
+    let message = format!("{who} constrain each other redundantly");
     let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message);
     for span in own.into_iter().take(4) {
         diagnostic = diagnostic.label(span, "a constraint among them");
@@ -38,13 +38,13 @@ pub(crate) fn held_once_more(system: &System, constraints: Vec<Node>) -> Diagnos
     for (number, (part, span)) in parts.iter().take(8).enumerate() {
         let text = match number {
             0 => "one of the rigid parts that close a loop".to_owned(),
-            _ => format!("`{part}` is one too"),
+            _ => format!("`{part}` is another"),
         };
         diagnostic = diagnostic.label(*span, text);
     }
     diagnostic
-        .note("with these dimensions the loop moves, but one of its parts is redundant: how they share the force cannot be told")
-        .help("take one out, or put a `SpringDamper` in the place of one strut, its joints included")
+        .note("with these dimensions the loop can move, but one of its parts is redundant: the distribution of the force is not determined")
+        .help("remove one, or replace one strut and its joints by a `SpringDamper`")
 }
 
 /// Who has a part in an equation: itself, its variables, and the parameters that are its dimensions.

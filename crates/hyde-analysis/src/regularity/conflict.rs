@@ -108,8 +108,10 @@ fn too_few(system: &System, likely: VarId, unknowns: &[VarId]) -> Diagnostic {
     for node in mentioning(system, likely).into_iter().take(2) {
         let origin = matching::origin(system, node);
         if origin.made_by != MadeBy::Unconnected {
-            diagnostic =
-                diagnostic.label(origin.span, "names it, but is needed for another unknown");
+            diagnostic = diagnostic.label(
+                origin.span,
+                "contains it, but is needed for another unknown",
+            );
         }
     }
     let others: Vec<String> = unknowns

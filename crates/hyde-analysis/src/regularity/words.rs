@@ -96,10 +96,10 @@ pub(super) fn parameter(system: &System, conflict: &Conflict) -> Option<Diagnost
                     Code::TooManyEquations,
                     format!("`{name}` is a parameter: this equation cannot determine it"),
                 )
-                .label(origin.span, "all it names is determined without it")
+                .label(origin.span, "other equations determine all its variables")
                 .label(parameter.origin.span, "its value is given here")
                 .help(format!(
-                    "if the equation is to give `{name}` its value, declare it without `parameter` and without a value"
+                    "if the equation should determine `{name}`, declare it without `parameter` and without a value"
                 )),
             );
         }
@@ -129,15 +129,15 @@ pub(super) fn loose(system: &System, conflict: &Conflict) -> Option<Diagnostic> 
         Code::TooManyEquations,
         format!("{} {is} connected to nothing", list.join(" and ")),
     )
-    .label(*span, format!("`{part}` acts on nothing there"));
+    .label(*span, format!("`{part}` is not connected at this end"));
     if let Some(variable) = open {
         diagnostic = diagnostic.note(format!(
-            "what flows at an open end is 0, so nothing is left to determine `{}`",
+            "the flow at an unconnected connector is 0, so no equation determines `{}`",
             variable.name
         ));
     }
     Some(diagnostic.help(format!(
-        "connect {}, or take `{part}` out",
+        "connect {}, or remove `{part}`",
         if list.len() == 1 { "it" } else { "one of them" }
     )))
 }
@@ -167,11 +167,11 @@ pub(super) fn floating(system: &System, conflict: &Conflict) -> Option<Diagnosti
     let names: Vec<String> = parts.iter().map(|(name, _)| format!("`{name}`")).collect();
     let mut diagnostic = Diagnostic::error(
         Code::TooFewEquations,
-        format!("nothing fixes the {what} of {}", and(&names)),
+        format!("no equation fixes the {what} of {}", and(&names)),
     );
     for (number, (part, span)) in parts.iter().take(4).enumerate() {
         let text = match number {
-            0 => format!("the {what} of `{part}` is told against the others' alone"),
+            0 => format!("the {what} of `{part}` is defined only relative to the others"),
             _ => format!("and that of `{part}`"),
         };
         diagnostic = diagnostic.label(*span, text);
@@ -179,14 +179,14 @@ pub(super) fn floating(system: &System, conflict: &Conflict) -> Option<Diagnosti
     let repair = match what {
         "voltage" => "connect a `Ground` to one node of the circuit".to_owned(),
         "angle" | "place" => {
-            "connect one of them to a body with mass or to a `Fixed`; springs alone hold nothing"
+            "connect one of them to a body with mass or to a `Fixed`; springs alone do not define a position"
                 .to_owned()
         }
-        _ => format!("connect something that has a {what} of its own"),
+        _ => format!("connect a component that defines its {what}"),
     };
     Some(
         diagnostic
-            .note("what flows into them sums to 0 already, in every one of these connections")
+            .note("their flows already sum to 0 in each of these connections")
             .help(repair),
     )
 }
@@ -215,7 +215,7 @@ pub(super) fn held_twice(system: &System, conflict: &Conflict) -> Option<Diagnos
     };
     let fix = match names.len() {
         2 => format!("{} both fix {place}", and(&names)),
-        _ => format!("{} fix {place} once more than it can be", and(&names)),
+        _ => format!("{} fix {place} once too often", and(&names)),
     };
     let mut diagnostic = Diagnostic::error(Code::TooManyEquations, fix);
     for (number, (part, span)) in parts.iter().take(6).enumerate() {
@@ -242,16 +242,16 @@ pub(super) fn held_twice(system: &System, conflict: &Conflict) -> Option<Diagnos
         .find(|variable| variable.flow)
     {
         diagnostic = diagnostic.note(format!(
-            "how they share the {} at `{}` cannot be told",
+            "the distribution of the {} at `{}` is not determined",
             noun(open.quantity.dimension),
             connector(&open.name)
         ));
     }
     let repair = match what {
         "voltage" => "remove one, or put a resistance between them",
-        "current" => "remove one, or give the node another way for the current",
+        "current" => "remove one, or give the current at the node another path",
         "temperature" => "remove one, or put a thermal resistance between them",
-        "angle" | "place" | "speed" => "remove one, or put a stiffness between them",
+        "angle" | "place" | "speed" => "remove one, or put a spring between them",
         _ => "remove one of them",
     };
     Some(diagnostic.help(repair))
@@ -273,7 +273,7 @@ pub(super) fn generic(system: &System, conflict: &Conflict) -> Diagnostic {
     };
     let count = conflict.equations.len();
     let message = match (count, unknowns.len()) {
-        (1, 0) => "this equation determines nothing".to_owned(),
+        (1, 0) => "this equation determines no variable".to_owned(),
         (_, unknown) if count > unknown => format!(
             "{} for {}: {}{more}",
             plural(count, "equation"),
@@ -281,7 +281,7 @@ pub(super) fn generic(system: &System, conflict: &Conflict) -> Diagnostic {
             names.join(", ")
         ),
         _ => format!(
-            "one of the {count} equations of {}{more} says nothing new",
+            "one of the {count} equations of {}{more} is redundant",
             names.join(", ")
         ),
     };
@@ -289,7 +289,7 @@ pub(super) fn generic(system: &System, conflict: &Conflict) -> Diagnostic {
     // The model's own lines first, then the components that have the rest.
     for origin in conflict.own(system).iter().take(4) {
         let text = match diagnostic.labels.len() {
-            0 => "one of these is too many",
+            0 => "one of these is redundant",
             _ => "one of them",
         };
         diagnostic = diagnostic.label(origin.span, text);
@@ -312,7 +312,7 @@ pub(super) fn generic(system: &System, conflict: &Conflict) -> Diagnostic {
             .component(&origin)
             .map_or(origin.span, |(_, span)| span);
         let text = format!(
-            "`{}` is connected to nothing: its {what} is 0 already",
+            "`{}` is not connected: its {what} is already 0",
             origin.instance
         );
         diagnostic = diagnostic.label(span, text);
@@ -325,16 +325,13 @@ pub(super) fn generic(system: &System, conflict: &Conflict) -> Diagnostic {
         .collect();
     if !open.is_empty() {
         let more = if conflict.open.len() > 4 { ", …" } else { "" };
-        diagnostic = diagnostic.note(format!(
-            "nothing is left to determine {}{more}",
-            open.join(", ")
-        ));
+        diagnostic = diagnostic.note(format!("no equation determines {}{more}", open.join(", ")));
     }
     diagnostic.help(match (conflict.parts.is_empty(), open.is_empty()) {
         (true, true) => "remove one of them",
-        (true, false) => "remove one of them, or say in it what is meant of the open unknown",
+        (true, false) => "remove one of them, or rewrite it so that it determines the open unknown",
         (false, _) => {
-            "remove one of them, or put something elastic between parts that both fix a motion"
+            "remove one of them, or put a spring between the parts that both fix a motion"
         }
     })
 }
@@ -437,7 +434,7 @@ pub(super) fn jammed(system: &System, conflict: &Conflict, var: VarId) -> Diagno
     let mut diagnostic = Diagnostic::error(
         Code::Jammed,
         format!(
-            "{} {both} {place}, each differently: nothing can move",
+            "{} {both} {place} in contradictory ways: nothing can move",
             and(&names)
         ),
     );
@@ -457,9 +454,6 @@ pub(super) fn jammed(system: &System, conflict: &Conflict, var: VarId) -> Diagno
         }
     }
     diagnostic
-        .note(format!(
-            "together they leave `{}` no value but 0",
-            variable.name
-        ))
-        .help("remove one, give it the ratio of the others, or put a stiffness between them")
+        .note(format!("together they force `{}` to be 0", variable.name))
+        .help("remove one, give it the ratio of the others, or put a spring between them")
 }

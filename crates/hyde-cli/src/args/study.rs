@@ -7,17 +7,17 @@ use std::path::PathBuf;
 /// A study in a file, with what is set from outside.
 #[derive(Clone, Debug, Args)]
 pub(crate) struct StudyArgs {
-    /// The model's file
+    /// File of the model
     pub(crate) file: PathBuf,
-    /// The study; the file's only one of its kind if left out
+    /// Name of the study; optional if the file has only one of this kind
     pub(crate) study: Option<String>,
     /// Set a parameter: `--set saddle.M='320 [kg]'` (repeatable)
     #[arg(long = "set", value_name = "PATH=VALUE [UNIT]")]
     pub(crate) settings: Vec<String>,
-    /// Look for the study's records below this folder instead of beside the model
+    /// Folder of the records [default: the folder of the model]
     #[arg(long, value_name = "DIR")]
     pub(crate) data: Option<PathBuf>,
-    /// Number of threads; all there are if left out. The result does not depend on it
+    /// Number of threads [default: all]; the result does not depend on it
     #[arg(long, value_name = "N")]
     pub(crate) jobs: Option<usize>,
     /// Print one JSON object on standard output and nothing else
@@ -57,7 +57,7 @@ impl StudyArgs {
 pub(crate) struct FitArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
-    /// Leave fit.json and the calibrated model in this folder
+    /// Write fit.json and the calibrated model to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }
@@ -66,7 +66,7 @@ pub(crate) struct FitArgs {
 pub(crate) struct DiagnoseArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
-    /// Leave the new model, report.json and report.html in this folder
+    /// Write the new model, report.json and report.html to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }
@@ -75,10 +75,10 @@ pub(crate) struct DiagnoseArgs {
 pub(crate) struct SelftestArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
-    /// Seed of all random numbers; the diagnosis's if left out
+    /// Seed of all random numbers [default: that of the diagnosis]
     #[arg(long, value_name = "N")]
     pub(crate) seed: Option<u64>,
-    /// Sizes of planted effects: parts of their ranges, or multiples of what shows on this axis
+    /// Sizes of planted effects: fractions of their ranges, or multiples (`2x`) of the smallest detectable size
     #[arg(
         long,
         value_name = "SIZES",
@@ -86,25 +86,25 @@ pub(crate) struct SelftestArgs {
         default_value = "0.5x,0.05,0.3"
     )]
     pub(crate) sizes: Vec<String>,
-    /// Sets of random numbers for each effect and size
+    /// Number of random draws for each effect and size
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub(crate) seeds: usize,
-    /// Sets of records with nothing planted
+    /// Number of data sets with no effect planted
     #[arg(long, value_name = "N", default_value_t = 20)]
     pub(crate) empties: usize,
-    /// These kinds of cases alone
+    /// Run only these kinds of cases
     #[arg(long, value_enum, value_delimiter = ',', value_name = "KINDS")]
     pub(crate) only: Vec<CaseKind>,
-    /// Plant these effects alone; all are still searched for
+    /// Plant only these effects; the diagnosis still searches for all
     #[arg(long, value_delimiter = ',', value_name = "EFFECTS")]
     pub(crate) effects: Vec<String>,
-    /// At most so many planted cases, spread evenly over all
+    /// Maximum number of planted cases, chosen evenly from all
     #[arg(long, value_name = "N")]
     pub(crate) sample: Option<usize>,
-    /// Keep finished cases in this folder: what is there is not done again
+    /// Write finished cases to this folder; cases already there are not run again
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
-    /// Leave the simulated records of this case, as the report calls it, in the folder of `--out`, and do no more
+    /// Only write the simulated records of this case, named as in the report, to the folder of `--out`
     #[arg(long, value_name = "NAME", requires = "out")]
     pub(crate) case: Option<String>,
 }
@@ -116,9 +116,9 @@ pub(crate) enum CaseKind {
     Planted,
     /// Nothing
     Empty,
-    /// Parameters further off than declared
+    /// Parameters outside their declared range
     Parameters,
-    /// Effects that the search is not told of
+    /// Effects that the search does not know
     Unknown,
     /// Faulty sensors
     Sensors,
@@ -126,7 +126,7 @@ pub(crate) enum CaseKind {
 
 #[derive(Debug, Args)]
 pub(crate) struct TrendArgs {
-    /// Folders that `diagnose --out` left, the oldest first; names that begin with a date, `2026-03-14`, give the time
+    /// Folders written by `diagnose --out`, the oldest first; names that begin with a date, `2026-03-14`, set the time
     #[arg(required = true)]
     pub(crate) folders: Vec<PathBuf>,
     /// Print one JSON object on standard output and nothing else

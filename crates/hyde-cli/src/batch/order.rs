@@ -153,7 +153,7 @@ impl Order {
                 .map(|(name, _)| name.as_str())
                 .collect();
             return Err(format!(
-                "`{}` holds another batch: the {} differ; give another folder, or remove this one",
+                "`{}` contains another batch: the {} differ; use another folder, or remove this one",
                 folder.display(),
                 differs.join(" and the ")
             ));
@@ -189,7 +189,7 @@ impl Order {
 fn kept(folder: &Path) -> Result<Kept, String> {
     let path = folder.join(ORDER);
     let kept: Kept = serde_json::from_str(&files::read_text(&path)?)
-        .map_err(|error| format!("`{}` is not the order of a batch: {error}", path.display()))?;
+        .map_err(|error| format!("`{}` does not describe a batch: {error}", path.display()))?;
     if kept.form != FORM {
         let (hyde, place) = (&kept.hyde, folder.display());
         return Err(format!(

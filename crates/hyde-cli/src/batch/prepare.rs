@@ -105,9 +105,9 @@ impl Prepared {
         let dataset = match Dataset::new(&ready.program, &draft.keep) {
             Ok(dataset) => dataset,
             Err(name) => {
-                let diagnostic = Diagnostic::error(Code::BadSweep, format!("`{name}` is to be kept, and no variable is called so"))
+                let diagnostic = Diagnostic::error(Code::BadSweep, format!("`keep {name}`: there is no such variable"))
                     .label(study.name.span, "in this sweep")
-                    .help("`hyde run --out DIR` leaves the names of all; `keep guide.*;` keeps those of a part");
+                    .help("the results of `hyde run --out DIR` list all variables; `keep guide.*;` keeps those of a component");
                 return Err(refuse(project, diagnostic));
             }
         };
@@ -115,7 +115,7 @@ impl Prepared {
         if dataset.measures.is_empty() && dataset.kept.is_empty() {
             let diagnostic = Diagnostic::warning(
                 Code::BadSweep,
-                "the experiment measures nothing, and nothing is kept",
+                "the experiment has no `measure`, and the sweep keeps no variable",
             )
             .label(
                 study.of.span,

@@ -24,7 +24,7 @@ const TOLD: usize = 6;
 pub(crate) fn of_folder(folder: &Path) -> Result<BatchReport, String> {
     if !Order::is_in(folder) {
         return Err(format!(
-            "`{}` holds no batch: `hyde sweep FILE --out DIR` leaves one; the page of a run is `report.html`",
+            "`{}` contains no batch: `hyde sweep FILE --out DIR` writes one; the page of a run is `report.html`",
             folder.display()
         ));
     }
@@ -33,14 +33,18 @@ pub(crate) fn of_folder(folder: &Path) -> Result<BatchReport, String> {
     let summary = files::read_text(&folder.join("summary.json"));
     let (Some(frame), Ok(summary)) = (frame, summary) else {
         return Err(format!(
-            "the batch in `{}` is not finished: `{again}` does what is missing",
+            "the batch in `{}` is not finished: `{again}` solves the missing cases",
             folder.display()
         ));
     };
     let summary: Value = serde_json::from_str(&summary)
         .map_err(|error| format!("`summary.json` of the batch: {error}"))?;
-    let cases = Cases::new(frame, &summary)
-        .ok_or_else(|| format!("the data set in `{}` is no batch's", folder.display()))?;
+    let cases = Cases::new(frame, &summary).ok_or_else(|| {
+        format!(
+            "the data set in `{}` is not that of a batch",
+            folder.display()
+        )
+    })?;
     let text = |key: &str| summary[key].as_str().unwrap_or_default().to_owned();
     let count = |key: &str| summary[key].as_u64().unwrap_or_default();
     let facts = [
@@ -95,7 +99,7 @@ fn verdicts(summary: &Value) -> Vec<Verdict> {
         match expectation["first"].as_u64() {
             None => Verdict {
                 outcome: Outcome::Passed,
-                text: format!("{text}: in all cases solved"),
+                text: format!("{text}: in all solved cases"),
             },
             Some(first) => Verdict {
                 outcome: Outcome::Failed,

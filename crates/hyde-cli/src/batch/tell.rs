@@ -38,7 +38,7 @@ pub(crate) fn text(batch: &Prepared, summary: &Summary, took: Took, rerun: &str)
             significant(rate, 2)
         );
     } else {
-        out.push_str("; all were there");
+        out.push_str("; all were already solved");
     }
     out.push('\n');
     if !summary.measures.is_empty() {
@@ -64,7 +64,7 @@ pub(crate) fn text(batch: &Prepared, summary: &Summary, took: Took, rerun: &str)
     for (measure, count, first) in &summary.broken {
         let name = &batch.dataset.measures[*measure].name;
         let _ = match first {
-            None => writeln!(out, "  expect {name}: holds in all"),
+            None => writeln!(out, "  expect {name}: holds in all cases"),
             Some(first) => writeln!(
                 out,
                 "  expect {name}: does not hold in {count}, first in case {first}"

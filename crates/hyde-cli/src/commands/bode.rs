@@ -163,7 +163,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
     let no_cut = program.experiment.cuts.is_empty();
     if no_cut && margins_alone {
-        let reason = "it is not said where the loop is cut: write `margins of SIGNAL;` in the experiment, or `--cut SIGNAL` here; what a controller puts out is one";
+        let reason = "the signal at which to open the loop is missing: write `margins of SIGNAL;` in the experiment, or `--cut SIGNAL` here; for example the output of a controller";
         return Err(wrong(reason.to_owned()));
     }
     let bodes = if margins_alone {

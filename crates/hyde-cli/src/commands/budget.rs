@@ -45,7 +45,7 @@ fn made(args: &ModelArgs) -> Result<Made, Exit> {
     let real = measures(args, project)?;
     if real.is_empty() {
         let reason = format!(
-            "`{experiment}` has no `measure`: say what is to be small, `measure Length lag = max(abs(r - s));`"
+            "`{experiment}` has no `measure`: add the error to be split, `measure Length lag = max(abs(r - s));`"
         );
         return Err(complain(args, Exit::CommandLine, &reason));
     }
@@ -93,12 +93,12 @@ fn asked(args: &ModelArgs, project: &Project) -> Result<Experiment, Exit> {
     let name = project.experiment.as_deref();
     let Some(experiment) = known.find(|known| name == Some(known.name.text.as_str())) else {
         return Err(refuse(
-            "a budget is that of an experiment; the file has none".to_owned(),
+            "a budget needs an experiment, and the file has none".to_owned(),
         ));
     };
     if ideals(experiment).next().is_none() {
         return Err(refuse(format!(
-            "`{}` has no `budget`: say what the ideal parts are, `budget play(nut.gap = 0), belt(belt.k = 1e9 [N/m]);`",
+            "`{}` has no `budget`: list the imperfections with their ideal values, `budget play(nut.gap = 0), belt(belt.k = 1e9 [N/m]);`",
             experiment.name.text
         )));
     }
@@ -110,7 +110,7 @@ fn asked(args: &ModelArgs, project: &Project) -> Result<Experiment, Exit> {
             .find(|setting| changed.contains(&setting.path));
         if let Some(setting) = both {
             return Err(refuse(format!(
-                "`--set {}` fixes what `{}` of the budget makes ideal",
+                "`--set {}` sets a parameter that `{}` of the budget varies",
                 setting.path, ideal.name.text
             )));
         }
@@ -238,7 +238,7 @@ fn text(made: &Made) -> String {
         if !budget.value.is_finite() || numbers.any(|number| !number.is_finite()) {
             let _ = writeln!(
                 out,
-                "    {NO_VALUE}: there is no number, for a run has no value of `{name}`: a\n       `settling` that does not come to pass before the run ends has none"
+                "    {NO_VALUE}: a run has no value of `{name}`; `settling` has no value if the\n       variable does not settle before the end of the run"
             );
         }
     }

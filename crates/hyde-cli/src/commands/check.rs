@@ -248,7 +248,7 @@ fn choices(model: &str, states: &States, project: &Project) -> Vec<String> {
     for choice in &states.chosen {
         let places: Vec<String> = choice.constraints.iter().map(place).collect();
         lines.push(format!(
-            "  {model}: {} of {} is chosen while running, tied at {}",
+            "  {model}: {} of {} is chosen as a state during the run, constrained at {}",
             choice.states,
             choice.candidates.join(", "),
             places.join(", ")
@@ -256,19 +256,19 @@ fn choices(model: &str, states: &States, project: &Project) -> Vec<String> {
     }
     for (name, origin) in &states.dependent {
         lines.push(format!(
-            "  {model}: {name} is no state, given at {}",
+            "  {model}: {name} is not a state; it is determined at {}",
             place(origin)
         ));
     }
     if !states.filled.is_empty() {
         let list = states.filled.join(", ");
         let equations = match states.equations {
-            0 => String::new(),
-            1 => ", or the initial equation,".to_owned(),
-            count => format!(", or one of {count} initial equations,"),
+            0 => " alone".to_owned(),
+            1 => " or the initial equation".to_owned(),
+            count => format!(" or one of {count} initial equations"),
         };
         lines.push(format!(
-            "  {model}: nothing but `start`{equations} says where {list} begins"
+            "  {model}: initial value from `start`{equations}: {list}"
         ));
     }
     // Eighty columns: what does not fit goes on below, deeper in.

@@ -55,7 +55,7 @@ fn listed(args: &EffectsArgs) -> Result<String, Exit> {
         .filter(|name| candidates.iter().all(|known| known.effect != *name))
         .collect();
     if !nowhere.is_empty() {
-        let line = format!("nowhere on this model: {}", nowhere.join(", "));
+        let line = format!("no site on this model: {}", nowhere.join(", "));
         for line in wrapped(&line, 78) {
             let _ = writeln!(text, "{line}");
         }

@@ -28,7 +28,7 @@ pub(super) fn check(args: &ModelArgs) -> Exit {
             } else if !args.quiet {
                 print_output(&table(&args.file.display().to_string(), &tests));
                 if !unused.is_empty() {
-                    print_output(&format!("no experiment has {}", unused.join(", ")));
+                    print_output(&format!("in no experiment: {}", unused.join(", ")));
                 }
             }
             if good { Exit::Done } else { Exit::Model }

@@ -73,7 +73,7 @@ fn watched(args: &FitArgs, calibration: &Calibration) -> Result<Fit, Unsupported
         let (steps, most) = shown.get();
         let most = most * starts.max(1) as f64;
         match steps > 0.0 {
-            true => format!("fitted {steps} of at most {most} steps"),
+            true => format!("fit: step {steps} of at most {most}"),
             false => "fitting".to_owned(),
         }
     });
@@ -135,7 +135,7 @@ fn text(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> String
     let program = &calibration.compiled.program;
     let mut out = String::new();
     let end = match fit.converged {
-        _ if !fit.causes.is_empty() => "WITHOUT FOLLOWING THEM".to_owned(),
+        _ if !fit.causes.is_empty() => "MODEL DOES NOT FOLLOW THEM".to_owned(),
         true => format!("converged in {}", counted(fit.steps, "step")),
         false => format!("NOT CONVERGED in {}", counted(fit.steps, "step")),
     };
@@ -152,7 +152,10 @@ fn text(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> String
     }
     if fit.agreeing_starts.1 > 1 {
         let (agreeing, all) = fit.agreeing_starts;
-        let _ = writeln!(out, "  {agreeing} of {all} starts ended there");
+        let _ = writeln!(
+            out,
+            "  {agreeing} of {all} starts converged to these values"
+        );
     }
     let _ = writeln!(
         out,
@@ -183,7 +186,7 @@ fn text(calibration: &Calibration, fit: &Fit, errors: &[RecordErrors]) -> String
             .iter()
             .map(|&number| fit.parameters[number].name.as_str())
             .collect();
-        let _ = writeln!(out, "  the data hardly tell apart: {}", names.join(", "));
+        let _ = writeln!(out, "  strongly correlated: {}", names.join(", "));
     }
     out.push('\n');
     out.push_str(&before_after::text(errors, calibration));

@@ -231,14 +231,13 @@ fn loop_told(program: &Program, linear: &Linear, poles: &Poles) -> String {
     match poles.period_s {
         Some(period) => format!(
             "closed loop of the clocks `{clocks}`, exact over their common period of {} ms:\n  \
-             ticks do not tell frequencies {} Hz apart from each other; listed is the one\n  \
-             nearest to a mode of the plant;\n  \
-             the plant alone: `--open`\n",
+             frequencies {} Hz apart cannot be distinguished; the list has the one\n  \
+             nearest to a mode of the plant; for the plant alone use `--open`\n",
             significant(1e3 * period, 4),
             significant(1.0 / period, 4)
         ),
         None if !linear.b_held.is_empty() => {
-            format!("the plant alone: what the clocks `{clocks}` hold stays as it is\n")
+            format!("plant alone: the outputs of the clocks `{clocks}` stay constant\n")
         }
         None => String::new(),
     }
@@ -253,7 +252,7 @@ fn with_energy(found: &Found, real: bool) -> String {
             "{:>12} {:>10}   {}",
             significant(mode.frequency_hz, 5),
             significant(mode.damping, 3),
-            energy.unwrap_or_else(|| "clocked parts alone".to_owned())
+            energy.unwrap_or_else(|| "only in clocked parts".to_owned())
         );
         let _ = writeln!(text, "{}", line.trim_end());
     }

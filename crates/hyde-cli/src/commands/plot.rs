@@ -64,7 +64,7 @@ fn figure(args: &PlotArgs) -> Result<Figure, String> {
         let part = args.from.is_some() || args.to.is_some();
         if args.xy || !args.panels.is_empty() || part {
             return Err(
-                "a frequency response is drawn whole: name no columns and no times".to_owned(),
+                "a frequency response is always plotted completely: leave out the columns and times".to_owned(),
             );
         }
         response::figure(title, &responses)

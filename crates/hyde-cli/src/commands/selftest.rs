@@ -129,9 +129,12 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
                     Err(work::Ended::Interrupted(done, total)) => {
                         let kept = match &args.out {
                             Some(folder) => {
-                                format!("; `{}` has them, run it again to go on", folder.display())
+                                format!(
+                                    "; they are kept in `{}`: run the command again to resume",
+                                    folder.display()
+                                )
                             }
-                            None => "; with `--out DIR` they would be kept".to_owned(),
+                            None => "; use `--out DIR` to keep finished cases".to_owned(),
                         };
                         print_error(&format!(
                             "interrupted after {done} of {}{kept}",
@@ -193,7 +196,7 @@ fn asked(args: &SelftestArgs) -> Result<Asked, String> {
             (Some(number), Some(_)) => Ok(Size::Detectable(number)),
             (Some(number), None) if number <= 1.0 => Ok(Size::Part(number)),
             (Some(_) | None, _) => Err(format!(
-                "`{text}` is no size: write a part of the range, `0.1`, or a multiple of what shows, `2x`"
+                "`{text}` is not a size: write a fraction of the range, `0.1`, or a multiple of the smallest detectable size, `2x`"
             )),
         }
     };
@@ -223,7 +226,7 @@ fn chosen(
     let known = |name: &String| hypotheses.iter().any(|h| h.effect == *name);
     if let Some(unknown) = args.effects.iter().find(|name| !known(name)) {
         return Err(format!(
-            "`{unknown}` is no effect that this diagnosis finds a site for; `hyde effects FILE` lists them"
+            "this diagnosis has no effect `{unknown}` with a site on the model; `hyde effects FILE` lists them"
         ));
     }
     all.retain(|case| match case.kind {

@@ -33,13 +33,13 @@ pub(crate) fn sweep(args: &SweepArgs) -> Exit {
 fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
     let kept = Order::is_in(&args.file);
     if files::is_folder(&args.file) && !kept {
-        let reason = format!("the folder `{}` holds no batch", args.file.display());
+        let reason = format!("the folder `{}` contains no batch", args.file.display());
         return Err(complain(args, Exit::CommandLine, &reason));
     }
     let (order, inputs) = if kept {
         if args.sweep.is_some() || !asked_for_nothing(args) {
             let reason = format!(
-                "`{}` holds its order already: leave out the sweep, `--of`, `--set`, `--record`, `--data`, `--seed` and `--keep`",
+                "`{}` is the folder of a batch, which defines the sweep: leave out the sweep, `--of`, `--set`, `--record`, `--data`, `--seed` and `--keep`",
                 args.file.display()
             );
             return Err(complain(args, Exit::CommandLine, &reason));
@@ -169,7 +169,7 @@ fn locked(folder: &Path, shared: bool) -> Result<Option<std::fs::File>, String> 
     match locked {
         Ok(()) => Ok(Some(file)),
         Err(std::fs::TryLockError::WouldBlock) => Err(format!(
-            "another process is at work in `{}`: wait for it, or end it",
+            "another process is working in `{}`: wait for it, or end it",
             folder.display()
         )),
         Err(std::fs::TryLockError::Error(_)) => Ok(None),
@@ -267,7 +267,7 @@ fn stopped(
     let done = store.map_or(0, |store| store.len());
     let kept = if args.out.is_some() || Order::is_in(&args.file) {
         format!(
-            "; run again to go on: hyde sweep {}",
+            "; to resume: hyde sweep {}",
             word(&folder.to_string_lossy())
         )
     } else {

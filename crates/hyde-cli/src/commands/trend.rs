@@ -57,7 +57,7 @@ pub(crate) fn trend(args: &TrendArgs) -> Exit {
 fn told(args: &TrendArgs) -> Result<String, String> {
     if args.folders.len() < 2 {
         return Err(
-            "a trend is of two reports or more: `hyde trend 2026-01-10 2026-03-14`".to_owned(),
+            "a trend needs two reports or more: `hyde trend 2026-01-10 2026-03-14`".to_owned(),
         );
     }
     let labels: Vec<String> = args.folders.iter().map(|folder| label(folder)).collect();
@@ -110,10 +110,10 @@ fn report(folder: &Path) -> Result<Value, String> {
     };
     let text = files::read_text(&path)?;
     let report: Value = serde_json::from_str(&text)
-        .map_err(|error| format!("`{}` is no JSON: {error}", path.display()))?;
+        .map_err(|error| format!("`{}` is not valid JSON: {error}", path.display()))?;
     if report["report"] != 1 || !report["effects"].is_array() {
         return Err(format!(
-            "`{}` is no report of `hyde diagnose` of this version",
+            "`{}` is not a report of this version of `hyde diagnose`",
             path.display()
         ));
     }

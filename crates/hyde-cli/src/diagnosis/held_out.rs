@@ -44,7 +44,7 @@ impl Refused {
     pub(crate) fn sentence(&self) -> String {
         let each: Vec<String> = self.worse.iter().map(Worse::text).collect();
         format!(
-            "{} at {} ({}) was found on the records fitted, and is not claimed: {}",
+            "{} at {} ({}) fits the fitted records but is rejected because it makes held-out records worse: {}",
             self.effect,
             self.site,
             verdict::quantity(&self.size),
@@ -57,7 +57,7 @@ impl Worse {
     /// `the free run of i in validate-a.csv goes from 22.7 mA to 24 mA`
     fn text(&self) -> String {
         format!(
-            "the {} of {} in {} goes from {} to {}",
+            "the {} of {} in {} grows from {} to {}",
             self.measure,
             self.channel,
             self.record,

@@ -72,7 +72,7 @@ pub(super) fn written(
     for finding in &told.found.findings {
         for other in &finding.alternatives {
             about.push(format!(
-                "These records do not tell it from {}.",
+                "In these records it cannot be distinguished from {}.",
                 named(&told.hypotheses[other.hypothesis])
             ));
         }

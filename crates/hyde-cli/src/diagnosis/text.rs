@@ -55,13 +55,13 @@ fn left(out: &mut String, told: &Told<'_>) {
     let beyond = |map: &&ResidualMap| map.excess.0.max(map.excess.1) > 1.0;
     let shown: Vec<&ResidualMap> = told.maps.iter().filter(beyond).take(MAPS).collect();
     if shown.is_empty() {
-        out.push_str("\n  innovations go with nothing that was measured\n");
+        out.push_str("\n  the innovations depend on no measured quantity\n");
         return;
     }
     let _ = writeln!(
         out,
-        "\n  {:<40} {:>8} {:>8}   1 is chance",
-        "innovations go with", "before", "after"
+        "\n  {:<40} {:>8} {:>8}   up to 1: chance",
+        "the innovations depend on", "before", "after"
     );
     for map in shown {
         let name = format!("{} over {}", map.channel, map.over);
@@ -110,8 +110,8 @@ fn tried(out: &mut String, told: &Told<'_>) {
     }
     let _ = writeln!(
         out,
-        "\n  {:<27} {:>8} {:>8}  {:<18} seen from",
-        "tried and rejected", "score", "gain", "because"
+        "\n  {:<25} {:^19}  {:<20} smallest\n  {:<25} {:>9} {:>9}  {:<20} detectable",
+        "tried and rejected", "improvement", "", "", "predicted", "fitted", "reason"
     );
     for tried in all.iter().take(TRIED) {
         let size = tried.hypothesis.sizes.first();
@@ -121,8 +121,8 @@ fn tried(out: &mut String, told: &Told<'_>) {
             .zip(size)
             .map(|(value, size)| verdict::number(value, 2, &size.unit));
         let line = format!(
-            "  {:<27} {:>8} {:>8}  {:<18} {}",
-            before_after::shortened(&named(tried.hypothesis), 27),
+            "  {:<25} {:>9} {:>9}  {:<20} {}",
+            before_after::shortened(&named(tried.hypothesis), 25),
             significant(tried.score.gain(), 3),
             tried
                 .trial
@@ -135,7 +135,7 @@ fn tried(out: &mut String, told: &Told<'_>) {
     if all.len() > TRIED {
         let _ = writeln!(
             out,
-            "  and {} more: `--out DIR` or `--json` has them",
+            "  and {} more: see `--out DIR` or `--json`",
             all.len() - TRIED
         );
     }

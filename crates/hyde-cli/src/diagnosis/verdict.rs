@@ -16,7 +16,7 @@ pub(super) fn sentence(told: &Told<'_>) -> String {
         .map(|finding| sized(told, finding))
         .collect();
     match told.found.verdict {
-        Verdict::None => "no effect is missing that these records would show".to_owned(),
+        Verdict::None => "no missing effect detected".to_owned(),
         Verdict::Unknown if names.is_empty() => match told.found.frozen.as_slice() {
             [] => {
                 let hint = told
@@ -25,32 +25,29 @@ pub(super) fn sentence(told: &Told<'_>) -> String {
                     .as_ref()
                     .and_then(crate::unknown::most_like);
                 let hint =
-                    hint.map_or_else(String::new, |hint| format!("; it is most like {hint}"));
-                format!("something is missing, and no effect known is it{hint}")
+                    hint.map_or_else(String::new, |hint| format!("; it most resembles {hint}"));
+                format!("the model is incomplete: no known effect explains the residual{hint}")
             }
-            _ => {
-                "a sensor or its line held a reading; what the drive lacks such records do not tell"
-                    .to_owned()
-            }
+            _ => "a sensor reading was frozen; these records cannot be diagnosed".to_owned(),
         },
         Verdict::Unknown => {
             let names = names.join(", then ");
             match told.found.law() {
                 Some(_) => {
                     let more = match told.found.unexplained {
-                        true => ", and something more",
+                        true => ", and it does not explain the whole residual",
                         false => "",
                     };
-                    format!("missing is {names}, an effect that no library has{more}")
+                    format!("missing effect: {names}; no library has this effect{more}")
                 }
                 None => format!(
-                    "something is missing that no effect known is; a part of it looks like {names}"
+                    "the model is incomplete: no known effect explains the residual; a part of it resembles {names}"
                 ),
             }
         }
-        Verdict::Effect => format!("missing is {}", names.join(", then ")),
+        Verdict::Effect => format!("missing effect: {}", names.join(", then ")),
         Verdict::OneOf => format!(
-            "missing is {}, or what cannot be told from it",
+            "missing effect: {}, or another that cannot be distinguished from it",
             names.join(", then ")
         ),
     }
@@ -89,24 +86,26 @@ pub(super) fn grounds(told: &Told<'_>) -> Vec<String> {
         return Vec::new();
     };
     let which = if held_out.is_some() {
-        "on the records held out"
+        "on the held-out records"
     } else {
-        "on the records fitted; none were held out"
+        "on the fitted records (no record was held out)"
     };
     let change = match told.found.findings.is_empty() {
         true => format!("is {}", significant(before, 4)),
         false => format!(
-            "goes from {} to {}",
+            "changes from {} to {}",
             significant(before, 4),
             significant(after, 4)
         ),
     };
     let observer = told.found.observer.as_ref().map(|_| {
-        "all models are compared by the observer of the model found: that of the declared one does not hold its modes"
+        "all models are compared with the observer of the model with the effects, because the observer of the declared \
+         model is not stable in all modes"
             .to_owned()
     });
-    let change =
-        format!("the mean square of innovations {change}, {which}; about 1 where all is known");
+    let change = format!(
+        "the mean square of the innovations {change} {which}; a complete model gives about 1"
+    );
     [change].into_iter().chain(observer).collect()
 }
 
@@ -120,7 +119,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
     let seen = before_after::chi(&told.errors, false);
     if let Some((before, after)) = held_out.or(seen) {
         if after > before && !told.found.findings.is_empty() {
-            doubts.push("held-out records do not bear it out".to_owned());
+            doubts.push("the held-out records do not confirm it".to_owned());
         }
         doubts.extend(beyond_the_fitted(&told.errors));
     }
@@ -132,7 +131,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
             .collect();
         if !others.is_empty() {
             doubts.push(format!(
-                "these records do not tell {} from {}",
+                "in these records {} cannot be distinguished from {}",
                 named(&told.hypotheses[finding.hypothesis]),
                 others.join(", ")
             ));
@@ -143,7 +142,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
         let shapes = finding.shapes.iter().zip(&hypothesis.shapes);
         for (shape, _) in shapes.filter(|(shape, knob)| knob.is_at_bound(shape.value)) {
             doubts.push(format!(
-                "{} of {} stands on its bound: something like it, but not this",
+                "{} of {} is at its bound: the missing effect is probably a similar one",
                 shape.name,
                 named(hypothesis)
             ));
@@ -151,7 +150,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
         let mut sizes = finding.sizes.iter().zip(&hypothesis.sizes);
         if sizes.any(|(size, knob)| knob.is_beyond(size.value)) {
             doubts.push(format!(
-                "{} is larger than its library expects of any axis",
+                "{} is larger than the range that its library gives",
                 named(hypothesis)
             ));
         }
@@ -160,14 +159,12 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
         doubts.push(next);
     }
     if told.found.unexplained {
-        doubts.push(
-            "what is left is larger, or more like itself from row to row, than noise".to_owned(),
-        );
+        doubts.push("the residuals are larger, or more autocorrelated, than noise".to_owned());
     }
     for (_, new) in &told.parameters {
         if new.left_range || new.at_bound {
             doubts.push(format!(
-                "{} is outside of what was declared: it may stand in for something else",
+                "{} is outside its declared range: it may compensate for a missing effect",
                 new.name
             ));
         }
@@ -175,11 +172,11 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
     for (number, because) in &told.hindered {
         let effect = named(&told.hypotheses[*number]);
         doubts.push(format!(
-            "{effect} was not tried, for it cannot be put on the model: {because}"
+            "{effect} was not tried because it cannot be added to the model: {because}"
         ));
     }
     if !told.found.after.converged {
-        doubts.push("the last fit has not converged".to_owned());
+        doubts.push("the last fit did not converge".to_owned());
     }
     doubts
 }
@@ -188,7 +185,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
 fn frozen(told: &Told<'_>, own: &Frozen) -> String {
     let (from, to) = own.time_s;
     format!(
-        "{} of {} reads the same from {} to {} s, and jumps then: a sensor or its line, not a drive",
+        "{} of {} is constant from {} to {} s and then jumps: the sensor or its cable froze, not the drive",
         told.found.channel(own),
         own.record,
         significant(from, 4),
@@ -201,12 +198,12 @@ pub(super) fn alternative(told: &Told<'_>, other: &hyde_calibrate::Alternative) 
     let name = named(&told.hypotheses[other.hypothesis]);
     match &other.experiment {
         Some(experiment) => format!(
-            "{name}: {} times as much of the motion of {} would tell, most of all what it does from {} s on",
+            "{name}: recording the motion of {1} {0} times as long would distinguish them, above all its part from {2} s on",
             significant(experiment.times.max(1.0), 2),
             experiment.record,
             significant(experiment.second_s, 3)
         ),
-        None => format!("{name}: no motion of these records tells them apart"),
+        None => format!("{name}: no motion in these records distinguishes them"),
     }
 }
 
@@ -226,8 +223,8 @@ fn beyond_the_fitted(errors: &[RecordErrors]) -> Option<String> {
         .collect();
     (!each.is_empty()).then(|| {
         format!(
-            "the mean square of innovations stays larger in {} than in any record fitted (at most {}): there the axis does \
-             what those do not show",
+            "the mean square of the innovations stays larger in {} than in any fitted record (at most {}): those records \
+             contain behaviour that the fitted records do not",
             each.join(", "),
             significant(most, 3)
         )
@@ -259,9 +256,12 @@ fn next_best(told: &Told<'_>) -> Option<String> {
         .max_by(|a, b| a.gain.total_cmp(&b.gain))?;
     let share = 100.0 * next.gain / own.gain;
     let gains = match share > NEARLY_ALL && share < 100.0 {
-        true => format!("gains {} % less", significant(100.0 - share, 2)),
-        false => format!("gains {} % of what it gains", significant(share, 3)),
+        true => format!(
+            "improves the fit by {} % less",
+            significant(100.0 - share, 2)
+        ),
+        false => format!("reaches {} % of its improvement", significant(share, 3)),
     };
     let name = named(&told.hypotheses[next.hypothesis]);
-    Some(format!("the next best, {name}, {gains}"))
+    Some(format!("the next best candidate, {name}, {gains}"))
 }

@@ -270,7 +270,7 @@ fn a_diagnosis_leaves_the_new_model_and_its_report() {
     }
     let told = text(&output);
     assert!(
-        told.starts_with("bench: missing is Stribeck at guide (dF = 1"),
+        told.starts_with("bench: missing effect: Stribeck at guide (dF = 1"),
         "{told}"
     );
     for line in told.lines().filter(|line| !line.contains(&other)) {
@@ -326,7 +326,7 @@ fn page(page: &str, folder: &Folder) {
         "Stribeck",
         "Error before and after",
         "Error over time",
-        "What is left depends on",
+        "Residual maps",
         "Parameters",
         "Tried and rejected",
         "The new model",

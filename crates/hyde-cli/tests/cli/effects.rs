@@ -51,7 +51,7 @@ fn an_effect_that_vanishes_with_its_size_passes_and_another_does_not() {
         "{printed}"
     );
     assert!(
-        printed.contains("no experiment has Step, Idle"),
+        printed.contains("in no experiment: Step, Idle"),
         "{printed}"
     );
     let step = folder.file("step.hyde", &SLED.replace("EFFECT", "Step"));
@@ -59,7 +59,7 @@ fn an_effect_that_vanishes_with_its_size_passes_and_another_does_not() {
     assert_eq!(status(&output), 1);
     let printed = text(&output);
     // All of the step is there at a thousandth of its size.
-    let line = "FAILED  shove: body.a.Step.F  0.1 % of it leaves 100 % of its effect";
+    let line = "FAILED  shove: body.a.Step.F  at 0.1 % of its size, 100 % of its effect remains";
     assert!(printed.contains(line), "{printed}");
     let output = hyde(&["effects", &step, "--check", "--json"]);
     let value: Value = serde_json::from_str(&text(&output)).unwrap();

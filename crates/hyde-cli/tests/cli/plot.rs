@@ -101,7 +101,7 @@ fn one_column_over_another_in_several_panels() {
     for word in ["x", "y", "F [N]", "x [mm]", "[mm]"] {
         assert!(has(&all, word), "{word}: {all:?}");
     }
-    for (panel, word) in [("x", "write pairs"), ("x,y,F,y", "a panel of its own")] {
+    for (panel, word) in [("x", "write pairs"), ("x,y,F,y", "a separate panel")] {
         let output = hyde(&[
             "plot",
             &record,
@@ -156,7 +156,7 @@ fn a_response_is_drawn_as_one() {
     let output = hyde(&["plot", &response, "re", "--out", &folder.path("x.svg")]);
     assert_eq!(status(&output), 2);
     assert!(
-        errors(&output).contains("drawn whole"),
+        errors(&output).contains("always plotted completely"),
         "{}",
         errors(&output)
     );
@@ -242,7 +242,7 @@ fn a_batch_is_drawn_by_case_as_envelope_and_as_points() {
             "{points:?}"
         );
         for (line, word) in [
-            (vec!["plot", &many, "x,x"], "`--cases 3,7` draws lines"),
+            (vec!["plot", &many, "x,x"], "`--cases 3,7` plots lines"),
             (
                 vec!["plot", &many, "x", "--cases", "13"],
                 "no rows of case 13",

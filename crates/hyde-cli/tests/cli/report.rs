@@ -150,7 +150,7 @@ fn a_folder_without_a_finished_batch_is_refused() {
     let output = hyde(&["report", &folder.path("out")]);
     assert_eq!(status(&output), 2);
     assert!(
-        errors(&output).contains("holds no batch"),
+        errors(&output).contains("contains no batch"),
         "{}",
         errors(&output)
     );

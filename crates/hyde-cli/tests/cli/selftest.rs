@@ -94,7 +94,7 @@ fn planted_effects_are_found_and_nothing_where_nothing_is() {
     let again = tested(&[&only[..], &["--out", &out, "--json"]].concat());
     assert_eq!(json(&again), report);
     let printed = tested(&[&only[..], &["--out", &out]].concat());
-    assert!(printed.contains("named first: 2 of 2"), "{printed}");
+    assert!(printed.contains("ranked first: 2 of 2"), "{printed}");
     assert!(
         printed.lines().all(|line| line.chars().count() <= 80),
         "{printed}"
@@ -147,8 +147,8 @@ fn the_records_of_a_case_are_what_its_diagnosis_reads() {
 #[test]
 fn what_is_asked_wrongly_is_said() {
     for (arguments, told) in [
-        (["--sizes", "3"], "`3` is no size"),
-        (["--effects", "Strybeck"], "`Strybeck` is no effect"),
+        (["--sizes", "3"], "`3` is not a size"),
+        (["--effects", "Strybeck"], "has no effect `Strybeck`"),
     ] {
         let output = hyde(&[&["selftest", AXIS, "quick"], &arguments[..]].concat());
         assert_eq!(status(&output), 2);

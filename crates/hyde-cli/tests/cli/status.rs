@@ -58,7 +58,10 @@ fn status_2_when_the_command_line_is() {
             "no experiment `jump`; it has `step`",
         ),
         (&["run", &model, "--set", "T"], "write `path=value [unit]`"),
-        (&["run", &model, "--set", "T=fast"], "`fast` is no number"),
+        (
+            &["run", &model, "--set", "T=fast"],
+            "`fast` is not a number",
+        ),
         (&["run", &model, "--set", "T=5"], "`T` has a unit"),
         (
             &["run", &model, "--set", "T=5 [m]"],

@@ -112,7 +112,7 @@ fn one_process_at_a_time_and_one_batch_a_folder() {
     let second = hyde(&line);
     assert_eq!(status(&second), 2);
     assert!(
-        errors(&second).contains("another process is at work"),
+        errors(&second).contains("another process is working"),
         "{}",
         errors(&second)
     );
@@ -126,13 +126,13 @@ fn one_process_at_a_time_and_one_batch_a_folder() {
     let refused = hyde(&["sweep", &other, "s", "--out", &out]);
     assert_eq!(status(&refused), 2);
     assert!(
-        errors(&refused).contains("holds another batch: the model differ"),
+        errors(&refused).contains("contains another batch: the model differ"),
         "{}",
         errors(&refused)
     );
     let refused = hyde(&["sweep", &out, "--seed", "3"]);
     assert!(
-        errors(&refused).contains("holds its order already"),
+        errors(&refused).contains("is the folder of a batch"),
         "{}",
         errors(&refused)
     );

@@ -104,10 +104,10 @@ impl Draft {
         if draft.varying.is_empty() {
             return Err(mistake(
                 draft.span,
-                "this sweep varies nothing",
-                "what changes from case to case?",
+                "this sweep has no `vary`",
+                "no parameter changes from case to case",
             )
-            .help("write `vary gap in 5 .. 50 [um];` and how many: `grid 10;`"));
+            .help("write `vary gap in 5 .. 50 [um];` and the number of points: `grid 10;`"));
         }
         Ok(draft)
     }
@@ -206,7 +206,7 @@ impl Draft {
     fn filled(&mut self, fill: Fill, span: Span) -> Result<(), Diagnostic> {
         if let Some((_, before)) = self.fill {
             return Err(
-                mistake(span, "ranges are filled in two ways", "and by this")
+                mistake(span, "the sweep has two sampling plans", "and this")
                     .label(before, "by this")
                     .help("keep one of `grid`, `random`, `latin` and `sobol`"),
             );
@@ -245,7 +245,7 @@ fn count(value: &SettingValue, span: Span) -> Result<usize, Diagnostic> {
     }
     Err(mistake(
         span,
-        "this counts nothing",
+        "this is not a count",
         "a whole number from 1 to 1e9 is expected",
     )
     .help("write `grid 10;`, `random 500;`, `latin 500;`, `sobol 512;`, `seed 1;`"))

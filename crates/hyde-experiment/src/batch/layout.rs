@@ -185,8 +185,8 @@ impl<'m> Layout<'m> {
                 None => Ok(()),
                 Some((_, span)) => {
                     Err(
-                        mistake(*span, "there is no range to fill", "with points of what?")
-                            .help("write `vary gap in 5 .. 50 [um];`, or leave this out"),
+                        mistake(*span, "the sweep has no range", "points need a range")
+                            .help("write `vary gap in 5 .. 50 [um];`, or remove this"),
                     )
                 }
             };
@@ -194,15 +194,15 @@ impl<'m> Layout<'m> {
         match &draft.fill {
             None => Err(mistake(
                 first,
-                "it is not said how ranges are filled",
-                "with how many points?",
+                "the ranges have no sampling plan",
+                "how many points?",
             )
             .help("write `grid 10;`, `random 500;`, `latin 500;` or `sobol 512;`")),
             Some((Fill::Grid(counts), span)) => {
                 if counts.len() > 1 && counts.len() != self.ranges.len() {
                     let message =
                         format!("{} counts for {} ranges", counts.len(), self.ranges.len());
-                    return Err(mistake(*span, message, "one for all, or one each"));
+                    return Err(mistake(*span, message, "give one for all, or one for each"));
                 }
                 Ok(())
             }
@@ -226,7 +226,7 @@ impl<'m> Layout<'m> {
                     let name = &self.inputs[*input].name;
                     return Err(mistake(
                         *span,
-                        format!("`{name}` shapes the equations: each value compiles anew"),
+                        format!("`{name}` changes the structure of the equations: each value is compiled separately"),
                         "sampled",
                     )
                     .help(format!("give it few values: `vary {name} = {{…, …}}`")));

@@ -16,13 +16,16 @@ pub(super) fn varying(variation: &Variation) -> Result<Varying, Diagnostic> {
         }) if !items.is_empty() => Ok((items, unit.as_ref())),
         Some(other) => Err(mistake(
             other.span,
-            "the alternatives are no list",
-            "one value is no sweep",
+            "the alternatives are not a list",
+            "one value is not a sweep",
         )
         .help("write them in braces: `{…, …}`")),
         None => Err(mistake(
             span,
-            format!("it is not said how `{}` varies", path(target)),
+            format!(
+                "`{}` has neither a range nor a list of values",
+                path(target)
+            ),
             "between what?",
         )
         .help("write `in 5 .. 50 [um]` for a range, or `= {5, 10, 20} [um]` for these values")),
@@ -101,7 +104,7 @@ fn model_name(expr: &Expr) -> Result<String, Diagnostic> {
         return Ok(reference.dotted());
     }
     Err(
-        mistake(expr.span, "this names no model", "a name is expected").help(
+        mistake(expr.span, "this is not the name of a model", "a name is expected").help(
             "give the variant a name, `model Worn = Axis(gap = 20 [um]);`, and write `vary model = {Axis, Worn};`",
         ),
     )
@@ -111,10 +114,12 @@ fn file_name(expr: &Expr) -> Result<String, Diagnostic> {
     if let ExprKind::String(text) = &expr.kind {
         return Ok(text.clone());
     }
-    Err(
-        mistake(expr.span, "this names no file", "a text is expected")
-            .help("write `vary record file = {\"slow.csv\", \"fast.csv\"};`"),
+    Err(mistake(
+        expr.span,
+        "this is not the name of a file",
+        "a text is expected",
     )
+    .help("write `vary record file = {\"slow.csv\", \"fast.csv\"};`"))
 }
 
 /// A literal, with a sign and a unit; `unit` stands behind the whole range or list.
@@ -133,8 +138,8 @@ fn number(expr: &Expr, unit: Option<&UnitText>) -> Result<Written, Diagnostic> {
         });
     }
     let ExprKind::Number(value, own) = &inner.kind else {
-        return Err(mistake(expr.span, "this is no number", "a number with its unit is expected")
-            .help("write `5 [um]`; what changes together with others comes from a table: `cases \"cases.csv\";`"));
+        return Err(mistake(expr.span, "this is not a number", "a number with its unit is expected")
+            .help("write `5 [um]`; for parameters that change together use a table: `cases \"cases.csv\";`"));
     };
     let Some(text) = own.as_ref().or(unit) else {
         return Ok(Written {

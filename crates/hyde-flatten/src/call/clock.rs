@@ -70,7 +70,7 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(
                     Code::ClockBorder,
-                    format!("what is sampled belongs to the clocked part `{name}`"),
+                    format!("the sampled value belongs to the clocked part `{name}`"),
                 )
                 .label(a.span, "clocked already")
                 .help("read it without `sample`"),
@@ -111,7 +111,7 @@ impl<'a> Model<'a, '_> {
                     "`hold` takes a value of one clocked part",
                 )
                 .label(a.span, format!("belongs to {}", clocks.len()))
-                .help("hold each value apart"),
+                .help("hold each value separately"),
             );
             return self.poison(span);
         };

@@ -36,7 +36,7 @@ impl<'a> Model<'a, '_> {
         ) {
             let diagnostic = if scope.setting == Setting::Clocked {
                 Diagnostic::error(Code::ClockBorder, "`delay` inside a clocked part")
-                    .label(span, "here time goes by ticks")
+                    .label(span, "here time advances in ticks")
                     .help("`pre(x)` is one tick ago; a continuous value is delayed outside: `sample(delay(u, T))`")
             } else {
                 Diagnostic::error(Code::NotConstant, "`delay` has no meaning here")
@@ -92,8 +92,8 @@ impl<'a> Model<'a, '_> {
         if !(value >= 0.0 && value.is_finite()) {
             self.report(
                 Diagnostic::error(Code::BadArguments, format!("a delay of {value} s"))
-                    .label(by.span, "is no time that has passed")
-                    .help("a delay is 0 or more: what will be is not known"),
+                    .label(by.span, "is negative")
+                    .help("a delay must be 0 or more: future values are not known"),
             );
             return None;
         }

@@ -53,7 +53,7 @@ impl<'a> Model<'a, '_> {
         self.report(
             Diagnostic::error(Code::ClockBorder, format!("`{written}` is not a variable of this clocked part"))
                 .label(span, "in a clocked part `der` is the difference to the last tick")
-                .help(format!("say what it was before the first tick: `Real u(start = …) = {written};`, and write `der(u)`")),
+                .help(format!("declare a variable with its value before the first tick: `Real u(start = …) = {written};`, and write `der(u)`")),
         );
         self.poison(span)
     }

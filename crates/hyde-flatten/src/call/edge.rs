@@ -27,7 +27,7 @@ impl<'a> Model<'a, '_> {
             Setting::Clocked => self.edge_at_ticks(a, scope),
             Setting::Equation | Setting::Parameter | Setting::Report | Setting::Measure => {
                 self.report(
-                    Diagnostic::error(Code::BadArguments, "an edge lasts no time")
+                    Diagnostic::error(Code::BadArguments, "an edge has no duration")
                         .label(span, "is never true between events")
                         .help(
                             "let an event set a variable: `when b then n = pre(n) + 1; end when;`",

@@ -112,7 +112,7 @@ impl<'a> Model<'a, '_> {
         if within.iter().any(|&known| std::ptr::eq(known, class)) {
             self.report(
                 Diagnostic::error(Code::Cycle, format!("`{}` calls itself", class.name.text))
-                    .label(class.name.span, "called inside itself without end")
+                    .label(class.name.span, "calls itself")
                     .help("a function is an expression: it cannot call itself"),
             );
             return false;
@@ -130,7 +130,7 @@ impl<'a> Model<'a, '_> {
             self.too_deep(
                 format!("a call of `{outermost}` leads to more than {MAX_CALLS} others"),
                 name,
-                "give what a function calls twice a name of its own: `Real part = f(x);`",
+                "give a call that a function uses twice a name: `Real part = f(x);`",
             );
         }
         self.calls.count <= MAX_CALLS

@@ -19,8 +19,8 @@ impl<'a> Model<'a, '_> {
         if matches!(scope.setting, Setting::Equation | Setting::Condition) {
             self.report(
                 Diagnostic::error(Code::QuantiserOnContinuous, format!("`{name}` on a continuous value"))
-                    .label(span, "every step of it would be an event, thousands a second")
-                    .help(format!("quantise where it is read: `{name}(sample(…), …)` in a clocked part, or in `measured`")),
+                    .label(span, "every step would be an event, thousands per second")
+                    .help(format!("quantise the sampled value: `{name}(sample(…), …)` in a clocked part, or in `measured`")),
             );
         }
         let operands = if matches!(name, "floor" | "ceil" | "integer") {

@@ -106,7 +106,7 @@ impl<'a> Model<'a, '_> {
                 self.report(
                     Diagnostic::error(
                         Code::WrongType,
-                        format!("`{}` is no state", target.dotted()),
+                        format!("`{}` is not a state", target.dotted()),
                     )
                     .label(target.span, "only a state can be reinitialised")
                     .help("set a discrete variable with `=`"),

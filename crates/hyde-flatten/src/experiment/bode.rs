@@ -20,7 +20,7 @@ impl<'a> Model<'a, '_> {
                 self.report(
                     Diagnostic::error(
                         Code::NotAnInput,
-                        format!("`{}` is no input", input.dotted()),
+                        format!("`{}` is not an input", input.dotted()),
                     )
                     .label(
                         input.span,

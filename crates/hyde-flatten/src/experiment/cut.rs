@@ -17,7 +17,7 @@ use hyde_ir::{ClockId, Expr as Ir, ExprId, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{self, Reference};
 use std::collections::HashMap;
 
-const HELP: &str = "cut at an input, an output, a clocked variable or one that is declared with its value; where there is none, let the loop read one: `Angle measured = rotor.phi;`";
+const HELP: &str = "open the loop at an input, an output, a clocked variable or a variable declared with its value; if there is none, add one to the loop: `Angle measured = rotor.phi;`";
 
 /// The equation that gives a signal.
 #[derive(Clone, Copy)]
@@ -84,7 +84,7 @@ impl<'a> Model<'a, '_> {
         let giver = self.given_by(var, leaf);
         if giver.is_none() {
             let label = "no equation of its own: `name = …`";
-            self.cannot_cut(signal, "cannot be cut", label);
+            self.cannot_cut(signal, "has no equation of its own", label);
         }
         Some((var, giver?))
     }
@@ -236,7 +236,10 @@ impl<'a> Model<'a, '_> {
     }
 
     fn cannot_cut(&mut self, signal: &Reference, what: &str, label: &str) {
-        let message = format!("`{}` {what}: no loop is cut there", signal.dotted());
+        let message = format!(
+            "`{}` {what}: a loop cannot be opened there",
+            signal.dotted()
+        );
         let diagnostic = Diagnostic::error(Code::CannotCut, message);
         self.report(diagnostic.label(signal.span, label).help(HELP));
     }

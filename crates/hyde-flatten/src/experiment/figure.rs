@@ -13,10 +13,10 @@ impl<'a> Model<'a, '_> {
         let name = &figure.name;
         let known = &mut self.flat.experiment.figures;
         if known.iter().any(|known| known.name == name.text) {
-            let message = format!("a figure `{}` is there already", name.text);
+            let message = format!("there is already a figure `{}`", name.text);
             let diagnostic = Diagnostic::error(Code::Duplicate, message)
-                .label(name.span, "its files would be written over the first one's")
-                .help("give it a name of its own");
+                .label(name.span, "its files would overwrite those of the first")
+                .help("give it another name");
             self.report(diagnostic);
             return;
         }
@@ -58,10 +58,10 @@ impl<'a> Model<'a, '_> {
                 std::slice::from_ref(panel)
             };
             if circle_of(panel).is_some() {
-                let message = "a circle stands beside other panels";
+                let message = "a circle is combined with other panels";
                 let diagnostic = Diagnostic::error(Code::BadArguments, message)
                     .label(panel.span, "its axes are lengths, not times")
-                    .help("give it a figure of its own: `figure contour = circle(x, y, R);`");
+                    .help("use a separate figure: `figure contour = circle(x, y, R);`");
                 self.report(diagnostic);
                 return Vec::new();
             }
@@ -94,10 +94,12 @@ impl<'a> Model<'a, '_> {
             return None;
         }
         if let Some(over) = &figure.over {
-            let diagnostic =
-                Diagnostic::error(Code::BadArguments, "a circle is drawn over nothing else")
-                    .label(over.span, "x and y are its axes")
-                    .help("leave out `over`");
+            let diagnostic = Diagnostic::error(
+                Code::BadArguments,
+                "a circle cannot be plotted over another variable",
+            )
+            .label(over.span, "x and y are its axes")
+            .help("leave out `over`");
             self.report(diagnostic);
         }
         let (x, of_x) = self.curve(&x.value, root);
@@ -115,7 +117,7 @@ impl<'a> Model<'a, '_> {
 
     fn not_a_circle(&mut self, call: &'a Expr, message: &str) {
         let diagnostic = Diagnostic::error(Code::BadArguments, message)
-            .label(call.span, "x and y are taken from the centre")
+            .label(call.span, "x and y are relative to the centre")
             .help("write `circle(x, y - 25 [mm], 25 [mm])`");
         self.report(diagnostic);
     }

@@ -96,9 +96,12 @@ impl<'a> Model<'a, '_> {
                     self.report(
                         Diagnostic::error(
                             Code::NoColumn,
-                            format!("`{}` is no column of a record", reference.dotted()),
+                            format!("`{}` is not a column of a record", reference.dotted()),
                         )
-                        .label(expr.span, "left of `=` stands what was measured")
+                        .label(
+                            expr.span,
+                            "the left side of `=` must be the measured column",
+                        )
                         .help("write `measured file.x = saddle.s;`"),
                     );
                 }
@@ -161,9 +164,12 @@ impl<'a> Model<'a, '_> {
             | ExprKind::Comprehension(_)
             | ExprKind::Slice(..) => {
                 self.report(
-                    Diagnostic::error(Code::NoColumn, "what was measured is a column of a record")
-                        .label(expr.span, "no column")
-                        .help("write `measured file.x = saddle.s;`"),
+                    Diagnostic::error(
+                        Code::NoColumn,
+                        "the measured quantity must be a column of a record",
+                    )
+                    .label(expr.span, "no column")
+                    .help("write `measured file.x = saddle.s;`"),
                 );
                 None
             }

@@ -118,7 +118,7 @@ impl<'a> Model<'a, '_> {
                 self.report(
                     Diagnostic::error(Code::NoColumn, format!("a column has no `{other}`"))
                         .label(reference.span, "unknown")
-                        .help("write `.next` for the value one row ahead, `.first` for the first, `.mean` for the mean"),
+                        .help("write `.next` for the value of the next sample, `.first` for the first, `.mean` for the mean"),
                 );
                 None
             }

@@ -213,7 +213,7 @@ impl<'a> Model<'a, '_> {
                 format!("`{}` has no equation of its own", drive.target.dotted()),
             )
             .label(drive.target.span, "cannot be replayed")
-            .note("a replayed column takes the place of the one equation that determines its variable")
+            .note("a replayed column replaces the one equation that determines its variable")
             .help("replay an input, an output, or a variable declared with a value: `site Force force = …;`"),
         );
     }

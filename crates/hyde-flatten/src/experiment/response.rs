@@ -86,7 +86,7 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(
                     Code::BadArguments,
-                    "`response` takes an input of the model and what it drives",
+                    "`response` takes an input of the model and a variable that responds to it",
                 )
                 .label(expr.span, "not two arguments")
                 .help("write `response(i, motor.phi)`"),
@@ -112,7 +112,7 @@ impl<'a> Model<'a, '_> {
         let Some(driven) = driven else {
             let name = hyde_syntax::format_expression(input);
             self.report(
-                Diagnostic::error(Code::NotAnInput, format!("`{name}` is no input")).label(
+                Diagnostic::error(Code::NotAnInput, format!("`{name}` is not an input")).label(
                     input.span,
                     "a frequency response starts at an input of the model",
                 ),
@@ -166,7 +166,7 @@ impl<'a> Model<'a, '_> {
             }
             _ => {
                 self.report(
-                    Diagnostic::error(Code::BadResponse, "this is no measured response")
+                    Diagnostic::error(Code::BadResponse, "this is not a measured response")
                         .label(expr.span, "cannot be compared with a frequency response")
                         .help(HELP),
                 );
@@ -207,7 +207,7 @@ impl<'a> Model<'a, '_> {
                     self.report(
                         Diagnostic::error(
                             Code::BadResponse,
-                            "a column of a measured response is prepared with a factor at most",
+                            "a column of a measured response may only be multiplied by a factor",
                         )
                         .label(expr.span, "filtered"),
                     );

@@ -113,9 +113,12 @@ impl<'a> Model<'a, '_> {
         let text = hyde_syntax::format_expression(output);
         let Some(number) = outputs.iter().position(|known| *known == text) else {
             self.report(
-                Diagnostic::error(Code::BadSolve, format!("`{text}` is none of the responses"))
-                    .label(output.span, "cannot be kept at a level")
-                    .help(format!("the responses are {}", listed(outputs))),
+                Diagnostic::error(
+                    Code::BadSolve,
+                    format!("`{text}` is not one of the responses"),
+                )
+                .label(output.span, "cannot be kept at a level")
+                .help(format!("the responses are {}", listed(outputs))),
             );
             return None;
         };

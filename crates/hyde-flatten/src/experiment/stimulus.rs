@@ -31,7 +31,10 @@ impl<'a> Model<'a, '_> {
                 .collect();
             let diagnostic = Diagnostic::error(
                 Code::NotAnInput,
-                format!("`{}` is no free input of the model", drive.target.dotted()),
+                format!(
+                    "`{}` is not a free input of the model",
+                    drive.target.dotted()
+                ),
             )
             .label(drive.target.span, "cannot be driven");
             self.report(if inputs.is_empty() {
@@ -103,10 +106,16 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(
                     Code::NoColumn,
-                    format!("`{}` has noise, and is driven by more or less than a column", drive.target.dotted()),
+                    format!(
+                        "`{}` has noise, but its stimulus is not a single column",
+                        drive.target.dotted()
+                    ),
                 )
-                .label(drive.value.span, "no column of a record, nor one times a number")
-                .help("what is not read from a record is exact: leave `~` out, or write `file.i ~ 15 [mA]`"),
+                .label(
+                    drive.value.span,
+                    "neither a column of a record nor a column times a number",
+                )
+                .help("only a recorded column has noise: remove `~`, or write `file.i ~ 15 [mA]`"),
             );
             return;
         };

@@ -63,7 +63,7 @@ impl<'a> Model<'a, '_> {
         self.agree(
             &place,
             &along,
-            "the place and the coordinate are",
+            "the position and the coordinate are",
             scope.instance,
         );
         let distance = self.flat.exprs.minus(place.id, from);
@@ -81,7 +81,7 @@ impl<'a> Model<'a, '_> {
         let outside = !(-1e-9..=cells as f64 + 1e-9).contains(&value);
         if outside {
             self.report(
-                Diagnostic::error(Code::FieldUse, "the place lies outside the domain")
+                Diagnostic::error(Code::FieldUse, "the position is outside the domain")
                     .label(
                         at.span,
                         format!("{value:.3} cells from the start, of {cells}"),
@@ -110,7 +110,7 @@ impl<'a> Model<'a, '_> {
         let cells = self.domains[domain].cells;
         if cells < LEAST_CELLS {
             self.report(
-                Diagnostic::error(Code::FieldUse, "too few cells for a place that moves")
+                Diagnostic::error(Code::FieldUse, "too few cells for a moving position")
                     .label(at.span, "moves along the domain")
                     .label(self.domains[domain].span, format!("has {cells}"))
                     .help(format!("discretize it with `n = {LEAST_CELLS}` or more")),

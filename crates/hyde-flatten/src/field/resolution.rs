@@ -80,8 +80,8 @@ impl<'a> Model<'a, '_> {
                             format!("how fast waves run along `{name}` is not known"),
                         )
                         .label(expr.span, why)
-                        .label(asked, "asks for as many cells as they need")
-                        .help("say how many: `fem(n = 24)`"),
+                        .label(asked, "requests as many cells as they need")
+                        .help("give the number: `fem(n = 24)`"),
                     );
                     return None;
                 }
@@ -154,7 +154,7 @@ impl<'a> Model<'a, '_> {
             return Err(Some((lhs, "the equation couples fields")));
         }
         if terms.iter().any(|term| !matches!(term.space, 0 | 2)) {
-            return Err(Some((rhs, "here something is carried along")));
+            return Err(Some((rhs, "this term transports the field (convection)")));
         }
         let s = TAU * f_max;
         let size = |space: u32| {
@@ -174,7 +174,7 @@ impl<'a> Model<'a, '_> {
         if k.is_finite() {
             Ok(k)
         } else {
-            Err(Some((rhs, "nothing here holds neighbours together")))
+            Err(Some((rhs, "no term couples neighbouring points")))
         }
     }
 
@@ -264,7 +264,7 @@ impl<'a> Model<'a, '_> {
             return Err(Some((expr, "is not linear in the fields")));
         }
         if waves.has_coordinate(expr) {
-            return Err(Some((expr, "changes from place to place")));
+            return Err(Some((expr, "varies along the domain")));
         }
         self.structural_number(&waves.scope, expr).ok_or(None)
     }

@@ -51,7 +51,7 @@ impl<'a> Model<'a, '_> {
                     self.report(
                         Diagnostic::error(
                             Code::FieldUse,
-                            format!("the flux `{name}` stands outside `pder`"),
+                            format!("the flux `{name}` is used outside `pder`"),
                         )
                         .label(
                             span,
@@ -250,8 +250,11 @@ impl<'a> Model<'a, '_> {
             return Some((var, field));
         }
         self.report(
-            Diagnostic::error(Code::FieldUse, format!("`{}` is no field", name.dotted()))
-                .label(expr.span, "has no derivative in space"),
+            Diagnostic::error(
+                Code::FieldUse,
+                format!("`{}` is not a field", name.dotted()),
+            )
+            .label(expr.span, "has no derivative in space"),
         );
         None
     }
@@ -282,8 +285,11 @@ impl<'a> Model<'a, '_> {
         let field = found.and_then(|var| Some((var, self.notes(var).field?)));
         if field.is_none() {
             self.report(
-                Diagnostic::error(Code::FieldUse, format!("`{}` is no field", name.dotted()))
-                    .label(name.span, "only a field is read at a place"),
+                Diagnostic::error(
+                    Code::FieldUse,
+                    format!("`{}` is not a field", name.dotted()),
+                )
+                .label(name.span, "only a field can be read at a position"),
             );
         }
         field
@@ -296,9 +302,9 @@ impl<'a> Model<'a, '_> {
                 Code::FieldUse,
                 format!("the field `{name}` has no single value"),
             )
-            .label(span, "at which place?")
+            .label(span, "at which position?")
             .help(format!(
-                "read it at a place, `{short}.at(xn)`, or write the equation `indomain …`"
+                "read it at a position, `{short}.at(xn)`, or write the equation `indomain …`"
             )),
         );
     }

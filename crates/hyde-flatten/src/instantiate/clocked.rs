@@ -18,7 +18,7 @@ impl<'a> Model<'a, '_> {
         if self.instances[id].clock.is_some() {
             self.report(
                 Diagnostic::error(Code::ClockBorder, "a clocked part inside a clocked part")
-                    .label(clocked.name.span, "move it beside the other"),
+                    .label(clocked.name.span, "move it out of the other"),
             );
             return;
         }

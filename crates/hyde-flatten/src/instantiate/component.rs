@@ -24,10 +24,7 @@ impl<'a> Model<'a, '_> {
                     Code::WrongType,
                     format!("`{}` is an effect, not a component", class.name.text),
                 )
-                .label(
-                    declaration.type_name.span,
-                    "an effect is switched on at a site",
-                )
+                .label(declaration.type_name.span, "an effect is added at a site")
                 .help(format!(
                     "write `model New = Old with {} on site;`",
                     class.name.text
@@ -115,7 +112,7 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(Code::FinalModified, format!("`{name}` is not replaceable"))
                     .label(modifier.change.target.span, "cannot be redeclared")
-                    .label(declarator.name.span, "declared here, for good")
+                    .label(declarator.name.span, "declared here as not replaceable")
                     .help(format!(
                         "declare it `replaceable {} {name}`",
                         declared.1.name.text

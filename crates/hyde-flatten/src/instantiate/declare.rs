@@ -77,7 +77,7 @@ impl<'a> Model<'a, '_> {
             Some(first) => diagnostic.label(first, "declared first here"),
             None => diagnostic,
         };
-        self.report(diagnostic.help("rename one of the two, or take it out"));
+        self.report(diagnostic.help("rename one of the two, or remove it"));
         false
     }
 

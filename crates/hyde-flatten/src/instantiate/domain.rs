@@ -39,7 +39,7 @@ impl<'a> Model<'a, '_> {
                 self.report(
                     Diagnostic::error(
                         Code::NotYet,
-                        format!("no discretisation is called `{other}` in this version"),
+                        format!("this version has no discretisation `{other}`"),
                     )
                     .label(method.method.span, "not known")
                     .help("write `fem(n = …)` or `fv(n = …)`, or `f_max = …` for `n = …`"),
@@ -161,7 +161,7 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(
                     Code::UnknownName,
-                    format!("no domain is called `{}` here", name.text),
+                    format!("there is no domain `{}` here", name.text),
                 )
                 .label(name.span, "not known")
                 .help("declare it: `domain bar(x in 0 .. len);`"),

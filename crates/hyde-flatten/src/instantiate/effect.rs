@@ -58,9 +58,9 @@ impl<'a> Model<'a, '_> {
                 let diagnostic = match found {
                     Some((_, class)) => Diagnostic::error(
                         Code::WrongType,
-                        format!("`{}` is no effect", class.name.text),
+                        format!("`{}` is not an effect", class.name.text),
                     )
-                    .label(used.effect.span, "only effects stand after `with`"),
+                    .label(used.effect.span, "only effects may follow `with`"),
                     None => self.names.unknown(file, &used.effect),
                 };
                 self.report(diagnostic);
@@ -162,7 +162,7 @@ impl<'a> Model<'a, '_> {
             self.instances[id].elements = Vec::new();
             self.flat
                 .notes
-                .push(format!("`{}` is neutral and left out", self.path(id)));
+                .push(format!("`{}` has size 0 and is omitted", self.path(id)));
             return;
         }
         let added = rest.iter().find_map(|item| {
@@ -394,7 +394,7 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(Code::FinalModified, format!("`{name}` is not replaceable"))
                     .label(component.span, "cannot be replaced")
-                    .label(declarator.name.span, "declared here, for good")
+                    .label(declarator.name.span, "declared here as not replaceable")
                     .help(format!(
                         "declare it `replaceable {} {name}`",
                         declaration.type_name.dotted()

@@ -124,7 +124,7 @@ impl<'a> Model<'a, '_> {
             let known: Vec<&str> = instance.members.keys().copied().collect();
             let diagnostic = diagnostic.label(
                 span,
-                format!("`{}` has nothing of that name", instance.class.name.text),
+                format!("`{}` has no such element", instance.class.name.text),
             );
             let near = nearest(last, known.iter().copied()).filter(|near| *near != last);
             self.report(match near {

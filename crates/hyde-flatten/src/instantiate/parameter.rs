@@ -44,7 +44,7 @@ impl<'a> Model<'a, '_> {
                         .label(modifier.change.target.span, "cannot be modified")
                         .label(declarator.name.span, "declared final here")
                         .help(format!(
-                            "leave `{name}` out: modify the parameters that its value is made of"
+                            "remove `{name}`: modify the parameters from which its value is computed"
                         )),
                 );
             }

@@ -66,7 +66,7 @@ impl<'a> Model<'a, '_> {
                     if seen.iter().any(|known| std::ptr::eq(*known, base)) =>
                 {
                     let name = &base.name.text;
-                    let message = format!("the type `{name}` is made of itself");
+                    let message = format!("the type `{name}` is defined by itself");
                     let mut diagnostic = Diagnostic::error(Code::Cycle, message);
                     for item in seen {
                         let next = item.base.dotted();

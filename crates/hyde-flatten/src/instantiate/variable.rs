@@ -73,9 +73,12 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(
                     Code::BadConnection,
-                    format!("`flow` on `{name}`, which is in no connector"),
+                    format!("`flow` on `{name}`, which is not in a connector"),
                 )
-                .label(declaration.span, "only the variables of a connector flow"),
+                .label(
+                    declaration.span,
+                    "only variables of a connector can be `flow`",
+                ),
             );
         }
         self.variables.push(VariableNotes {

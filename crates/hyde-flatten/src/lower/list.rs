@@ -27,7 +27,7 @@ impl<'a> Model<'a, '_> {
                     self.report(
                         Diagnostic::error(
                             Code::BadShape,
-                            format!("{len} values stand beside arrays of {}", position.of),
+                            format!("{len} values are combined with arrays of {}", position.of),
                         )
                         .label(list.span, format!("{len} values")),
                     );
@@ -37,7 +37,7 @@ impl<'a> Model<'a, '_> {
             }
             None => {
                 self.report(
-                    Diagnostic::error(Code::BadShape, "a list stands where one value is expected")
+                    Diagnostic::error(Code::BadShape, "expected one value, found a list")
                         .label(list.span, "a list"),
                 );
                 self.poison(list.span)

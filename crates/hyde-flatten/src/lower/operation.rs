@@ -217,11 +217,8 @@ impl<'a> Model<'a, '_> {
         };
         let dim = dim.unwrap_or_else(|| {
             self.report(
-                Diagnostic::error(
-                    Code::UnitMismatch,
-                    "a dimension to this power cannot be told exactly",
-                )
-                .label(span, "an exponent like 1/2 or 2/3 can"),
+                Diagnostic::error(Code::UnitMismatch, "a dimension to this power is not exact")
+                    .label(span, "use an exponent such as 1/2 or 2/3"),
             );
             Dim::Any
         });

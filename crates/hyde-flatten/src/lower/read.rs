@@ -93,11 +93,11 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(
                     Code::BadArguments,
-                    format!("`{name}` changes during the run: which of its values is meant?"),
+                    format!("`{name}` changes during the run, but one number is needed"),
                 )
-                .label(span, "a signal, where one number is wanted")
+                .label(span, "expected one number, found a signal")
                 .help(format!(
-                    "take one number of it: `last({name})`, `max({name})`, `rms({name})`, …"
+                    "reduce it to one number: `last({name})`, `max({name})`, `rms({name})`, …"
                 )),
             );
             return self.poison(span);

@@ -44,10 +44,10 @@ impl<'a> Model<'a, '_> {
         self.report(
             Diagnostic::error(
                 Code::UnknownName,
-                format!("nothing is called `{name}` in this function"),
+                format!("there is no `{name}` in this function"),
             )
             .label(reference.span, "not known")
-            .note("a function sees its inputs and what it declared before")
+            .note("a function can use only its inputs and its earlier declarations")
             .help(format!("known here: {}", crate::model::listed(&known))),
         );
         None
@@ -258,7 +258,10 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(
                     Code::BadShape,
-                    format!("{count} components stand beside arrays of {}", position.of),
+                    format!(
+                        "{count} components are combined with arrays of {}",
+                        position.of
+                    ),
                 )
                 .label(span, format!("{count} components")),
             );
@@ -271,7 +274,7 @@ impl<'a> Model<'a, '_> {
                     Code::BadShape,
                     format!("there are components 1 to {}", list.len()),
                 )
-                .label(span, "reaches beyond them"),
+                .label(span, "is out of range"),
             );
         }
         found
@@ -287,12 +290,12 @@ impl<'a> Model<'a, '_> {
             Diagnostic::error(
                 Code::UnknownName,
                 format!(
-                    "`{}` has no `{}`: it is no component",
+                    "`{}` has no `{}`: it is not a component",
                     reference.dotted(),
                     part.name.text
                 ),
             )
-            .label(part.name.span, "nothing is below a value"),
+            .label(part.name.span, "a value has no elements"),
         );
         false
     }

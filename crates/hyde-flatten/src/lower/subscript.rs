@@ -129,7 +129,7 @@ impl<'a> Model<'a, '_> {
                 self.report(
                     Diagnostic::error(
                         Code::BadShape,
-                        format!("an array of {len} stands beside arrays of {expected}"),
+                        format!("an array of {len} is combined with arrays of {expected}"),
                     )
                     .label(span, format!("has {len} elements")),
                 );
@@ -137,12 +137,9 @@ impl<'a> Model<'a, '_> {
             }
             (None, Some(len), None) => {
                 self.report(
-                    Diagnostic::error(
-                        Code::BadShape,
-                        "an array stands where one value is expected",
-                    )
-                    .label(span, format!("has {len} elements"))
-                    .help("name an element, `x[1]`, or sum them, `sum(x)`"),
+                    Diagnostic::error(Code::BadShape, "expected one value, found an array")
+                        .label(span, format!("has {len} elements"))
+                        .help("name an element, `x[1]`, or sum them, `sum(x)`"),
                 );
                 None
             }
@@ -161,12 +158,9 @@ impl<'a> Model<'a, '_> {
         let count = self.slice_length(slice, scope)?;
         let Some(elements) = scope.elementwise else {
             self.report(
-                Diagnostic::error(
-                    Code::BadShape,
-                    "an array stands where one value is expected",
-                )
-                .label(slice.span, format!("{count} elements"))
-                .help("name an element, `x[1]`, or sum them, `sum(x[1:2])`"),
+                Diagnostic::error(Code::BadShape, "expected one value, found an array")
+                    .label(slice.span, format!("{count} elements"))
+                    .help("name an element, `x[1]`, or sum them, `sum(x[1:2])`"),
             );
             return None;
         };
@@ -178,7 +172,7 @@ impl<'a> Model<'a, '_> {
                     Code::BadShape,
                     format!("the elements are {first} to {last}"),
                 )
-                .label(slice.span, "reaches beyond them"),
+                .label(slice.span, "is out of range"),
             );
             return None;
         }
@@ -186,7 +180,10 @@ impl<'a> Model<'a, '_> {
             self.report(
                 Diagnostic::error(
                     Code::BadShape,
-                    format!("{count} elements stand beside arrays of {}", elements.len()),
+                    format!(
+                        "{count} elements are combined with arrays of {}",
+                        elements.len()
+                    ),
                 )
                 .label(slice.span, format!("has {count} elements")),
             );
@@ -202,7 +199,7 @@ impl<'a> Model<'a, '_> {
         self.report(
             Diagnostic::error(
                 Code::BadShape,
-                format!("`{}` is no array", reference.dotted()),
+                format!("`{}` is not an array", reference.dotted()),
             )
             .label(reference.span, "has no elements"),
         );

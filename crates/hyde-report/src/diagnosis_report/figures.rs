@@ -42,12 +42,12 @@ pub(super) fn errors_figure(
     ];
     let records_axis =
         Axis::new("number of the record", "").with_range(0.5, records.len() as f64 + 0.5);
-    let y = Axis::new("rms over floor", "").with_scale(Scale::Log);
+    let y = Axis::new("rms / noise floor", "").with_scale(Scale::Log);
     let mut panel = Panel::new(records_axis, y, lines);
     panel.references = vec![Reference {
         direction: Direction::Horizontal,
         at: 1.0,
-        label: "floor".to_owned(),
+        label: "noise floor".to_owned(),
     }];
     let list: Vec<&str> = records
         .first()?
@@ -56,7 +56,7 @@ pub(super) fn errors_figure(
         .map(|channel| channel.name.as_str())
         .collect();
     let caption = format!(
-        "{name}: records in the order of the table, in each from left to right {}",
+        "{name}: records in the order of the table; the channels of each record from left to right: {}",
         list.join(", ")
     );
     Some(Figure {
@@ -183,7 +183,7 @@ pub(super) fn parameters_figure(parameters: &[MovedParameter]) -> Option<Figure>
         .map(|(number, parameter)| format!("{} {}", number + 1, parameter.name))
         .collect();
     Some(Figure::new(vec![panel]).with_caption(format!(
-        "Calibrated values with their intervals; between the dashed lines is what was declared: {}",
+        "Calibrated values with their intervals; the dashed lines are the limits of the declared range: {}",
         names.join(", ")
     )))
 }

@@ -112,8 +112,8 @@ impl Reader<'_> {
         if !is_name(written.name.get_ref()) {
             self.wrong(
                 &written.name,
-                format!("`{}` is no name", written.name.get_ref()),
-                "a name is made of letters, digits and `_`, with dots between words",
+                format!("`{}` is not a name", written.name.get_ref()),
+                "a name consists of letters, digits and `_`, with dots between words",
             );
         }
         let version = written.version.get_ref().split('.');
@@ -121,8 +121,8 @@ impl Reader<'_> {
         if numbers.len() != 3 || numbers.iter().any(Result::is_err) {
             self.wrong(
                 &written.version,
-                format!("`{}` is no version", written.version.get_ref()),
-                "a version is three numbers: `0.1.0`",
+                format!("`{}` is not a version", written.version.get_ref()),
+                "a version consists of three numbers: `0.1.0`",
             );
         }
         for folder in &written.folders {
@@ -136,7 +136,7 @@ impl Reader<'_> {
                 self.wrong(
                     &path,
                     format!("the path to `{name}` is absolute"),
-                    "write it relative to this manifest: it is another one on every machine",
+                    "write it relative to this manifest: an absolute path differs from machine to machine",
                 );
             }
             Dependency {
@@ -170,7 +170,7 @@ impl Reader<'_> {
         if !is_inside(written) || links_out(self.world, self.folder, &place) {
             let diagnostic = Diagnostic::error(
                 Code::NotDeclared,
-                format!("`{written}` leads out of the package's folder"),
+                format!("`{written}` is outside the folder of the package"),
             )
             .label(self.span(path), "outside")
             .help("put it below the manifest; the packages of other folders are `[dependencies]`");

@@ -77,7 +77,7 @@ impl Builder<'_> {
             self.diagnostics.push(
                 Diagnostic::error(
                     Code::BadNumber,
-                    format!("`{}` is no finite number", node.as_str()),
+                    format!("`{}` is not a finite number", node.as_str()),
                 )
                 .label(span, "beyond 1.8e308")
                 .help("write a number that a double can hold, or a larger unit"),

@@ -72,7 +72,7 @@ impl Parser<'_> {
         let diagnostic = Diagnostic::error(Code::Syntax, message)
             .label(span, "a second package")
             .label(first.span, "the first one")
-            .help("put it into a file of its own, called as the package, and import it: `import Name.*;`");
+            .help("move it into a separate file with the name of the package, and import it: `import Name.*;`");
         self.diagnostics.push(diagnostic);
     }
 
@@ -80,7 +80,7 @@ impl Parser<'_> {
     fn end_of_nothing(&mut self) {
         let start = self.at;
         let span = Span::new(self.file, start, start + "end".len());
-        let diagnostic = Diagnostic::error(Code::Syntax, "nothing is open here that could end")
+        let diagnostic = Diagnostic::error(Code::Syntax, "there is no open block to end here")
             .label(span, "an `end` too many")
             .help("leave it out; a package is its file, `package Name;` on the first line, and has no `end`");
         self.diagnostics.push(diagnostic);
@@ -212,11 +212,11 @@ impl Parser<'_> {
             return false;
         }
         let span = Span::new(self.file, self.at, self.at + word.len());
-        let message = format!("`{name}` stands inside of `{}`", outer.text);
+        let message = format!("`{name}` is defined inside `{}`", outer.text);
         let diagnostic = Diagnostic::error(Code::Syntax, message)
             .label(span, "a class of its own")
             .help(format!(
-                "put it before `{}`: a file has its classes side by side",
+                "move it before `{}`: the classes of a file cannot be nested",
                 outer.text
             ));
         self.diagnostics.push(diagnostic);
@@ -246,7 +246,7 @@ impl Parser<'_> {
             }
             (element @ Element::Equation(_), Section::Declarations) => {
                 self.diagnostics.push(
-                    Diagnostic::error(Code::Misplaced, "an equation stands among the declarations")
+                    Diagnostic::error(Code::Misplaced, "an equation is among the declarations")
                         .label(span, "this is an equation")
                         .help("write `equation` before the first equation"),
                 );

@@ -107,27 +107,27 @@ fn mistakes_are_told_with_their_place() {
         (
             "10 mm",
             0..2,
-            "a unit has no factor like `10`: multiply the value by it instead",
+            "a unit cannot contain a factor such as `10`: multiply the value by it instead",
         ),
         (
             "2.5m",
             0..3,
-            "a unit has no factor like `2.5`: multiply the value by it instead",
+            "a unit cannot contain a factor such as `2.5`: multiply the value by it instead",
         ),
         (
             "J/kg.K",
             4..6,
-            "a product after `/` can be read in two ways: write `/(kg.K)`",
+            "a product after `/` is ambiguous: write `/(kg.K)`",
         ),
         (
             "W/degC",
             2..6,
-            "`degC` has a zero point of its own and fits no product: write `K`",
+            "`degC` has an offset zero point and cannot be part of a product: write `K`",
         ),
         (
             "degC2",
             0..4,
-            "`degC` has a zero point of its own and fits no product: write `K`",
+            "`degC` has an offset zero point and cannot be part of a product: write `K`",
         ),
         (
             "m^999999",

@@ -36,25 +36,25 @@ pub(super) fn between(system: &System, nodes: &[Node], lefts: &[usize]) -> Optio
     let (message, repair) = match names.as_slice() {
         [] => return None,
         [only] => (
-            format!("on one side of {only} nothing has inertia"),
+            format!("on one side of {only} no part has inertia"),
             format!("put {body} between {only} and what it is connected to there"),
         ),
         several => (
-            format!("what is between {} has no inertia", and(several)),
+            format!("the part between {} has no inertia", and(several)),
             format!("put {body} between them"),
         ),
     };
     let mut diagnostic = Diagnostic::error(Code::TooManyEquations, message);
     for (number, (part, span)) in parts.iter().take(6).enumerate() {
         let text = match number {
-            0 => "gives a force in some mode, and no motion".to_owned(),
-            _ => format!("`{part}` gives the same force"),
+            0 => "determines a force in some mode, but no motion".to_owned(),
+            _ => format!("`{part}` determines the same force"),
         };
         diagnostic = diagnostic.label(*span, text);
     }
     Some(
         diagnostic
-            .note("while it slips or is open, nothing determines how the next part without inertia moves")
+            .note("while it slips or is open, no equation determines the motion of the adjacent part without inertia")
             .help(repair),
     )
 }

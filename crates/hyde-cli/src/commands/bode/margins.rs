@@ -90,7 +90,7 @@ fn one(
             "the loop needs the derivative of `{}` by the time, which a test signal does not have",
             cut.signal
         );
-        let help = "cut at another signal of the loop: at what the controller puts out, or before what is differentiated";
+        let help = "open the loop at another signal: at the output of the controller, or before the differentiation";
         let diagnostic = Diagnostic::error(Code::CannotCut, message);
         let diagnostic = diagnostic.label(cut.origin.span, "differentiated by what reads it");
         return Err(Box::new(diagnostic.help(help)));
@@ -147,7 +147,7 @@ fn refused(cut: &Cut, error: CutError) -> Box<Diagnostic> {
         CutError::Reversed => (
             Code::CannotCut,
             format!(
-                "the equation of `{signal}` does not determine it: others do, and it determines what it reads"
+                "the equation of `{signal}` does not determine it: other equations do, so its direction is not defined"
             ),
             "no signal with a direction",
             "cut at a signal of the loop: an input, an output or a clocked variable; or let the loop read one: `Angle measured = rotor.phi;`",
@@ -183,10 +183,7 @@ pub(crate) fn text(of: &OfLoop) -> String {
         let _ = writeln!(text, "  UNSTABLE: the closed loop {}", grows(pole));
     }
     if !found.in_loop {
-        let _ = writeln!(
-            text,
-            "  in no loop: nothing of what it drives comes back to it"
-        );
+        let _ = writeln!(text, "  in no loop: the signal has no feedback");
         return text;
     }
     if of.unstable.is_empty() {

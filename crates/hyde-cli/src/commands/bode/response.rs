@@ -94,10 +94,10 @@ pub(crate) fn linearised(
 /// The equations differentiate the input, of which the linearised system knows the value alone.
 pub(crate) fn no_rate(bode: &Bode) -> Diagnostic {
     let message = format!(
-        "the equations need the derivative of `{}` by the time: its response is not known",
+        "the equations need the time derivative of `{}`, so its response is not defined",
         bode.input
     );
-    let help = "make what they need the input: of a motion that is given its acceleration, with the speed and the place as integrals of it";
+    let help = "use that derivative as the input: for a prescribed motion the acceleration, with speed and position as its integrals";
     Diagnostic::error(Code::NoResponse, message)
         .label(bode.origin.span, "differentiated in the model")
         .help(help)

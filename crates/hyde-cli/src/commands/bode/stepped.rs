@@ -139,7 +139,7 @@ fn told(
                 )
             } else {
                 let none = if norm.is_nan() {
-                    "cannot be told"
+                    "unknown"
                 } else {
                     "does not move"
                 };

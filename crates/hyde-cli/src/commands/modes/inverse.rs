@@ -63,14 +63,13 @@ pub(super) fn fitted(args: &ModesArgs) -> Result<String, Exit> {
 fn asked(args: &ModesArgs) -> Result<(Vec<MeasuredMode>, Vec<usize>), String> {
     if args.vary.is_empty() {
         return Err(
-            "`--measured` says what is known; name what to find: `--vary belt.k,screw.contact.k`"
-                .to_owned(),
+            "`--measured` needs the parameters to find: `--vary belt.k,screw.contact.k`".to_owned(),
         );
     }
     let positive = |what: &str, text: &str| {
         let value: Option<f64> = text.parse().ok();
         let fine = value.filter(|value| *value > 0.0 && value.is_finite());
-        fine.ok_or_else(|| format!("`{text}` is no positive {what}"))
+        fine.ok_or_else(|| format!("`{text}` is not a positive {what}"))
     };
     let mut measured = Vec::new();
     for text in &args.measured {
@@ -118,7 +117,9 @@ fn reason(error: &ModeFitError, measured: &[MeasuredMode]) -> String {
     match error {
         ModeFitError::Parameter(_) => "a parameter cannot be set".to_owned(),
         ModeFitError::Structural(name) => {
-            format!("`{name}` shapes the equations: it cannot be found by small steps")
+            format!(
+                "`{name}` changes the structure of the equations, so it cannot be found by small steps"
+            )
         }
         ModeFitError::NotPositive(name, value) => {
             format!(
@@ -198,12 +199,12 @@ fn text(args: &ModesArgs, program: &Program, fit: &ModeFit, measured: &[Measured
     // What the steps leave of nothing is their end.
     let left = if fit.left < 1e-6 { 0.0 } else { fit.left };
     let left = significant(left, 2);
-    let _ = writeln!(text, "\nwhat is left: {left} of the spread (rms)");
+    let _ = writeln!(text, "\nresidual: {left} of the spread (rms)");
     for combination in fit.combinations.iter().filter(|c| c.spread >= 1.0) {
         let product = product(&args.vary, combination);
         let _ = writeln!(
             text,
-            "not determined, and left as it was: {product}; another frequency, one that it moves, would tell"
+            "not determined, and left unchanged: {product}; measure another frequency that depends on it"
         );
     }
     text

@@ -54,7 +54,7 @@ pub(super) fn envelopes(args: &PlotArgs, source: &Source) -> Option<Result<Figur
         return None;
     }
     if args.from.is_some() || args.to.is_some() {
-        let reason = "so many cases are drawn over their whole time: `--cases 3,7` draws lines within `--from` and `--to`";
+        let reason = "quantiles of many cases are plotted over their whole time: `--cases 3,7` plots lines within `--from` and `--to`";
         return Some(Err(reason.to_owned()));
     }
     let names: Vec<String> = if args.panels.is_empty() {
@@ -71,7 +71,7 @@ pub(super) fn envelopes(args: &PlotArgs, source: &Source) -> Option<Result<Figur
             None => {
                 let known: Vec<&str> = over.variables().map(|(f, _)| f.name.as_str()).collect();
                 return Some(Err(format!(
-                    "`{name}`: of so many cases a panel has one variable, `{}`; `--cases 3,7` draws lines",
+                    "`{name}`: with this many cases a panel shows one variable, `{}`; `--cases 3,7` plots lines",
                     known.join("`, `")
                 )));
             }

@@ -110,7 +110,7 @@ fn one_unit<'c>(columns: impl Iterator<Item = &'c Column>) -> Result<(String, Un
                     && of.dimension.agreement(unit.dimension) == Agreement::Same;
                 if !alike {
                     return Err(format!(
-                        "`{}` is in {}, the panel in {}: give it a panel of its own",
+                        "`{}` is in {}, the panel in {}: use a separate panel for it",
                         column.name(),
                         named(&text),
                         named(&known)
@@ -161,7 +161,7 @@ pub(super) fn check_window(args: &PlotArgs, sources: &[Recorded]) -> Result<(), 
     let firsts = times().filter_map(|time| time.first().copied());
     let lasts = times().filter_map(|time| time.last().copied());
     Err(format!(
-        "no row lies within `--from` and `--to`: the rows are from {} s to {} s",
+        "no sample lies within `--from` and `--to`: the samples are from {} s to {} s",
         significant(firsts.fold(f64::INFINITY, f64::min), 6),
         significant(lasts.fold(f64::NEG_INFINITY, f64::max), 6)
     ))

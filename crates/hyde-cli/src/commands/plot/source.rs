@@ -76,7 +76,7 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Source]) -> Result<Vec<Recor
                 {
                     let name = source.path.display();
                     let text = format!(
-                        "note: `{name}` is drawn from its first row on, at {}",
+                        "note: `{name}` is plotted from its first sample on, at {}",
                         origin.text
                     );
                     print_error(&text);

@@ -59,7 +59,7 @@ pub(super) fn encoded(kept: &Kept) -> Vec<u8> {
 
 /// An outcome of bytes.
 pub(super) fn decoded(bytes: &[u8]) -> Result<Kept, String> {
-    let wrong = |cause: &str| format!("the journal holds no outcome of a self-test: {cause}");
+    let wrong = |cause: &str| format!("the journal is not that of a self-test: {cause}");
     let stored = serde_json::from_slice(bytes).map_err(|error| wrong(&error.to_string()))?;
     Ok(match stored {
         Stored::Failed(reason) => Err(reason),

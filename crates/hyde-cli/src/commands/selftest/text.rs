@@ -17,7 +17,7 @@ pub(super) fn text(told: &Told<'_>) -> String {
     let sizes: Vec<String> = told.asked.sizes.iter().map(|&size| shown(size)).collect();
     let _ = writeln!(
         out,
-        "{}: {} simulated sets of records, seed {}",
+        "{}: {} simulated data sets, seed {}",
         told.plan.name,
         told.outcomes.len(),
         told.seed
@@ -25,13 +25,13 @@ pub(super) fn text(told: &Told<'_>) -> String {
     if !told.table.rows.is_empty() {
         let _ = writeln!(
             out,
-            "\n  planted at {} of the range; `2x` is twice what shows\n",
+            "\n  planted at {} of the range; `2x` is twice the smallest detectable size\n",
             sizes.join(", ")
         );
         let _ = writeln!(
             out,
-            "  {:<36} {:>7} {:>10} {:>9}  taken for",
-            "effect", "right", "shows from", "hidden"
+            "  {:<36} {:>7} {:>10} {:>9}  mistaken for",
+            "effect", "right", "detectable", "hidden"
         );
         for row in &told.table.rows {
             line(&mut out, told, row);
@@ -40,7 +40,7 @@ pub(super) fn text(told: &Told<'_>) -> String {
         let percent = 100.0 * right as f64 / (visible as f64).max(1.0);
         let _ = writeln!(
             out,
-            "\n  right effect and site named first: {right} of {visible} that show, {} %",
+            "\n  correct effect and site ranked first: {right} of {visible} detectable, {} %",
             significant(percent, 3)
         );
     }
@@ -76,7 +76,7 @@ fn line(out: &mut String, told: &Told<'_>, row: &Row) {
         several => {
             let lines = several
                 .iter()
-                .map(|other| format!("      taken for: {other}"));
+                .map(|other| format!("      mistaken for: {other}"));
             writeln!(
                 out,
                 "{}\n{}",
@@ -91,21 +91,21 @@ fn controls(out: &mut String, told: &Told<'_>) {
     let table = told.table;
     let lines = [
         ("nothing planted: verdict `none`", table.empty),
-        ("a parameter is off: verdict `none`", table.parameter),
+        ("wrong parameter: verdict `none`", table.parameter),
         (
-            "an effect withheld: no known one claimed, or more said",
+            "unknown effect: no known effect reported, or incomplete",
             table.open_set,
         ),
-        ("a faulty sensor: no effect claimed", table.sensor),
+        ("faulty sensor: no effect reported", table.sensor),
     ];
     let _ = writeln!(out);
     for (what, (cases, right)) in lines.into_iter().filter(|(_, (cases, _))| *cases > 0) {
         let _ = writeln!(out, "  {what:<60} {right:>4} of {cases}");
     }
     let withheld = [
-        ("a law of its own was written", table.laws),
+        ("a new law was written", table.laws),
         (
-            "one was claimed that the effect says it is like",
+            "an effect listed as easily confused was reported",
             table.neighbours,
         ),
     ];
@@ -115,7 +115,7 @@ fn controls(out: &mut String, told: &Told<'_>) {
     for (key, claimed) in &table.wrong {
         let names: Vec<String> = claimed.iter().map(|&f| found_name(told, f)).collect();
         let found = match names.as_slice() {
-            [] => "something unknown".to_owned(),
+            [] => "an unknown effect".to_owned(),
             names => names.join(", then "),
         };
         let _ = writeln!(out, "    {key}:\n      {found}");
@@ -154,7 +154,7 @@ fn refused(out: &mut String, told: &Told<'_>) {
 fn found_name(told: &Told<'_>, found: Found) -> String {
     match found {
         Found::Nothing => "nothing".to_owned(),
-        Found::Law => "a law of its own".to_owned(),
+        Found::Law => "a new law".to_owned(),
         Found::Effect(number) => named(told, number),
     }
 }

@@ -94,7 +94,7 @@ pub(super) fn reason(error: &SelftestError) -> String {
             RunError::Compare(error) => format!("the channel `{}`: {}", error.channel, error.cause),
         },
         SelftestError::Simulation(Simulated::Column(record, column)) => {
-            format!("no channel says what `{record}.{column}` holds")
+            format!("no `measured` or `replay` defines `{record}.{column}`")
         }
         SelftestError::Model => "an observer cannot run the model with it".to_owned(),
         SelftestError::Record(_) => "an observer cannot read its records".to_owned(),

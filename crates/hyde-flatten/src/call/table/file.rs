@@ -115,7 +115,7 @@ impl<'a> Model<'a, '_> {
         let ExprKind::String(word) = &name.kind else {
             self.report(
                 Diagnostic::error(Code::BadArguments, "a column of a file is named in quotes")
-                    .label(name.span, "no name of a column")
+                    .label(name.span, "not the name of a column")
                     .help("write `table(x, \"grease.csv\", \"v\", \"F\")`"),
             );
             return None;
