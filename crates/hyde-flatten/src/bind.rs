@@ -158,7 +158,7 @@ impl<'a> Model<'a, '_> {
         };
         for item in &items {
             if item.truth != truth && item.dim != Dim::Any {
-                let expected = if truth { "a truth" } else { "a number" };
+                let expected = if truth { "a Boolean" } else { "a number" };
                 self.report(
                     Diagnostic::error(Code::WrongType, format!("{expected} is expected here"))
                         .label(

@@ -136,7 +136,7 @@ fn usable(column: Raw, number: usize) -> Result<Column, Fault> {
         Cells::Texts(_) => {
             return Err(Fault {
                 message: format!("column `{name}` holds no numbers"),
-                repair: "leave the column out: a record has numbers only".to_owned(),
+                repair: "remove the column: a record contains only numbers".to_owned(),
             });
         }
     };
@@ -160,7 +160,7 @@ fn twice(name: &str, first: usize, second: usize) -> Fault {
     };
     Fault {
         message: error.to_string(),
-        repair: "give every column a name of its own".to_owned(),
+        repair: "give every column a different name".to_owned(),
     }
 }
 

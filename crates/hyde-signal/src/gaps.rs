@@ -39,14 +39,14 @@ pub(crate) fn told(time_s: &[f64]) -> Vec<Note> {
         };
         let places = gaps[..gaps.len().min(NAMED)].join(", ");
         notes.push(Note::new(format!(
-            "rows are missing {places}{more}: they are {} apart elsewhere, and a gap is read as a straight line",
+            "samples are missing {places}{more}: they are {} apart elsewhere, and a gap is interpolated linearly",
             seconds(usual)
         )));
     }
     if !even {
         let (least, most) = (steps[0], steps[steps.len() - 1]);
         notes.push(Note::new(format!(
-            "its rows are not evenly spaced: {} to {} apart, {} in the middle",
+            "its samples are not evenly spaced: {} to {} apart, median {}",
             seconds(least),
             seconds(most),
             seconds(usual)
@@ -58,8 +58,8 @@ pub(crate) fn told(time_s: &[f64]) -> Vec<Note> {
         .collect();
     if let Some(first) = repeated.first() {
         let rows = match repeated.len() {
-            1 => "1 row has the time of the row above it,".to_owned(),
-            many => format!("{many} rows have the time of the row above them, the first"),
+            1 => "1 sample has the time of the sample before it,".to_owned(),
+            many => format!("{many} samples have the time of the sample before them, the first"),
         };
         notes.push(Note::new(format!(
             "{rows} at {}: columns jump there",

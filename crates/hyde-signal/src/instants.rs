@@ -124,12 +124,12 @@ pub(crate) fn read(
             ));
         }
         notes.push(Note::new(format!(
-            "the time `{name}` has no unit: it is taken in s"
+            "the time `{name}` has no unit: it is read in s"
         )));
     }
     if let Some(origin) = &origin {
         notes.push(Note::new(format!(
-            "its clock shows {} in the first row: `time` counts from there, and is 0 in that row",
+            "its clock reads {} at the first sample: `time` counts from there, and is 0 at this sample",
             origin.text
         )));
     }
@@ -208,7 +208,7 @@ fn unit(raw: &[Raw], at: usize, declared: Option<&TimeColumn>) -> Result<Unit, T
                 Ok(said(unit, Some(note)))
             }
             (Temporal::Frequency, _) => {
-                let note = format!("the frequency `{name}` has no unit: it is taken in Hz");
+                let note = format!("the frequency `{name}` has no unit: it is read in Hz");
                 Ok(said(NamedUnit::usual(Dimension::FREQUENCY), Some(note)))
             }
             (Temporal::No, _) if declared.is_none() && !is_dates(&raw[at].cells) => {

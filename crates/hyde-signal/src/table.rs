@@ -159,7 +159,7 @@ impl Table {
             let column = self.columns.remove(at).raised(later_s);
             self.columns.insert(at, column);
             self.notes.push(Note::new(format!(
-                "it begins {} behind the first of the records",
+                "it begins {} after the first of the records",
                 crate::gaps::seconds(later_s)
             )));
         }

@@ -85,11 +85,11 @@ impl TimeError {
             format!("`record {record} every 1 [ms]` where rows follow each other by a period");
         let which = |instead: &Option<Candidate>| match instead {
             Some(candidate) => format!(
-                "say which column is the time: {}; or {every}",
+                "declare the column of the time: {}; or {every}",
                 candidate.line(record)
             ),
             None => format!(
-                "say which column is the time and its unit: `record {record}(time = \"NAME\" in [ms])`; or {every}"
+                "declare the column of the time and its unit: `record {record}(time = \"NAME\" in [ms])`; or {every}"
             ),
         };
         match self {
@@ -104,14 +104,14 @@ impl TimeError {
                     "if it is the time, say its unit: `record {record}(time = {name:?} in [s])`; or {every}"
                 ),
             },
-            Self::TwoUnits(..) => "leave the unit in one of the two places".to_owned(),
+            Self::TwoUnits(..) => "remove the unit in one of the two places".to_owned(),
             Self::NoUnit(name, _) => format!(
                 "say the unit, `record {record}(time = {name:?} in [ms])`, or write it in the header, `{name} [ms]`"
             ),
             Self::NoTime { instead, .. } => {
                 let other = instead.as_ref().map_or_else(String::new, |candidate| {
                     format!(
-                        "; or say which column is the time: {}",
+                        "; or declare the column of the time: {}",
                         candidate.line(record)
                     )
                 });
@@ -120,10 +120,10 @@ impl TimeError {
                 )
             }
             Self::RunsBack { anew: true, .. } => format!(
-                "cut the file there, one run each, and give them one by one: `--record {record}=PATH`"
+                "cut the file there into one file per run, and give them one by one: `--record {record}=PATH`"
             ),
             Self::RunsBack { anew: false, .. } => {
-                format!("take out the rows that are out of order, or write {every}")
+                format!("remove the rows that are out of order, or write {every}")
             }
         }
     }
@@ -132,7 +132,7 @@ impl TimeError {
 impl fmt::Display for TimeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::NoColumn(name, _) => write!(f, "there is no column `{name}` to be the time"),
+            Self::NoColumn(name, _) => write!(f, "there is no column `{name}` for the time"),
             Self::OtherUnit { name, unit, .. } => {
                 write!(f, "the column `{name} [{unit}]` is not a time")
             }
@@ -141,16 +141,10 @@ impl fmt::Display for TimeError {
                 "the column `{name}` is in {file} by the file and in {declared} by its declaration"
             ),
             Self::NotSaid { name, .. } if name.is_empty() => {
-                write!(
-                    f,
-                    "the first column has no name: it is not said to be the time"
-                )
+                write!(f, "the first column has no name, so it may not be the time")
             }
             Self::NotSaid { name, .. } => {
-                write!(
-                    f,
-                    "nothing says that the first column, `{name}`, is the time"
-                )
+                write!(f, "the first column, `{name}`, may not be the time")
             }
             Self::NoUnit(name, step) => write!(
                 f,
@@ -179,7 +173,7 @@ impl fmt::Display for TimeError {
                 anew: true,
             } => write!(
                 f,
-                "several runs are in the file: the time begins anew in {place}, from {before} to {now}"
+                "the file contains several runs: the time restarts in {place}, from {before} to {now}"
             ),
             Self::RunsBack {
                 place,

@@ -48,17 +48,17 @@ impl ReadError {
                 "write a header of `name [unit]` columns as the first line, time in the first: `t [s],x [mm]`".to_owned()
             }
             Self::HeaderAgain { .. } => format!(
-                "cut the file there, one run each, and give them one by one: `--record {record}=PATH`"
+                "cut the file there into one file per run, and give them one by one: `--record {record}=PATH`"
             ),
-            Self::NoRows => "write a row for every instant below the header".to_owned(),
+            Self::NoRows => "write one row per sample below the header".to_owned(),
             Self::Ragged { .. } => {
-                "give every row a cell for each column; a comma in a number splits it in two".to_owned()
+                "give every row one cell per column; a comma inside a number splits it into two cells".to_owned()
             }
             Self::Time(error) => error.repair(record),
             Self::Table(TableError::NoneUsable(_)) => {
-                "write numbers: a record has one column of them at least".to_owned()
+                "write numbers: a record needs at least one column of numbers".to_owned()
             }
-            Self::Table(_) => "give every column a name of its own".to_owned(),
+            Self::Table(_) => "give every column a different name".to_owned(),
         }
     }
 }
@@ -69,16 +69,13 @@ impl fmt::Display for ReadError {
             Self::Foreign(foreign) => foreign.fmt(f),
             Self::Empty => write!(f, "the file is empty"),
             Self::NoHeader { line } => {
-                write!(
-                    f,
-                    "line {line}: a row of numbers stands where the header belongs"
-                )
+                write!(f, "line {line}: found a row of numbers instead of a header")
             }
             Self::HeaderAgain { line } => write!(
                 f,
-                "several runs are in the file: the header stands again in line {line}"
+                "the file contains several runs: the header is repeated in line {line}"
             ),
-            Self::NoRows => write!(f, "there is a header but no row"),
+            Self::NoRows => write!(f, "the file has a header but no samples"),
             Self::Ragged {
                 line,
                 found,

@@ -95,7 +95,7 @@ impl<'a> Grid<'a> {
             .map_or(0, |last| last + 1);
         if named < cells.len() {
             notes.push(Note::new(
-                "its lines end with a separator: the empty column behind it is left out",
+                "its lines end with a separator: the empty last column is ignored",
             ));
             cells.truncate(named);
         }

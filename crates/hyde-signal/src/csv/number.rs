@@ -59,23 +59,21 @@ pub(super) fn not_a_number(line: u64, column: usize, name: &str, cell: &str) -> 
     if cell.is_empty() {
         return Fault {
             message: format!("{place}: the cell is empty"),
-            repair:
-                "put the value in that belongs there, or take the row out: it cannot be guessed"
-                    .to_owned(),
+            repair: "insert the missing value, or remove the row: Hyde does not guess values"
+                .to_owned(),
         };
     }
     if number(cell).is_some() {
         return Fault {
-            message: format!("{place}: `{cell}` has another decimal sign than the cells before it"),
+            message: format!("{place}: `{cell}` has a different decimal sign than the cells before it"),
             repair: "write all numbers with a point, `0.5`, or all with a comma and another separator, `0,5;1,5`".to_owned(),
         };
     }
     if cell.parse::<f64>().is_ok() {
         return Fault {
             message: format!("{place}: `{cell}` is not finite"),
-            repair:
-                "take the row out, or put the value in that belongs there: it cannot be guessed"
-                    .to_owned(),
+            repair: "remove the row, or insert the correct value: Hyde does not guess values"
+                .to_owned(),
         };
     }
     Fault {

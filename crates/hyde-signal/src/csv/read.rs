@@ -45,7 +45,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
         let (found, expected) = (rows.count(), headings.len());
         if found < expected && rows.is_cut_off() && !positions.is_empty() {
             notes.push(Note::new(format!(
-                "the file ends within line {}: that row is left out",
+                "the file ends within line {}: this row is ignored",
                 rows.line()
             )));
             break;

@@ -22,7 +22,7 @@ pub(super) fn decoded(bytes: &[u8]) -> Result<(Cow<'_, str>, Option<Note>), Fore
     if let Some(encoding) = encoding {
         let (text, ..) = encoding.decode(bytes);
         let note = (encoding != encoding_rs::UTF_8)
-            .then(|| Note::new(format!("the file is {}, and was read so", encoding.name())));
+            .then(|| Note::new(format!("the file is read as {}", encoding.name())));
         return Ok((text, note));
     }
     if bytes.contains(&0) {

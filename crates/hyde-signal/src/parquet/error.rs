@@ -24,15 +24,12 @@ impl ReadError {
     #[must_use]
     pub fn repair(&self, record: &str) -> String {
         match self {
-            Self::Damaged(_) => {
-                "write the file anew; compressed columns must be so by Snappy, or not at all"
-                    .to_owned()
-            }
-            Self::Kind(..) => "leave the column out, or write it as doubles".to_owned(),
+            Self::Damaged(_) => "write the file again, with Snappy compression or none".to_owned(),
+            Self::Kind(..) => "remove the column, or write it as doubles".to_owned(),
             Self::Unit(..) => "write the unit as in a model: `N`, `mm`".to_owned(),
             Self::Time(error) => error.repair(record),
             Self::Table(_) => {
-                "give every column a name of its own, and sort the rows by time".to_owned()
+                "give every column a different name, and sort the samples by time".to_owned()
             }
         }
     }

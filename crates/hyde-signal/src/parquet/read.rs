@@ -23,7 +23,7 @@ pub const READER: &str = "reader of a Parquet file";
 pub fn read_frame(bytes: &[u8]) -> Result<Frame, ReadError> {
     // Of a damaged file the crate asserts what it should check: that is a mistake of the file, no end of the program. A thread
     // of its own keeps it, by whose name a program may pass over what it says.
-    let damaged = || ReadError::Damaged("its parts do not fit each other".to_owned());
+    let damaged = || ReadError::Damaged("its parts are inconsistent".to_owned());
     std::thread::scope(|scope| {
         let reader = std::thread::Builder::new().name(READER.to_owned());
         let read = reader.spawn_scoped(scope, || frame(bytes));
@@ -77,7 +77,7 @@ fn frame(bytes: &[u8]) -> Result<Frame, ReadError> {
             checksum::add(&mut hasher, &all);
             if checksum::written(&hasher) != *known {
                 return Err(ReadError::Damaged(format!(
-                    "the values of `{name}` are not those that were written"
+                    "the values of `{name}` do not match their checksum"
                 )));
             }
         }

@@ -51,8 +51,8 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
 fn not_finite(name: &str, values: &[f64]) -> Option<Fault> {
     let row = values.iter().position(|value| !value.is_finite())?;
     Some(Fault {
-        message: format!("row {}, column `{name}`: no finite number", row + 1),
-        repair: "take the row out, or put the value in that belongs there: it cannot be guessed"
+        message: format!("row {}, column `{name}`: not a finite number", row + 1),
+        repair: "remove the row, or insert the correct value: Hyde does not guess values"
             .to_owned(),
     })
 }

@@ -180,7 +180,7 @@ fn a_declared_column_is_the_time() {
 fn an_event_has_two_rows() {
     let table = table("t,x\n0,0\n1.5,1\n1.5,5\n2,6\n");
     assert_eq!(table.time(), [0.0, 1.5, 1.5, 2.0]);
-    assert!(notes(&table).contains("the time `t` has no unit: it is taken in s"));
+    assert!(notes(&table).contains("the time `t` has no unit: it is read in s"));
 }
 
 #[test]
@@ -266,21 +266,21 @@ fn mistakes_are_told_with_line_and_column() {
         ),
         (
             "t,x\n0.5,1\n1.5,1\n2.5,1\n0.6,1\n",
-            "several runs are in the file: the time begins anew in line 5, from 2.5 to 0.6",
+            "the file contains several runs: the time restarts in line 5, from 2.5 to 0.6",
         ),
         (
             "t,x\n0.5,1\n1.5,1\nt,x\n0.5,1\n",
-            "several runs are in the file: the header stands again in line 4",
+            "the file contains several runs: the header is repeated in line 4",
         ),
         ("x [m],t [s]\n0,1\n", "the column `x [m]` is not a time"),
         ("t [RAW],x\n0,1\n", "the column `t [RAW]` is not a time"),
         (
             "Sample,x\n0,1\n1,2\n",
-            "nothing says that the first column, `Sample`, is the time",
+            "the first column, `Sample`, may not be the time",
         ),
         (
             ",t [s]\n0,1\n",
-            "the first column has no name: it is not said to be the time",
+            "the first column has no name: so it may not be the time",
         ),
         (
             "time,x\n0,1\n2,1\n4,1\n",
