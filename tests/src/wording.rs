@@ -138,8 +138,10 @@ pub fn literals(source: &str) -> Vec<(usize, String)> {
             rest.find("*/").map_or(rest.len(), |end| end + 2)
         } else if rest.starts_with("'\"'") {
             3
-        } else if rest.starts_with("'\\") {
-            rest[2..].find('\'').map_or(rest.len(), |end| end + 3)
+        } else if let Some(escaped) = rest.strip_prefix("'\\") {
+            let mut letters = escaped.char_indices().skip(1);
+            let end = letters.find(|(_, letter)| *letter == '\'');
+            end.map_or(rest.len(), |(end, _)| end + 3)
         } else if rest.starts_with('"') {
             let (text, length) = literal(rest, opens_raw);
             found.push((line, text));

@@ -131,7 +131,7 @@ fn every_block_of_the_language_is_marked_in_a_way_that_is_tested() {
 fn every_page_is_in_the_table_of_contents() {
     let folder = root().join("book/src");
     let summary = read(&folder.join("SUMMARY.md"));
-    for folder in [folder.clone(), folder.join("errors")] {
+    for folder in [folder.clone(), folder.join("errors"), folder.join("how")] {
         for path in markdown(&folder) {
             let name = path.strip_prefix(root().join("book/src")).unwrap();
             let name = name.to_string_lossy().replace('\\', "/");
@@ -144,7 +144,9 @@ fn every_page_is_in_the_table_of_contents() {
 #[test]
 fn every_file_that_a_page_links_to_is_there() {
     let mut paths = markdown(&root());
-    paths.extend(markdown(&root().join("book/src")));
+    for folder in ["book/src", "book/src/how", "tests"] {
+        paths.extend(markdown(&root().join(folder)));
+    }
     let mut found = 0;
     for path in paths {
         let folder = path.parent().unwrap();

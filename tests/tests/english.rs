@@ -14,7 +14,14 @@ use std::process::Command;
 #[test]
 fn the_documents() {
     let phrases = phrases();
-    let mut paths = vec![root().join("README.md"), root().join("CHANGELOG.md")];
+    let mut paths = [
+        "README.md",
+        "CHANGELOG.md",
+        "ARCHITECTURE.md",
+        "CONTRIBUTING.md",
+    ]
+    .map(|name| root().join(name))
+    .to_vec();
     files(&root().join("book/src"), "md", &mut paths);
     assert!(paths.len() > 80, "only {} pages were found", paths.len());
     let wrong = paths.iter().flat_map(|path| {

@@ -118,7 +118,7 @@ mod tests {
 
     #[test]
     fn what_repeats_and_what_is_uneven_is_told() {
-        assert!(notes(&[0.0, 1.0, 1.0, 2.0]).starts_with("1 row has the time"));
+        assert!(notes(&[0.0, 1.0, 1.0, 2.0]).starts_with("1 sample has the time"));
         let uneven: Vec<f64> = (0..50).map(|k| f64::from(k * k)).collect();
         assert!(notes(&uneven).contains("not evenly spaced: 1 s to 97 s apart"));
     }

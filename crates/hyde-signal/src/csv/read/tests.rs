@@ -231,7 +231,7 @@ fn records_with_dates_are_aligned() {
     crate::align(&mut [("one", &mut one), ("other", &mut other)]);
     assert_eq!(one.time(), [0.0, 1.0]);
     assert_eq!(other.time(), [1.25, 2.25]);
-    assert!(notes(&other).contains("begins 1.25 s behind the first of the records"));
+    assert!(notes(&other).contains("begins 1.25 s after the first of the records"));
     let mut plain = table("t [s],x\n0,1\n1,2\n");
     crate::align(&mut [("one", &mut one), ("plain", &mut plain)]);
     assert!(notes(&plain).contains("cannot be compared"));
@@ -242,10 +242,10 @@ fn mistakes_are_told_with_line_and_column() {
     for (text, expected) in [
         ("", "the file is empty"),
         ("\n# only a comment\n", "the file is empty"),
-        ("t,x\n", "there is a header but no row"),
+        ("t,x\n", "the file has a header but no samples"),
         (
             "0,1\n1,2\n",
-            "line 1: a row of numbers stands where the header belongs",
+            "line 1: found a row of numbers instead of a header",
         ),
         (
             "t,x\n0,1\n\n# note\nabc,1\n",
@@ -280,7 +280,7 @@ fn mistakes_are_told_with_line_and_column() {
         ),
         (
             ",t [s]\n0,1\n",
-            "the first column has no name: so it may not be the time",
+            "the first column has no name, so it may not be the time",
         ),
         (
             "time,x\n0,1\n2,1\n4,1\n",
@@ -323,7 +323,7 @@ fn a_decimal_comma_stands_in_the_whole_file() {
     assert_eq!(table.time(), [0.5, 1.5]);
     assert_eq!(
         table.unusable()[0].fault.to_string(),
-        "line 2, column 3 (`y`): `1.5` has another decimal sign than the cells before it"
+        "line 2, column 3 (`y`): `1.5` has a different decimal sign than the cells before it"
     );
 }
 
