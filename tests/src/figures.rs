@@ -6,6 +6,7 @@ mod bench;
 mod cases;
 mod clif_growth;
 mod compile;
+mod demo;
 mod diagnosis;
 mod emps;
 mod emps_diagnosis;
@@ -66,6 +67,7 @@ pub const FIGURES: &[Figure] = &[
     compile::CHAIN,
     fixtures::FIGURE,
     cases::FIGURE,
+    demo::FIGURE,
     event_suite::FIGURE,
     events::P2,
     events::P3,
