@@ -291,15 +291,16 @@ fn files_of(
             diagnostics.push(
                 Diagnostic::error(
                     Code::NoRecord,
-                    format!("`{}` is a link to a file outside its folder", path.display()),
+                    format!(
+                        "`{}` is a link to a file outside its folder",
+                        path.display()
+                    ),
                 )
                 .label(
                     *span,
                     "only files below the model's folder or `--data` are read",
                 )
-                .help(
-                    "move the file into the folder, or name its folder: `--data DIR`",
-                ),
+                .help("move the file into the folder, or name its folder: `--data DIR`"),
             );
             return Vec::new();
         }
@@ -415,9 +416,10 @@ fn varied(
                 let mut own = Varied::of(program, name, p);
                 let problem = match program.parameter(name) {
                     None => Some("no such parameter".to_owned()),
-                    Some((parameter, _)) if parameter.structural => {
-                        Some("it changes the structure of the equations: each value is a separate model".to_owned())
-                    }
+                    Some((parameter, _)) if parameter.structural => Some(
+                        "it changes the structure of the equations: each value is a separate model"
+                            .to_owned(),
+                    ),
                     Some((parameter, _)) if parameter.is_final => Some("it is final".to_owned()),
                     Some((parameter, _)) => bounds.as_ref().and_then(|(from, to, unit)| {
                         let misfit = |value| {
