@@ -1,5 +1,6 @@
 //! What is missing and in no library: the sites where a law may act, written effects compiled, and what is told of them.
 
+use crate::diagnosis::wrapped;
 use hyde_calibrate::{
     Built, Diagnosis, FoundLaw, Kind, Map, Panel, Site, Summand, Unknown, Written,
 };
@@ -109,9 +110,9 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
         Some(own) => {
             let _ = writeln!(out, "\n{}", own.written.text.trim_end());
             let seen = &own.law.seen;
-            let _ = writeln!(
-                out,
-                "\n  operating range at {}: speed to {}, position {} to {}, time {} to {} (SI)",
+            out.push('\n');
+            let range = format!(
+                "{}: speed to {}, position {} to {}, time {} to {} (SI)",
                 own.law.site.path,
                 significant(seen.speed, 3),
                 significant(seen.place.0, 3),
@@ -119,20 +120,21 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
                 significant(seen.time.0, 3),
                 significant(seen.time.1, 3)
             );
-            let _ = writeln!(
-                out,
-                "  improvement {}, {} in cross-validation; {} of that of the best line below",
+            wrapped(&mut out, "  operating range at", &range);
+            let improvement = format!(
+                "{}, {} in cross-validation; {} of that of the best line below",
                 significant(own.gain, 3),
                 significant(own.fold_gain, 3),
                 significant(own.share, 3)
             );
+            wrapped(&mut out, "  improvement", &improvement);
             for (term, share) in &own.equivalents {
-                let _ = writeln!(
-                    out,
-                    "  nearly as good: {} ({} of the improvement of the first term)",
+                let term = format!(
+                    "{} ({} of the improvement of the first term)",
                     named(term, own.law.site.kind),
                     significant(*share, 3)
                 );
+                wrapped(&mut out, "  nearly as good:", &term);
             }
         }
         None => {
@@ -141,7 +143,7 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
     }
     let _ = writeln!(
         out,
-        "\n  {} at {} as a function of: improvement, and that by chance",
+        "\n  {} at {}, fitted as any function of",
         unknown.map.site.kind.words().what,
         unknown.map.site.path
     );
@@ -149,17 +151,22 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
     let wave = wave(&unknown.map);
     let widths = unknown.map.panels.iter().map(|panel| name(panel).len());
     let width = widths.max().unwrap_or(0).max(wave.len());
+    let _ = writeln!(
+        out,
+        "    {:<width$} {:>11} {:>9}",
+        "", "improvement", "by chance"
+    );
     for panel in &unknown.map.panels {
         let _ = writeln!(
             out,
-            "    {:<width$} {:>9} {:>9}",
+            "    {:<width$} {:>11} {:>9}",
             name(panel),
             significant(panel.gain, 3),
             significant(panel.band, 3)
         );
     }
     let gain = significant(unknown.map.waves, 3);
-    let _ = writeln!(out, "    {wave:<width$} {gain:>9} {:>9}", "-");
+    let _ = writeln!(out, "    {wave:<width$} {gain:>11} {:>9}", "-");
     out
 }
 

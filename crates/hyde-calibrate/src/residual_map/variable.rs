@@ -54,7 +54,7 @@ pub(super) fn variables(program: &Program, recordings: &[Recording]) -> Vec<Vari
         });
         if dimension == Dimension::ANGLE {
             found.push(Variable {
-                name: format!("{name} in its turn"),
+                name: format!("{name} in its revolution"),
                 unit: measured.unit.clone(),
                 values: each(&|recording| {
                     let angles = recording.channels[number].iter();

@@ -79,30 +79,30 @@ impl Factor {
         let [place, speed] = kind.variables();
         match self {
             Self::Speed => format!("the {speed}"),
-            Self::Magnitude => format!("the {speed}'s magnitude"),
-            Self::SignedSquare => format!("the {speed}'s square with its sign"),
-            Self::Square => format!("the {speed}'s square"),
-            Self::Cube => format!("the {speed}'s third power"),
-            Self::Switching(a) => format!("the direction, above {}", n(a)),
-            Self::Turning(a) => format!("the direction, all of it above {}", n(a)),
-            Self::Forwards(a) => format!("forwards alone, above {}", n(a)),
-            Self::Backwards(a) => format!("backwards alone, above {}", n(a)),
-            Self::Falling(a) => format!("a fall with {speed} over {}", n(a)),
-            Self::Bell(a) => format!("a bell of {speed} of {}", n(a)),
-            Self::SpeedBump(a, b) => format!("a bump at the {speed} {} ± {}", n(a), n(b)),
-            Self::Lagged(a) => format!("the {speed}, {} s late", n(a)),
-            Self::Worked(a) => format!("the {speed}'s magnitude, {} s late", n(a)),
+            Self::Magnitude => format!("the magnitude of the {speed}"),
+            Self::SignedSquare => format!("the signed square of the {speed}"),
+            Self::Square => format!("the square of the {speed}"),
+            Self::Cube => format!("the cube of the {speed}"),
+            Self::Switching(a) => format!("the direction, gradually above {}", n(a)),
+            Self::Turning(a) => format!("the direction, smoothed over {}", n(a)),
+            Self::Forwards(a) => format!("the forward direction only, gradually above {}", n(a)),
+            Self::Backwards(a) => format!("the backward direction only, gradually above {}", n(a)),
+            Self::Falling(a) => format!("an exponential decrease with {speed} over {}", n(a)),
+            Self::Bell(a) => format!("a Gaussian of the {speed} with width {}", n(a)),
+            Self::SpeedBump(a, b) => format!("a peak at the {speed} {} ± {}", n(a), n(b)),
+            Self::Lagged(a) => format!("the {speed} with a lag of {} s", n(a)),
+            Self::Worked(a) => format!("the magnitude of the {speed} with a lag of {} s", n(a)),
             Self::Place => format!("the {place}"),
-            Self::PlaceMagnitude => format!("the {place}'s magnitude"),
-            Self::PlaceSquare => format!("the {place}'s square"),
-            Self::PlaceSignedSquare => format!("the {place}'s square with its sign"),
-            Self::PlaceCube => format!("the {place}'s third power"),
-            Self::Yielding(a) => format!("the {place}, less and less beyond {}", n(a)),
+            Self::PlaceMagnitude => format!("the magnitude of the {place}"),
+            Self::PlaceSquare => format!("the square of the {place}"),
+            Self::PlaceSignedSquare => format!("the signed square of the {place}"),
+            Self::PlaceCube => format!("the cube of the {place}"),
+            Self::Yielding(a) => format!("the {place}, saturating beyond {}", n(a)),
             Self::Wave(a) => format!("a wave over {place} of {}", n(a)),
-            Self::Bump(a, b) => format!("a bump at {} ± {}", n(a), n(b)),
+            Self::Bump(a, b) => format!("a peak at {} ± {}", n(a), n(b)),
             Self::Step(a, b) => format!("a step at {} ± {}", n(a), n(b)),
             Self::Time => "time".to_owned(),
-            Self::Fading(a) => format!("fading over {} s", n(a)),
+            Self::Fading(a) => format!("a decay over {} s", n(a)),
         }
     }
 
@@ -296,9 +296,9 @@ impl Factor {
     pub(crate) fn equations(self, kind: Kind, names: &[String]) -> (String, String) {
         let (v, (unit, _)) = kind.words().speed;
         let (name, input, what) = match self {
-            Self::Lagged(_) => ("late", v.to_owned(), "the speed, late"),
+            Self::Lagged(_) => ("late", v.to_owned(), "the speed with a lag"),
             Self::Worked(_) => {
-                let what = "how much it has been moved lately";
+                let what = "recent motion, filtered";
                 ("worked", format!("noEvent(abs({v}))"), what)
             }
             Self::Speed

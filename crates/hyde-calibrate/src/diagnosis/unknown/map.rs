@@ -35,7 +35,7 @@ impl Variable {
         match self {
             Self::Speed => speed.to_owned(),
             Self::Place => place.to_owned(),
-            Self::Turn => "angle in a turn".to_owned(),
+            Self::Turn => "angle in a revolution".to_owned(),
             Self::Time => "time".to_owned(),
             Self::SpeedByPlace => format!("{speed} times {place}"),
             Self::SpeedByTime => format!("{speed} times time"),
