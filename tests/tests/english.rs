@@ -22,7 +22,9 @@ fn the_documents() {
     ]
     .map(|name| root().join(name))
     .to_vec();
-    files(&root().join("book/src"), "md", &mut paths);
+    for folder in ["book/src", "examples", "tests"] {
+        files(&root().join(folder), "md", &mut paths);
+    }
     assert!(paths.len() > 80, "only {} pages were found", paths.len());
     let wrong = paths.iter().flat_map(|path| {
         let text = std::fs::read_to_string(path).unwrap();

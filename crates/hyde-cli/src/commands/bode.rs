@@ -172,7 +172,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
         &program.experiment.bodes[..]
     };
     if no_cut && bodes.is_empty() {
-        let reason = "the experiment asks for no response: write `bode from u to y over 1 .. 50 [Hz];` or `margins of SIGNAL;`";
+        let reason = "the experiment has no `bode` or `margins`: write `bode from u to y over 1 .. 50 [Hz];` or `margins of SIGNAL;`";
         return Err(wrong(reason.to_owned()));
     }
     let tables = hyde_study::tables(&project.records);

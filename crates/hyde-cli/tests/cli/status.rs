@@ -71,7 +71,7 @@ fn status_2_when_the_command_line_is() {
         (&["run", &model, "--record", "log=x.csv"], "no record `log`"),
         (&["run", &model, "--stop", "soon"], "soon"),
         (&["modes", &model, "--in", "guide=slip"], "guide"),
-        (&["bode", &model], "asks for no response"),
+        (&["bode", &model], "has no `bode` or `margins`"),
         (
             &["plot", "nowhere.csv"],
             "`nowhere.csv`: no such file or folder",
