@@ -27,6 +27,7 @@ mod residual_cost;
 mod selftest;
 mod start;
 mod stick;
+mod traces;
 mod travelling_nut;
 mod two_mass;
 
@@ -68,6 +69,8 @@ pub const FIGURES: &[Figure] = &[
     fixtures::FIGURE,
     cases::FIGURE,
     demo::FIGURE,
+    traces::LAYOUTS,
+    traces::MUTATED,
     event_suite::FIGURE,
     events::P2,
     events::P3,

@@ -19,6 +19,7 @@ mod numbers;
 pub mod paper;
 pub mod random_ledger;
 pub mod stored_energy;
+pub mod traces;
 pub mod wording;
 
 pub use closed_form::ContinuousAxis;

@@ -86,7 +86,8 @@ impl Recording {
         };
         let table = tables
             .get(&base.source.0)
-            .ok_or_else(|| missing(&base.source))?;
+            .ok_or_else(|| missing(&base.source))?
+            .holding(&base.source.1);
         if table.time().len() < 2 * SETTLING_ROWS {
             return Err(RecordError::Short(name.to_owned(), table.time().len()));
         }
@@ -101,7 +102,8 @@ impl Recording {
         for (number, measured) in experiment.measured.iter().enumerate() {
             let table = tables
                 .get(&measured.source.0)
-                .ok_or_else(|| missing(&measured.source))?;
+                .ok_or_else(|| missing(&measured.source))?
+                .holding(&measured.source.1);
             let column = table
                 .column(&measured.source.1)
                 .ok_or_else(|| missing(&measured.source))?;
@@ -112,7 +114,12 @@ impl Recording {
                 return Err(RecordError::BeginsAgain(channel, times, by));
             }
             let values = hyde_experiment::unwrapped(measured, column.values(), period);
-            let own = measured.source.0 == base.source.0 && resampled.is_some();
+            let same = |base: &Table| base.time() == table.time();
+            let own = resampled.is_some()
+                && measured.source.0 == base.source.0
+                && tables
+                    .get(&base.source.0)
+                    .is_some_and(|all| same(all.holding(&base.source.1)));
             let even = own.then(|| even_rows::resample(table, &values, &time));
             let even = even.flatten();
             let (table, values) = even
@@ -127,6 +134,7 @@ impl Recording {
         for column in &program.columns {
             let source = (column.record.clone(), column.column.clone());
             let table = tables.get(&column.record).ok_or_else(|| missing(&source))?;
+            let table = table.holding(&column.column);
             let values = table
                 .column(&column.column)
                 .ok_or_else(|| missing(&source))?

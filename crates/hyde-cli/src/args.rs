@@ -56,6 +56,8 @@ pub(crate) enum Command {
     Trend(TrendArgs),
     /// Run every experiment of a file or a package; check its expectations and that its effects vanish at size 0
     Test(TestArgs),
+    /// Show what is in traces: layout, channels, rates, gaps, noise, delays, and the line for a model file
+    Look(LookArgs),
     /// Write HTML documentation of a package, of a file, or of the library
     Doc(DocArgs),
     /// Explain a diagnostic code
@@ -79,7 +81,8 @@ pub(crate) struct ModelArgs {
     /// Set a parameter: `--set saddle.M='320 [kg]'` (repeatable)
     #[arg(long = "set", value_name = "PATH=VALUE [UNIT]")]
     pub(crate) settings: Vec<String>,
-    /// Set the file of a record of the experiment: `--record file=strokes.csv` (repeatable)
+    /// Set the file of a record of the experiment: `--record file=strokes.csv` (repeatable); settings may follow:
+    /// `--record 'file=log.csv (time = "t" in [ms])'`
     #[arg(long = "record", value_name = "NAME=PATH")]
     pub(crate) records: Vec<String>,
     /// Folder of the records [default: the folder of the model]
@@ -407,6 +410,19 @@ pub(crate) struct EffectsArgs {
 pub(crate) struct TestArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LookArgs {
+    /// Files, each with how it is to be read if it does not say so: `'log.csv (time = "t" in [ms])'`
+    #[arg(required = true)]
+    pub(crate) files: Vec<String>,
+    /// Leave the page `look.html` with a picture of every channel in this folder
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    /// Print one JSON object on standard output and nothing else
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -71,8 +71,10 @@ pub(crate) fn of_record(program: &Program, name: &str, table: &Table) -> Vec<Str
             _ => ("have", "they are", "them"),
         };
         all.push(format!(
-            "{} {has} no unit: {is} read in the SI unit of the variable that the experiment compares or drives with {them}",
-            list.join(", ")
+            "{} {has} no unit: {is} read in the SI unit of the variable that the experiment compares or drives with {them}; \
+             if that is wrong, declare the unit: `record {name}(column = {:?} in [mm])`",
+            list.join(", "),
+            without.first().copied().unwrap_or_default()
         ));
     }
     all

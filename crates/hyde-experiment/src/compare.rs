@@ -59,7 +59,8 @@ pub(crate) fn channels(
         let (record, column) = &measured.source;
         let table = records
             .get(record)
-            .ok_or_else(|| error("its record is missing"))?;
+            .ok_or_else(|| error("its record is missing"))?
+            .holding(column);
         let column = table
             .column(column)
             .ok_or_else(|| error("its record has no such column"))?;

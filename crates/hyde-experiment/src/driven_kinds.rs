@@ -61,6 +61,7 @@ pub fn check_columns(
         let Some(table) = records.get(&column.record) else {
             continue;
         };
+        let table = table.holding(&column.column);
         let values = table.column(&column.column).map(Column::values);
         for (row, value) in values.unwrap_or_default().iter().enumerate() {
             if let Some(refusal) = allowed.refusal(*value, &number) {

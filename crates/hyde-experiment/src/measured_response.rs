@@ -123,7 +123,9 @@ fn table<'a>(
     records: &'a BTreeMap<String, Table>,
 ) -> Result<&'a Table, String> {
     let table = records.get(&scaled.record);
-    Ok(table.ok_or("its record is missing")?)
+    Ok(table
+        .ok_or("its record is missing")?
+        .holding(&scaled.column))
 }
 
 fn over_frequency(

@@ -423,16 +423,20 @@ fn rows(
 ) -> Vec<f64> {
     let mut rows = Setup::rows_every(start_s, stop_s, every_s);
     let experiment = &program.experiment;
-    let compared = experiment.measured.iter().map(|m| &m.source.0);
+    let compared = experiment
+        .measured
+        .iter()
+        .map(|m| (&m.source.0, &m.source.1));
     let responses = experiment.measured_responses.iter();
     let periodic = responses.filter_map(|m| match &m.source {
-        RecordedResponse::Periodic(input, ..) => Some(&input.record),
+        RecordedResponse::Periodic(input, ..) => Some((&input.record, &input.column)),
         RecordedResponse::Complex(..) | RecordedResponse::Polar(..) => None,
     });
-    for record in compared.chain(periodic) {
+    for (record, column) in compared.chain(periodic) {
         if let Some(table) = records.get(record) {
             rows.extend(
                 table
+                    .holding(column)
                     .time()
                     .iter()
                     .copied()

@@ -22,6 +22,7 @@ impl Model<'_, '_> {
             let known = self.flat.variables[id].quantity.clone();
             self.flat.variables[id].quantity = settled(known, dimension);
         }
+        self.report_units_in_names();
         for id in self.flat.parameters.ids().collect::<Vec<_>>() {
             let dimension = self.dimension(&self.parameters[id.index()].dim.clone());
             let known = self.flat.parameters[id].quantity.clone();

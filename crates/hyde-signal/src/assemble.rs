@@ -5,7 +5,7 @@ use crate::heading::{Heading, Place};
 use crate::instants;
 use crate::layout::Layout;
 use crate::time_error::TimeError;
-use crate::{Column, Note, Table, TableError};
+use crate::{Column, Note, Table, TableError, declared};
 use std::fmt;
 
 /// A column as a file has it.
@@ -24,6 +24,18 @@ pub(crate) enum Cells {
     Integers(Vec<i64>),
     /// Texts.
     Texts(Vec<String>),
+}
+
+impl Cells {
+    /// Whether these are the same numbers or texts, all of them there.
+    fn same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Numbers(a, None), Self::Numbers(b, None)) => a == b,
+            (Self::Integers(a), Self::Integers(b)) => a == b,
+            (Self::Texts(a), Self::Texts(b)) => a == b,
+            _ => false,
+        }
+    }
 }
 
 /// Why a column cannot be used, and what to change in the file.
@@ -59,11 +71,13 @@ pub(crate) enum AssembleError {
 
 /// Makes the table; `place` names a row in messages.
 pub(crate) fn assemble(
-    raw: Vec<Raw>,
+    mut raw: Vec<Raw>,
     layout: &Layout,
     mut notes: Vec<Note>,
     place: &dyn Fn(usize) -> String,
 ) -> Result<Table, AssembleError> {
+    notes.extend(declared::apply(&mut raw, &layout.columns).map_err(AssembleError::Time)?);
+    notes.extend(set_repeated_apart(&mut raw));
     let mut time = match layout.every_s {
         Some(_) => None,
         None => {
@@ -121,7 +135,12 @@ pub(crate) fn assemble(
 }
 
 fn usable(column: Raw, number: usize) -> Result<Column, Fault> {
-    let Heading { name, unit, .. } = column.heading;
+    let Heading {
+        name,
+        unit,
+        meaning,
+        ..
+    } = column.heading;
     if name.is_empty() {
         return Err(Fault {
             message: format!("column {number} has no name"),
@@ -140,17 +159,42 @@ fn usable(column: Raw, number: usize) -> Result<Column, Fault> {
             });
         }
     };
-    let raw = Column::raw(name.clone(), values);
+    let raw = Column::raw(name.clone(), values).showing(meaning);
     match unit {
         None => Ok(raw),
         Some(Ok(unit)) => Ok(raw.converted(unit)),
         Some(Err(error)) => Err(Fault {
             message: format!("column {number} (`{name}`): {error}"),
             repair: format!(
-                "write the unit as in a model, `{name} [N]`, or leave the unit out and give it where the column is used"
+                "write the unit as in a model, `{name} [N]`, or leave the unit out and give it where the column is used; \
+                 or say it in the experiment: `record NAME(column = {name:?} in [N])`"
             ),
         }),
     }
+}
+
+/// Channels that are in the file twice with equal values count once.
+fn set_repeated_apart(raw: &mut Vec<Raw>) -> Option<Note> {
+    let mut repeated: Vec<String> = Vec::new();
+    let mut at = 0;
+    while at < raw.len() {
+        let column = &raw[at];
+        let same = |other: &Raw| {
+            other.heading == column.heading
+                && !column.heading.name.is_empty()
+                && other.cells.same(&column.cells)
+        };
+        match raw[..at].iter().any(same) {
+            true => repeated.push(raw.remove(at).heading.name),
+            false => at += 1,
+        }
+    }
+    (!repeated.is_empty()).then(|| {
+        let names = crate::note::listed(repeated.iter().map(String::as_str));
+        Note::new(format!(
+            "more than once in the file with equal values, and read once: {names}"
+        ))
+    })
 }
 
 fn twice(name: &str, first: usize, second: usize) -> Fault {

@@ -131,6 +131,11 @@ impl<'a> Stamp<'a> {
     }
 }
 
+/// Whether a cell is a date with a time of day, or one of them alone.
+pub(crate) fn is_stamp(cell: &str) -> bool {
+    Stamp::of(cell).is_some() || day(cell.trim()).is_some()
+}
+
 /// The number of a day; a day and a month that cannot be told apart are none.
 fn day(date: &str) -> Option<i32> {
     use chrono::Datelike as _;

@@ -13,6 +13,7 @@ pub struct Column {
     name: String,
     unit: Option<NamedUnit>,
     values: Vec<f64>,
+    meaning: Option<String>,
 }
 
 /// A column was given a unit of another dimension than it has.
@@ -34,6 +35,7 @@ impl Column {
             name: name.into(),
             unit: Some(unit),
             values: si_values,
+            meaning: None,
         }
     }
 
@@ -44,6 +46,7 @@ impl Column {
             name: name.into(),
             unit: None,
             values,
+            meaning: None,
         }
     }
 
@@ -51,6 +54,17 @@ impl Column {
     #[must_use]
     pub fn name(&self) -> &str {
         &self.name
+    }
+
+    /// What its file says in another row that it shows.
+    #[must_use]
+    pub fn meaning(&self) -> Option<&str> {
+        self.meaning.as_deref()
+    }
+
+    /// The same with what it shows.
+    pub(crate) fn showing(self, meaning: Option<String>) -> Self {
+        Self { meaning, ..self }
     }
 
     /// The unit it is read and written in, if known.

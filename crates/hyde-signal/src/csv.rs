@@ -10,12 +10,18 @@
 //! names and a header behind `#` are found out by the file itself; what is not as above is told in a [`Note`](crate::Note).
 //! Names may be quoted. Blank lines and lines that start with `#` or `%` are skipped.
 
+mod columns;
 mod error;
+mod facts;
 mod frame;
 mod grid;
+mod groups;
+mod head;
 mod number;
+mod pairs;
 mod read;
 mod rows;
+mod separator;
 mod text;
 mod write;
 

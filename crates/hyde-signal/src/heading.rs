@@ -13,6 +13,8 @@ pub(crate) struct Heading {
     pub(crate) unit: Option<Result<NamedUnit, UnitError>>,
     /// Where the unit stands.
     pub(crate) place: Place,
+    /// What the file says in another row that the column shows.
+    pub(crate) meaning: Option<String>,
 }
 
 /// Where a unit stands.
@@ -27,6 +29,18 @@ pub(crate) enum Place {
 }
 
 impl Heading {
+    /// A name without a unit, whatever signs are in it.
+    pub(crate) fn plain(name: &str) -> Self {
+        let name = name.trim().to_owned();
+        Self {
+            written: name.clone(),
+            name,
+            unit: None,
+            place: Place::Usual,
+            meaning: None,
+        }
+    }
+
     /// Splits `x [mm]` or `x (mm)`.
     ///
     /// Brackets that close the cell hold a unit, except an index that stands at the name: `x[1]` is an element. What is in
@@ -38,6 +52,7 @@ impl Heading {
             name: name.trim_end().to_owned(),
             unit,
             place,
+            meaning: None,
         };
         let bracketed = cell
             .strip_suffix(']')
@@ -64,6 +79,30 @@ impl Heading {
         self
     }
 
+    /// The same with the cell of a row that says what the columns show, `Position (mm)`; a unit may stand alone in it.
+    pub(crate) fn with_meaning(mut self, cell: &str) -> Self {
+        let shown = Self::of(cell);
+        match (shown.known_unit(), of_row(cell)) {
+            (Some(unit), _) if !shown.name.is_empty() => {
+                self.unit = Some(Ok(unit.clone()));
+                self.place = Place::Row;
+                self.meaning = Some(shown.name);
+            }
+            (_, Some(Ok(unit))) => {
+                self.unit = Some(Ok(unit));
+                self.place = Place::Row;
+            }
+            (_, Some(Err(error))) => {
+                if cell.trim().ends_with(')') {
+                    self.unit = Some(Err(error));
+                }
+                self.meaning = Some(cell.trim().to_owned());
+            }
+            (_, None) => {}
+        }
+        self
+    }
+
     /// Name and unit; what is no unit in brackets belongs to the name.
     pub(crate) fn named(self) -> (String, Option<NamedUnit>) {
         match self.unit {
@@ -80,9 +119,14 @@ impl Heading {
 
 /// The unit in a cell of a row of units, with or without brackets round it; nothing where the cell is empty.
 pub(crate) fn of_row(cell: &str) -> Option<Result<NamedUnit, UnitError>> {
-    let cell = cell.trim();
-    let inside = bare(cell);
-    (!inside.is_empty() && inside != "-").then(|| unit(inside))
+    let inside = bare(cell.trim());
+    let none = ["", "-", "none", "n/a", "null"];
+    if none.iter().any(|word| inside.eq_ignore_ascii_case(word)) {
+        return None;
+    }
+    // `V (Voltage)`
+    let symbol = inside.split_once(" (").map_or(inside, |(symbol, _)| symbol);
+    Some(unit(inside).or_else(|_| unit(symbol)))
 }
 
 /// Whether a cell can be one of a row of units: empty, a unit, or anything in brackets.
@@ -98,6 +142,11 @@ fn unit(text: &str) -> Result<NamedUnit, UnitError> {
         word.and_then(|word| NamedUnit::parse(word).ok())
             .ok_or(error)
     })
+}
+
+/// The unit in a text of a preamble: `ms`, `nSec`, `Hz`.
+pub(crate) fn unit_of_word(text: &str) -> Option<NamedUnit> {
+    unit(text.trim()).ok()
 }
 
 fn bare(cell: &str) -> &str {

@@ -3,10 +3,10 @@
 use crate::assemble::{Cells, Raw};
 use crate::calendar::{self, Origin};
 use crate::heading::{Temporal, is_time_unit, temporal};
-use crate::layout::TimeColumn;
+use crate::layout::DeclaredColumn;
 use crate::table::may_be_first;
 use crate::time_error::{Candidate, TimeError};
-use crate::{Note, gaps};
+use crate::{Note, declared, gaps, wrap};
 use hyde_units::{Dimension, NamedUnit};
 
 /// A clock that began to count longer ago, in s, counts from the first row: doubles resolve a run near 0 best.
@@ -22,13 +22,11 @@ pub(crate) struct Instants {
 }
 
 /// Where the time is among the columns: as declared, else in front.
-pub(crate) fn place(raw: &[Raw], declared: Option<&TimeColumn>) -> Result<usize, TimeError> {
+pub(crate) fn place(raw: &[Raw], declared: Option<&DeclaredColumn>) -> Result<usize, TimeError> {
     let Some(declared) = declared else {
         return Ok(0);
     };
-    let named = |column: &Raw| {
-        column.heading.name == declared.name || column.heading.written == declared.name
-    };
+    let named = |column: &Raw| declared::means(declared, column);
     let names = || {
         raw.iter()
             .map(|column| column.heading.name.clone())
@@ -43,16 +41,18 @@ pub(crate) fn place(raw: &[Raw], declared: Option<&TimeColumn>) -> Result<usize,
 pub(crate) fn read(
     raw: &[Raw],
     at: usize,
-    declared: Option<&TimeColumn>,
+    declared: Option<&DeclaredColumn>,
     place: &dyn Fn(usize) -> String,
 ) -> Result<Instants, TimeError> {
     let Unit {
         unit,
+        count,
         said,
         mut notes,
     } = unit(raw, at, declared)?;
     let name = &raw[at].heading.name;
-    let factor = unit.unit().to_si(1.0);
+    let factor = count * unit.unit().to_si(1.0);
+    let si = |value: f64| unit.unit().to_si(count * value);
     let over_frequency = !is_time_unit(&unit);
     let no_time = |row: usize, text: &str| TimeError::NoTime {
         place: place(row),
@@ -63,13 +63,22 @@ pub(crate) fn read(
     let is_far = |first: f64| first.abs() * factor > LONG_AGO_S && !over_frequency;
     let (seconds, origin) = match &raw[at].cells {
         Cells::Texts(texts) => match numbers(texts) {
+            Ok(values) if wraps(&values, declared).is_some() => {
+                let period = wraps(&values, declared).unwrap_or(f64::INFINITY);
+                notes.push(Note::new(format!(
+                    "the counter `{name}` overflows after {period}: the time is continued"
+                )));
+                let mut values = values;
+                wrap::unwrap(&mut values, period);
+                shifted(&values, &si, None)
+            }
             Ok(values) => {
                 let far = values.first().is_some_and(|first| is_far(*first));
                 let exact = far.then(|| {
                     calendar::of_digits(texts, factor)
                         .or_else(|| calendar::of_doubles(&values, factor))
                 });
-                shifted(&values, &unit, exact.flatten())
+                shifted(&values, &si, exact.flatten())
             }
             Err(row) => {
                 let dates = calendar::of_texts(texts)
@@ -84,7 +93,7 @@ pub(crate) fn read(
             let far = doubles.first().is_some_and(|first| is_far(*first));
             shifted(
                 &doubles,
-                &unit,
+                &si,
                 far.then(|| calendar::of_integers(values, factor)).flatten(),
             )
         }
@@ -95,7 +104,7 @@ pub(crate) fn read(
             let far = values.first().is_some_and(|first| is_far(*first));
             shifted(
                 values,
-                &unit,
+                &si,
                 far.then(|| calendar::of_doubles(values, factor)).flatten(),
             )
         }
@@ -146,19 +155,41 @@ pub(crate) fn read(
 
 fn shifted(
     values: &[f64],
-    unit: &NamedUnit,
+    si: &dyn Fn(f64) -> f64,
     exact: Option<(Vec<f64>, Origin)>,
 ) -> (Vec<f64>, Option<Origin>) {
     match exact {
         Some((seconds, origin)) => (seconds, Some(origin)),
-        None => (
-            values
-                .iter()
-                .map(|value| unit.unit().to_si(*value))
-                .collect(),
-            None,
-        ),
+        None => (values.iter().map(|value| si(*value)).collect(), None),
     }
+}
+
+/// The number of values after which a counter begins again: as declared, else as the only step back shows that goes on by a
+/// usual step if it is taken for a counter of 16 or 32 bits.
+fn wraps(values: &[f64], declared: Option<&DeclaredColumn>) -> Option<f64> {
+    if let Some(period) = declared.and_then(|declared| declared.wraps) {
+        return Some(period);
+    }
+    let back = values.windows(2).any(|pair| pair[1] < pair[0]);
+    if !back || values.iter().any(|value| value.fract() != 0.0) {
+        return None;
+    }
+    let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
+    let mut forward: Vec<f64> = steps.clone().filter(|step| *step > 0.0).collect();
+    forward.sort_by(f64::total_cmp);
+    let usual = forward.get(forward.len() / 2).copied()?;
+    let (least, most) = values
+        .iter()
+        .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| {
+            (a.min(*value), b.max(*value))
+        });
+    [65_536.0, 4_294_967_296.0].into_iter().find(|period| {
+        let within =
+            (least >= 0.0 && most < *period) || (least >= -period / 2.0 && most < period / 2.0);
+        let goes_on =
+            |step: f64| step >= 0.0 || (step + period - usual).abs() <= (0.02 * usual).max(1.0);
+        within && steps.clone().all(goes_on)
+    })
 }
 
 /// The numbers of cells; else the first that is none.
@@ -173,11 +204,13 @@ fn numbers(texts: &[String]) -> Result<Vec<f64>, usize> {
 /// The unit of the time, whether the file or the declaration says it, and what was taken for granted.
 struct Unit {
     unit: NamedUnit,
+    /// How many of the unit one count is.
+    count: f64,
     said: bool,
     notes: Vec<Note>,
 }
 
-fn unit(raw: &[Raw], at: usize, declared: Option<&TimeColumn>) -> Result<Unit, TimeError> {
+fn unit(raw: &[Raw], at: usize, declared: Option<&DeclaredColumn>) -> Result<Unit, TimeError> {
     let heading = &raw[at].heading;
     let name = heading.name.clone();
     let asked = declared.and_then(|declared| declared.unit.clone());
@@ -188,17 +221,21 @@ fn unit(raw: &[Raw], at: usize, declared: Option<&TimeColumn>) -> Result<Unit, T
     };
     let said = |unit: NamedUnit, note: Option<String>| Unit {
         unit,
+        count: 1.0,
         said: true,
         notes: note.into_iter().map(Note::new).collect(),
     };
     match (&heading.unit, asked) {
-        (Some(Ok(own)), Some(asked)) if own.unit() != asked.unit() => Err(TimeError::TwoUnits(
+        (Some(Ok(own)), Some(asked)) if !asked.is(own.unit()) => Err(TimeError::TwoUnits(
             name,
             own.text().to_owned(),
-            asked.text().to_owned(),
+            asked.to_string(),
         )),
-        (_, Some(asked)) if is_time_unit(&asked) => Ok(said(asked, None)),
-        (_, Some(asked)) => Err(other(asked.text())),
+        (_, Some(asked)) if is_time_unit(&asked.unit) => Ok(Unit {
+            count: asked.factor,
+            ..said(asked.unit, None)
+        }),
+        (_, Some(asked)) => Err(other(asked.unit.text())),
         (Some(Ok(own)), None) if may_be_first(own.unit().dimension) => Ok(said(own.clone(), None)),
         (Some(Ok(own)), None) => Err(other(own.text())),
         (Some(Err(_)), None) => Err(other(&unit_text(&heading.written))),
@@ -223,6 +260,7 @@ fn unit(raw: &[Raw], at: usize, declared: Option<&TimeColumn>) -> Result<Unit, T
             }
             (Temporal::No | Temporal::Time, None) => Ok(Unit {
                 unit: NamedUnit::usual(Dimension::TIME),
+                count: 1.0,
                 said: false,
                 notes: Vec::new(),
             }),

@@ -19,14 +19,18 @@
 
 pub mod csv;
 pub mod filter;
+pub mod look;
 pub mod parquet;
+pub mod sinumerik;
 pub mod spectrum;
 pub mod statistics;
+pub mod workbook;
 pub mod wrap;
 
 mod assemble;
 mod calendar;
 mod column;
+mod declared;
 mod foreign;
 mod frame;
 mod gaps;
@@ -44,7 +48,7 @@ pub use calendar::{Origin, Since};
 pub use column::{Column, UnitConflict, in_unit};
 pub use foreign::Foreign;
 pub use frame::{Field, Frame, Kind, Values};
-pub use layout::{Layout, TimeColumn};
+pub use layout::{CountUnit, DeclaredColumn, Kind as LayoutKind, Layout};
 pub use note::Note;
 pub use record::{RecordError, read, read_frame, read_whole};
 pub use signal::{Cursor, Signal};

@@ -18,3 +18,12 @@ impl fmt::Display for Note {
         f.write_str(&self.0)
     }
 }
+
+/// The first of some names, and how many more there are.
+pub(crate) fn listed<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<String> = names.map(|name| format!("`{name}`")).collect();
+    match names.len() {
+        0..=5 => names.join(", "),
+        many => format!("{} and {} more", names[..4].join(", "), many - 4),
+    }
+}

@@ -1,8 +1,9 @@
 //! A record in whichever form its file has.
 
 use crate::foreign::{Foreign, foreign};
-use crate::{Frame, Layout, Table, Unusable, csv, parquet};
+use crate::{Frame, Layout, Note, Table, Unusable, csv, parquet, sinumerik, workbook};
 use std::fmt;
+use std::io::Read as _;
 
 /// Why a file is no record.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,15 +14,35 @@ pub enum RecordError {
     Csv(csv::ReadError),
     /// A mistake in a Parquet file.
     Parquet(parquet::ReadError),
+    /// A mistake in a file of a Sinumerik control.
+    Sinumerik(sinumerik::ReadError),
+    /// A mistake in a workbook.
+    Workbook(workbook::ReadError),
+    /// A compressed file that cannot be unpacked.
+    Unpack(String),
     /// A column cannot be used, where all of them are asked for.
     Column(Unusable),
 }
 
-/// Reads a record: Parquet if the file begins so, else CSV.
+/// Reads a record: what its first bytes say that it is, else CSV. A file that is packed by gzip is unpacked.
 ///
 /// # Errors
 /// If the file is no record.
 pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, RecordError> {
+    if bytes.starts_with(GZIP) {
+        let mut table = read(&unpacked(bytes)?, layout)?;
+        table.tell(Note::new("the file was unpacked (gzip)"));
+        return Ok(table);
+    }
+    if workbook::is_workbook(bytes) {
+        return workbook::read(bytes, layout).map_err(RecordError::Workbook);
+    }
+    if bytes.starts_with(b"<") || bytes.starts_with(b"\xef\xbb\xbf<") {
+        let text = xml(bytes);
+        if sinumerik::is_of_control(&text) {
+            return sinumerik::read(&text, layout).map_err(RecordError::Sinumerik);
+        }
+    }
     if let Some(foreign) = foreign(bytes) {
         return Err(RecordError::Foreign(foreign));
     }
@@ -29,6 +50,34 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, RecordError> {
         return parquet::read(bytes, layout).map_err(RecordError::Parquet);
     }
     csv::read(bytes, layout).map_err(RecordError::Csv)
+}
+
+const GZIP: &[u8] = b"\x1f\x8b";
+
+/// A packed file becomes at most so long: more would be no record but a mistake.
+const LONGEST: u64 = 4 << 30;
+
+fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, RecordError> {
+    let mut out = Vec::new();
+    let read = flate2::read::MultiGzDecoder::new(bytes)
+        .take(LONGEST)
+        .read_to_end(&mut out);
+    match read {
+        Ok(_) if out.starts_with(GZIP) => Err(RecordError::Unpack("it is packed twice".to_owned())),
+        Ok(length) if length as u64 == LONGEST => {
+            Err(RecordError::Unpack("it is longer than 4 GiB".to_owned()))
+        }
+        Ok(_) => Ok(out),
+        Err(error) => Err(RecordError::Unpack(error.to_string())),
+    }
+}
+
+/// The text of a document: UTF-8, else Latin-1, which controls write.
+fn xml(bytes: &[u8]) -> String {
+    str::from_utf8(bytes).map_or_else(
+        |_| encoding_rs::WINDOWS_1252.decode(bytes).0.into_owned(),
+        str::to_owned,
+    )
 }
 
 /// The same for a file whose columns are all asked for.
@@ -65,6 +114,9 @@ impl RecordError {
             Self::Foreign(foreign) => foreign.repair().to_owned(),
             Self::Csv(error) => error.repair(record),
             Self::Parquet(error) => error.repair(record),
+            Self::Sinumerik(error) => error.repair(record),
+            Self::Workbook(error) => error.repair(record),
+            Self::Unpack(_) => "unpack it, and give the file in it".to_owned(),
             Self::Column(unusable) => unusable.fault.repair.clone(),
         }
     }
@@ -76,6 +128,9 @@ impl fmt::Display for RecordError {
             Self::Foreign(foreign) => foreign.fmt(f),
             Self::Csv(error) => error.fmt(f),
             Self::Parquet(error) => error.fmt(f),
+            Self::Sinumerik(error) => error.fmt(f),
+            Self::Workbook(error) => error.fmt(f),
+            Self::Unpack(reason) => write!(f, "the file cannot be unpacked: {reason}"),
             Self::Column(unusable) => unusable.fault.fmt(f),
         }
     }

@@ -1,5 +1,8 @@
 //! Equally long columns over one time.
 
+mod parts;
+
+use crate::layout::Kind;
 use crate::{Column, Note, Origin, Signal, Unusable};
 use hyde_units::{Agreement, Dimension};
 use std::collections::BTreeMap;
@@ -12,6 +15,9 @@ use std::fmt;
 /// The instants are one of the columns, as a rule the first, or `k * period` if a period was declared; then all columns are
 /// ordinary ones. Time never runs back; an instant may have several rows, as results have two at an event.
 ///
+/// Channels of one file may have other rates: these are tables of their own, [`others`](Self::others), and
+/// [`holding`](Self::holding) finds the one that has a column.
+///
 /// What a reader found out about the file goes with it: [`notes`](Self::notes), and the columns that nobody can use.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
@@ -20,6 +26,8 @@ pub struct Table {
     notes: Vec<Note>,
     unusable: Vec<Unusable>,
     origin: Option<Origin>,
+    others: Vec<Table>,
+    layout: Option<Kind>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -112,6 +120,22 @@ impl Table {
             notes: Vec::new(),
             unusable: Vec::new(),
             origin: None,
+            others: Vec::new(),
+            layout: None,
+        }
+    }
+
+    /// The kind of layout that its text had, if it was a text.
+    #[must_use]
+    pub fn layout(&self) -> Option<Kind> {
+        self.layout
+    }
+
+    /// The same with the layout of its text.
+    pub(crate) fn laid_out(self, kind: Kind) -> Self {
+        Self {
+            layout: Some(kind),
+            ..self
         }
     }
 
@@ -149,7 +173,7 @@ impl Table {
     }
 
     /// Adds to what its user should know.
-    pub(crate) fn tell(&mut self, note: Note) {
+    pub fn tell(&mut self, note: Note) {
         self.notes.push(note);
     }
 
@@ -162,6 +186,12 @@ impl Table {
                 "it begins {} after the first of the records",
                 crate::gaps::seconds(later_s)
             )));
+        }
+        for part in &mut self.others {
+            if let Time::Column(at) = part.time {
+                let column = part.columns.remove(at).raised(later_s);
+                part.columns.insert(at, column);
+            }
         }
     }
 
@@ -224,16 +254,25 @@ impl Table {
         &self.columns
     }
 
-    /// The column of that name.
+    /// The column of that name, in whichever part it is, or the one that shows what is called so.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<&Column> {
-        self.columns.iter().find(|column| column.name() == name)
+        self.holding(name).own(name)
     }
 
-    /// The column of that name over the time.
+    fn own(&self, name: &str) -> Option<&Column> {
+        let named = self.columns.iter().find(|column| column.name() == name);
+        named.or_else(|| {
+            let mut shown = self.columns.iter().filter(|c| c.meaning() == Some(name));
+            shown.next().filter(|_| shown.next().is_none())
+        })
+    }
+
+    /// The column of that name over its time.
     #[must_use]
     pub fn signal(&self, name: &str) -> Option<Signal<'_>> {
-        Signal::new(self.time(), self.column(name)?.values())
+        let part = self.holding(name);
+        Signal::new(part.time(), part.own(name)?.values())
     }
 }
 

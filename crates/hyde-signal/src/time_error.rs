@@ -1,5 +1,6 @@
 //! Why a column cannot be the time of a record, and what to write instead.
 
+use crate::Fault;
 use std::fmt;
 
 /// What is wrong with the time of a record.
@@ -27,6 +28,21 @@ pub enum TimeError {
     },
     /// A time in whole numbers whose unit is not said: name, and the distance of rows as it stands.
     NoUnit(String, String),
+    /// A line above the rows says another time between them than the column, which has no unit.
+    OtherStep {
+        /// The column.
+        name: String,
+        /// By how much it advances.
+        step: String,
+        /// The time between rows that is said.
+        said: String,
+        /// How the file calls that.
+        key: String,
+        /// The line that says it.
+        line: u64,
+    },
+    /// Its numbers can be read in two ways.
+    Doubtful(Fault),
     /// All rows are at one time.
     Stands {
         /// The name of the column.
@@ -101,13 +117,18 @@ impl TimeError {
             Self::NotSaid { name, instead } => match instead {
                 Some(_) => which(instead),
                 None => format!(
-                    "if it is the time, say its unit: `record {record}(time = {name:?} in [s])`; or {every}"
+                    "if it is the time, say its unit, or what one count of it is: `record {record}(time = {name:?} in [s])`, \
+                     `record {record}(time = {name:?} in 125 [us])`; or {every}"
                 ),
             },
             Self::TwoUnits(..) => "remove the unit in one of the two places".to_owned(),
             Self::NoUnit(name, _) => format!(
                 "say the unit, `record {record}(time = {name:?} in [ms])`, or write it in the header, `{name} [ms]`"
             ),
+            Self::OtherStep { name, .. } => {
+                format!("say the unit of the time: `record {record}(time = {name:?} in [ms])`")
+            }
+            Self::Doubtful(fault) => fault.repair.clone(),
             Self::NoTime { instead, .. } => {
                 let other = instead.as_ref().map_or_else(String::new, |candidate| {
                     format!(
@@ -150,6 +171,17 @@ impl fmt::Display for TimeError {
                 f,
                 "the time `{name}` has no unit and is in whole numbers, rows {step} apart: seconds, milliseconds, or a count?"
             ),
+            Self::OtherStep {
+                name,
+                step,
+                said,
+                key,
+                line,
+            } => write!(
+                f,
+                "the time `{name}` has no unit and advances by {step}, and `{key}` in line {line} says {said}"
+            ),
+            Self::Doubtful(fault) => fault.fmt(f),
             Self::Stands { name, value, .. } => write!(
                 f,
                 "the column `{name}` is not a time: it does not advance, all rows are at {value}"

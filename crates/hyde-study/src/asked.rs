@@ -17,7 +17,8 @@ pub struct Asked {
     pub model: Option<String>,
     /// Parameters with their values.
     pub settings: Vec<Setting>,
-    /// Records by name, each with its file; the others have the files that the experiment says.
+    /// Records by name, each with its file and, behind it, how it is to be read; the others have the files that the experiment
+    /// says.
     pub records: Vec<(String, PathBuf)>,
     /// The folder that the files of records are below; the model's own if left out.
     pub data: Option<PathBuf>,

@@ -3,6 +3,7 @@
 use crate::asked::Asked;
 use crate::package::links_out;
 use crate::project::{Aim, Loaded, Project, Records};
+use crate::record_settings;
 use crate::refused::{Fault, Refused};
 use crate::unobservable::{unreadable, unsupported};
 use crate::world::{World, matching};
@@ -368,8 +369,8 @@ fn recording(
         let content = world.read(path).map_err(|reason| {
             Box::new(Diagnostic::error(Code::NoFiles, reason).label(span, "in this study"))
         })?;
-        let table = hyde_experiment::read_record(item, &path.display().to_string(), &content)
-            .map_err(Box::new)?;
+        let side = world.read(&record_settings::side_file(path)).ok();
+        let table = record_settings::table(item, None, path, &content, side).map_err(Box::new)?;
         tables.insert(record.clone(), table);
     }
     let mut all: Vec<(&str, &mut hyde_signal::Table)> = tables

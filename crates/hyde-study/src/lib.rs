@@ -8,6 +8,7 @@
 //! package        packages beyond the library, and their manifests        package.rs
 //! settings       a parameter set from outside                            settings.rs
 //! tables         the files of lookup tables                              tables.rs
+//! record_settings  how a record is to be read                            record_settings.rs
 //! records        the records of an experiment                            records.rs
 //! project        a file parsed once; its model, experiment, program      project.rs
 //! calibration    a calibration with its records and its observer         calibration.rs
@@ -24,6 +25,7 @@ mod diagnosis;
 mod inputs;
 mod package;
 mod project;
+pub mod record_settings;
 mod records;
 mod refused;
 pub mod run_failure;

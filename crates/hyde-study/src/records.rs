@@ -4,6 +4,7 @@ use crate::asked::Asked;
 use crate::inputs::Kind;
 use crate::package::links_out;
 use crate::project::Records;
+use crate::record_settings::{self, Given, side_file};
 use hyde_compiler::Header;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_signal::Table;
@@ -46,7 +47,11 @@ pub fn read(
                 continue;
             }
         };
-        match hyde_experiment::read_record(item, &path.display().to_string(), &content) {
+        let given = given.get(item.name.text.as_str());
+        let given = given.and_then(|given| given.settings.as_ref());
+        let side = side_file(&path);
+        let side = asked.read(Kind::Record, "", &side.to_string_lossy(), &side);
+        match record_settings::table(item, given, &path, &content, side.ok()) {
             Ok(table) => {
                 let hash = format!("{:x}", Sha256::digest(&content));
                 found.insert(item.name.text.clone(), Record { path, hash, table });
@@ -67,9 +72,9 @@ pub fn headers(records: &BTreeMap<String, Record>) -> BTreeMap<String, Header> {
     records
         .iter()
         .map(|(name, record)| {
-            let columns = record.table.columns().iter();
+            let columns = record.table.names().into_iter();
             let columns = columns
-                .map(|column| (column.name().to_owned(), column.unit().cloned()))
+                .map(|(name, column)| (name.to_owned(), column.unit().cloned()))
                 .collect();
             let unusable = record.table.unusable().iter();
             let unusable = unusable
@@ -100,7 +105,7 @@ pub fn tables(records: &BTreeMap<String, Record>) -> BTreeMap<String, Table> {
 fn given<'a>(
     asked: &'a Asked,
     experiment: &Experiment,
-) -> Result<BTreeMap<&'a str, &'a Path>, String> {
+) -> Result<BTreeMap<&'a str, Given>, String> {
     let records = experiment.records.iter();
     let known: Vec<&str> = records.map(|record| record.name.text.as_str()).collect();
     for (name, _) in &asked.records {
@@ -116,22 +121,23 @@ fn given<'a>(
             ));
         }
     }
-    let files = asked.records.iter();
-    Ok(files
-        .map(|(name, path)| (name.as_str(), path.as_path()))
-        .collect())
+    let files = asked.records.iter().map(|(name, path)| {
+        let given = Given::of(asked.world.as_ref(), name, &path.to_string_lossy())?;
+        Ok((name.as_str(), given))
+    });
+    files.collect()
 }
 
 /// The file of a record: as given, else its default, below `--data` or beside the model.
 fn path_of(
     item: &RecordItem,
-    given: &BTreeMap<&str, &Path>,
+    given: &BTreeMap<&str, Given>,
     asked: &Asked,
     needed: Records,
     diagnostics: &mut Diagnostics,
 ) -> Option<PathBuf> {
-    if let Some(path) = given.get(item.name.text.as_str()) {
-        return Some(path.to_path_buf());
+    if let Some(given) = given.get(item.name.text.as_str()) {
+        return Some(given.path.clone());
     }
     let Some(default) = &item.default else {
         diagnostics.push(missing(item, needed, "no file is given"));

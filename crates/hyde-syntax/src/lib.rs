@@ -17,4 +17,4 @@ pub use format::{
     expression as format_expression, file as format, member, reference as format_reference,
 };
 pub use habits::instead_of;
-pub use parse::parse;
+pub use parse::{parse, parse_record};

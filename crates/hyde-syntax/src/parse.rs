@@ -41,6 +41,36 @@ pub fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> 
     .file()
 }
 
+/// Parses a text that declares a record and nothing else: `record log(time = "t" in [ms])`.
+pub fn parse_record(
+    sources: &Sources,
+    file: FileId,
+    diagnostics: &mut Diagnostics,
+) -> Option<ast::RecordItem> {
+    let text = &sources.get(file).text;
+    let mut parser = Parser {
+        text,
+        file,
+        at: 0,
+        too_deep: nesting::too_deep(text),
+        diagnostics,
+    };
+    if !parser.too_deep.is_empty() {
+        parser.refuse_too_deep();
+        return None;
+    }
+    let pairs = parser.expect(Rule::record)?;
+    if parser.more() {
+        let span = Span::new(file, parser.at, text.trim_end().len());
+        let message = "the declaration of the record ends before this";
+        let diagnostic = Diagnostic::error(Code::Syntax, message).label(span, "not known here");
+        parser.diagnostics.push(diagnostic);
+        return None;
+    }
+    let node = pairs.into_iter().next()?;
+    parser.build(0).record(node)
+}
+
 /// A comment or a text that goes on to the end of the file.
 fn without_end(text: &str, file: FileId) -> Option<Diagnostic> {
     let (at, opened) = recover::without_end(text)?;

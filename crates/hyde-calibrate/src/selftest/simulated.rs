@@ -63,6 +63,7 @@ pub fn simulated(
         let Some(table) = tables.get(&channel.source.0) else {
             continue;
         };
+        let table = table.holding(&channel.source.1);
         let (Some(factor), false) = (factor(channel), made.contains_key(&channel.source)) else {
             continue;
         };
@@ -100,7 +101,7 @@ pub fn simulated(
         return Err(Simulated::Column(record, column));
     }
     let replaced = |(name, table): (&String, &Table)| {
-        let columns = table.columns().iter().map(|column| {
+        let table = table.mapped(|_, column| {
             let values = made.remove(&(name.clone(), column.name().to_owned()));
             match (values, column.unit()) {
                 (None, _) => column.clone(),
@@ -108,7 +109,6 @@ pub fn simulated(
                 (Some(values), None) => Column::raw(column.name(), values),
             }
         });
-        let table = table.with_columns(columns.collect());
         // Columns as long as before over the same time.
         table.ok().map(|table| (name.clone(), table))
     };

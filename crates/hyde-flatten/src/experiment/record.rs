@@ -185,6 +185,39 @@ impl<'a> Model<'a, '_> {
         (id, linear, held)
     }
 
+    /// Refuses a column without a unit whose name ends with one that it is not taken in: `position_mm` as a length in m.
+    pub(crate) fn report_units_in_names(&mut self) {
+        for (id, column) in self.flat.columns.enumerate() {
+            let header = self.input.records.get(&column.record);
+            let own = header.and_then(|header| {
+                header
+                    .columns
+                    .iter()
+                    .find(|(name, _)| *name == column.column)
+            });
+            let (Some((name, None)), Some((linear, _))) = (own, self.column_variables.get(&id))
+            else {
+                continue;
+            };
+            let variable = &self.flat.variables[*linear];
+            let Some(unit) = unit_in_name(name, variable.quantity.dimension) else {
+                continue;
+            };
+            let record = &column.record;
+            let taken = NamedUnit::usual(variable.quantity.dimension);
+            let message = format!(
+                "`{record}.{}` has no unit: is it in {taken}, or in {unit} as its name says?",
+                member(name)
+            );
+            let diagnostic = Diagnostic::error(Code::BadRecord, message)
+                .label(variable.origin.span, format!("read in {taken} here"))
+                .help(format!(
+                    "say the unit: `record {record}(column = {name:?} in [{unit}])`, or `in [{taken}]`"
+                ));
+            self.diagnostics.push(diagnostic);
+        }
+    }
+
     /// The first value of a column or its mean: a parameter that the run fills in.
     fn column_value(
         &mut self,
@@ -255,4 +288,12 @@ impl<'a> Model<'a, '_> {
         self.column_values.insert(name, param);
         param
     }
+}
+
+/// The unit of that dimension that a name ends with, unless it is the one of SI.
+fn unit_in_name(name: &str, dimension: Dimension) -> Option<NamedUnit> {
+    let (_, last) = name.rsplit_once(['_', ' ', '/'])?;
+    let unit = NamedUnit::parse(last.trim_matches(['[', ']', '(', ')'])).ok()?;
+    let own = unit.unit().dimension.agreement(dimension);
+    (own == hyde_units::Agreement::Same && !unit.unit().is_si()).then_some(unit)
 }

@@ -13,7 +13,7 @@ use crate::{Field, Frame, Kind, Values};
 /// # Errors
 /// The first mistake in the file, with its line and column.
 pub fn read_frame(bytes: &[u8]) -> Result<Frame, ReadError> {
-    let (text, _) = decoded(bytes).map_err(ReadError::Foreign)?;
+    let (text, _) = decoded(bytes, None)?;
     let grid = Grid::of_frame(&text)?;
     let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
     let header = grid.headings;

@@ -1,10 +1,15 @@
 //! Where header, units and rows of a text are, and what separates the cells.
 
 use super::ReadError;
-use super::number::Numbers;
-use super::rows::cells_of;
-use crate::Note;
+use super::facts::{Period, period};
+use super::groups::{self, Group};
+use super::head::{Head, Line, declared_above, lines, plain};
+use super::number::is_number;
+use super::pairs;
+use super::separator::{Separator, separator};
 use crate::heading::{Heading, may_be_of_row, of_row};
+use crate::layout::Kind;
+use crate::{Layout, Note};
 use std::borrow::Cow;
 
 /// The parts of a text.
@@ -12,291 +17,404 @@ use std::borrow::Cow;
 pub(super) struct Grid<'a> {
     /// The columns.
     pub(super) headings: Vec<Heading>,
+    /// The groups with a time column each; none where all columns have one time.
+    pub(super) groups: Vec<Group>,
     /// What is below the header.
     pub(super) rows: Cow<'a, str>,
     /// The lines above it.
     pub(super) lines_above: u64,
     /// What separates the cells.
     pub(super) separator: u8,
+    /// The time between rows that a line above them says.
+    pub(super) period: Option<Period>,
+    /// What kind of layout it is.
+    pub(super) kind: Kind,
     /// What was taken for granted.
     pub(super) notes: Vec<Note>,
 }
 
-/// What separates cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Separator {
-    Byte(u8),
-    /// Blanks and tabs, one or several.
-    Blanks,
-}
-
-/// A line that is not blank.
-#[derive(Clone, Copy)]
-struct Line<'a> {
-    number: u64,
-    text: &'a str,
-    /// Where the next line begins.
-    end: usize,
-}
-
-impl Line<'_> {
-    fn is_comment(&self) -> bool {
-        self.text.starts_with(['#', '%'])
-    }
-}
-
 impl<'a> Grid<'a> {
     /// Finds the parts of a record.
-    pub(super) fn of(text: &'a str) -> Result<Self, ReadError> {
-        let (declared, first) = first_line(text)?;
+    pub(super) fn of(text: &'a str, layout: &Layout) -> Result<Self, ReadError> {
+        let found = Self::found(text, layout)?;
+        match layout.kind {
+            Some(kind) if kind != found.kind => Err(ReadError::OtherKind {
+                found: found.kind,
+                declared: kind,
+            }),
+            Some(_) | None => Ok(found),
+        }
+    }
+
+    fn found(text: &'a str, layout: &Layout) -> Result<Self, ReadError> {
+        let declared = layout.separator.and_then(Separator::of_char);
+        if let Some(line) = layout.header.filter(|line| *line > 0) {
+            return Self::below(text, line, declared);
+        }
+        let pairs = match (declared, &layout.headings) {
+            (None | Some(Separator::Blanks), None) => pairs::of(text)?,
+            _ => None,
+        };
+        if let Some(pairs) = pairs {
+            return Ok(pairs);
+        }
+        let head = Head::of(text, declared);
+        let Some(head) = head else {
+            return match &layout.headings {
+                Some(_) => Err(ReadError::NoRows),
+                None => Self::plain(text, (0, 0), declared),
+            };
+        };
+        if let Some((headings, groups, mut notes)) = groups::of(&head, layout.headings.as_deref())?
+        {
+            head.check_first()?;
+            let (rows, separator) = rows(text, head.first.start, head.separator, &mut notes);
+            return Ok(Self {
+                headings,
+                groups,
+                rows,
+                lines_above: head.first.number - 1,
+                separator,
+                period: None,
+                kind: Kind::Groups,
+                notes,
+            });
+        }
+        if let Some(headings) = &layout.headings {
+            return Self::with_headings(text, &head, headings);
+        }
+        let named = head.above.is_empty() || is_header(&head, 0);
+        let by_rows = declared.or((named && head.width > 1).then_some(head.separator));
+        let units = |line: &Line| row_of_units(line, head.separator, head.width).is_some();
+        match head.above.as_slice() {
+            [] | [_] => Self::plain(text, (0, 0), by_rows),
+            [_, line] if is_header(&head, 0) && units(line) => Self::plain(text, (0, 0), by_rows),
+            _ if head.has_row_above() => Self::plain(text, (0, 0), declared),
+            _ => Self::with_preamble(text, &head, declared),
+        }
+    }
+
+    /// A header in the first line that is neither blank nor a comment, or in a comment above rows of numbers.
+    fn plain(
+        text: &'a str,
+        (from, above): (usize, u64),
+        separator_declared: Option<Separator>,
+    ) -> Result<Self, ReadError> {
+        let (declared, first) = first_line(text, from, above)?;
+        let declared = separator_declared.or(declared);
         let mut notes = Vec::new();
         let below = plain(text, first.end, first.number).next();
         let own = declared.unwrap_or_else(|| separator(first.text, below.map(|line| line.text)));
         let numbers = |line: &str| {
-            let cells = split(line, own);
-            cells
-                .iter()
-                .all(|cell| cell.is_empty() || Numbers::is_number(cell))
+            let cells = own.split(line);
+            cells.iter().all(|cell| cell.is_empty() || is_number(cell))
         };
+        let mut kind = Kind::Plain;
         let (separator, header, end) = if numbers(first.text) {
-            let comments = lines(text, 0, 0).take_while(|line| line.number < first.number);
+            let comments = lines(text, from, above).take_while(|line| line.number < first.number);
             let header = comments.filter(Line::is_comment).last();
             let found = header.and_then(|line| {
-                let names = line.text.trim_start_matches(['#', '%']).trim();
+                let names = line.plain_text();
                 let separator = declared.unwrap_or_else(|| separator(names, Some(first.text)));
-                let fits = split(names, separator).len() == split(first.text, separator).len();
+                let fits = separator.split(names).len() == separator.split(first.text).len();
                 fits.then_some((separator, names, line.number))
             });
             let Some((separator, names, number)) = found else {
-                return Err(ReadError::NoHeader { line: first.number });
+                return Err(ReadError::NoHeader {
+                    line: first.number,
+                    columns: own
+                        .split(first.text)
+                        .iter()
+                        .filter(|cell| !cell.is_empty())
+                        .count(),
+                });
             };
             notes.push(Note::new(format!(
                 "the comment in line {number} is read as the header"
             )));
-            let above = text
-                .split_inclusive('\n')
-                .take(usize::try_from(first.number - 1).unwrap_or(0));
-            (
-                separator,
-                names,
-                Line {
-                    end: above.map(str::len).sum(),
-                    number: first.number - 1,
-                    ..first
-                },
-            )
+            kind = Kind::Preamble;
+            let end = Line {
+                end: first.start,
+                number: first.number - 1,
+                ..first
+            };
+            (separator, names, end)
         } else {
             (own, first.text, first)
         };
-        let mut cells = split(header, separator);
-        let named = cells
-            .iter()
-            .rposition(|cell| !cell.is_empty())
-            .map_or(0, |last| last + 1);
-        if named < cells.len() {
-            notes.push(Note::new(
-                "its lines end with a separator: the empty last column is ignored",
-            ));
-            cells.truncate(named);
-        }
-        let mut headings: Vec<Heading> = cells.iter().map(|cell| Heading::of(cell)).collect();
+        let mut headings = headings(&separator.split(header), &mut notes);
         let mut end = end;
         if let Some(line) = plain(text, end.end, end.number).next()
-            && let Some(units) = row_of_units(line.text, separator, headings.len())
+            && let Some(units) = row_of_units(&line, separator, headings.len())
         {
-            headings = headings
-                .into_iter()
-                .zip(&units)
-                .map(|(heading, cell)| heading.with_row(cell))
-                .collect();
-            notes.push(Note::new(format!(
-                "line {} is read as a row of units",
-                line.number
-            )));
+            headings = with_units(headings, &units, line.number, &mut notes);
             end = line;
         }
-        let rows = &text[end.end..];
-        let (rows, separator) = match separator {
-            Separator::Byte(byte) => (Cow::Borrowed(rows), byte),
-            Separator::Blanks => {
-                notes.push(Note::new("its cells are separated by blanks"));
-                let tabbed = rows.split_inclusive('\n').map(|line| {
-                    let cells: Vec<&str> = line.split_whitespace().collect();
-                    cells.join("\t") + "\n"
-                });
-                (Cow::Owned(tabbed.collect()), b'\t')
-            }
-        };
+        let (rows, separator) = rows(text, end.end, separator, &mut notes);
         Ok(Self {
             headings,
+            groups: Vec::new(),
             rows,
             lines_above: end.number,
             separator,
+            period: None,
+            kind: if above > 0 { Kind::Preamble } else { kind },
+            notes,
+        })
+    }
+
+    /// The header in a declared line.
+    fn below(text: &'a str, line: u64, declared: Option<Separator>) -> Result<Self, ReadError> {
+        let above = line - 1;
+        let lines_above = usize::try_from(above).unwrap_or(usize::MAX);
+        let from = text
+            .split_inclusive('\n')
+            .take(lines_above)
+            .map(str::len)
+            .sum();
+        let header = lines(text, from, above).next();
+        let Some(header) = header.filter(|header| header.number == line) else {
+            return Err(ReadError::NoLine { line });
+        };
+        let mut found = match header.is_comment() {
+            true => {
+                let next = plain(text, header.end, line)
+                    .next()
+                    .ok_or(ReadError::NoRows)?;
+                Self::plain(text, (header.start, above), declared).and_then(|grid| {
+                    match grid.lines_above + 1 {
+                        first if first == next.number => Ok(grid),
+                        _ => Err(ReadError::NoLine { line }),
+                    }
+                })?
+            }
+            false => Self::plain(text, (from, above), declared)?,
+        };
+        let head: Vec<Line> = lines(text, 0, 0)
+            .take_while(|other| other.number < line)
+            .collect();
+        found.period = period(&head, Separator::Byte(found.separator));
+        Ok(found)
+    }
+
+    /// Rows whose columns are declared one by one.
+    fn with_headings(text: &'a str, head: &Head<'a>, names: &[String]) -> Result<Self, ReadError> {
+        if names.len() != head.width {
+            return Err(ReadError::Names {
+                line: head.first.number,
+                found: names.len(),
+                expected: head.width,
+            });
+        }
+        let mut notes = Vec::new();
+        if let Some(last) = head.above.last() {
+            notes.push(Note::new(match last.number {
+                1 => "line 1 is left out: its columns are declared".to_owned(),
+                last => format!("lines 1 to {last} are left out: its columns are declared"),
+            }));
+        }
+        let (rows, separator) = rows(text, head.first.start, head.separator, &mut notes);
+        Ok(Self {
+            headings: names.iter().map(|name| Heading::of(name)).collect(),
+            groups: Vec::new(),
+            rows,
+            lines_above: head.first.number - 1,
+            separator,
+            period: period(&head.above, head.separator),
+            kind: Kind::Numbers,
+            notes,
+        })
+    }
+
+    /// Lines of facts, then a header of one row or two, then rows.
+    fn with_preamble(
+        text: &'a str,
+        head: &Head<'a>,
+        declared: Option<Separator>,
+    ) -> Result<Self, ReadError> {
+        let last = head.above.len() - 1;
+        let mut notes = Vec::new();
+        let units = row_of_units(&head.above[last], head.separator, head.width)
+            .filter(|_| is_header(head, last - 1));
+        let meanings = row_of_meanings(head).filter(|_| units.is_none());
+        let two = units.is_some() || meanings.is_some();
+        let names = (0..=last - usize::from(two)).rfind(|at| is_header(head, *at));
+        // A line of dashes may stand below the names; one with numbers is a row with something odd in it.
+        let is_rule =
+            |line: &Line| head.separator.split(line.text).len() == 1 && !is_number(line.text);
+        let names = names.filter(|at| two || head.above[at + 1..].iter().all(is_rule));
+        let Some(names) = names else {
+            if is_header(head, 0) {
+                return Self::plain(text, (0, 0), declared);
+            }
+            return Err(ReadError::Names {
+                line: head.first.number,
+                found: 0,
+                expected: head.width,
+            });
+        };
+        let line = head.above[names];
+        let mut columns = headings(&head.separator.split(line.text), &mut notes);
+        columns.truncate(head.width);
+        let number = head.above[last].number;
+        if let Some(units) = units {
+            columns = with_units(columns, &units, number, &mut notes);
+        } else if let Some(meanings) = meanings {
+            let both = columns.into_iter().zip(&meanings);
+            columns = both
+                .map(|(heading, cell)| heading.with_meaning(cell))
+                .collect();
+            notes.push(Note::new(format!(
+                "line {number} says what the columns show, and their units"
+            )));
+        }
+        notes.push(Note::new(format!(
+            "the header is in line {}; the lines above it are read for the time between rows only",
+            line.number
+        )));
+        let facts: Vec<Line> = head.above[..names]
+            .iter()
+            .chain(&head.comments)
+            .copied()
+            .collect();
+        let (rows, separator) = rows(text, head.first.start, head.separator, &mut notes);
+        Ok(Self {
+            headings: columns,
+            groups: Vec::new(),
+            rows,
+            lines_above: head.first.number - 1,
+            separator,
+            period: period(&facts, head.separator),
+            kind: Kind::Preamble,
             notes,
         })
     }
 
     /// Finds the parts of a table that need not be over time and may have texts in it: a header and rows.
     pub(super) fn of_frame(text: &'a str) -> Result<Self, ReadError> {
-        let (declared, first) = first_line(text)?;
+        let (declared, first) = first_line(text, 0, 0)?;
         let own = declared.unwrap_or_else(|| separator(first.text, None));
         let Separator::Byte(separator) = own else {
             return Err(ReadError::Empty);
         };
         Ok(Self {
-            headings: split(first.text, own)
+            headings: own
+                .split(first.text)
                 .iter()
                 .map(|cell| Heading::of(cell))
                 .collect(),
+            groups: Vec::new(),
             rows: Cow::Borrowed(&text[first.end..]),
             lines_above: first.number,
             separator,
+            period: None,
+            kind: Kind::Plain,
             notes: Vec::new(),
         })
     }
 }
 
-/// The first line that is neither blank nor a comment, and the separator that a line `sep=;` above it declares.
-fn first_line(text: &str) -> Result<(Option<Separator>, Line<'_>), ReadError> {
-    let mut plain = plain(text, 0, 0);
+/// The first line from a byte on that is neither blank nor a comment, and the separator that a line `sep=;` above it declares.
+fn first_line(
+    text: &str,
+    from: usize,
+    above: u64,
+) -> Result<(Option<Separator>, Line<'_>), ReadError> {
+    let mut plain = plain(text, from, above);
     let first = plain.next().ok_or(ReadError::Empty)?;
-    let declared = first.text.to_ascii_lowercase();
-    match declared.strip_prefix("sep=").map(str::as_bytes) {
-        Some([byte]) => {
-            let separator = Separator::Byte(*byte);
-            Ok((Some(separator), plain.next().ok_or(ReadError::Empty)?))
-        }
-        Some(_) | None => Ok((None, first)),
+    match declared_above(&first) {
+        Some(separator) => Ok((Some(separator), plain.next().ok_or(ReadError::Empty)?)),
+        None => Ok((None, first)),
     }
 }
 
-/// The lines from a byte on that are not blank, the line `above` being the last before it.
-fn lines(text: &str, from: usize, above: u64) -> impl Iterator<Item = Line<'_>> {
-    let mut end = from;
-    let mut number = above;
-    let lines = text[from..].split_inclusive('\n').map(move |line| {
-        end += line.len();
-        number += 1;
-        Line {
-            number,
-            text: line.trim_matches([' ', '\r', '\n']),
-            end,
-        }
-    });
-    lines.filter(|line| !line.text.trim().is_empty())
-}
-
-/// Those of them that are no comments.
-fn plain(text: &str, from: usize, above: u64) -> impl Iterator<Item = Line<'_>> {
-    lines(text, from, above).filter(|line| !line.is_comment())
-}
-
-/// What separates the cells of a header, by the first row where there is one.
-fn separator(header: &str, row: Option<&str>) -> Separator {
-    let all = [b',', b';', b'\t', b'|'].map(Separator::Byte);
-    let count = |line: &str, separator| match separator {
-        Separator::Byte(byte) => 1 + outside_quotes(line, byte),
-        Separator::Blanks => by_blanks(line).len(),
-    };
-    if let Some(row) = row {
-        let fits = |separator: &Separator| {
-            count(header, *separator) > 1 && count(header, *separator) == count(row, *separator)
-        };
-        // By how large a part of the cells is numbers, then by how many there are.
-        let numbers = |separator: &Separator| {
-            let cells = split(row, *separator);
-            let numbers = cells.iter().filter(|cell| Numbers::is_number(cell));
-            (64 * numbers.count() / cells.len().max(1), cells.len())
-        };
-        // Of equal ones the first wins.
-        if let Some(found) = all
-            .iter()
-            .rev()
-            .filter(|s| fits(s))
-            .max_by_key(|s| numbers(s))
-        {
-            return *found;
-        }
-        let blanks = Separator::Blanks;
-        let none = all.iter().all(|separator| count(header, *separator) == 1);
-        if none && count(header, blanks) > 1 && count(header, blanks) == count(row, blanks) {
-            return blanks;
-        }
+/// The columns that the cells of a header name.
+fn headings(cells: &[String], notes: &mut Vec<Note>) -> Vec<Heading> {
+    let last = cells.iter().rposition(|cell| !cell.is_empty());
+    let named = last.map_or(0, |last| last + 1);
+    if named < cells.len() {
+        notes.push(Note::new(
+            "its lines end with a separator: the empty last column is ignored",
+        ));
     }
-    let most = all
+    cells[..named]
         .iter()
-        .rev()
-        .max_by_key(|separator| count(header, **separator));
-    most.copied().unwrap_or(Separator::Byte(b','))
+        .map(|cell| Heading::of(cell))
+        .collect()
 }
 
-/// How often a byte stands in a line outside quotes.
-fn outside_quotes(line: &str, separator: u8) -> usize {
-    let mut quoted = false;
-    let mut own = |byte: u8| {
-        quoted ^= byte == b'"';
-        byte == separator && !quoted
-    };
-    line.bytes().filter(|byte| own(*byte)).count()
-}
-
-/// The cells of a line.
-fn split(line: &str, separator: Separator) -> Vec<String> {
+/// The rows from a byte on, and the byte that separates their cells.
+fn rows<'a>(
+    text: &'a str,
+    from: usize,
+    separator: Separator,
+    notes: &mut Vec<Note>,
+) -> (Cow<'a, str>, u8) {
+    let rows = &text[from..];
     match separator {
-        Separator::Byte(byte) => cells_of(line, byte),
-        Separator::Blanks => by_blanks(line),
+        Separator::Byte(byte) => (Cow::Borrowed(rows), byte),
+        Separator::Blanks => {
+            notes.push(Note::new("its cells are separated by blanks"));
+            let tabbed = rows.split_inclusive('\n').map(|line| {
+                let cells: Vec<&str> = line.split_whitespace().collect();
+                let end = if line.ends_with('\n') { "\n" } else { "" };
+                cells.join("\t") + end
+            });
+            (Cow::Owned(tabbed.collect()), b'\t')
+        }
     }
 }
 
-/// Cells between blanks; a unit in brackets belongs to the name before it.
-fn by_blanks(line: &str) -> Vec<String> {
-    let mut cells: Vec<String> = Vec::new();
-    let mut open = false;
-    for word in line.split_whitespace() {
-        let continued = open || word.starts_with(['[', '(']);
-        match cells.last_mut().filter(|_| continued) {
-            Some(cell) => {
-                cell.push(' ');
-                cell.push_str(word);
-            }
-            None => cells.push(word.to_owned()),
-        }
-        open = (open || word.contains(['[', '('])) && !word.ends_with([']', ')']);
-    }
-    cells
+/// Whether a line above the rows names as many columns as they have.
+fn is_header(head: &Head<'_>, at: usize) -> bool {
+    let Some(line) = head.above.get(at) else {
+        return false;
+    };
+    let cells = head.separator.split(line.text);
+    let named = cells.iter().rposition(|cell| !cell.is_empty());
+    let numbers = cells.iter().any(|cell| is_number(cell));
+    let unnamed = cells.iter().take(head.width).filter(|cell| cell.is_empty());
+    named == Some(head.width - 1) && !numbers && unnamed.count() <= 1
+}
+
+fn with_units(
+    headings: Vec<Heading>,
+    units: &[String],
+    line: u64,
+    notes: &mut Vec<Note>,
+) -> Vec<Heading> {
+    notes.push(Note::new(format!("line {line} is read as a row of units")));
+    headings
+        .into_iter()
+        .zip(units)
+        .map(|(heading, cell)| heading.with_row(cell))
+        .collect()
 }
 
 /// The cells of a line that is a row of units: no number among them, but a unit that is known.
-fn row_of_units(line: &str, separator: Separator, columns: usize) -> Option<Vec<String>> {
-    let mut cells = match separator {
-        Separator::Byte(byte) => cells_of(line, byte),
-        Separator::Blanks => line.split_whitespace().map(str::to_owned).collect(),
-    };
-    cells.truncate(columns.max(1));
-    let number = cells.iter().any(|cell| Numbers::is_number(cell));
+fn row_of_units(line: &Line<'_>, separator: Separator, columns: usize) -> Option<Vec<String>> {
+    let mut cells = separator.words(line.text);
+    while cells.len() > columns.max(1) && cells.last().is_some_and(String::is_empty) {
+        cells.pop();
+    }
+    let number = cells.iter().any(|cell| is_number(cell));
     let known = cells.iter().any(|cell| matches!(of_row(cell), Some(Ok(_))));
+    let unit_or_none = cells
+        .iter()
+        .all(|cell| Heading::of(cell).unit.is_none() || may_be_of_row(cell));
     let first = cells.first().is_some_and(|cell| may_be_of_row(cell));
-    (cells.len() == columns && !number && known && first).then_some(cells)
+    (cells.len() == columns && !number && known && first && unit_or_none).then_some(cells)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_separator_is_that_of_header_and_row() {
-        let byte = |b| Separator::Byte(b);
-        assert_eq!(separator("t,x;y,z", None), byte(b','));
-        assert_eq!(separator("t;x;y", None), byte(b';'));
-        assert_eq!(separator("t\tx", None), byte(b'\t'));
-        assert_eq!(separator("\"a,b,c\";\"d,e,f\"", None), byte(b';'));
-        assert_eq!(separator("t", None), byte(b','));
-        assert_eq!(separator("Time, s;Pos, mm", Some("0,1;0,5")), byte(b';'));
-        assert_eq!(separator("t x mode", Some("0.1  2 7")), Separator::Blanks);
-        assert_eq!(
-            separator("t [s] x [mm]", Some("0,1 2,5")),
-            Separator::Blanks
-        );
-        assert_eq!(separator("Actual Position", Some("0.1")), byte(b','));
+/// The cells of the last line above the rows, if it says what the columns show that the line above it names.
+fn row_of_meanings(head: &Head<'_>) -> Option<Vec<String>> {
+    let last = head.above.len().checked_sub(1)?;
+    let cells = |at: usize| head.separator.split(head.above[at].text);
+    if last == 0 || !is_header(head, last - 1) || !is_header(head, last) {
+        return None;
     }
+    let has_unit = |cell: &String| Heading::of(cell).known_unit().is_some();
+    let without = cells(last - 1).iter().all(|cell| !has_unit(cell));
+    let with = cells(last).iter().any(has_unit);
+    (without && with).then(|| cells(last))
 }

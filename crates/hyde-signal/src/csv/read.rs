@@ -1,15 +1,16 @@
 //! Reads a CSV record into a table.
 
 use super::ReadError;
+use super::columns::Columns;
 use super::grid::Grid;
-use super::number::{Numbers, not_a_number, truth};
+use super::groups::Group;
+use super::number::{any_number, decimal_sign, grouping_sign, is_number};
 use super::rows::Rows;
 use super::text::decoded;
-use crate::assemble::{AssembleError, Cells, Raw, assemble};
-use crate::heading::Heading;
-use crate::instants;
+use crate::assemble::{Cells, Raw};
+use crate::heading::{Heading, Temporal, is_time_unit, temporal};
 use crate::layout::Layout;
-use crate::{Fault, Note, Table};
+use crate::{Fault, Note, Table, TimeError, gaps, instants};
 
 /// Reads a record. Columns with a unit become SI; those without keep their values, see [`Column::with_unit`](crate::Column).
 ///
@@ -20,143 +21,178 @@ use crate::{Fault, Note, Table};
 /// # Errors
 /// The first mistake in the file, with its line.
 pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
-    let (text, note) = decoded(bytes).map_err(ReadError::Foreign)?;
-    let grid = Grid::of(&text)?;
-    let mut notes: Vec<Note> = note.into_iter().chain(grid.notes).collect();
+    let (text, note) = decoded(bytes, layout.encoding.as_deref())?;
+    let mut grid = Grid::of(&text, layout)?;
+    let mut notes: Vec<Note> = note
+        .into_iter()
+        .chain(std::mem::take(&mut grid.notes))
+        .collect();
+    let mut layout = layout.clone();
+    if layout.every_s.is_none() {
+        layout.every_s = said_period(&grid, &layout, &mut notes)?;
+    }
+    let groups = match layout.every_s {
+        None if !grid.groups.is_empty() => grid.groups.clone(),
+        _ => vec![whole(&grid, &layout)?],
+    };
     let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
-    let headings = grid.headings;
-    let time = match layout.every_s {
-        Some(_) => None,
-        None => {
-            let named: Vec<Raw> = headings.iter().cloned().map(without_cells).collect();
-            Some(instants::place(&named, layout.time.as_ref())?)
-        }
-    };
-    let mut columns = Columns {
-        of: headings.iter().map(|_| Vec::new()).collect(),
-        faults: vec![None; headings.len()],
-        truths: vec![false; headings.len()],
-        numbers: Numbers::default(),
-        time,
-        instants: Vec::new(),
-    };
-    let mut positions = Vec::new();
+    let mut columns = Columns::of(&grid.headings, &groups, layout.decimal);
+    let (mut positions, mut width) = (Vec::new(), None);
     while rows.advance()? {
-        let (found, expected) = (rows.count(), headings.len());
-        if found < expected && rows.is_cut_off() && !positions.is_empty() {
+        if rows.is_end_mark() {
+            break;
+        }
+        if is_cut_off(&rows, positions.last(), grid.headings.len()) {
             notes.push(Note::new(format!(
                 "the file ends within line {}: this row is ignored",
                 rows.line()
             )));
             break;
         }
-        let beyond = rows.cells().skip(expected).any(|cell| !cell.is_empty());
-        if found < expected || beyond {
-            let line = rows.line();
-            return Err(ReadError::Ragged {
-                line,
-                found,
-                expected,
-            });
-        }
-        let again = |(cell, heading): (&str, &Heading)| cell == heading.written;
-        if rows.cells().zip(&headings).all(again) {
-            return Err(ReadError::HeaderAgain { line: rows.line() });
-        }
-        columns.push(&rows, &headings);
+        let width = *width.get_or_insert(rows.count());
+        check_row(&rows, &grid.headings, width, groups.len() > 1)?;
+        columns.push(&rows, &grid.headings)?;
         positions.push(rows.position());
     }
     if positions.is_empty() {
         return Err(ReadError::NoRows);
     }
-    notes.extend(columns.notes(&headings));
+    notes.extend(columns.notes(&grid.headings));
     let place = |row: usize| format!("line {}", rows.line_at(positions[row]));
-    let raw = columns.raw(headings);
-    assemble(raw, layout, notes, &place).map_err(|error| match error {
-        AssembleError::Time(error) => ReadError::Time(error),
-        AssembleError::Table(error) => ReadError::Table(error),
+    columns.tables(&grid, &groups, &layout, notes, &place)
+}
+
+/// The group of all columns; a column that is named as the time must be there.
+fn whole(grid: &Grid<'_>, layout: &Layout) -> Result<Group, ReadError> {
+    let time = match layout.every_s {
+        Some(_) => None,
+        None => {
+            let named: Vec<Raw> = grid.headings.iter().cloned().map(without_cells).collect();
+            Some(instants::place(&named, layout.time.as_ref())?)
+        }
+    };
+    Ok(Group {
+        first: 0,
+        time,
+        end: grid.headings.len(),
+        period: grid.period.clone(),
     })
+}
+
+/// The time between rows, if a line above them says it and no column is the time.
+fn said_period(
+    grid: &Grid<'_>,
+    layout: &Layout,
+    notes: &mut Vec<Note>,
+) -> Result<Option<f64>, TimeError> {
+    let said = grid.period.as_ref();
+    let Some((said, unit)) = said.and_then(|said| Some((said, said.unit.as_ref()?))) else {
+        return Ok(None);
+    };
+    let timed = |heading: &Heading| {
+        heading.known_unit().is_some_and(is_time_unit)
+            || (heading.unit.is_none() && !matches!(temporal(&heading.name), Temporal::No))
+    };
+    let none = layout.time.is_none() && grid.groups.is_empty();
+    let first = first_cells(grid);
+    if !none || grid.headings.iter().any(timed) || advances_by(&first, said.value) {
+        return Ok(None);
+    }
+    let of_rows = first.iter().flatten().find_map(|cell| decimal_sign(cell));
+    if let (Some(own), Some(of_rows)) = (grouping_sign(&said.text), layout.decimal.or(of_rows))
+        && own != of_rows
+    {
+        return Err(TimeError::Doubtful(Fault {
+            message: format!(
+                "line {}: `{}` is `{}`, and the rows have `{of_rows}` before their decimals: is it {} or {}?",
+                said.line,
+                said.key,
+                said.text,
+                said.value,
+                1000.0 * said.value
+            ),
+            repair: "say the time between rows in the experiment: `every 1 [ms]`".to_owned(),
+        }));
+    }
+    let period_s = unit.unit().to_si(said.value);
+    notes.push(Note::new(format!(
+        "no column is the time: its rows are {} apart, as `{}` in line {} says",
+        gaps::seconds(period_s),
+        said.key,
+        said.line
+    )));
+    Ok(Some(period_s))
+}
+
+/// The cells of the first two rows.
+fn first_cells(grid: &Grid<'_>) -> Vec<Vec<String>> {
+    let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
+    let mut next = || {
+        let more = rows.advance().unwrap_or(false);
+        more.then(|| rows.cells().map(str::to_owned).collect())
+    };
+    next().into_iter().chain(next()).collect()
+}
+
+/// Whether the first column goes from row to row by so much: then it is the time, whatever it is called.
+fn advances_by(rows: &[Vec<String>], step: f64) -> bool {
+    let first = |row: &Vec<String>| row.first().and_then(|cell| any_number(cell));
+    match rows {
+        [a, b] => first(a)
+            .zip(first(b))
+            .is_some_and(|(a, b)| (b - a - step).abs() <= 0.02 * step),
+        _ => false,
+    }
+}
+
+/// Whether the file ends within the row: it has too few cells, or a last one that is not written to its end.
+fn is_cut_off(rows: &Rows<'_>, before: Option<&u64>, columns: usize) -> bool {
+    if !rows.is_cut_off() {
+        return false;
+    }
+    let Some(before) = before else {
+        return true;
+    };
+    let (Some(last), Some(above)) = (rows.cells().last(), rows.last_cell_at(*before)) else {
+        return true;
+    };
+    let decimals = |cell: &str| cell.split_once(['.', ',']).map(|(_, places)| places.len());
+    let shorter = match (decimals(last), decimals(&above)) {
+        (Some(last), Some(above)) => last != above,
+        (None, None) => last.len() < above.len(),
+        _ => true,
+    };
+    rows.count() < columns || (shorter && is_number(last))
+}
+
+/// A row has a cell a column, and an empty one behind them if the first one, with `width` cells, has.
+fn check_row(
+    rows: &Rows<'_>,
+    headings: &[Heading],
+    width: usize,
+    may_end: bool,
+) -> Result<(), ReadError> {
+    let (found, expected) = (rows.count(), headings.len());
+    let beyond = rows.cells().skip(expected).any(|cell| !cell.is_empty());
+    let uneven = found < expected || (found > expected) != (width > expected);
+    if (uneven && !may_end) || beyond {
+        let line = rows.line();
+        return Err(ReadError::Ragged {
+            line,
+            found,
+            expected,
+        });
+    }
+    let again = |(cell, heading): (&str, &Heading)| cell == heading.written;
+    if rows.cells().zip(headings).all(again) {
+        return Err(ReadError::HeaderAgain { line: rows.line() });
+    }
+    Ok(())
 }
 
 fn without_cells(heading: Heading) -> Raw {
     let cells = Cells::Integers(Vec::new());
     Raw { heading, cells }
-}
-
-/// The cells below the header.
-struct Columns {
-    of: Vec<Vec<f64>>,
-    faults: Vec<Option<Fault>>,
-    /// Whether a column has `TRUE` or `FALSE`.
-    truths: Vec<bool>,
-    numbers: Numbers,
-    /// Which of them is the time, with its cells.
-    time: Option<usize>,
-    instants: Vec<String>,
-}
-
-impl Columns {
-    fn push(&mut self, rows: &Rows<'_>, headings: &[Heading]) {
-        for (at, cell) in rows.cells().take(headings.len()).enumerate() {
-            if self.time == Some(at) {
-                // Dates have commas of their own; numbers have points from here on.
-                let number = self.numbers.read(cell).is_some();
-                let cell = if number {
-                    cell.replace(',', ".")
-                } else {
-                    cell.to_owned()
-                };
-                self.instants.push(cell);
-                continue;
-            }
-            let truth = || truth(cell).inspect(|_| self.truths[at] = true);
-            let value = self.numbers.read(cell).or_else(truth);
-            if value.is_none() && self.faults[at].is_none() {
-                let fault = not_a_number(rows.line(), at + 1, &headings[at].name, cell);
-                self.faults[at] = Some(fault);
-            }
-            self.of[at].push(value.unwrap_or(f64::NAN));
-        }
-    }
-
-    fn notes(&self, headings: &[Heading]) -> Vec<Note> {
-        let mut notes = Vec::new();
-        if self.numbers.has_comma() {
-            notes.push(Note::new(
-                "its numbers have a decimal comma: `0,5` is read as 0.5",
-            ));
-        }
-        let columns = headings.iter().zip(&self.truths).zip(&self.faults);
-        let truths = columns.filter(|((_, truth), fault)| **truth && fault.is_none());
-        let names: Vec<String> = truths.map(|((h, _), _)| format!("`{}`", h.name)).collect();
-        if !names.is_empty() {
-            notes.push(Note::new(format!(
-                "TRUE and FALSE are read as 1 and 0 in {}",
-                names.join(", ")
-            )));
-        }
-        notes
-    }
-
-    fn raw(self, headings: Vec<Heading>) -> Vec<Raw> {
-        let Self {
-            of,
-            faults,
-            time,
-            mut instants,
-            ..
-        } = self;
-        let columns = headings.into_iter().zip(of).zip(faults).enumerate();
-        columns
-            .map(|(at, ((heading, values), fault))| {
-                let cells = match time == Some(at) {
-                    true => Cells::Texts(std::mem::take(&mut instants)),
-                    false => Cells::Numbers(values, fault),
-                };
-                Raw { heading, cells }
-            })
-            .collect()
-    }
 }
 
 #[cfg(test)]

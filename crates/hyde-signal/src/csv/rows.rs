@@ -7,6 +7,9 @@ use ::csv::{ReaderBuilder, StringRecord, Trim};
 pub(super) struct Rows<'a> {
     text: &'a str,
     lines_above: u64,
+    separator: u8,
+    /// Whether there is a quote anywhere.
+    quoted: bool,
     reader: ::csv::Reader<&'a [u8]>,
     record: StringRecord,
 }
@@ -17,6 +20,8 @@ impl<'a> Rows<'a> {
         Self {
             text,
             lines_above,
+            separator,
+            quoted: text.contains('"'),
             reader: reader(text, separator),
             record: StringRecord::new(),
         }
@@ -25,10 +30,14 @@ impl<'a> Rows<'a> {
     /// Goes to the next row that is not blank; false if there is none.
     pub(super) fn advance(&mut self) -> Result<bool, ReadError> {
         loop {
+            let start = self.reader.position().byte();
             // Text from memory, in rows of any length: the reader has nothing to refuse.
             let more = self.reader.read_record(&mut self.record);
             if !more.map_err(|_| ReadError::Empty)? {
                 return Ok(false);
+            }
+            if self.quoted && !self.is_well_quoted(start) {
+                return Err(ReadError::Quotes { line: self.line() });
             }
             let comment = self.record.get(0).is_some_and(|cell| cell.starts_with('%'));
             if !comment && self.record.iter().any(|cell| !cell.is_empty()) {
@@ -37,9 +46,51 @@ impl<'a> Rows<'a> {
         }
     }
 
+    /// Whether quotes stand round whole cells in what was read from there on.
+    fn is_well_quoted(&self, start: u64) -> bool {
+        let place = |byte: u64| {
+            usize::try_from(byte)
+                .unwrap_or(usize::MAX)
+                .min(self.text.len())
+        };
+        let read = &self.text.as_bytes()[place(start)..place(self.reader.position().byte())];
+        let (mut quoted, mut before) = (false, self.separator);
+        let mut bytes = read.iter().copied().peekable();
+        let is_border =
+            |byte: u8| byte == self.separator || matches!(byte, b' ' | b'\t' | b'\r' | b'\n');
+        while let Some(byte) = bytes.next() {
+            match (byte, quoted) {
+                (b'"', true) if bytes.peek() == Some(&b'"') => {
+                    bytes.next();
+                }
+                (b'"', true) if bytes.peek().is_none_or(|next| is_border(*next)) => quoted = false,
+                (b'"', false) if is_border(before) => quoted = true,
+                (b'"', _) => return false,
+                _ => {}
+            }
+            before = byte;
+        }
+        !quoted
+    }
+
     /// The cells of the row, without blanks and quotes round them.
     pub(super) fn cells(&self) -> impl Iterator<Item = &str> {
         self.record.iter()
+    }
+
+    /// Whether the row only says that the file ends, as TwinCAT's does.
+    pub(super) fn is_end_mark(&self) -> bool {
+        let mut cells = self.cells();
+        cells.next() == Some("EOF") && cells.all(str::is_empty)
+    }
+
+    /// The last cell of the row that begins there.
+    pub(super) fn last_cell_at(&self, start: u64) -> Option<String> {
+        let from = self.text.get(usize::try_from(start).ok()?..)?;
+        let line = from
+            .lines()
+            .find(|line| !line.trim().is_empty() && !line.starts_with('#'))?;
+        cells_of(line, self.separator).pop()
     }
 
     /// How many there are.

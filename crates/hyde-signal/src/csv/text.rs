@@ -1,5 +1,6 @@
 //! The text of a file, whatever its encoding.
 
+use super::ReadError;
 use crate::Note;
 use crate::foreign::Foreign;
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
@@ -7,7 +8,15 @@ use std::borrow::Cow;
 
 /// The text with what was taken for granted of its encoding: UTF-8, else UTF-16 if every other byte is zero or a mark says
 /// so, else Windows-1252, of which ISO 8859-1 is a part.
-pub(super) fn decoded(bytes: &[u8]) -> Result<(Cow<'_, str>, Option<Note>), Foreign> {
+pub(super) fn decoded<'a>(
+    bytes: &'a [u8],
+    declared: Option<&str>,
+) -> Result<(Cow<'a, str>, Option<Note>), ReadError> {
+    if let Some(label) = declared {
+        let encoding = Encoding::for_label(label.as_bytes())
+            .ok_or_else(|| ReadError::Encoding(label.to_owned()))?;
+        return Ok((whole(encoding.decode(bytes).0), None));
+    }
     let marked = Encoding::for_bom(bytes).map(|(encoding, _)| encoding);
     let zeros = |from: usize| {
         let start = &bytes[..bytes.len().min(64)];
@@ -20,13 +29,13 @@ pub(super) fn decoded(bytes: &[u8]) -> Result<(Cow<'_, str>, Option<Note>), Fore
         None => None,
     };
     if let Some(encoding) = encoding {
-        let (text, ..) = encoding.decode(bytes);
+        let text = whole(encoding.decode(bytes).0);
         let note = (encoding != encoding_rs::UTF_8)
             .then(|| Note::new(format!("the file is read as {}", encoding.name())));
         return Ok((text, note));
     }
     if bytes.contains(&0) {
-        return Err(Foreign::Binary);
+        return Err(ReadError::Foreign(Foreign::Binary));
     }
     if let Ok(text) = str::from_utf8(bytes) {
         return Ok((Cow::Borrowed(text), None));
@@ -34,6 +43,14 @@ pub(super) fn decoded(bytes: &[u8]) -> Result<(Cow<'_, str>, Option<Note>), Fore
     let (text, ..) = WINDOWS_1252.decode(bytes);
     let note = Note::new("the file is not UTF-8: it is read as Windows-1252 (Latin-1)");
     Ok((text, Some(note)))
+}
+
+/// Without the sign for a character that the end of the file cut in two.
+fn whole(text: Cow<'_, str>) -> Cow<'_, str> {
+    match text.ends_with('\u{fffd}') {
+        true => Cow::Owned(text.trim_end_matches('\u{fffd}').to_owned()),
+        false => text,
+    }
 }
 
 #[cfg(test)]
@@ -51,12 +68,12 @@ mod tests {
             [vec![0xff, 0xfe], wide(u16::to_le_bytes)].concat(),
             [vec![0xfe, 0xff], wide(u16::to_be_bytes)].concat(),
         ] {
-            assert_eq!(decoded(&bytes).unwrap().0, text);
+            assert_eq!(decoded(&bytes, None).unwrap().0, text);
         }
-        let (read, note) = decoded(b"t [s],Temperatur [\xb0C]\n0,1\n").unwrap();
+        let (read, note) = decoded(b"t [s],Temperatur [\xb0C]\n0,1\n", None).unwrap();
         assert_eq!(read, "t [s],Temperatur [°C]\n0,1\n");
         assert!(note.unwrap().to_string().contains("Windows-1252"));
-        assert!(decoded(b"t,x\n0,\0\0\0\n").is_err());
-        assert!(decoded(b"").unwrap().0.is_empty());
+        assert!(decoded(b"t,x\n0,\0\0\0\n", None).is_err());
+        assert!(decoded(b"", None).unwrap().0.is_empty());
     }
 }

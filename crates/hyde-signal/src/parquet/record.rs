@@ -39,10 +39,13 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
                 name: field.name,
                 unit: field.unit.map(Ok),
                 place: Place::Usual,
+                meaning: None,
             },
         });
+    let raw: Vec<Raw> = raw.collect();
+    crate::declared::check(raw.iter(), &layout.columns).map_err(ReadError::Time)?;
     let place = |row: usize| format!("row {}", row + 1);
-    assemble(raw.collect(), layout, Vec::new(), &place).map_err(|error| match error {
+    assemble(raw, layout, Vec::new(), &place).map_err(|error| match error {
         AssembleError::Time(error) => ReadError::Time(error),
         AssembleError::Table(error) => ReadError::Table(error),
     })

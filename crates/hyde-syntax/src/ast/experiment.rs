@@ -29,21 +29,27 @@ pub struct RecordItem {
     pub name: Name,
     /// How the file is to be read.
     pub layout: Vec<LayoutSetting>,
+    /// The kind of its layout: `layout twincat`.
+    pub kind: Option<Name>,
     /// Time between rows, where the record's own time is not to be used.
     pub every: Option<Expr>,
     /// The file used where no other is given, relative to the model's file.
     pub default: Option<Name>,
 }
 
-/// `time = "Timestamp" in [ms]`
+/// `time = "Timestamp" in [ms]`, `time = "cycle" in 125 [us] wraps 65536`, `header = 5`
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayoutSetting {
     /// What is set.
     pub name: Name,
     /// To what.
     pub value: Name,
-    /// In this unit.
-    pub unit: Option<UnitText>,
+    /// The same if it is a number.
+    pub number: Option<f64>,
+    /// In so many of this unit.
+    pub unit: Option<(Option<f64>, UnitText)>,
+    /// The number of values after which it begins again.
+    pub wraps: Option<f64>,
 }
 
 /// `target = value`, of a stimulus or a replay.

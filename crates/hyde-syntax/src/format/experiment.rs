@@ -4,7 +4,23 @@ use super::declaration::{measure_text, modification};
 use super::expression::{optional_arguments, range};
 use super::name::{doc, quoted, reference};
 use super::{Printer, expression};
-use crate::ast::{Drive, Experiment, ExperimentItem, Expr, Name, Reference};
+use crate::ast::{Drive, Experiment, ExperimentItem, Expr, LayoutSetting, Name, Reference};
+
+/// `time = "cycle" in 125 [us] wraps 65536`
+fn layout_setting(setting: &LayoutSetting) -> String {
+    let value = match setting.number {
+        Some(_) => setting.value.text.clone(),
+        None => quoted(&setting.value.text),
+    };
+    let unit = setting.unit.as_ref();
+    let unit = unit.map_or_else(String::new, |(count, unit)| {
+        let count = count.map_or_else(String::new, |count| format!("{count} "));
+        format!(" in {count}[{}]", unit.text)
+    });
+    let wraps = setting.wraps;
+    let wraps = wraps.map_or_else(String::new, |period| format!(" wraps {period}"));
+    format!("{} = {value}{unit}{wraps}", setting.name.text)
+}
 
 impl Printer {
     pub(super) fn experiment(&mut self, experiment: &Experiment) {
@@ -20,21 +36,17 @@ impl Printer {
                     .default
                     .as_ref()
                     .map_or_else(String::new, |name| format!(" = {}", quoted(&name.text)));
-                let settings = record.layout.iter().map(|setting| {
-                    let unit = setting.unit.as_ref();
-                    let unit = unit.map_or_else(String::new, |unit| format!(" in [{}]", unit.text));
-                    format!(
-                        "{} = {}{unit}",
-                        setting.name.text,
-                        quoted(&setting.value.text)
-                    )
-                });
-                let layout = settings.collect::<Vec<String>>().join(", ");
+                let layout: Vec<String> = record.layout.iter().map(layout_setting).collect();
+                let layout = layout.join(", ");
+                let kind = record
+                    .kind
+                    .as_ref()
+                    .map_or_else(String::new, |kind| format!(" layout {}", kind.text));
                 let layout = match layout.as_str() {
                     "" => layout,
                     _ => format!("({layout})"),
                 };
-                format!("record {}{layout}{every}{default}", record.name.text)
+                format!("record {}{layout}{every}{default}{kind}", record.name.text)
             })
             .collect();
         let records = if records.is_empty() {

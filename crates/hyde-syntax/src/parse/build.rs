@@ -155,6 +155,8 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_load
             | R::kw_record
             | R::kw_every
+            | R::kw_layout
+            | R::kw_wraps
             | R::kw_stimulus
             | R::kw_measured
             | R::kw_replay

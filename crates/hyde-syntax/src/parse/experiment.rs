@@ -111,11 +111,12 @@ impl Parser<'_> {
 }
 
 impl Builder<'_> {
-    fn record(&mut self, node: Node<'_>) -> Option<RecordItem> {
+    pub(super) fn record(&mut self, node: Node<'_>) -> Option<RecordItem> {
         let mut inner = parts(node);
         let mut record = RecordItem {
             name: self.name(&inner.next()?),
             layout: Vec::new(),
+            kind: None,
             every: None,
             default: None,
         };
@@ -124,9 +125,11 @@ impl Builder<'_> {
                 Rule::string => record.default = Some(self.quoted_name(&part)),
                 Rule::layout => {
                     let settings = parts(part);
-                    record.layout = settings
-                        .filter_map(|setting| self.layout_setting(setting))
-                        .collect();
+                    let settings = settings.filter_map(|setting| self.layout_setting(setting));
+                    record.layout.extend(settings);
+                }
+                Rule::layout_kind => {
+                    record.kind = parts(part).next().map(|word| self.name(&word));
                 }
                 _ => record.every = Some(self.expression(part)),
             }
@@ -137,11 +140,36 @@ impl Builder<'_> {
     fn layout_setting(&mut self, node: Node<'_>) -> Option<LayoutSetting> {
         let mut inner = parts(node);
         let name = self.name(&inner.next()?);
-        let value = self.quoted_name(&inner.next()?);
-        let unit = inner
-            .find(|part| part.as_rule() == Rule::unit)
-            .map(|unit| self.unit(unit));
-        Some(LayoutSetting { name, value, unit })
+        let value = inner.next()?;
+        let number = (value.as_rule() == Rule::number).then(|| self.number(&value));
+        let mut setting = LayoutSetting {
+            name,
+            value: match number {
+                Some(_) => self.name(&value),
+                None => self.quoted_name(&value),
+            },
+            number,
+            unit: None,
+            wraps: None,
+        };
+        for part in inner {
+            match part.as_rule() {
+                Rule::layout_wraps => {
+                    setting.wraps = parts(part).next().map(|number| self.number(&number));
+                }
+                Rule::layout_unit => {
+                    let mut count = None;
+                    for part in parts(part) {
+                        match part.as_rule() {
+                            Rule::number => count = Some(self.number(&part)),
+                            _ => setting.unit = Some((count, self.unit(part))),
+                        }
+                    }
+                }
+                _ => {}
+            }
+        }
+        Some(setting)
     }
 
     fn experiment_item(&mut self, node: Node<'_>, items: &mut Vec<ExperimentItem>) {

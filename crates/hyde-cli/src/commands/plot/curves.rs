@@ -31,8 +31,9 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Recorded]) -> Result<Figure,
         }
         let (unit, of) = one_unit(all.iter().map(|(.., column)| *column))?;
         let line = |(label, source, column): (String, &Recorded, &Column)| {
-            let rows = window(args, source.table.time());
-            let x = source.table.time()[rows.clone()].to_vec();
+            let time = source.table.holding(column.name()).time();
+            let rows = window(args, time);
+            let x = time[rows.clone()].to_vec();
             let y = column.values()[rows].iter().map(|si| of.from_si(*si));
             Line::new(label, x, y.collect()).with_style(source.style)
         };
@@ -64,13 +65,19 @@ pub(super) fn over_each_other(args: &PlotArgs, sources: &[Recorded]) -> Result<F
         for (y, x) in &pairs {
             for source in having(sources, y)? {
                 let label = label(y, pairs.len(), &source.name, sources.len());
+                let times = [x, y].map(|name| source.table.holding(name).time());
+                if times[0] != times[1] {
+                    return Err(format!(
+                        "`{x}` and `{y}` are sampled at different times: no curve of one over the other is drawn"
+                    ));
+                }
                 all.push((label, source, column(source, x)?, column(source, y)?));
             }
         }
         let (x_unit, x_of) = one_unit(all.iter().map(|(_, _, x, _)| *x))?;
         let (y_unit, y_of) = one_unit(all.iter().map(|(.., y)| *y))?;
         let line = |(label, source, x, y): (String, &Recorded, &Column, &Column)| {
-            let rows = window(args, source.table.time());
+            let rows = window(args, source.table.holding(y.name()).time());
             let values = |column: &Column, of: Unit| {
                 let values = column.values()[rows.clone()].iter();
                 values.map(|si| of.from_si(*si)).collect()

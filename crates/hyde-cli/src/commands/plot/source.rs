@@ -68,7 +68,7 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Source]) -> Result<Vec<Recor
             Some(_) | None => {
                 let layout = Layout {
                     every_s: args.every,
-                    time: None,
+                    ..Layout::default()
                 };
                 let table = hyde_signal::read(&source.bytes, &layout);
                 if let Ok(origin) = table.as_ref().map(Table::origin)

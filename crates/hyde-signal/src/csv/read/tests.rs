@@ -3,7 +3,7 @@
 #![allow(clippy::float_cmp, reason = "cells are the nearest doubles")]
 
 use super::*;
-use crate::TimeColumn;
+use crate::{CountUnit, DeclaredColumn};
 use hyde_units::NamedUnit;
 use proptest::prelude::*;
 
@@ -136,31 +136,28 @@ fn a_declared_period_leaves_the_first_column_ordinary() {
 fn a_declared_column_is_the_time() {
     let unit = |text: &str| Some(NamedUnit::parse(text).unwrap());
     let by = |name: &str, unit| {
-        let time = Some(TimeColumn {
-            name: name.to_owned(),
-            unit,
+        let time = Some(DeclaredColumn {
+            unit: Option::<NamedUnit>::map(unit, CountUnit::one),
+            ..DeclaredColumn::named(name)
         });
         read(
             b"Sample,Timestamp,Time [us],x [mm]\n0,10,100,1\n1,12,300,2\n2,14,500,3\n",
             &Layout {
-                every_s: None,
                 time,
+                ..Layout::default()
             },
         )
     };
     let table = by("Timestamp", unit("ms")).unwrap();
     assert_eq!(table.time(), [0.01, 0.012, 0.014]);
     assert_eq!(table.column("Sample").unwrap().values(), [0.0, 1.0, 2.0]);
-    let dates = Some(TimeColumn {
-        name: "Time".to_owned(),
-        unit: None,
-    });
+    let dates = Some(DeclaredColumn::named("Time"));
     let text = b"Date,Time,x\n05.03.2024,14:07:01.0,1\n05.03.2024,14:07:01.5,2\n";
     let dates = read(
         text,
         &Layout {
-            every_s: None,
             time: dates,
+            ..Layout::default()
         },
     )
     .unwrap();

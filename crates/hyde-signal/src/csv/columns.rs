@@ -1,0 +1,297 @@
+//! The cells of a CSV record by columns, and the tables that they make.
+
+use super::ReadError;
+use super::facts::Period;
+use super::grid::Grid;
+use super::groups::Group;
+use super::number::{Numbers, Thousands, any_number, is_missing, not_a_number, truth};
+use super::rows::Rows;
+use crate::assemble::{AssembleError, Cells, Raw, assemble};
+use crate::heading::{Heading, Place};
+use crate::layout::{DeclaredColumn, Layout};
+use crate::{Fault, Note, Table, TimeError, declared};
+
+/// The lines of so many missing readings are told.
+const MISSING_TOLD: usize = 6;
+
+/// The cells below the header.
+pub(super) struct Columns {
+    of: Vec<Column>,
+    groups: Vec<OfGroup>,
+    numbers: Numbers,
+    thousands_declared: bool,
+}
+
+#[derive(Default)]
+struct Column {
+    values: Vec<f64>,
+    fault: Option<Fault>,
+    /// How many readings are missing, and the lines of the first of them.
+    missing: usize,
+    lines: Vec<u64>,
+    /// Whether it has `TRUE` or `FALSE`.
+    truth: bool,
+    thousands: Thousands,
+}
+
+/// The time of a group, and whether its rows ended above those of others.
+struct OfGroup {
+    group: Group,
+    instants: Vec<String>,
+    ended: bool,
+}
+
+impl Columns {
+    pub(super) fn of(headings: &[Heading], groups: &[Group], decimal: Option<char>) -> Self {
+        Self {
+            of: headings.iter().map(|_| Column::default()).collect(),
+            groups: groups
+                .iter()
+                .map(|group| OfGroup {
+                    group: group.clone(),
+                    instants: Vec::new(),
+                    ended: false,
+                })
+                .collect(),
+            numbers: Numbers::of(decimal),
+            thousands_declared: decimal.is_some(),
+        }
+    }
+
+    /// Takes the cells of a row. A group may end before others: then all its cells are empty.
+    pub(super) fn push(&mut self, rows: &Rows<'_>, headings: &[Heading]) -> Result<(), ReadError> {
+        let cells: Vec<&str> = rows.cells().take(headings.len()).collect();
+        let many = self.groups.len() > 1;
+        for group in &mut self.groups {
+            let own = cells.get(group.group.first..group.group.end.min(cells.len()));
+            let own = own.unwrap_or_default();
+            if many && own.iter().all(|cell| cell.is_empty()) {
+                group.ended = true;
+                continue;
+            }
+            if group.ended || (many && own.len() < group.group.end - group.group.first) {
+                return Err(ReadError::Ragged {
+                    line: rows.line(),
+                    found: cells.len(),
+                    expected: headings.len(),
+                });
+            }
+            for (at, cell) in own.iter().enumerate() {
+                let at = group.group.first + at;
+                if group.group.time == Some(at) {
+                    // Dates have commas of their own; numbers have points from here on.
+                    let number = self.numbers.read(cell).is_some();
+                    self.of[at].thousands.see(cell);
+                    let cell = if number {
+                        cell.replace(',', ".")
+                    } else {
+                        (*cell).to_owned()
+                    };
+                    group.instants.push(cell);
+                    continue;
+                }
+                let column = &mut self.of[at];
+                let value = match self.numbers.read(cell) {
+                    Some(value) => {
+                        column.thousands.see(cell);
+                        Some(value)
+                    }
+                    None => truth(cell).inspect(|_| column.truth = true),
+                };
+                if value.is_none() && is_missing(cell) {
+                    column.missing += 1;
+                    if column.lines.len() < MISSING_TOLD {
+                        column.lines.push(rows.line());
+                    }
+                }
+                if value.is_none() && column.fault.is_none() {
+                    let fault = not_a_number(rows.line(), at + 1, &headings[at].name, cell);
+                    column.fault = Some(fault);
+                }
+                column.values.push(value.unwrap_or(f64::NAN));
+            }
+        }
+        Ok(())
+    }
+
+    /// What was taken for granted of the cells.
+    pub(super) fn notes(&self, headings: &[Heading]) -> Vec<Note> {
+        let mut notes = Vec::new();
+        if self.numbers.has_comma() {
+            notes.push(Note::new(
+                "its numbers have a decimal comma: `0,5` is read as 0.5",
+            ));
+        }
+        let columns = headings.iter().zip(&self.of);
+        let truths = columns.filter(|(_, column)| column.truth && column.fault.is_none());
+        let names: Vec<String> = truths.map(|(h, _)| format!("`{}`", h.name)).collect();
+        if !names.is_empty() {
+            notes.push(Note::new(format!(
+                "TRUE and FALSE are read as 1 and 0 in {}",
+                names.join(", ")
+            )));
+        }
+        notes
+    }
+
+    /// The record: a table a group, those over equal times as one, the one with the most rows in front.
+    pub(super) fn tables(
+        self,
+        grid: &Grid<'_>,
+        groups: &[Group],
+        layout: &Layout,
+        mut notes: Vec<Note>,
+        place: &dyn Fn(usize) -> String,
+    ) -> Result<Table, ReadError> {
+        let (declared, both) = (self.thousands_declared, self.numbers.has_both());
+        let mut raw: Vec<Option<Raw>> = self
+            .of
+            .into_iter()
+            .zip(&grid.headings)
+            .enumerate()
+            .map(|(at, (column, heading))| Some(column.raw(at, heading.clone(), declared, both)))
+            .collect();
+        let instants: Vec<Vec<String>> = self
+            .groups
+            .into_iter()
+            .map(|group| group.instants)
+            .collect();
+        declared::check(raw.iter().flatten(), &layout.columns)?;
+        let mut tables = Vec::new();
+        for (at, group) in groups.iter().enumerate() {
+            // Groups whose instants are written alike have one time.
+            let timed = group.time.is_some();
+            let same = |other: &usize| timed && instants[*other] == instants[at];
+            if (timed && instants[at].is_empty()) || (0..at).any(|other| same(&other)) {
+                continue;
+            }
+            let also: Vec<usize> = (at + 1..groups.len()).filter(same).collect();
+            let mut columns: Vec<Raw> = taken(&mut raw, group).collect();
+            if let Some(time) = group.time.map(|time| &mut columns[time - group.first]) {
+                if let Cells::Numbers(_, Some(fault)) = &time.cells {
+                    return Err(TimeError::Doubtful(fault.clone()).into());
+                }
+                time.cells = Cells::Texts(instants[at].clone());
+                said_unit(
+                    time,
+                    group.period.as_ref(),
+                    layout.time.as_ref(),
+                    &mut notes,
+                )?;
+            }
+            for other in also {
+                columns.extend(taken(&mut raw, &groups[other]).skip(1));
+            }
+            let mut own = layout.clone();
+            if let Some(time) = own.time.as_mut().filter(|_| groups.len() > 1) {
+                super::groups::TIME.clone_into(&mut time.name);
+            }
+            let table = assemble(columns, &own, Vec::new(), place);
+            tables.push(table.map_err(|error| match error {
+                AssembleError::Time(error) => ReadError::Time(error),
+                AssembleError::Table(error) => ReadError::Table(error),
+            })?);
+        }
+        let table = Table::of_parts(tables, notes).ok_or(ReadError::NoRows)?;
+        Ok(table.laid_out(grid.kind))
+    }
+}
+
+/// The columns of a group; the first of several groups is their time.
+fn taken<'r>(raw: &'r mut [Option<Raw>], group: &Group) -> impl Iterator<Item = Raw> + use<'r> {
+    raw[group.first..group.end]
+        .iter_mut()
+        .filter_map(Option::take)
+}
+
+impl Column {
+    fn raw(self, at: usize, heading: Heading, declared: bool, both_signs: bool) -> Raw {
+        let thousands = self.thousands.fault(at + 1, &heading.name, both_signs);
+        let fault = self
+            .fault
+            .map(|fault| with_missing(fault, self.missing, &self.lines))
+            .or(thousands.filter(|_| !declared));
+        Raw {
+            heading,
+            cells: Cells::Numbers(self.values, fault),
+        }
+    }
+}
+
+/// The same fault with the lines of further readings that are missing.
+fn with_missing(mut fault: Fault, missing: usize, lines: &[u64]) -> Fault {
+    if missing > 1 {
+        let list: Vec<String> = lines[1..].iter().map(u64::to_string).collect();
+        let more = if missing > lines.len() { ", …" } else { "" };
+        let readings = hyde_units::counted(missing - 1, "more reading");
+        let is = if missing == 2 { "is" } else { "are" };
+        fault.message.push_str(&format!(
+            "; {readings} {is} missing, in line {}{more}",
+            list.join(", ")
+        ));
+    }
+    fault
+}
+
+/// Gives a time column the unit in which a line above it says the time between rows, if the column advances by so much.
+fn said_unit(
+    time: &mut Raw,
+    period: Option<&Period>,
+    declared: Option<&DeclaredColumn>,
+    notes: &mut Vec<Note>,
+) -> Result<(), TimeError> {
+    let (Some(period), Cells::Texts(cells)) = (period, &time.cells) else {
+        return Ok(());
+    };
+    let Some(unit) = &period.unit else {
+        return Ok(());
+    };
+    let numbers: Vec<f64> = cells.iter().map_while(|cell| any_number(cell)).collect();
+    let steps = numbers.windows(2).map(|pair| pair[1] - pair[0]);
+    let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+    steps.sort_by(f64::total_cmp);
+    let Some(step) = steps.get(steps.len() / 2).copied() else {
+        return Ok(());
+    };
+    let near = |a: f64, b: f64| (a - b).abs() <= 0.02 * b;
+    let name = &time.heading.name;
+    if time.heading.unit.is_none()
+        && declared.is_none_or(|declared| declared.unit.is_none())
+        && let crate::heading::Temporal::Time = crate::heading::temporal(name)
+    {
+        if !near(step, period.value) {
+            return Err(TimeError::OtherStep {
+                name: name.clone(),
+                step: hyde_units::significant(step, 6),
+                said: format!("{} {unit}", hyde_units::significant(period.value, 6)),
+                key: period.key.clone(),
+                line: period.line,
+            });
+        }
+        notes.push(Note::new(format!(
+            "the time `{name}` is read in {unit}: it advances by {}, as `{}` in line {} says",
+            hyde_units::significant(step, 6),
+            period.key,
+            period.line
+        )));
+        time.heading.unit = Some(Ok(unit.clone()));
+        time.heading.place = Place::Row;
+        return Ok(());
+    }
+    let step_s = match (&time.heading.unit, declared.and_then(|d| d.unit.as_ref())) {
+        (_, Some(declared)) => step * declared.count_si(),
+        (Some(Ok(own)), None) => own.unit().to_si(step),
+        _ => return Ok(()),
+    };
+    let said_s = unit.unit().to_si(period.value);
+    if !near(step_s, said_s) {
+        notes.push(Note::new(format!(
+            "`{}` in line {} says {}, the rows of `{name}` are {} apart: the column counts",
+            period.key,
+            period.line,
+            crate::gaps::seconds(said_s),
+            crate::gaps::seconds(step_s)
+        )));
+    }
+    Ok(())
+}

@@ -1,0 +1,140 @@
+//! The parts of a record: channels of one file with times of their own.
+
+use super::{Table, TableError, Time};
+use crate::gaps::seconds;
+use crate::heading::is_time_unit;
+use crate::note::listed;
+use crate::{Column, Fault, Note, Unusable};
+use std::collections::BTreeMap;
+
+impl Table {
+    /// The table with the most rows, the first of several, with the others beside it; nothing if there is none.
+    pub(crate) fn of_parts(mut parts: Vec<Self>, notes: Vec<Note>) -> Option<Self> {
+        let most = (0..parts.len()).rev().max_by_key(|at| parts[*at].rows())?;
+        if parts.len() > 1 {
+            let mut all: Vec<(&str, &mut Self)> = parts.iter_mut().map(|part| ("", part)).collect();
+            crate::align(&mut all);
+        }
+        let mut main = parts.remove(most);
+        let own = std::mem::replace(&mut main.notes, notes);
+        main.notes.extend(own);
+        for part in &mut parts {
+            let name = part.channels().next().map_or("", Column::name).to_owned();
+            let notes = std::mem::take(&mut part.notes).into_iter();
+            main.notes
+                .extend(notes.map(|note| Note::new(format!("group of `{name}`: {note}"))));
+            main.unusable.append(&mut part.unusable);
+            let over_time = match part.time {
+                Time::Column(at) => part.columns[at].unit().is_none_or(is_time_unit),
+                Time::Every(..) => true,
+            };
+            let step = match part.usual_step().filter(|_| over_time) {
+                Some(step) => format!(", {} apart", seconds(step)),
+                None => String::new(),
+            };
+            main.notes.push(Note::new(format!(
+                "{} rows of their own{step}: {}",
+                part.rows(),
+                listed(part.channels().map(Column::name))
+            )));
+        }
+        main.others = parts;
+        main.set_doubled_apart();
+        Some(main)
+    }
+
+    /// A name that columns over different times have means none of them.
+    fn set_doubled_apart(&mut self) {
+        let mut seen: BTreeMap<String, usize> = BTreeMap::new();
+        for column in self.parts().flat_map(Self::channels) {
+            *seen.entry(column.name().to_owned()).or_default() += 1;
+        }
+        for (name, times) in seen.into_iter().filter(|(_, times)| *times > 1) {
+            let time = match self.time {
+                Time::Column(at) => Some(self.columns[at].name().to_owned()),
+                Time::Every(..) => None,
+            };
+            let keep =
+                |column: &Column| column.name() != name || Some(column.name()) == time.as_deref();
+            self.columns.retain(keep);
+            for part in &mut self.others {
+                part.columns.retain(keep);
+            }
+            self.unusable.push(Unusable {
+                fault: Fault {
+                    message: format!("{times} columns over different times are named `{name}`"),
+                    repair: "give every column a name of its own".to_owned(),
+                },
+                name,
+            });
+        }
+    }
+
+    /// The names by which its columns can be had: their own, and what they show where that is clear.
+    #[must_use]
+    pub fn names(&self) -> Vec<(&str, &Column)> {
+        let others = self.others.iter().flat_map(Self::channels);
+        let all: Vec<&Column> = self.columns.iter().chain(others).collect();
+        let shown = all
+            .iter()
+            .filter_map(|column| Some((column.meaning()?, *column)));
+        let clear = |(name, _): &(&str, &Column)| {
+            self.column(name)
+                .is_some_and(|own| own.meaning() == Some(*name))
+        };
+        let mut names: Vec<(&str, &Column)> =
+            all.iter().map(|column| (column.name(), *column)).collect();
+        names.extend(shown.filter(clear));
+        names
+    }
+
+    /// The parts of the record that have times of their own.
+    #[must_use]
+    pub fn others(&self) -> &[Self] {
+        &self.others
+    }
+
+    /// The record itself and its other parts.
+    pub fn parts(&self) -> impl Iterator<Item = &Self> {
+        std::iter::once(self).chain(&self.others)
+    }
+
+    /// The part that has the column of that name; the record itself where none has.
+    #[must_use]
+    pub fn holding(&self, column: &str) -> &Self {
+        let has = |part: &&Self| part.own(column).is_some();
+        self.parts().find(has).unwrap_or(self)
+    }
+
+    /// The columns that are not the time.
+    pub fn channels(&self) -> impl Iterator<Item = &Column> {
+        let time = match self.time {
+            Time::Column(at) => Some(at),
+            Time::Every(..) => None,
+        };
+        let all = self.columns.iter().enumerate();
+        all.filter(move |(at, _)| Some(*at) != time)
+            .map(|(_, column)| column)
+    }
+
+    /// The same record with other columns: each made of a column and the part that it stands in.
+    ///
+    /// # Errors
+    /// If they do not make a table.
+    pub fn mapped(
+        &self,
+        mut map: impl FnMut(&Self, &Column) -> Column,
+    ) -> Result<Self, TableError> {
+        let mut part = |part: &Self| {
+            let columns = part
+                .columns
+                .iter()
+                .map(|column| map(part, column))
+                .collect();
+            part.with_columns(columns)
+        };
+        let mut found = part(self)?;
+        found.others = self.others.iter().map(part).collect::<Result<_, _>>()?;
+        Ok(found)
+    }
+}

@@ -1,0 +1,143 @@
+//! How a record is to be read where its experiment does not say it: behind its file, as whoever asks names it, or in a file
+//! beside it.
+
+use crate::world::World;
+use hyde_diag::{Code, Diagnostic, Diagnostics, Sources};
+use hyde_signal::{Note, Table};
+use hyde_syntax::ast::RecordItem;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
+
+/// A record as whoever asks gives it: `scope.csv (time = "Time" in [ms])`, `log.txt every 1 [ms]`.
+#[derive(Debug)]
+pub struct Given {
+    /// The file.
+    pub path: PathBuf,
+    /// How it is to be read, where that is said.
+    pub settings: Option<RecordItem>,
+    /// The text of the settings.
+    pub text: String,
+}
+
+/// Reads a file as settings say, or the file beside it, for whoever has no experiment.
+///
+/// # Errors
+/// What is wrong, with the repair.
+pub fn alone(
+    world: &dyn World,
+    given: &Given,
+    content: &[u8],
+) -> Result<Table, (String, Option<String>)> {
+    let item = parsed(RECORD, "").map_err(|reason| (reason, None))?;
+    let side = world.read(&side_file(&given.path)).ok();
+    table(&item, given.settings.as_ref(), &given.path, content, side)
+        .map_err(|diagnostic| (diagnostic.message.clone(), diagnostic.help.clone()))
+}
+
+/// What a record is called where nobody has named it.
+pub const RECORD: &str = "log";
+
+/// How settings begin behind a file.
+const BEGINNINGS: [&str; 4] = [" (", "(", " layout ", " every "];
+
+impl Given {
+    /// Reads a file with what stands behind it, for the record of that name.
+    ///
+    /// # Errors
+    /// What stands behind the file is not understood.
+    pub fn of(world: &dyn World, name: &str, text: &str) -> Result<Self, String> {
+        let beginnings = BEGINNINGS.iter();
+        let at = beginnings
+            .filter_map(|beginning| text.find(beginning))
+            .min();
+        let whole = Path::new(text);
+        let Some(at) = at.filter(|_| !world.is_file(whole)) else {
+            return Ok(Self {
+                path: whole.to_owned(),
+                settings: None,
+                text: String::new(),
+            });
+        };
+        let settings = parsed(name, &text[at..])
+            .map_err(|reason| format!("`--record {name}={text}`: {reason}"))?;
+        Ok(Self {
+            path: PathBuf::from(text[..at].trim_end()),
+            settings: Some(settings),
+            text: text[at..].trim().to_owned(),
+        })
+    }
+}
+
+/// The file beside a record that may say how it is to be read: `scope.csv.layout`.
+pub(crate) fn side_file(path: &Path) -> PathBuf {
+    let mut name: OsString = path.as_os_str().to_owned();
+    name.push(".layout");
+    PathBuf::from(name)
+}
+
+/// Reads a record: as the command line says, else as the experiment does, else as the file beside it.
+pub(crate) fn table(
+    item: &RecordItem,
+    given: Option<&RecordItem>,
+    path: &Path,
+    content: &[u8],
+    side: Option<Vec<u8>>,
+) -> Result<Table, Diagnostic> {
+    let declares = !item.layout.is_empty() || item.every.is_some() || item.kind.is_some();
+    let (settings, note) = match (given, side.filter(|_| !declares)) {
+        (Some(given), _) => (Some(given.clone()), None),
+        (None, None) => (None, None),
+        (None, Some(side)) => {
+            let name = side_file(path).display().to_string();
+            let text = String::from_utf8_lossy(&side).trim().to_owned();
+            let settings = parsed(&item.name.text, &text).map_err(|reason| {
+                Diagnostic::error(Code::BadRecord, format!("`{name}`: {reason}"))
+                    .label(item.name.span, "the record is declared here")
+                    .help("write what would stand in the experiment: `(time = \"Time\" in [ms]) every 1 [ms]`")
+            })?;
+            let note = Note::new(format!("read as `{name}` says: {text}"));
+            (Some(settings), Some(note))
+        }
+    };
+    let item = settings.map_or_else(|| item.clone(), |settings| replaced(item, settings));
+    let mut table = hyde_experiment::read_record(&item, &path.display().to_string(), content)?;
+    note.into_iter().for_each(|note| table.tell(note));
+    Ok(table)
+}
+
+/// The declaration with other settings, which stand in no file that messages could show.
+fn replaced(item: &RecordItem, settings: RecordItem) -> RecordItem {
+    let place = item.name.span;
+    let mut settings = settings;
+    for setting in &mut settings.layout {
+        setting.name.span = place;
+        setting.value.span = place;
+        if let Some((_, unit)) = &mut setting.unit {
+            unit.span = place;
+        }
+    }
+    if let Some(kind) = &mut settings.kind {
+        kind.span = place;
+    }
+    if let Some(every) = &mut settings.every {
+        every.span = place;
+    }
+    RecordItem {
+        name: item.name.clone(),
+        default: item.default.clone(),
+        ..settings
+    }
+}
+
+/// The settings in a text.
+fn parsed(name: &str, text: &str) -> Result<RecordItem, String> {
+    let mut sources = Sources::default();
+    let file = sources.add("record", format!("record {name} = \"\" {}", text.trim()));
+    let mut diagnostics = Diagnostics::default();
+    let item = hyde_syntax::parse_record(&sources, file, &mut diagnostics);
+    match (item, diagnostics.iter().next()) {
+        (Some(item), None) => Ok(item),
+        (_, Some(diagnostic)) => Err(format!("`{}`: {}", text.trim(), diagnostic.message)),
+        (None, None) => Err(format!("`{}` is not understood", text.trim())),
+    }
+}
