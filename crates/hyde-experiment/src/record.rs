@@ -155,12 +155,11 @@ fn column(setting: &LayoutSetting) -> Result<DeclaredColumn, Diagnostic> {
     });
     let wraps = setting.wraps;
     if wraps.is_some_and(|period| period <= 0.0) {
-        return Err(Diagnostic::error(
-            Code::BadRecord,
-            "a column begins again after a number above 0",
-        )
-        .label(setting.value.span, "declared here")
-        .help("write the number of its values: `wraps 65536` for 16 bits"));
+        return Err(
+            Diagnostic::error(Code::BadRecord, "a column wraps after a number above 0")
+                .label(setting.value.span, "declared here")
+                .help("write the number of its values: `wraps 65536` for 16 bits"),
+        );
     }
     Ok(DeclaredColumn {
         name: setting.value.text.clone(),

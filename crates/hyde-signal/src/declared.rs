@@ -78,7 +78,7 @@ fn unwrapped(column: &mut Raw, period: f64) -> Note {
         wrap::unwrap(values, period);
     });
     Note::new(format!(
-        "`{}` overflows after {period}, as declared: it does so {}, and is continued",
+        "`{}` wraps after {period}, as declared: it does so {}, and is continued",
         column.heading.name,
         hyde_units::counted(wraps, "time")
     ))
