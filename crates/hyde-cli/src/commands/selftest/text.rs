@@ -30,7 +30,7 @@ pub(super) fn text(told: &Told<'_>) -> String {
         );
         let _ = writeln!(
             out,
-            "  {:<36} {:>7} {:>10} {:>9}  mistaken for",
+            "  {:<35} {:>7} {:>10} {:>9}  mistaken for",
             "effect", "right", "detectable", "hidden"
         );
         for row in &told.table.rows {
@@ -67,7 +67,7 @@ fn line(out: &mut String, told: &Told<'_>, row: &Row) {
         .collect();
     let right = format!("{}/{}", row.right, row.visible);
     let head = format!(
-        "  {:<36} {right:>7} {from:>10} {hidden:>9}",
+        "  {:<35} {right:>7} {from:>10} {hidden:>9}",
         named(told, row.hypothesis)
     );
     let _ = match others.as_slice() {
