@@ -198,7 +198,7 @@ pub(super) fn row() -> Result<(), String> {
 pub(super) fn refused() -> Result<(), String> {
     let options = Options::default();
     let told = failure("events/sliding", "cubed", &options)?;
-    tells(&told, &["CannotSlide", "x > 0", "no linear way"])?;
+    tells(&told, &["CannotSlide", "x > 0", "do not act linearly"])?;
     close("end", time_told(&told)?, 1.0, 1e-8)?;
     let told = failure("events/sliding", "through", &options)?;
     tells(&told, &["CannotSlide", "y > 0", "the guard itself jumps"])?;
