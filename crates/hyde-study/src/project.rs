@@ -47,7 +47,7 @@ pub enum Records {
     IfThere,
 }
 
-/// A file that was parsed, with the packages and tables it names: see [`crate::package`].
+/// A file that was parsed, with the packages and tables it names.
 pub struct Loaded {
     /// The texts.
     pub sources: Sources,
