@@ -2,7 +2,7 @@
 
 use crate::args::{ModelArgs, StudyArgs};
 use crate::exit::Exit;
-use crate::project::{self, Asked, Loaded, Told as _};
+use crate::project::{self, Asked, Loaded, Told as _, complain};
 use hyde_compiler::DiagnosisPlan;
 use hyde_study::{Calibration, Refused};
 
@@ -35,6 +35,7 @@ fn loaded<T>(
     make: impl FnOnce(Loaded, &Asked) -> Result<T, Refused>,
 ) -> Result<T, Exit> {
     let asked = project::asked(args)?;
-    let loaded = project::parsed(args)?;
+    let loaded = Loaded::of(&asked);
+    let loaded = loaded.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
     make(loaded, &asked).map_err(|own| project::refused(args, &own))
 }

@@ -132,6 +132,14 @@ fn noise(values: &[f64]) -> f64 {
     median / 0.6745 / 20.0_f64.sqrt()
 }
 
+/// The sizes of the steps from sample to sample, the smallest first.
+fn sorted_steps(values: &[f64]) -> Vec<f64> {
+    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
+    let mut steps: Vec<f64> = steps.collect();
+    steps.sort_by(f64::total_cmp);
+    steps
+}
+
 /// The stretches with one value: first and last row.
 fn stretches(values: &[f64]) -> Vec<(usize, usize)> {
     let mut found = Vec::new();
@@ -147,9 +155,7 @@ fn stretches(values: &[f64]) -> Vec<(usize, usize)> {
 
 /// The longest stretch that a channel leaves with a jump: it moved on meanwhile.
 fn stuck(time: &[f64], values: &[f64]) -> Option<Held> {
-    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let mut steps: Vec<f64> = steps.collect();
-    steps.sort_by(f64::total_cmp);
+    let steps = sorted_steps(values);
     let usual = steps.get(steps.len() * 95 / 100).copied()?;
     let jumps = |to: usize| {
         values
@@ -168,12 +174,8 @@ fn stuck(time: &[f64], values: &[f64]) -> Option<Held> {
 }
 
 fn saturated(values: &[f64], range: (f64, f64)) -> Option<Limit> {
-    let mut steps: Vec<f64> = values
-        .windows(2)
-        .map(|pair| (pair[1] - pair[0]).abs())
-        .collect();
+    let mut steps = sorted_steps(values);
     steps.retain(|step| *step > 0.0);
-    steps.sort_by(f64::total_cmp);
     let usual = steps.get(steps.len() / 2).copied()?;
     let stretches = stretches(values);
     [range.1, range.0].into_iter().find_map(|value| {
@@ -246,9 +248,7 @@ fn spikes(time: &[f64], values: &[f64]) -> Vec<f64> {
     let mut sorted = all.clone();
     sorted.sort_by(f64::total_cmp);
     let usual = sorted.get(sorted.len() * 95 / 100).copied().unwrap_or(0.0);
-    let steps = values.windows(2).map(|pair| (pair[1] - pair[0]).abs());
-    let mut steps: Vec<f64> = steps.collect();
-    steps.sort_by(f64::total_cmp);
+    let steps = sorted_steps(values);
     let step = steps.get(steps.len() * 95 / 100).copied().unwrap_or(0.0);
     let limit = (8.0 * usual).max(4.0 * step);
     let far = all
