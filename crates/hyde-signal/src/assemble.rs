@@ -259,7 +259,7 @@ pub fn align(tables: &mut [(&str, &mut Table)]) {
             .origin()
             .map_or(0, |origin| origin.nanoseconds - first.nanoseconds);
         if later > 0 {
-            table.begin_later(calendar::seconds(later));
+            table.begin_later(calendar::seconds(later), &first);
         }
     }
 }

@@ -120,6 +120,19 @@ impl Column {
         })
     }
 
+    /// The values of this column and behind them those of another; none if one has a unit that the other does not agree with.
+    pub(crate) fn followed_by(&self, later: &Self) -> Option<Self> {
+        let agree = match (self.dimension(), later.dimension()) {
+            (Some(own), Some(later)) => own.agreement(later) != Agreement::Different,
+            (own, later) => own == later,
+        };
+        agree.then(|| {
+            let mut whole = self.clone();
+            whole.values.extend_from_slice(&later.values);
+            whole
+        })
+    }
+
     /// The column with all values so much higher, SI.
     pub(crate) fn raised(mut self, by: f64) -> Self {
         self.values.iter_mut().for_each(|value| *value += by);

@@ -166,7 +166,7 @@ impl Table {
         &self.unusable
     }
 
-    /// What the clock of the file showed where the time of the table is 0, if that is its own first row.
+    /// What the clock of the file showed where the time of the table is 0, if it counts from there.
     #[must_use]
     pub fn origin(&self) -> Option<&Origin> {
         self.origin.as_ref()
@@ -177,8 +177,9 @@ impl Table {
         self.notes.push(note);
     }
 
-    /// Counts the time from an instant `later_s` before.
-    pub(crate) fn begin_later(&mut self, later_s: f64) {
+    /// Counts the time from an instant `later_s` before, where the clock showed `origin`.
+    pub(crate) fn begin_later(&mut self, later_s: f64, origin: &Origin) {
+        self.origin = Some(origin.clone());
         if let Time::Column(at) = self.time {
             let column = self.columns.remove(at).raised(later_s);
             self.columns.insert(at, column);

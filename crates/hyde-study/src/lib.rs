@@ -25,6 +25,7 @@ mod diagnosis;
 mod inputs;
 mod package;
 mod project;
+mod record_files;
 pub mod record_settings;
 mod records;
 mod refused;

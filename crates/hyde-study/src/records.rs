@@ -1,24 +1,23 @@
 //! The records of an experiment: which files they are, and their tables.
 
 use crate::asked::Asked;
-use crate::inputs::Kind;
 use crate::package::links_out;
 use crate::project::Records;
-use crate::record_settings::{self, Given, side_file};
+use crate::record_files::{self, Files};
+use crate::record_settings::Given;
 use hyde_compiler::Header;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_signal::Table;
 use hyde_syntax::ast::{Experiment, RecordItem};
-use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// A record that was read.
 #[derive(Debug)]
 pub struct Record {
-    /// Where it is.
+    /// Where it is; of several files the pattern that names them.
     pub path: PathBuf,
-    /// SHA-256 of its content.
+    /// SHA-256 of its content; of several files, of their contents one after another.
     pub hash: String,
     /// Its columns over time.
     pub table: Table,
@@ -37,24 +36,14 @@ pub fn read(
     let given = given(asked, experiment)?;
     let mut found = BTreeMap::new();
     for item in &experiment.records {
-        let Some(path) = path_of(item, &given, asked, needed, diagnostics) else {
+        let Some(files) = files_of(item, &given, asked, needed, diagnostics) else {
             continue;
         };
-        let content = match asked.read(Kind::Record, "", &path.to_string_lossy(), &path) {
-            Ok(content) => content,
-            Err(reason) => {
-                diagnostics.push(missing(item, needed, &reason));
-                continue;
-            }
-        };
-        let given = given.get(item.name.text.as_str());
-        let given = given.and_then(|given| given.settings.as_ref());
-        let side = side_file(&path);
-        let side = asked.read(Kind::Record, "", &side.to_string_lossy(), &side);
-        match record_settings::table(item, given, &path, &content, side.ok()) {
-            Ok(table) => {
-                let hash = format!("{:x}", Sha256::digest(&content));
-                found.insert(item.name.text.clone(), Record { path, hash, table });
+        let settings = given.get(item.name.text.as_str());
+        let settings = settings.and_then(|given| given.settings.as_ref());
+        match record_files::read(item, settings, files, asked, needed) {
+            Ok(record) => {
+                found.insert(item.name.text.clone(), record);
             }
             Err(diagnostic) => diagnostics.push(diagnostic),
         }
@@ -128,28 +117,30 @@ fn given<'a>(
     files.collect()
 }
 
-/// The file of a record: as given, else its default, below `--data` or beside the model.
-fn path_of(
+/// The files of a record: as given, else its default, below `--data` or beside the model.
+fn files_of(
     item: &RecordItem,
     given: &BTreeMap<&str, Given>,
     asked: &Asked,
     needed: Records,
     diagnostics: &mut Diagnostics,
-) -> Option<PathBuf> {
+) -> Option<Files> {
     if let Some(given) = given.get(item.name.text.as_str()) {
-        return Some(given.path.clone());
+        let text = given.path.to_string_lossy();
+        return Some(Files::named(asked.world.as_ref(), Path::new(""), &text));
     }
     let Some(default) = &item.default else {
         diagnostics.push(missing(item, needed, "no file is given"));
         return None;
     };
-    let relative = Path::new(&default.text);
-    let inside = relative.components().all(|part| {
-        matches!(
-            part,
-            std::path::Component::Normal(_) | std::path::Component::CurDir
-        )
-    });
+    let inside = record_files::parts(&default.text)
+        .flat_map(|name| Path::new(name).components())
+        .all(|part| {
+            matches!(
+                part,
+                std::path::Component::Normal(_) | std::path::Component::CurDir
+            )
+        });
     if !inside {
         diagnostics.push(
             Diagnostic::error(
@@ -161,7 +152,7 @@ fn path_of(
                 "only files below the model's folder or `--data` are read",
             )
             .help(format!(
-                "give it on the command line: `--record {}={}`",
+                "give it on the command line: `--record '{}={}'`",
                 item.name.text, default.text
             )),
         );
@@ -172,8 +163,9 @@ fn path_of(
         .clone()
         .or_else(|| asked.file.parent().map(Path::to_path_buf))
         .unwrap_or_default();
-    let path = root.join(relative);
-    if links_out(asked.world.as_ref(), &root, &path) {
+    let files = Files::named(asked.world.as_ref(), &root, &default.text);
+    let out = |file: &PathBuf| links_out(asked.world.as_ref(), &root, file);
+    if files.all.iter().any(out) {
         let message = format!("`{}` is a link to a file outside its folder", default.text);
         let diagnostic = Diagnostic::error(Code::NoRecord, message)
             .label(
@@ -187,10 +179,11 @@ fn path_of(
         diagnostics.push(diagnostic);
         return None;
     }
-    Some(path)
+    Some(files)
 }
 
-fn missing(item: &RecordItem, needed: Records, reason: &str) -> Diagnostic {
+/// That the file of a record is not there.
+pub(crate) fn missing(item: &RecordItem, needed: Records, reason: &str) -> Diagnostic {
     let name = &item.name.text;
     let message = format!("the record `{name}` is missing: {reason}");
     let diagnostic = match needed {

@@ -3,6 +3,7 @@
 use super::{Table, TableError, Time};
 use crate::gaps::seconds;
 use crate::heading::is_time_unit;
+use crate::join::Broken;
 use crate::note::listed;
 use crate::{Column, Fault, Note, Unusable};
 use std::collections::BTreeMap;
@@ -115,6 +116,52 @@ impl Table {
         let all = self.columns.iter().enumerate();
         all.filter(move |(at, _)| Some(*at) != time)
             .map(|(_, column)| column)
+    }
+
+    /// The tables of its parts, each for itself; what is known of the file stays with the first.
+    pub(crate) fn into_parts(mut self) -> Vec<Self> {
+        let others = std::mem::take(&mut self.others);
+        std::iter::once(self).chain(others).collect()
+    }
+
+    /// The rows of this record and behind them those of another with the same channels, part by part.
+    pub(crate) fn followed_by(self, later: &Self) -> Result<Self, Broken> {
+        let own = self.into_parts().into_iter();
+        let mut parts = own
+            .zip(later.parts())
+            .map(|(own, later)| own.appended(later));
+        let mut first = parts.next().ok_or(Broken::Table(TableError::Empty))??;
+        first.others = parts.collect::<Result<_, _>>()?;
+        for note in &later.notes {
+            if !first.notes.contains(note) {
+                first.notes.push(note.clone());
+            }
+        }
+        let known = |fault: &Unusable| first.unusable.iter().any(|own| own.name == fault.name);
+        let faults: Vec<Unusable> = later
+            .unusable
+            .iter()
+            .filter(|fault| !known(fault))
+            .cloned()
+            .collect();
+        first.unusable.extend(faults);
+        Ok(first)
+    }
+
+    fn appended(self, later: &Self) -> Result<Self, Broken> {
+        let pairs = self.columns.iter().zip(&later.columns);
+        let columns: Result<Vec<Column>, Broken> = pairs
+            .map(|(own, later)| {
+                own.followed_by(later)
+                    .ok_or_else(|| Broken::Units(own.name().to_owned()))
+            })
+            .collect();
+        let rows = self.with_columns(columns?).map_err(Broken::Table)?;
+        Ok(Self {
+            columns: rows.columns,
+            time: rows.time,
+            ..self
+        })
     }
 
     /// The same record with other columns: each made of a column and the part that it stands in.
