@@ -250,9 +250,10 @@ impl Instant<'_, '_> {
             for number in zeros {
                 let (root, rate) = (roots[number], rates[number]);
                 let inclusive = program.relations[number].inclusive;
-                // What stays at its zero is no reason to leave a mode, whatever rounding makes of it.
+                // What stays at its zero is no reason to leave a mode, whatever rounding makes of it. A force that counts as
+                // the friction which it has not quite reached would let go, and a speed that rounding decides would stick.
                 let is_guard = matches!(program.relations[number].used, RelationUse::Exit(..));
-                let truth = if rate.mean == 0.0 {
+                let truth = if rate.mean == 0.0 || (is_guard && rate.is_hidden_at_zero()) {
                     if root == 0.0 || is_guard {
                         inclusive
                     } else {

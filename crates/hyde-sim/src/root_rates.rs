@@ -45,6 +45,8 @@ const LONGER: f64 = 10.0;
 const MOST_TIMES: usize = 3;
 /// How far from rounding a derivative has a sign.
 const CLEAR: f64 = 4.0;
+/// The same beside what counts as zero: that is rounding of all arguments, 16 units each, and here of the states, 2 units each.
+const AT_ZERO: f64 = 32.0;
 
 /// Where a root function goes: its derivative now, and the mean of that and the one a moment later.
 #[derive(Clone, Copy, Default)]
@@ -58,6 +60,16 @@ pub(crate) struct RootRate {
 }
 
 impl RootRate {
+    /// Whether rounding of the states hides where a root function goes.
+    fn is_hidden(self) -> bool {
+        self.mean.abs() <= CLEAR * self.rounding
+    }
+
+    /// Whether rounding by which a guard led here, as large as what counts as zero, hides where a root function goes.
+    pub(crate) fn is_hidden_at_zero(self) -> bool {
+        self.mean.abs() <= AT_ZERO * self.rounding
+    }
+
     /// Whether a root function turns within the moment.
     fn turns(self) -> bool {
         self.now * self.mean < 0.0
@@ -112,7 +124,6 @@ pub(crate) fn root_rates(
         moment: moment(t),
     });
     let mut found: Vec<RootRate> = found.collect();
-    let hidden = |rate: &RootRate| rate.mean.abs() <= CLEAR * rate.rounding;
     let mut ahead = moment(t);
     for _ in 0..MOST_TIMES {
         // To second order: what breaks away may do so where its acceleration is not quite zero yet.
@@ -124,13 +135,13 @@ pub(crate) fn root_rates(
             break;
         };
         for (rate, later) in found.iter_mut().zip(later) {
-            if rate.moment >= ahead || hidden(rate) {
+            if rate.moment >= ahead || rate.is_hidden() {
                 rate.mean = 0.5 * (rate.now + later);
                 rate.moment = ahead;
             }
         }
         let mut asked = relations.iter().map(|&relation| &found[relation]);
-        if !asked.any(|rate| rate.rounding > 0.0 && hidden(rate)) {
+        if !asked.any(|rate| rate.rounding > 0.0 && rate.is_hidden()) {
             break;
         }
         ahead *= LONGER;
