@@ -58,6 +58,8 @@ pub(crate) enum Command {
     Test(TestArgs),
     /// Show what is in traces: layout, channels, rates, gaps, noise, delays, and the line for a model file
     Look(LookArgs),
+    /// Write a first model of an axis, from a trace or from guesses; every line with a guess ends with `// confirm`
+    New(NewArgs),
     /// Write HTML documentation of a package, of a file, or of the library
     Doc(DocArgs),
     /// Explain a diagnostic code
@@ -423,6 +425,45 @@ pub(crate) struct LookArgs {
     /// Print one JSON object on standard output and nothing else
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct NewArgs {
+    /// Name of the package, and of its file
+    pub(crate) name: String,
+    /// The kind of axis
+    #[arg(long, value_enum)]
+    pub(crate) template: TemplateName,
+    /// Traces that the model is compared with; the last of several is held out. Each with how it is to be read if it does not
+    /// say so: `'log.csv (column = "pos" in [mm])'`
+    #[arg(long, value_name = "TRACE", num_args = 1..)]
+    pub(crate) from: Vec<String>,
+    /// Torque or force per current: `'0.8 [N.m/A]'`, of a linear motor `'78 [N/A]'`
+    #[arg(long, value_name = "VALUE [UNIT]")]
+    pub(crate) constant: Option<String>,
+    /// Way per turn of the motor, `'10 [mm/rev]'`; of a rotary table the turns of the motor per turn
+    #[arg(long, value_name = "VALUE [UNIT]")]
+    pub(crate) ratio: Option<String>,
+    /// Folder of the file [default: the folder of the first trace, else this one]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// Kinds of axes.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub(crate) enum TemplateName {
+    /// Motor, ball-screw, table
+    Screw,
+    /// Motor, toothed belt, carriage
+    Belt,
+    /// Motor, gear, pinion on a rack, table
+    Rack,
+    /// Linear motor, slide
+    Linear,
+    /// Motor, worm or gear, rotary table
+    Table,
+    /// Motor, flexible shaft, load
+    Bench,
 }
 
 #[derive(Debug, Args)]

@@ -14,6 +14,7 @@ pub(crate) mod fit;
 pub(crate) mod look;
 pub(crate) mod man;
 pub(crate) mod modes;
+pub(crate) mod new;
 pub(crate) mod params;
 pub(crate) mod plot;
 pub(crate) mod report;

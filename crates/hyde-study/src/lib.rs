@@ -13,6 +13,7 @@
 //! project        a file parsed once; its model, experiment, program      project.rs
 //! calibration    a calibration with its records and its observer         calibration.rs
 //! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
+//! first_model    a first model of an axis, from a trace                  first_model.rs
 //! run_failure    a run that could not go on, as a diagnostic             run_failure.rs
 //! unobservable   a study that cannot be, as a diagnostic                 unobservable.rs
 //! refused        why a study has no answer                               refused.rs
@@ -22,6 +23,7 @@
 mod asked;
 mod calibration;
 mod diagnosis;
+pub mod first_model;
 mod inputs;
 mod package;
 mod project;

@@ -18,3 +18,4 @@ pub use format::{
 };
 pub use habits::instead_of;
 pub use parse::{parse, parse_record};
+pub use words::is_reserved;

@@ -23,8 +23,9 @@ pub(crate) fn expected(rules: &[Rule]) -> String {
     }
 }
 
-/// Whether what was found, in back quotes, is a word of the language.
-pub(crate) fn is_reserved(found: &str) -> bool {
+/// Whether a name, in back quotes or not, is a word of the language.
+#[must_use]
+pub fn is_reserved(found: &str) -> bool {
     let token = found.trim_matches('`');
     HydeParser::parse(Rule::keyword, token).is_ok()
 }

@@ -14,14 +14,14 @@ use hyde_study::world::Disk;
 use serde_json::{Value, json};
 
 /// A file that was looked at.
-struct Seen {
-    given: Given,
-    table: Table,
-    look: Look,
+pub(super) struct Seen {
+    pub(super) given: Given,
+    pub(super) table: Table,
+    pub(super) look: Look,
 }
 
 /// A file that cannot be read: its name, what is wrong, and the repair.
-struct Failed {
+pub(super) struct Failed {
     file: String,
     message: String,
     help: Option<String>,
@@ -48,16 +48,7 @@ pub(crate) fn look(args: &LookArgs) -> Exit {
     } else {
         let texts: Vec<String> = seen.iter().map(text::screen).collect();
         print_output(texts.join("\n").trim_end());
-        for Failed {
-            file,
-            message,
-            help,
-        } in &failed
-        {
-            let help = help.as_ref();
-            let help = help.map_or_else(String::new, |help| format!("\n  help: {help}"));
-            print_error(&format!("error: {file}: {message}{help}"));
-        }
+        failed.iter().for_each(Failed::print);
     }
     match left.transpose() {
         Err(reason) => {
@@ -74,7 +65,21 @@ pub(crate) fn look(args: &LookArgs) -> Exit {
     }
 }
 
-fn seen_of(file: &str) -> Result<Seen, Failed> {
+impl Failed {
+    pub(super) fn print(&self) {
+        let Self {
+            file,
+            message,
+            help,
+        } = self;
+        let help = help.as_ref();
+        let help = help.map_or_else(String::new, |help| format!("\n  help: {help}"));
+        print_error(&format!("error: {file}: {message}{help}"));
+    }
+}
+
+/// Reads a file and looks at it.
+pub(super) fn seen_of(file: &str) -> Result<Seen, Failed> {
     let wrong = |message: String, help| Failed {
         file: file.to_owned(),
         message,
@@ -93,6 +98,13 @@ impl Seen {
     fn line(&self) -> String {
         let file = self.given.path.file_name().unwrap_or_default();
         let file = file.to_string_lossy();
+        format!("record {RECORD} = {file:?} {}", self.settings())
+            .trim_end()
+            .to_owned()
+    }
+
+    /// How the file is to be read: as was said, with the units that follow from other channels.
+    pub(super) fn settings(&self) -> String {
         let units: Vec<String> = self
             .look
             .channels
@@ -102,7 +114,7 @@ impl Seen {
                 Some(format!("column = {:?} in [{unit}]", channel.name))
             })
             .collect();
-        let settings = match (self.given.text.as_str(), units.is_empty()) {
+        match (self.given.text.as_str(), units.is_empty()) {
             (text, true) => text.to_owned(),
             ("", false) => format!("({})", units.join(", ")),
             (text, false) => match text.split_once(')') {
@@ -111,10 +123,7 @@ impl Seen {
                 }
                 _ => format!("({}) {text}", units.join(", ")),
             },
-        };
-        format!("record {RECORD} = {file:?} {settings}")
-            .trim_end()
-            .to_owned()
+        }
     }
 
     /// The channels whose unit nobody says and nothing tells.

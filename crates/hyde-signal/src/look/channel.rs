@@ -121,16 +121,25 @@ fn step(levels: &[f64]) -> Option<f64> {
     (steps > 0.0).then(|| sum / steps)
 }
 
-/// The standard deviation of what changes from sample to sample beyond a parabola: by third differences, their median.
+/// The standard deviation of what changes from sample to sample beyond a parabola: by third differences.
 fn noise(values: &[f64]) -> f64 {
+    // Where a quantised channel stands, equal values say nothing of its noise.
+    let moves = |w: &&[f64]| w.iter().any(|value| value.total_cmp(&w[0]).is_ne());
     let third = values
         .windows(4)
+        .filter(moves)
         .map(|w| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs());
     let mut third: Vec<f64> = third.filter(|value| value.is_finite()).collect();
     third.sort_by(f64::total_cmp);
-    let median = third.get(third.len() / 2).copied().unwrap_or(0.0);
-    median / 0.6745 / 20.0_f64.sqrt()
+    // Spikes and steps are among the largest.
+    third.truncate(third.len() * 9 / 10);
+    let mean_square =
+        third.iter().map(|value| value * value).sum::<f64>() / third.len().max(1) as f64;
+    (mean_square / LOWER_NINE_TENTHS / 20.0).sqrt()
 }
+
+/// The mean square of the nine tenths of a normal distribution that are nearest to 0, over its variance.
+const LOWER_NINE_TENTHS: f64 = 0.623;
 
 /// The sizes of the steps from sample to sample, the smallest first.
 fn sorted_steps(values: &[f64]) -> Vec<f64> {

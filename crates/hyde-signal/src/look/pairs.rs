@@ -12,6 +12,8 @@ pub struct Delay {
     pub follows: String,
     /// How much later, s.
     pub by_s: f64,
+    /// The time between samples, s: a small part of it is no delay.
+    pub step_s: f64,
     /// How much alike they are then, from 0 to 1.
     pub correlation: f64,
     /// The range of the one that follows over that of the other.
@@ -170,6 +172,7 @@ fn delay(a: &Trace, b: &Trace) -> Option<Delay> {
         leads: leads.name.clone(),
         follows: follows.name.clone(),
         by_s: lag.abs() * a.step_s,
+        step_s: a.step_s,
         correlation: found,
         ratio: range(&follows.values) / range(&leads.values),
     })

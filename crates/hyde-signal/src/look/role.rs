@@ -94,6 +94,12 @@ const REFERENCES: [&str; 9] = [
     "ref", "soll", "cmd", "command", "set", "target", "demand", "nom", "desired",
 ];
 
+/// A channel with such a word in its name was measured.
+const MEASURED: [&str; 7] = ["ist", "act", "meas", "mot", "enc", "feedback", "fbk"];
+
+/// A channel comes later by more than this part of the time between samples.
+const LATER: f64 = 0.5;
+
 const UNITS: [(&str, Role); 9] = [
     ("m", Role::Position),
     ("rad", Role::Position),
@@ -232,7 +238,12 @@ pub(super) fn by_delays(channels: &mut [Channel], delays: &[Delay]) {
         let leads = channels
             .iter_mut()
             .find(|channel| channel.name == delay.leads);
-        if let Some(channel) = leads.filter(|_| !named && delay.by_s > 0.0) {
+        let later = delay.by_s > LATER * delay.step_s;
+        let measured = |channel: &&mut Channel| {
+            let mut words = words(&channel.name).into_iter();
+            words.any(|own| MEASURED.iter().any(|word| own.starts_with(word)))
+        };
+        if let Some(channel) = leads.filter(|channel| !named && later && !measured(channel)) {
             channel.shown.reference = true;
             let text = format!(
                 "`{}` follows it {} s later",
