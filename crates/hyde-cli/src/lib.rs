@@ -23,13 +23,14 @@ mod limits;
 mod output;
 mod pages;
 mod project;
-pub mod render;
 mod report;
 mod start;
 mod study;
 mod summary;
 mod unknown;
 mod watch;
+
+pub use hyde_study::render;
 
 use args::{Arguments, Command};
 use clap::Parser as _;

@@ -131,8 +131,35 @@ pub fn run(
     records: &BTreeMap<String, Table>,
     options: &Options,
 ) -> Result<Run, RunError> {
-    let places = places(program, &options.gradient)?;
+    let setup = setup(program, records, options)?;
+    solved(program, records, options, setup)
+}
+
+/// The same for values that were set after the model was compiled: they are held against the bounds of their parameters. Only
+/// the outputs that `keep` numbers are made, all of them if there is none; channels are compared only then.
+///
+/// # Errors
+/// As for [`run`], and [`RunError::NotAllowed`].
+pub fn run_again(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    options: &Options,
+    keep: Option<Vec<usize>>,
+) -> Result<Run, RunError> {
     let mut setup = setup(program, records, options)?;
+    within_bounds(program, &setup.parameters)?;
+    setup.keep = keep;
+    solved(program, records, options, setup)
+}
+
+fn solved(
+    program: &Program,
+    records: &BTreeMap<String, Table>,
+    options: &Options,
+    setup: Setup<'_>,
+) -> Result<Run, RunError> {
+    let places = places(program, &options.gradient)?;
+    let mut setup: Setup<'_> = setup;
     let start = start(program, records, &setup.parameters);
     setup.sensitivities = (!places.is_empty()).then_some(places.as_slice());
     let results = hyde_sim::simulate(program, &setup).map_err(RunError::Failed)?;
@@ -141,8 +168,11 @@ pub fn run(
         .constant(Constant::Skip, &setup.parameters)
         .unwrap_or(0.0);
     let from_s = setup.start_s + skip_s;
-    let channels = compare::channels(program, records, &setup.parameters, &results, from_s)
-        .map_err(RunError::Compare)?;
+    let channels = match setup.keep {
+        Some(_) => Vec::new(),
+        None => compare::channels(program, records, &setup.parameters, &results, from_s)
+            .map_err(RunError::Compare)?,
+    };
     let measures = measures(program, &results.parameters, &results);
     Ok(Run {
         start,

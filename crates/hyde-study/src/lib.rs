@@ -14,6 +14,7 @@
 //! calibration    a calibration with its records and its observer         calibration.rs
 //! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
 //! first_model    a first model of an axis, from a trace                  first_model.rs
+//! render         diagnostics as text or JSON                              render.rs
 //! run_failure    a run that could not go on, as a diagnostic             run_failure.rs
 //! unobservable   a study that cannot be, as a diagnostic                 unobservable.rs
 //! refused        why a study has no answer                               refused.rs
@@ -31,6 +32,7 @@ mod record_files;
 pub mod record_settings;
 mod records;
 mod refused;
+pub mod render;
 pub mod run_failure;
 pub mod settings;
 mod tables;

@@ -1,0 +1,191 @@
+"""The package as its users call it. Run from the root of the repository: `pytest crates/hyde-python`."""
+
+import json
+import subprocess
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import hyde
+from hyde import _command
+
+ROOT = Path(__file__).resolve().parents[4]
+FIRST = ROOT / "examples/first/first.hyde"
+BENCH = ROOT / "examples/bench_axis/axis.hyde"
+
+
+@pytest.fixture(scope="module")
+def first() -> hyde.Model:
+    return hyde.load(FIRST)
+
+
+def test_columns_are_those_of_the_command(first: hyde.Model, tmp_path: Path) -> None:
+    run = first.run()
+    out = tmp_path / "out"
+    subprocess.run([_command.path(), "run", str(FIRST), "--out", str(out), "--format", "json", "--quiet"], check=True)
+    other = json.loads((out / "results.json").read_text())
+    assert set(other) - {"t"} == set(run)
+    assert np.array_equal(run.time, other["t"]["values"])
+    for name in run:
+        assert np.array_equal(run[name], other[name]["values"], equal_nan=True), name
+        assert run.units[name] == other[name]["unit"]
+
+
+def test_columns_share_memory_and_cannot_be_written(first: hyde.Model) -> None:
+    run = first.run()
+    assert np.shares_memory(run["table.s"], run["table.s"])
+    with pytest.raises(ValueError):
+        run["table.s"][0] = 1.0
+
+
+def test_values_with_units_and_in_si_are_the_same(first: hyde.Model) -> None:
+    runs = [first.run(set={"guide.F": value}) for value in (300.0, "300 [N]", "0.3 [kN]", (0.3, "kN"))]
+    for run in runs:
+        assert run.measures == runs[0].measures
+    assert runs[0].measures["way"] != first.run().measures["way"]
+    with pytest.raises(hyde.Error, match="kg"):
+        first.run(set={"guide.F": "300 [kg]"})
+    with pytest.raises(hyde.Error, match="no parameter"):
+        first.run(set={"guide.G": 1.0})
+
+
+def test_structural_parameters_are_set_at_load(first: hyde.Model) -> None:
+    assert first.parameters["screw.n"].structural
+    with pytest.raises(hyde.Error, match="hyde.load"):
+        first.run(set={"screw.n": 6})
+    coarse = hyde.load(FIRST, set={"screw.n": 6})
+    assert len(coarse.run()) < len(first.run())
+
+
+def test_gradients_are_derivatives(first: hyde.Model) -> None:
+    name, step = "table.M", 1e-3
+    run = first.run(gradient=[name], rtol=1e-9)
+    mass = float(first.parameters[name])
+    runs = [first.run(set={name: mass + sign * step}, rtol=1e-9) for sign in (-1, 1)]
+    differences = (runs[1]["table.s"][-1] - runs[0]["table.s"][-1]) / (2 * step)
+    assert run.gradient[name]["table.s"][-1] == pytest.approx(differences, rel=1e-3)
+
+
+def test_errors_carry_their_diagnostics(tmp_path: Path) -> None:
+    wrong = tmp_path / "wrong.hyde"
+    wrong.write_text("package wrong;\nimport SI.*;\nmodel A\n  Length x = 1 [kg];\nend A;\n")
+    with pytest.raises(hyde.ModelError) as raised:
+        hyde.load(wrong)
+    [diagnostic] = [own for own in raised.value.diagnostics if own["severity"] == "error"]
+    assert diagnostic["code"].startswith("E")
+    assert diagnostic["labels"][0]["line"] == 4
+    assert "x = 1 [kg]" in str(raised.value)
+    with pytest.raises(hyde.Error):
+        hyde.load(tmp_path / "none.hyde")
+
+
+def test_records_are_arrays_or_files(tmp_path: Path) -> None:
+    model = tmp_path / "slide.hyde"
+    model.write_text(
+        """package slide;
+import SI.*;
+import Translational.*;
+model Slide
+  input Force F;
+  Drive motor(F = F);
+  Mass saddle(M = 10 [kg]);
+equation
+  connect(motor.a, saddle.a);
+end Slide;
+experiment trial(record log) of Slide
+  stimulus F = log.F;
+  measured log.s = saddle.s;
+  solve ida(rtol = 1e-9) stop log.end;
+end trial;
+"""
+    )
+    t = np.linspace(0, 1, 101)
+    # s = t^2/2 for 10 N on 10 kg, given in mm.
+    record = {"t [s]": t, "F [N]": np.full_like(t, 10.0), "s [mm]": 500 * t**2}
+    run = hyde.load(model, records={"log": record}).run()
+    assert run.channels["s"].rms < 1e-8
+    pandas = pytest.importorskip("pandas")
+    run = hyde.load(model, records={"log": pandas.DataFrame(record)}).run()
+    assert run.channels["s"].rms < 1e-8
+    frame = run.to_pandas()
+    assert frame.attrs["units"]["saddle.s"] == "m"
+    assert frame["saddle.s"].iloc[-1] == pytest.approx(0.5)
+
+
+def test_other_threads_go_on_during_a_run() -> None:
+    bench = hyde.load(BENCH)
+    longest, last, done = 0.0, time.perf_counter(), threading.Event()
+
+    def beat() -> None:
+        nonlocal longest, last
+        while not done.is_set():
+            now = time.perf_counter()
+            longest, last = max(longest, now - last), now
+            time.sleep(1e-3)
+
+    thread = threading.Thread(target=beat)
+    thread.start()
+    begin = time.perf_counter()
+    bench.run()
+    took = time.perf_counter() - begin
+    done.set()
+    thread.join()
+    assert longest < 0.5 * took
+
+
+def test_a_run_can_be_interrupted() -> None:
+    import _thread
+
+    bench = hyde.load(BENCH)
+    threading.Timer(0.1, _thread.interrupt_main).start()
+    with pytest.raises(KeyboardInterrupt):
+        for _ in range(1000):
+            bench.run(rtol=1e-9)
+
+
+def test_sweeps_give_each_run_or_its_error(first: hyde.Model) -> None:
+    masses = [200.0, 300.0, 400.0]
+    runs = first.sweep([{"table.M": mass} for mass in masses] + [{"table.X": 1.0}])
+    ways = [run.measures["way"] for run in runs[:3] if isinstance(run, hyde.Run)]
+    assert ways == sorted(ways, reverse=True) and len(ways) == 3
+    assert isinstance(runs[3], hyde.Error)
+    [kept] = first.sweep([{"table.M": 300.0}], keep=["table.s"])
+    assert isinstance(kept, hyde.Run) and list(kept) == ["table.s"]
+    assert np.array_equal(kept["table.s"], first.run()["table.s"])
+
+
+def test_bounds_hold_for_values_set_later(first: hyde.Model) -> None:
+    with pytest.raises(hyde.Error, match="table.M"):
+        first.run(set={"table.M": -1.0})
+    with pytest.raises(hyde.Error, match="no variable"):
+        first.run(keep=["table.x"])
+
+
+def test_studies_give_what_the_command_prints(first: hyde.Model) -> None:
+    modes = first.modes()
+    assert modes["ok"]
+    assert len(hyde.look(ROOT / "examples/new_axis/strokes.csv")[0]["channels"]) == 4
+    with pytest.raises(hyde.Error, match="strokes.csv"):
+        hyde.look(ROOT / "examples/bench_axis/strokes.csv")
+    with pytest.raises(hyde.Error):
+        first.fit()
+
+
+def test_a_notebook_shows_measures(first: hyde.Model) -> None:
+    assert "way" in first.run()._repr_html_()
+
+
+def test_tables_have_units(first: hyde.Model) -> None:
+    run = first.run()
+    arrow = pytest.importorskip("pyarrow")
+    table = run.to_arrow()
+    assert table.schema.field("table.s").metadata == {b"unit": b"m"}
+    assert table["table.s"].to_numpy()[-1] == run["table.s"][-1]
+    assert arrow.types.is_float64(table.schema.field("t").type)
+    polars = pytest.importorskip("polars")
+    frame = run.to_polars()
+    assert isinstance(frame, polars.DataFrame)
+    assert frame["table.s [m]"][-1] == run["table.s"][-1]

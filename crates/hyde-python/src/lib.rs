@@ -1,0 +1,29 @@
+//! The module `hyde._hyde`, below the Python package `hyde`: loads a model, compiles it once, and runs it in the process.
+//!
+//! ```text
+//! model     a model with its experiment, compiled       model.rs
+//! outcome   what a run leaves, as arrays                outcome.rs
+//! refusal   errors, with their diagnostics              refusal.rs
+//! ```
+//! Columns become NumPy arrays without a copy. The interpreter's lock is released while a run goes on.
+
+mod model;
+mod outcome;
+mod refusal;
+
+use pyo3::prelude::*;
+
+/// The module as Python sees it.
+#[pymodule]
+fn _hyde(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_class::<model::Model>()?;
+    module.add_class::<outcome::Outcome>()?;
+    module.add("Error", module.py().get_type::<refusal::Error>())?;
+    module.add("ModelError", module.py().get_type::<refusal::ModelError>())?;
+    module.add(
+        "SolverError",
+        module.py().get_type::<refusal::SolverError>(),
+    )?;
+    module.add("VERSION", env!("CARGO_PKG_VERSION"))?;
+    Ok(())
+}

@@ -1,0 +1,262 @@
+//! [`Model`]: a model with its experiment, compiled once.
+
+use crate::outcome::Outcome;
+use crate::refusal;
+use hyde_compiler::Compiled;
+use hyde_diag::Diagnostics;
+use hyde_experiment::{Options, Run, RunError};
+use hyde_program::Prior;
+use hyde_signal::Table;
+use hyde_study::settings::{self, Setting};
+use hyde_study::{Aim, Asked, Project, Records, load, run_failure};
+use pyo3::prelude::*;
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
+
+/// A model that is compiled, with its records.
+#[pyclass(frozen, module = "hyde._hyde")]
+pub(crate) struct Model {
+    project: Mutex<Project>,
+    compiled: Arc<Compiled>,
+    tables: BTreeMap<String, Table>,
+    /// Values set when it was loaded, by name, SI.
+    set: Vec<(String, f64)>,
+    #[pyo3(get)]
+    name: String,
+    #[pyo3(get)]
+    experiment: Option<String>,
+    #[pyo3(get)]
+    warnings: String,
+}
+
+/// Name, value in SI, unit, dimension's SI unit, spread in SI, source, whether it needs another compilation.
+type ParameterRow = (
+    String,
+    Vec<f64>,
+    String,
+    String,
+    Option<f64>,
+    Option<String>,
+    bool,
+);
+
+/// How often a run looks for Ctrl-C.
+const LOOK: Duration = Duration::from_millis(20);
+
+#[pymethods]
+impl Model {
+    /// Loads and compiles a file.
+    #[new]
+    #[pyo3(signature = (file, experiment=None, model=None, set=Vec::new(), records=Vec::new(), data=None))]
+    fn new(
+        py: Python<'_>,
+        file: PathBuf,
+        experiment: Option<String>,
+        model: Option<String>,
+        set: Vec<String>,
+        records: Vec<(String, PathBuf)>,
+        data: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        let settings: Result<Vec<Setting>, String> =
+            set.iter().map(|text| settings::parse(text)).collect();
+        let settings = settings.map_err(|reason| refusal::asked(&reason))?;
+        py.detach(|| {
+            let asked = Asked {
+                experiment,
+                model,
+                settings,
+                records,
+                data,
+                ..Asked::of_file(&file)
+            };
+            loaded(&asked)
+        })
+    }
+
+    /// Every parameter.
+    fn parameters(&self) -> PyResult<Vec<ParameterRow>> {
+        let program = &self.compiled.program;
+        let values = hyde_experiment::parameters(program, &self.tables, &self.set)
+            .map_err(|error| self.failure(&error))?;
+        let rows = program.parameters.iter().map(|parameter| {
+            let own = values[parameter.place..parameter.place + parameter.len].to_vec();
+            let spread = parameter.prior.map(|prior| match prior {
+                Prior::Relative(part) => part * own.first().copied().unwrap_or(0.0).abs(),
+                Prior::Absolute(spread) => spread,
+            });
+            (
+                parameter.name.clone(),
+                own,
+                parameter.unit.text().to_owned(),
+                parameter.dimension.usual_unit(),
+                spread,
+                parameter.source.clone(),
+                parameter.structural,
+            )
+        });
+        Ok(rows.collect())
+    }
+
+    /// Runs with values set: numbers in SI, or texts with a unit.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "Python names them; each is one option of a run"
+    )]
+    #[pyo3(signature = (numbers=Vec::new(), texts=Vec::new(), stop=None, rtol=None, atol=None, gradient=Vec::new(), keep=None))]
+    fn run(
+        &self,
+        py: Python<'_>,
+        numbers: Vec<(String, f64)>,
+        texts: Vec<String>,
+        stop: Option<f64>,
+        rtol: Option<f64>,
+        atol: Option<f64>,
+        gradient: Vec<String>,
+        keep: Option<Vec<String>>,
+    ) -> PyResult<Outcome> {
+        let keep = keep.map(|names| self.outputs(&names)).transpose()?;
+        let mut set = self.set.clone();
+        for (name, value) in numbers {
+            self.may_be_set(&Setting::of(name.clone(), value, None))?;
+            set.push((name, value));
+        }
+        for text in &texts {
+            let setting = settings::parse(text).map_err(|reason| refusal::asked(&reason))?;
+            self.may_be_set(&setting)?;
+            set.push((setting.path, setting.value));
+        }
+        for (name, value) in [("stop", stop), ("rtol", rtol), ("atol", atol)] {
+            if value.is_some_and(|value| value.is_nan() || value <= 0.0) {
+                return Err(refusal::asked(&format!("`{name}` must be positive")));
+            }
+        }
+        let interrupted = Arc::new(AtomicBool::new(false));
+        let options = Options {
+            set,
+            stop_s: stop,
+            rtol,
+            atol,
+            every_s: None,
+            measured_from_s: None,
+            gradient,
+            interrupted: Arc::clone(&interrupted),
+            reached: Arc::default(),
+        };
+        let run = self.watched(py, &options, keep, &interrupted)?;
+        Outcome::of(py, &self.compiled.program, run)
+    }
+}
+
+impl Model {
+    /// The numbers of columns, ascending.
+    fn outputs(&self, names: &[String]) -> PyResult<Vec<usize>> {
+        let number = |name: &String| {
+            let found = self.compiled.program.output(name);
+            found.ok_or_else(|| {
+                refusal::asked(&format!("`keep`: the model has no variable `{name}`"))
+            })
+        };
+        let mut found = names.iter().map(number).collect::<PyResult<Vec<usize>>>()?;
+        found.sort_unstable();
+        found.dedup();
+        Ok(found)
+    }
+
+    /// Runs on another thread, while this one looks for Ctrl-C.
+    fn watched(
+        &self,
+        py: Python<'_>,
+        options: &Options,
+        keep: Option<Vec<usize>>,
+        interrupted: &AtomicBool,
+    ) -> PyResult<Run> {
+        let (done, ended) = std::sync::mpsc::channel();
+        let outcome = std::thread::scope(|scope| {
+            scope.spawn(move || {
+                let run =
+                    hyde_experiment::run_again(&self.compiled.program, &self.tables, options, keep);
+                // Whoever waits is there until this arrives.
+                let _ = done.send(run);
+            });
+            py.detach(move || {
+                loop {
+                    match ended.recv_timeout(LOOK) {
+                        Ok(run) => return Ok(run),
+                        Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {
+                            if let Err(signal) = Python::attach(|py| py.check_signals()) {
+                                interrupted.store(true, Ordering::Relaxed);
+                                return Err(signal);
+                            }
+                        }
+                        Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => {
+                            return Err(refusal::asked("the run ended without a result"));
+                        }
+                    }
+                }
+            })
+        });
+        outcome?.map_err(|error| self.failure(&error))
+    }
+
+    /// Refuses what a compiled model cannot take.
+    fn may_be_set(&self, setting: &Setting) -> PyResult<()> {
+        let Some((parameter, _)) = self.compiled.program.parameter(&setting.path) else {
+            return Ok(());
+        };
+        if parameter.structural {
+            let reason = format!(
+                "`{0}` is structural: the equations are compiled with its value; set it when the model is loaded, \
+                 `hyde.load(FILE, set={{\"{0}\": VALUE}})`",
+                setting.path
+            );
+            return Err(refusal::asked(&reason));
+        }
+        match setting.unit {
+            Some(_) => {
+                settings::check(setting, parameter).map_err(|reason| refusal::asked(&reason))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn failure(&self, error: &RunError) -> PyErr {
+        let Ok(project) = self.project.lock() else {
+            return refusal::asked("another thread ended while it used the model");
+        };
+        let name = project.experiment.as_deref();
+        let mut experiments = project.file.experiments();
+        let experiment = experiments.find(|known| name == Some(known.name.text.as_str()));
+        let (diagnostic, fault) =
+            run_failure::diagnostic(error, &self.compiled.program, experiment);
+        let mut diagnostics = Diagnostics::default();
+        diagnostics.push(diagnostic);
+        refusal::of(&diagnostics, &project.sources, fault)
+    }
+}
+
+fn loaded(asked: &Asked) -> PyResult<Model> {
+    let mut project = load(asked, Records::Needed).map_err(|reason| refusal::asked(&reason))?;
+    let aim = if project.experiment.is_some() {
+        Aim::Run
+    } else {
+        Aim::Linearize
+    };
+    let compiled = match project.compile(aim) {
+        Ok(compiled) => compiled,
+        Err(fault) => return Err(refusal::refused(&project.refused(fault))),
+    };
+    let tables = hyde_study::tables(&project.records);
+    let warnings = hyde_study::render::render(&project.diagnostics, &project.sources, false);
+    Ok(Model {
+        set: project.set(),
+        name: project.model.clone(),
+        experiment: project.experiment.clone(),
+        warnings: warnings.trim_end().to_owned(),
+        tables,
+        compiled: Arc::new(compiled),
+        project: Mutex::new(project),
+    })
+}

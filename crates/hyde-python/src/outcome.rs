@@ -1,0 +1,107 @@
+//! [`Outcome`]: what a run leaves, as NumPy arrays.
+
+use hyde_experiment::Run;
+use hyde_program::Program;
+use numpy::{PyArray1, PyArrayMethods as _};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// What a run leaves. All values are SI.
+#[pyclass(frozen, module = "hyde._hyde")]
+pub(crate) struct Outcome {
+    /// The times of the rows; an instant with an event has two.
+    #[pyo3(get)]
+    time: Py<PyArray1<f64>>,
+    /// Columns by name.
+    #[pyo3(get)]
+    columns: Py<PyDict>,
+    /// The SI unit of each column.
+    #[pyo3(get)]
+    units: Py<PyDict>,
+    /// Derivatives: by the name of the parameter, then of the column.
+    #[pyo3(get)]
+    gradient: Py<PyDict>,
+    /// Measures and expectations: name, value, whether it is an expectation, whether it holds.
+    #[pyo3(get)]
+    measures: Vec<(String, f64, bool, bool)>,
+    /// Time in s, and cause.
+    #[pyo3(get)]
+    events: Vec<(f64, String)>,
+    /// Measured channels: name, SI unit, root mean square of the difference, noise.
+    #[pyo3(get)]
+    channels: Vec<(String, String, f64, Option<f64>)>,
+    /// Times, what was measured, what the model has: for each channel.
+    #[pyo3(get)]
+    compared: Py<PyDict>,
+    /// Steps, events, ticks.
+    #[pyo3(get)]
+    counts: (u64, u64, u64),
+}
+
+impl Outcome {
+    /// Takes the columns of a run: each becomes the memory of its array.
+    pub(crate) fn of(py: Python<'_>, program: &Program, run: Run) -> PyResult<Self> {
+        let results = run.results;
+        let (columns, units) = (PyDict::new(py), PyDict::new(py));
+        for (&number, values) in results.outputs.iter().zip(results.columns) {
+            let output = &program.outputs[number];
+            if !output.auxiliary {
+                columns.set_item(&output.name, array(py, values)?)?;
+                units.set_item(&output.name, output.dimension.usual_unit())?;
+            }
+        }
+        let gradient = PyDict::new(py);
+        if let Some(found) = results.gradient {
+            for (place, of_parameter) in found.parameters.iter().zip(found.columns) {
+                let Some((_, name)) = program.parameter_at(*place) else {
+                    continue;
+                };
+                let own = PyDict::new(py);
+                for (&number, values) in results.outputs.iter().zip(of_parameter) {
+                    let output = &program.outputs[number];
+                    if !output.auxiliary {
+                        own.set_item(&output.name, array(py, values)?)?;
+                    }
+                }
+                gradient.set_item(name, own)?;
+            }
+        }
+        let measures = run.measures.into_iter();
+        let measures = measures.map(|own| (own.name, own.value, own.expectation, own.holds));
+        let events = results
+            .events
+            .into_iter()
+            .map(|event| (event.t, event.cause));
+        let compared = PyDict::new(py);
+        let mut channels = Vec::new();
+        for channel in run.channels {
+            let unit = channel.unit.unit().dimension.usual_unit();
+            let arrays = (
+                array(py, channel.time)?,
+                array(py, channel.measured)?,
+                array(py, channel.simulated)?,
+            );
+            compared.set_item(&channel.name, arrays)?;
+            channels.push((channel.name, unit, channel.rms, channel.noise));
+        }
+        let statistics = results.statistics;
+        Ok(Self {
+            time: array(py, results.time)?.unbind(),
+            columns: columns.unbind(),
+            units: units.unbind(),
+            gradient: gradient.unbind(),
+            measures: measures.collect(),
+            events: events.collect(),
+            channels,
+            compared: compared.unbind(),
+            counts: (statistics.steps, statistics.events, statistics.ticks),
+        })
+    }
+}
+
+/// A vector as an array that nobody writes to: a column may be looked at by several.
+fn array(py: Python<'_>, values: Vec<f64>) -> PyResult<Bound<'_, PyArray1<f64>>> {
+    let array = PyArray1::from_vec(py, values);
+    array.readwrite().make_nonwriteable();
+    Ok(array)
+}
