@@ -14,6 +14,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("ida", &[]),
     ("library", &[]),
     ("syntax", &["diag"]),
+    ("format", &["diag", "syntax"]),
     ("ir", &["diag", "units"]),
     ("signal", &["units"]),
     ("program", &["diag", "units"]),
@@ -127,6 +128,7 @@ fn foreign_solver_and_code_generator_stay_behind_their_crate() {
         ("pyo3", "hyde-python"),
         ("numpy", "hyde-python"),
         ("clap", "hyde-cli"),
+        ("pretty", "hyde-format"),
     ];
     for package in packages() {
         let name = text(&package["name"]);

@@ -1,9 +1,11 @@
 //! The command line.
 
 mod batch;
+mod editor;
 mod study;
 
 pub(crate) use batch::{Engine, SweepArgs, TableFormat};
+pub(crate) use editor::{ExplainArgs, FmtArgs};
 pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -60,6 +62,8 @@ pub(crate) enum Command {
     Look(LookArgs),
     /// Write a first model of an axis, from a trace or from guesses; every line with a guess ends with `// confirm`
     New(NewArgs),
+    /// Format model files: indentation, spaces, line breaks; comments and meaning stay as they are
+    Fmt(FmtArgs),
     /// Write HTML documentation of a package, of a file, or of the library
     Doc(DocArgs),
     /// Explain a diagnostic code
@@ -477,12 +481,6 @@ pub(crate) struct DocArgs {
     /// Write the pages to this folder
     #[arg(long, value_name = "DIR", default_value = "doc")]
     pub(crate) out: PathBuf,
-}
-
-#[derive(Debug, Args)]
-pub(crate) struct ExplainArgs {
-    /// The code, such as `E0503` [default: list all codes]
-    pub(crate) code: Option<String>,
 }
 
 #[derive(Debug, Args)]

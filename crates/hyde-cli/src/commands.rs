@@ -11,6 +11,7 @@ mod effects_check;
 pub(crate) mod emit;
 pub(crate) mod explain;
 pub(crate) mod fit;
+pub(crate) mod fmt;
 pub(crate) mod look;
 pub(crate) mod man;
 pub(crate) mod modes;

@@ -80,6 +80,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Trend(args) => commands::trend::trend(args),
         Command::Look(args) => commands::look::look(args),
         Command::New(args) => commands::new::new(args),
+        Command::Fmt(args) => commands::fmt::fmt(args),
         Command::Doc(args) => commands::doc::doc(args),
         Command::Explain(args) => commands::explain::explain(args),
         Command::Completions(args) => commands::completions::completions(args),

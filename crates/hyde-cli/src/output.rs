@@ -17,6 +17,11 @@ pub(crate) fn print_output(text: &str) {
     note(written);
 }
 
+/// A text on standard output as it is: it is the input of another program.
+pub(crate) fn write_output(text: &str) {
+    note(std::io::stdout().lock().write_all(text.as_bytes()));
+}
+
 /// A line on standard error.
 pub(crate) fn print_error(text: &str) {
     let text = visible(text.trim_end());

@@ -1,7 +1,8 @@
 //! Text to [`ast::File`]: the first stage. Names are still text here; every node knows its [`hyde_diag::Span`].
 //!
 //! [`parse`] reads a file element by element, so that one error does not hide the next, and refuses what is nested
-//! too deeply before the parser's stack would. [`format()`] prints a tree as source text again.
+//! too deeply before the parser's stack would. [`format()`] prints a tree as source text again; [`written()`] says how a text
+//! is written, comments and digits included, for a formatter or an editor.
 
 pub mod ast;
 
@@ -12,10 +13,13 @@ mod nesting;
 mod parse;
 mod recover;
 mod words;
+mod written;
 
 pub use format::{
     expression as format_expression, file as format, member, reference as format_reference,
 };
+pub use grammar::Rule;
 pub use habits::instead_of;
 pub use parse::{parse, parse_record};
 pub use words::is_reserved;
+pub use written::{Node, Part, Written, written};

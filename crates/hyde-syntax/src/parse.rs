@@ -16,6 +16,7 @@ mod item;
 
 use crate::ast;
 use crate::grammar::{HydeParser, Rule};
+use crate::written::{Node, Part, Written};
 use crate::{habits, nesting, recover, words};
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use pest::Parser as _;
@@ -30,15 +31,27 @@ pub fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> 
         diagnostics.push(diagnostic);
         return ast::File::default();
     }
-    let too_deep = nesting::too_deep(text);
-    Parser {
-        text,
-        file,
-        at: 0,
-        too_deep,
-        diagnostics,
+    Parser::new(text, file, diagnostics).file()
+}
+
+/// Parses one source file and records each construct that is accepted.
+pub(crate) fn written(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> Written {
+    let text = &sources.get(file).text;
+    if let Some(diagnostic) = without_end(text, file) {
+        diagnostics.push(diagnostic);
+        let whole = Part {
+            start: 0,
+            end: text.len(),
+            broken: true,
+            pieces: Vec::new(),
+        };
+        return Written { parts: vec![whole] };
     }
-    .file()
+    let mut record = Record::default();
+    let mut parser = Parser::new(text, file, diagnostics);
+    parser.record = Some(&mut record);
+    parser.file();
+    record.written
 }
 
 /// Parses a text that declares a record and nothing else: `record log(time = "t" in [ms])`.
@@ -48,13 +61,7 @@ pub fn parse_record(
     diagnostics: &mut Diagnostics,
 ) -> Option<ast::RecordItem> {
     let text = &sources.get(file).text;
-    let mut parser = Parser {
-        text,
-        file,
-        at: 0,
-        too_deep: nesting::too_deep(text),
-        diagnostics,
-    };
+    let mut parser = Parser::new(text, file, diagnostics);
     if !parser.too_deep.is_empty() {
         parser.refuse_too_deep();
         return None;
@@ -98,9 +105,44 @@ struct Parser<'a> {
     at: usize,
     too_deep: Vec<usize>,
     diagnostics: &'a mut Diagnostics,
+    /// What is accepted, where that is asked for.
+    record: Option<&'a mut Record>,
+}
+
+/// What the parser accepted so far.
+#[derive(Default)]
+struct Record {
+    written: Written,
+    /// Of the part that is being parsed.
+    pieces: Vec<Node>,
 }
 
 impl<'a> Parser<'a> {
+    fn new(text: &'a str, file: FileId, diagnostics: &'a mut Diagnostics) -> Self {
+        Self {
+            text,
+            file,
+            at: 0,
+            too_deep: nesting::too_deep(text),
+            diagnostics,
+            record: None,
+        }
+    }
+
+    /// Records that a part of the file reaches from `start` to here.
+    fn end_part(&mut self, start: usize, broken: bool) {
+        let end = self.at;
+        if let Some(record) = &mut self.record {
+            let pieces = std::mem::take(&mut record.pieces);
+            record.written.parts.push(Part {
+                start,
+                end,
+                broken,
+                pieces,
+            });
+        }
+    }
+
     /// Moves past white space and comments; whether something is left.
     fn more(&mut self) -> bool {
         self.at = recover::skip_blank(self.text, self.at);
@@ -143,6 +185,12 @@ impl<'a> Parser<'a> {
             .map(|pair| pair.as_span().end())
             .max()
             .unwrap_or(0);
+        if let Some(record) = &mut self.record {
+            let base = self.at;
+            record
+                .pieces
+                .extend(pairs.clone().map(|pair| Node::of(pair, base)));
+        }
         self.at += len;
         Ok(pairs)
     }

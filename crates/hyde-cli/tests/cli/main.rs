@@ -11,6 +11,7 @@ mod command;
 mod diagnose;
 mod effects;
 mod files;
+mod fmt;
 mod long_runs;
 mod parquet;
 mod plot;

@@ -22,44 +22,52 @@ impl Parser<'_> {
         let mut file = File::default();
         while self.more() {
             let start = self.at;
-            if self.refuse_too_deep() {
-                continue;
-            }
-            if self.looking_at("end") {
-                self.end_of_nothing();
-            } else if self.looking_at("package") {
-                self.refuse_second(&file);
-                if let Some(pairs) = self.expect(Rule::package_clause) {
-                    let mut inner = significant(pairs).flat_map(parts);
-                    let mut build = self.build(start);
-                    if let Some(path) = inner.next()
-                        && file.package.is_none()
-                    {
-                        file.package =
-                            Some((build.reference(path), inner.next().map(Builder::text)));
-                    }
-                }
-            } else if self.looking_at("import") {
-                if let Some(pairs) = self.expect(Rule::import_clause) {
-                    let mut inner = significant(pairs).flat_map(parts);
-                    let mut build = self.build(start);
-                    if let Some(path) = inner.next() {
-                        file.imports.push(Import {
-                            path: build.reference(path),
-                            everything: inner.next().is_some(),
-                        });
-                    }
-                }
-            } else if let Some(item) = self.item() {
-                file.items.push(item);
-                continue;
-            }
-            if self.at == start {
-                let behind = habits::behind_prefix(self.text, start);
-                self.at = behind.unwrap_or_else(|| recover::skip_item(self.text, start));
-            }
+            let errors = self.diagnostics.iter().count();
+            self.part(&mut file);
+            let broken = self.diagnostics.iter().count() > errors;
+            self.end_part(start, broken);
         }
         file
+    }
+
+    /// The package clause, an import or an item.
+    fn part(&mut self, file: &mut File) {
+        let start = self.at;
+        if self.refuse_too_deep() {
+            return;
+        }
+        if self.looking_at("end") {
+            self.end_of_nothing();
+        } else if self.looking_at("package") {
+            self.refuse_second(file);
+            if let Some(pairs) = self.expect(Rule::package_clause) {
+                let mut inner = significant(pairs).flat_map(parts);
+                let mut build = self.build(start);
+                if let Some(path) = inner.next()
+                    && file.package.is_none()
+                {
+                    file.package = Some((build.reference(path), inner.next().map(Builder::text)));
+                }
+            }
+        } else if self.looking_at("import") {
+            if let Some(pairs) = self.expect(Rule::import_clause) {
+                let mut inner = significant(pairs).flat_map(parts);
+                let mut build = self.build(start);
+                if let Some(path) = inner.next() {
+                    file.imports.push(Import {
+                        path: build.reference(path),
+                        everything: inner.next().is_some(),
+                    });
+                }
+            }
+        } else if let Some(item) = self.item() {
+            file.items.push(item);
+            return;
+        }
+        if self.at == start {
+            let behind = habits::behind_prefix(self.text, start);
+            self.at = behind.unwrap_or_else(|| recover::skip_item(self.text, start));
+        }
     }
 
     /// A file is one package.
