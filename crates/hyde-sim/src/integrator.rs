@@ -94,10 +94,15 @@ impl<'a> Integrator<'a> {
             Err(error) => return Err(self.failure(&error)),
         }
         self.apply_pins();
+        self.note_largest();
+        Ok(before)
+    }
+
+    /// Takes note of the largest values.
+    pub(crate) fn note_largest(&mut self) {
         for (largest, value) in self.largest.iter_mut().zip(&self.y) {
             *largest = largest.max(value.abs());
         }
-        Ok(before)
     }
 
     /// Takes the last step once more, to end at `end`; returns false where the method cannot.

@@ -11,6 +11,7 @@
 //!              consistent values again, then on                                     consistent.rs
 //!              derivatives by parameters carried along, if they are asked for      sensitivity.rs
 //!              what is delayed kept as polynomials, jumps with their arrivals       delays.rs, history.rs
+//! or           the same piece by piece, for a caller with a clock of its own        session.rs
 //! ```
 //! The language is unknown here: a program could as well be written by hand, and the tests of this crate do that. What
 //! fails is a [`Failure`] with the time and the origin of the equation.
@@ -41,6 +42,7 @@ mod root_rates;
 mod runge_kutta;
 mod selection;
 mod sensitivity;
+mod session;
 mod setup;
 mod simulation;
 mod singular;
@@ -61,6 +63,7 @@ pub use results::{
     Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Reduced, Results,
     Statistics, Yielded,
 };
+pub use session::{Advance, Session};
 pub use setup::Setup;
 
 use hyde_program::Program;

@@ -67,7 +67,8 @@ impl<'a> Setup<'a> {
     }
 
     /// The mean time between rows in s; infinite if there are none between.
-    pub(crate) fn row_spacing(&self) -> f64 {
+    #[must_use]
+    pub fn row_spacing(&self) -> f64 {
         match self.rows_s.as_slice() {
             [first, .., last] => (last - first) / (self.rows_s.len() - 1) as f64,
             _ => f64::INFINITY,

@@ -4,9 +4,15 @@ mod instant;
 mod point;
 mod reduce;
 mod rows;
+mod session;
 mod steady;
+mod step;
+
+pub(crate) use self::session::Advanced;
 
 use self::reduce::Reduced;
+use self::session::Pieces;
+use self::step::Finished;
 use crate::clocks::Schedule;
 use crate::consistent::Consistent;
 use crate::delays;
@@ -25,9 +31,7 @@ use crate::setup::{Setup, same_instant};
 use crate::solver::method;
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
-use crate::time_spent::count_modes;
 use hyde_program::Program;
-use std::sync::atomic::Ordering;
 
 /// Relations that are not settled after so many solutions of the initial equations contradict them.
 const MAX_ROUNDS_AT_START: usize = 20;
@@ -56,6 +60,8 @@ pub(crate) struct Simulation<'a> {
     sensitivities: Option<Sensitivities>,
     /// Events change relations alone, no modes: they are those of an operating point.
     modes_are_given: bool,
+    /// Where it is, if its caller takes it in pieces.
+    pieces: Pieces,
 }
 
 impl<'a> Simulation<'a> {
@@ -130,6 +136,7 @@ impl<'a> Simulation<'a> {
             reduced,
             sensitivities,
             modes_are_given: false,
+            pieces: Pieces::default(),
         })
     }
 
@@ -158,29 +165,11 @@ impl<'a> Simulation<'a> {
     pub(crate) fn advance_to(&mut self, stop: f64) -> Result<(), Box<Failure>> {
         self.restart()?;
         while self.integrator.t < stop && !same_instant(self.integrator.t, stop) {
-            let t = self.integrator.t;
-            let jump = self.integrator.state().inputs.next_jump(t);
-            let arrival = self.integrator.state().delays.next();
-            let target = self.schedule.next(t).min(jump).min(arrival).min(stop);
+            let target = self.next_target(stop);
             // The solver is past a located crossing: it starts anew from there whatever happens.
-            let crossed = self.advance(target)?;
-            let behind = crossed.is_some();
-            let t = self.integrator.t;
-            let at_target = t >= target || same_instant(t, target);
-            let scheduled = if at_target {
-                self.schedule.relations_at(t)
-            } else {
-                Vec::new()
-            };
-            let arrives = self.integrator.state().delays.due(t);
-            let due = at_target && (self.schedule.due(t) || same_instant(t, jump) || arrives);
-            if behind || !scheduled.is_empty() || due {
-                let cause = match crossed {
-                    Some(cause) => cause,
-                    None if scheduled.is_empty() => Cause::Time,
-                    None => Cause::Scheduled(scheduled.clone()),
-                };
-                self.instant(&scheduled, behind || same_instant(t, jump), &cause)?;
+            let crossed = self.advance(target.t)?;
+            if let Some(work) = self.work_at(&target, crossed) {
+                self.instant(&work.scheduled, work.restart, &work.cause)?;
             }
         }
         Ok(())
@@ -260,65 +249,14 @@ impl<'a> Simulation<'a> {
     fn advance(&mut self, target: f64) -> Result<Option<Cause>, Box<Failure>> {
         let mut watched = guards::active(self.integrator.state());
         loop {
-            if self.setup.interrupted.load(Ordering::Relaxed) {
-                return Err(Failure::new(FailureKind::Interrupted, self.integrator.t));
-            }
-            let reached = &self.setup.reached;
-            reached.set(self.integrator.t, self.setup.stop_s);
-            let from = self.integrator.step(target)?;
-            if let Some(kind) = self.hurry.no_way(self.integrator.t, self.setup) {
-                return Err(self.no_way(kind, target));
-            }
-            let crossing = self.first_crossing(&watched, from)?;
-            let end = crossing
-                .as_ref()
-                .map_or(self.integrator.t, |crossing| crossing.t);
-            self.measure_energy(from, end);
-            self.reduce_stretch(from, end);
-            if let Some(sensitivities) = &mut self.sensitivities {
-                sensitivities.note_step(&mut self.integrator, from);
-            }
-            self.rows_until(end);
-            if let Some(sensitivities) = &mut self.sensitivities {
-                sensitivities.follow(&mut self.integrator, end);
-            }
-            count_modes(&mut self.integrator, &mut self.results, end - from);
-            delays::record(&mut self.integrator, from, end);
-            if let Some(crossing) = crossing {
-                let n = self.program.n_unknowns;
-                let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-                self.integrator.interpolate(crossing.t, &mut y, &mut yp);
-                // The interpolant of forces and derivatives is not exact; guards decide on exact ones.
-                self.consistent.solve(
-                    self.integrator.state_mut(),
-                    crossing.t,
-                    &mut y,
-                    &mut yp,
-                    false,
-                )?;
-                self.integrator.t = crossing.t;
-                self.integrator.y = y;
-                self.integrator.yp = yp;
-                self.advance_sensitivities();
-                let relation = crossing.relations[0];
-                self.crossed = crossing.relations;
-                return Ok(Some(Cause::Crossing { relation, from }));
-            }
-            if self.integrator.follows() {
-                watched = guards::active(self.integrator.state());
-            }
-            if let Some(sensitivities) = &mut self.sensitivities {
-                sensitivities.remember_heights(&mut self.integrator);
-            }
-            let there = self.integrator.t >= target || same_instant(self.integrator.t, target);
-            if there || !self.program.selections.is_empty() {
-                self.advance_sensitivities();
-            }
-            if self.chooses_states_anew()? {
-                return Ok(Some(Cause::Time));
-            }
-            if there {
-                return Ok(None);
+            let step = self.take_step(&watched, target)?;
+            match self.finish_step(step, target)? {
+                Finished::Event(cause) => return Ok(Some(cause)),
+                Finished::There => return Ok(None),
+                Finished::OnTheWay { follows: true } => {
+                    watched = guards::active(self.integrator.state());
+                }
+                Finished::OnTheWay { follows: false } => {}
             }
         }
     }

@@ -151,7 +151,7 @@ impl Simulation<'_> {
     }
 
     /// Consistent values with what the equations read now: guards are to see what a step of an input does to them.
-    fn be_consistent(&mut self) -> Result<(), Box<Failure>> {
+    pub(super) fn be_consistent(&mut self) -> Result<(), Box<Failure>> {
         let (mut y, mut yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
         let t = self.integrator.t;
         self.consistent

@@ -1,0 +1,256 @@
+//! A run in pieces: to a time that its caller asks for, which the solver may have passed, and on from values that the caller
+//! sets or integrates itself.
+
+use super::Simulation;
+use super::step::{Finished, Step, Target, Work};
+use crate::delays;
+use crate::failure::Failure;
+use crate::guards::{self, is_active};
+use crate::results::Event;
+use crate::sensitivity::Cause;
+use crate::session::Advance;
+use crate::setup::same_instant;
+use hyde_program::Function;
+
+/// Values at the caller's time.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Place {
+    pub(crate) t: f64,
+    pub(crate) y: Vec<f64>,
+    pub(crate) yp: Vec<f64>,
+}
+
+/// Where a run in pieces is.
+#[derive(Default)]
+pub(super) struct Pieces {
+    place: Place,
+    /// The step that the caller's time is in.
+    ahead: Option<(Step, Target)>,
+    /// What waits at the caller's time.
+    waits: Option<Work>,
+}
+
+/// How a piece ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Advanced {
+    /// At the time asked for, all that happens there included.
+    There,
+    /// In front of an event.
+    Waits,
+}
+
+impl Simulation<'_> {
+    /// The start, and the solver ready for its first step.
+    pub(crate) fn begin(&mut self) -> Result<(), Box<Failure>> {
+        self.settle_start()?;
+        self.restart()?;
+        self.stand();
+        Ok(())
+    }
+
+    /// Goes on to a time. The steps are those of a whole run where they may pass it.
+    pub(crate) fn advance_by_caller(
+        &mut self,
+        to: f64,
+        how: Advance,
+    ) -> Result<Advanced, Box<Failure>> {
+        loop {
+            if let Some((step, target)) = self.pieces.ahead.take() {
+                if to < step.end && !same_instant(to, step.end) {
+                    self.pieces.ahead = Some((step, target));
+                    self.look_back(to);
+                    return Ok(Advanced::There);
+                }
+                let crossed = match self.finish_step(step, target.t)? {
+                    Finished::Event(cause) => Some(cause),
+                    Finished::There | Finished::OnTheWay { .. } => None,
+                };
+                self.pieces.waits = self.work_at(&target, crossed);
+                self.stand();
+            }
+            if let Some(work) = &self.pieces.waits {
+                if how.stop_at_events && work.cause != Cause::Time {
+                    return Ok(Advanced::Waits);
+                }
+                self.happen()?;
+            }
+            let t = self.integrator.t;
+            if t >= to || same_instant(t, to) {
+                return Ok(Advanced::There);
+            }
+            let stop = match how.may_pass {
+                true => self.setup.stop_s.max(to),
+                false => to,
+            };
+            let target = self.next_target(stop);
+            let watched = guards::active(self.integrator.state());
+            let step = self.take_step(&watched, target.t)?;
+            self.pieces.ahead = Some((step, target));
+        }
+    }
+
+    /// Whether something waits at the caller's time.
+    pub(crate) fn waits_for_caller(&self) -> bool {
+        self.pieces.waits.is_some()
+    }
+
+    /// Works on what waits.
+    pub(crate) fn happen(&mut self) -> Result<(), Box<Failure>> {
+        if let Some(work) = self.pieces.waits.take() {
+            self.instant(&work.scheduled, work.restart, &work.cause)?;
+            self.stand();
+        }
+        Ok(())
+    }
+
+    /// Values at the caller's time.
+    pub(crate) fn place(&self) -> &Place {
+        &self.pieces.place
+    }
+
+    /// The outputs there.
+    pub(crate) fn outputs_of_caller(&mut self) -> &[f64] {
+        let place = std::mem::take(&mut self.pieces.place);
+        self.values_at(place.t, &place.y, &place.yp);
+        self.pieces.place = place;
+        &self.outputs
+    }
+
+    /// The parameter vector.
+    pub(crate) fn parameters(&self) -> &[f64] {
+        &self.integrator.state().p
+    }
+
+    /// Sets the parameter vector at the caller's time, as an instant of its own.
+    pub(crate) fn enter_parameters(&mut self, parameters: Vec<f64>) -> Result<(), Box<Failure>> {
+        let t = self.pieces.place.t;
+        if let Some((step, target)) = self.pieces.ahead.take() {
+            self.finish_step(step.until(t), target.t)?;
+            self.stand_at(t)?;
+        }
+        let left = delays::limits(&mut self.integrator, Some(&mut self.consistent));
+        self.integrator.state_mut().p = parameters;
+        self.be_consistent()?;
+        self.iterate(&[], false)?;
+        delays::mark(&mut self.integrator, &mut self.consistent, left);
+        self.restart()?;
+        self.stand();
+        Ok(())
+    }
+
+    /// The same within a step of the caller's.
+    pub(crate) fn replace_parameters(&mut self, parameters: Vec<f64>) {
+        self.integrator.state_mut().p = parameters;
+    }
+
+    /// The events that happened since they were last taken.
+    pub(crate) fn take_events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.results.events)
+    }
+
+    /// The caller takes values as they are: rows are not kept.
+    pub(crate) fn forget_rows(&mut self) {
+        self.results.time.clear();
+        self.results.columns.iter_mut().for_each(Vec::clear);
+    }
+
+    /// The next instant that is known beforehand.
+    pub(crate) fn next_instant(&self) -> f64 {
+        self.next_target(f64::INFINITY).t
+    }
+
+    /// Takes states at a time from the caller; the other unknowns follow, from where they were last.
+    pub(crate) fn place_at(
+        &mut self,
+        t: f64,
+        positions: &[usize],
+        states: &[f64],
+    ) -> Result<(), Box<Failure>> {
+        let Place { mut y, mut yp, .. } = self.pieces.place.clone();
+        for (&position, &value) in positions.iter().zip(states) {
+            y[position] = value;
+        }
+        let state = self.integrator.state_mut();
+        self.consistent.solve(state, t, &mut y, &mut yp, false)?;
+        self.pieces.place = Place { t, y, yp };
+        Ok(())
+    }
+
+    /// The root functions there; none of a relation that does not matter, or has no finite value.
+    pub(crate) fn roots_of_caller(&mut self) -> Vec<Option<f64>> {
+        let program = self.program;
+        let mut roots = vec![0.0; program.relations.len()];
+        let place = &self.pieces.place;
+        let state = self.integrator.state_mut();
+        state.evaluate(Function::Roots, place.t, &place.y, &place.yp, &mut roots);
+        let state = self.integrator.state();
+        let known = roots.into_iter().enumerate();
+        known
+            .map(|(number, root)| {
+                let matters = !program.relations[number].scheduled && is_active(state, number);
+                (matters && root.is_finite()).then_some(root)
+            })
+            .collect()
+    }
+
+    /// Takes the caller's place as that of the run. Whether a relation has changed its truth on the way.
+    pub(crate) fn accept(&mut self) -> bool {
+        let Place { t, y, yp } = self.pieces.place.clone();
+        (self.integrator.t, self.integrator.y, self.integrator.yp) = (t, y, yp);
+        self.integrator.note_largest();
+        !self.passed().is_empty()
+    }
+
+    /// Events at the caller's place.
+    pub(crate) fn happen_here(&mut self) -> Result<(), Box<Failure>> {
+        let target = self.next_target(f64::INFINITY);
+        self.accept();
+        self.crossed = self.passed();
+        let t = self.integrator.t;
+        let cause = self
+            .crossed
+            .first()
+            .map(|&relation| Cause::Crossing { relation, from: t });
+        if t >= target.t || same_instant(t, target.t) {
+            // The caller may be somewhat behind: what happens does so at its own time.
+            self.integrator.t = target.t;
+        }
+        if let Some(work) = self.work_at(&target, cause) {
+            self.instant(&work.scheduled, true, &work.cause)?;
+        } else {
+            self.instant(&[], true, &Cause::Time)?;
+        }
+        self.stand();
+        self.pieces.place.t = t;
+        Ok(())
+    }
+
+    /// The relations whose root function has another sign than their truth.
+    fn passed(&mut self) -> Vec<usize> {
+        let roots = self.roots_of_caller();
+        let z = &self.integrator.state().z;
+        let passed = |(number, root): (usize, &Option<f64>)| {
+            let root = (*root)?;
+            (root != 0.0 && (root > 0.0) != (z[number] != 0.0)).then_some(number)
+        };
+        roots.iter().enumerate().filter_map(passed).collect()
+    }
+
+    /// The caller is where the run is.
+    fn stand(&mut self) {
+        self.pieces.place = Place {
+            t: self.integrator.t,
+            y: self.integrator.y.clone(),
+            yp: self.integrator.yp.clone(),
+        };
+    }
+
+    /// The caller is at a time within the last step.
+    fn look_back(&mut self, t: f64) {
+        let Place { mut y, mut yp, .. } = std::mem::take(&mut self.pieces.place);
+        self.integrator.solution(t, &mut y, &mut yp);
+        let state = self.integrator.state_mut();
+        self.consistent.refine(state, t, &mut y, &mut yp);
+        self.pieces.place = Place { t, y, yp };
+    }
+}
