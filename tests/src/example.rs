@@ -1,6 +1,8 @@
 //! [`Example`]: a `.hyde` file of this project with one of its experiments, its records, and what is set beside it.
 
-use hyde_compiler::{Additions, Backend, Candidate, Compiled, File, Form, Header, Request, Stage};
+use hyde_compiler::{
+    Additions, Backend, Candidate, Compiled, File, Form, FreeInputs, Header, Request, Stage,
+};
 use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources};
 use hyde_experiment::{Options, Run, RunError};
 use hyde_signal::Table;
@@ -336,7 +338,10 @@ impl Loaded {
             experiment: example.experiment.as_deref(),
             settings: &example.set,
             records: headers,
-            free_inputs: example.free_inputs,
+            free_inputs: match example.free_inputs {
+                true => FreeInputs::All,
+                false => FreeInputs::None,
+            },
             ledger: example.ledger,
             form: example.form,
             backend,

@@ -14,6 +14,7 @@ mod energy;
 mod event_suite;
 mod events;
 mod fixtures;
+mod fmu;
 mod gradient;
 mod ivp;
 mod ledger;
@@ -84,6 +85,9 @@ pub const FIGURES: &[Figure] = &[
     batches::SLURM,
     batches::MEMORY,
     gradient::FIGURE,
+    fmu::DEVIATION,
+    fmu::EVENTS,
+    fmu::EXPORT,
     selftest::FALSE_ALARMS,
     selftest::TOP1,
     selftest::FALSE_ALARMS_RACK,

@@ -8,7 +8,7 @@
     reason = "tests open files, and unwrap what must be there"
 )]
 
-use hyde_compiler::{Backend, Form, Packages, Request};
+use hyde_compiler::{Backend, Form, FreeInputs, Packages, Request};
 use hyde_diag::{Diagnostics, Severity, Sources};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -116,7 +116,7 @@ fn compiled(text: &str) -> Option<String> {
             experiment: experiment.as_deref(),
             settings: &settings,
             records: &records,
-            free_inputs: true,
+            free_inputs: FreeInputs::All,
             ledger: true,
             form: Form::Run,
             backend: Backend::Interpreter,

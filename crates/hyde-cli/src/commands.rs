@@ -10,6 +10,7 @@ pub(crate) mod effects;
 mod effects_check;
 pub(crate) mod emit;
 pub(crate) mod explain;
+pub(crate) mod export;
 pub(crate) mod fit;
 pub(crate) mod fmt;
 pub(crate) mod look;

@@ -35,6 +35,12 @@ pub(crate) fn below(folder: &Path, ending: &str, border: &str) -> Vec<PathBuf> {
     world::below(&Disk, folder, ending, border)
 }
 
+/// The files in a folder itself, in the order of their names.
+pub(crate) fn in_folder(folder: &Path) -> Vec<PathBuf> {
+    let names = Disk.entries(folder).files.into_iter();
+    names.map(|name| folder.join(name)).collect()
+}
+
 /// The beginning of the name of a file that is being written.
 const UNFINISHED: &str = ".hyde-";
 

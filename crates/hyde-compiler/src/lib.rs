@@ -16,7 +16,7 @@ mod written;
 pub use candidates::{Additions, Candidate, Knob, candidates};
 pub use diagnosis::DiagnosisPlan;
 pub use emit::{Stage, emit};
-pub use hyde_flatten::{Form, Header, TableFile};
+pub use hyde_flatten::{Form, FreeInputs, Header, TableFile};
 pub use hyde_jit::Backend;
 pub use ideal::{changed, ideals};
 pub use load::{File, Find, Packages, Place, check_name, load};

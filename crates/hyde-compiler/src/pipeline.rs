@@ -3,7 +3,7 @@
 use crate::load::File;
 use crate::states::States;
 use hyde_diag::{Diagnostics, Sources};
-use hyde_flatten::{Additions, Form, Header};
+use hyde_flatten::{Additions, Form, FreeInputs, Header};
 use hyde_ir::{Dae, FlatModel};
 use hyde_jit::Backend;
 use hyde_program::Program;
@@ -24,8 +24,8 @@ pub struct Request<'a> {
     pub settings: &'a BTreeMap<String, f64>,
     /// The headers of the experiment's records.
     pub records: &'a BTreeMap<String, Header>,
-    /// Free inputs become parameters and stimuli are left out: for linearisation.
-    pub free_inputs: bool,
+    /// Which free inputs become parameters.
+    pub free_inputs: FreeInputs,
     /// Make the energy ledger.
     pub ledger: bool,
     /// What the experiment is made into.

@@ -54,7 +54,7 @@ pub use poles::{Pole, Poles, poles};
 pub use record::read_record;
 pub use run::{
     Incomplete, Options, Run, RunError, extent, incomplete, is_over_frequency, parameters, places,
-    record_value, run, run_again,
+    record_value, run, run_again, setup,
 };
 pub use sampled::{Clocked, Sampled};
 pub use stepped::{Level, SteppedOutput, SteppedPoint, Steps, stepped_response};

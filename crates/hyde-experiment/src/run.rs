@@ -232,7 +232,10 @@ pub(crate) fn within_bounds(program: &Program, parameters: &[f64]) -> Result<(),
 }
 
 /// What a run is told: parameters, times and tolerances of the experiment, or of the caller where those are given.
-pub(crate) fn setup<'r>(
+///
+/// # Errors
+/// As for [`run`], before it starts.
+pub fn setup<'r>(
     program: &Program,
     records: &'r BTreeMap<String, Table>,
     options: &Options,

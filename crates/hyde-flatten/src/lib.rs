@@ -85,12 +85,24 @@ pub struct Input<'a> {
     pub settings: &'a BTreeMap<String, f64>,
     /// The headers of the experiment's records by their name there.
     pub records: &'a BTreeMap<String, Header>,
-    /// Free inputs are parameters, added to the stimulus where there is one: for linearisation.
-    pub free_inputs: bool,
+    /// Which free inputs are parameters.
+    pub free_inputs: FreeInputs,
     /// Make the energy ledger.
     pub ledger: bool,
     /// What the experiment is made into.
     pub form: Form,
+}
+
+/// Which free inputs of the model become parameters.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FreeInputs {
+    /// None: one that no stimulus drives is an error.
+    #[default]
+    None,
+    /// Those that no stimulus drives: whoever runs the model sets them.
+    Undriven,
+    /// All of them, added to the stimulus where there is one: for linearisation.
+    All,
 }
 
 /// What an experiment is made into.

@@ -9,9 +9,9 @@ use crate::run_failure;
 use crate::settings::{self, Setting};
 use crate::tables::{self, Table};
 use crate::world::{as_text, read_text};
-use hyde_compiler::{Backend, Candidate, Compiled, File, Form, Header, Request};
+use hyde_compiler::{Backend, Candidate, Compiled, File, Form, FreeInputs, Header, Request};
 use hyde_diag::{Diagnostics, Sources};
-use hyde_syntax::ast::Experiment;
+use hyde_syntax::ast::{Experiment, ExperimentItem, Item};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -239,6 +239,8 @@ pub enum Aim {
     Linearize,
     /// What an observer runs: replays made, measured channels alone reported.
     Observe,
+    /// A run whose free inputs another tool sets, but for those that a stimulus drives.
+    Export,
 }
 
 impl Project {
@@ -260,11 +262,15 @@ impl Project {
             experiment: self.experiment.as_deref(),
             settings: &settings,
             records: &headers,
-            free_inputs: aim == Aim::Linearize,
+            free_inputs: match aim {
+                Aim::Linearize => FreeInputs::All,
+                Aim::Export => FreeInputs::Undriven,
+                Aim::Run | Aim::Ledger | Aim::Observe => FreeInputs::None,
+            },
             ledger: matches!(aim, Aim::Ledger | Aim::Linearize),
             form: match aim {
                 Aim::Observe => Form::Observed,
-                Aim::Run | Aim::Ledger | Aim::Linearize => Form::Run,
+                Aim::Run | Aim::Ledger | Aim::Linearize | Aim::Export => Form::Run,
             },
             backend: Backend::Native,
         };
@@ -286,6 +292,37 @@ impl Project {
         Ok(compiled)
     }
 
+    /// Takes the stimuli of these inputs out of the experiment: another tool is to set them.
+    ///
+    /// # Errors
+    /// No stimulus of the experiment drives an input of that name.
+    pub fn release(&mut self, inputs: &[String]) -> Result<(), String> {
+        let chosen = self.experiment.clone();
+        let items = self.file.files.first_mut().into_iter();
+        let items = items.flat_map(|(_, tree)| &mut tree.items);
+        let experiment = items.into_iter().find_map(|item| match item {
+            Item::Experiment(own) if chosen.as_ref() == Some(&own.name.text) => Some(own),
+            Item::Experiment(_) | Item::Class(_) | Item::Type(_) | Item::Study(_) => None,
+        });
+        let mut driven: Vec<String> = Vec::new();
+        for item in experiment.into_iter().flat_map(|own| &mut own.items) {
+            if let ExperimentItem::Stimulus(drives) = item {
+                driven.extend(drives.iter().map(|drive| drive.target.dotted()));
+                drives.retain(|drive| !inputs.contains(&drive.target.dotted()));
+            }
+        }
+        match inputs.iter().find(|input| !driven.contains(input)) {
+            None => Ok(()),
+            Some(other) if driven.is_empty() => Err(format!(
+                "no stimulus drives an input `{other}`: the experiment has none"
+            )),
+            Some(other) => Err(format!(
+                "no stimulus drives an input `{other}`; those of the experiment drive `{}`",
+                driven.join("`, `")
+            )),
+        }
+    }
+
     /// Which effects fit where on the model, as long as that is in order; what is wrong stays in the project's diagnostics.
     pub fn candidates(&mut self) -> Option<Vec<Candidate>> {
         let request = Request {
@@ -295,7 +332,7 @@ impl Project {
             experiment: None,
             settings: &BTreeMap::new(),
             records: &BTreeMap::new(),
-            free_inputs: true,
+            free_inputs: FreeInputs::All,
             ledger: false,
             form: Form::Run,
             backend: Backend::Native,
@@ -317,7 +354,7 @@ impl Project {
             experiment: self.experiment.as_deref(),
             settings,
             records,
-            free_inputs: false,
+            free_inputs: FreeInputs::None,
             ledger: false,
             form,
             backend: Backend::Native,

@@ -88,6 +88,21 @@ impl Dimension {
         self.base.iter().all(|exponent| exponent.is_zero())
     }
 
+    /// The exponents of kg, m, s, A, K, mol, cd and rad, if all are whole. An angle that is open has none.
+    #[must_use]
+    pub fn si_exponents(self) -> Option<[i32; 8]> {
+        let [kg, m, a, s, k, mol, cd] = self.base;
+        let rad = match self.angle {
+            AngleExponent::Known(exponent) => exponent,
+            AngleExponent::Composed(_) | AngleExponent::Neutral => Exponent::ZERO,
+        };
+        let mut found = [0; 8];
+        for (place, exponent) in found.iter_mut().zip([kg, m, s, a, k, mol, cd, rad]) {
+            *place = exponent.as_integer()?;
+        }
+        Some(found)
+    }
+
     /// The dimension of a product.
     #[must_use]
     pub fn multiply(self, other: Self) -> Self {

@@ -13,8 +13,8 @@ fn main() -> ExitCode {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
     // Figures of batches, diagnoses, self-tests and cases run this very program as the command.
     let commands = [
-        "bode", "budget", "check", "diagnose", "effects", "emit", "fit", "modes", "params", "plot",
-        "run", "selftest", "sweep", "test", "trend",
+        "bode", "budget", "check", "diagnose", "effects", "emit", "export", "fit", "modes",
+        "params", "plot", "run", "selftest", "sweep", "test", "trend",
     ];
     if names
         .first()

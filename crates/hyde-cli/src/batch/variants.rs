@@ -1,7 +1,7 @@
 //! The programs of a batch: one for each variant, compiled when its first case comes and kept for the others.
 
 use crate::project::{Project, Records};
-use hyde_compiler::{Backend, Form, Request};
+use hyde_compiler::{Backend, Form, FreeInputs, Request};
 use hyde_diag::{Diagnostic, Diagnostics, Severity};
 use hyde_experiment::RunError;
 use hyde_experiment::batch::{
@@ -124,7 +124,7 @@ impl Source<'_> {
             experiment: Some(&draft.experiment),
             settings: &settings,
             records: &headers,
-            free_inputs: false,
+            free_inputs: FreeInputs::None,
             ledger: false,
             form: Form::Run,
             backend: Backend::Native,

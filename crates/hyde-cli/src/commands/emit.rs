@@ -3,7 +3,7 @@
 use crate::args::{EmitArgs, StageName};
 use crate::exit::Exit;
 use crate::project::{self, Records, Told as _, print_output};
-use hyde_compiler::{Backend, Form, Request, Stage};
+use hyde_compiler::{Backend, Form, FreeInputs, Request, Stage};
 
 /// Prints the result of a stage.
 pub(crate) fn emit(args: &EmitArgs) -> Exit {
@@ -20,7 +20,7 @@ pub(crate) fn emit(args: &EmitArgs) -> Exit {
         experiment: project.experiment.as_deref(),
         settings: &settings,
         records: &headers,
-        free_inputs: false,
+        free_inputs: FreeInputs::None,
         ledger: false,
         form: Form::Run,
         backend: Backend::Native,
@@ -42,7 +42,10 @@ pub(crate) fn emit(args: &EmitArgs) -> Exit {
         let other = Request {
             model,
             experiment: None,
-            free_inputs: request.experiment.is_none(),
+            free_inputs: match request.experiment {
+                None => FreeInputs::All,
+                Some(_) => FreeInputs::None,
+            },
             ..request
         };
         texts.push(hyde_compiler::emit(&other, stage, &mut project.diagnostics));

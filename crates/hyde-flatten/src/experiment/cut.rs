@@ -8,6 +8,7 @@
 //! so the model is what it was; the linearised model is driven by it. A signal that is made of held values alone gets a sampled
 //! test signal, which changes with them: so the response of the cut loop is the exact discrete one.
 
+use crate::FreeInputs;
 use crate::instance::{InstanceId, Scope, Setting};
 use crate::lower::Resolved;
 use crate::model::Model;
@@ -40,7 +41,7 @@ impl<'a> Model<'a, '_> {
                 continue;
             };
             // A run has no test signal.
-            if !self.input.free_inputs {
+            if self.input.free_inputs != FreeInputs::All {
                 continue;
             }
             let (input, d) = self.test_signal(signal, var, root);

@@ -1,5 +1,6 @@
 //! Free inputs: driven by stimuli, made parameters for linearisation, or reported.
 
+use crate::FreeInputs;
 use crate::bind::short;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Lowering, Member, ParameterNotes, Scope, Setting, Typed};
@@ -198,10 +199,11 @@ impl<'a> Model<'a, '_> {
         self.flat.exprs.add(parameter)
     }
 
-    /// Makes every free input a parameter of its name with the value zero: what a linearised model is driven by. A stimulus
-    /// is what it is added to; one of a truth stays alone.
+    /// Makes free inputs parameters of their names with the value zero: what a linearised model is driven by, or what another
+    /// tool sets. A stimulus is what such a parameter is added to; one of a truth stays alone.
     pub(crate) fn free_inputs(&mut self, root: InstanceId) {
-        if !self.input.free_inputs {
+        let free = self.input.free_inputs;
+        if free == FreeInputs::None {
             return;
         }
         let members: Vec<VarId> = self.instances[root]
@@ -219,7 +221,7 @@ impl<'a> Model<'a, '_> {
         for var in members {
             let stimulus = self.stimulus_of(var);
             let variable = &self.flat.variables[var];
-            if variable.boolean && stimulus.is_some() {
+            if stimulus.is_some() && (variable.boolean || free == FreeInputs::Undriven) {
                 continue;
             }
             let origin = variable.origin.clone().made_by(MadeBy::Experiment);

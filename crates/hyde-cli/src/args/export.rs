@@ -1,0 +1,50 @@
+//! Arguments of `hyde export`.
+
+use super::ModelArgs;
+use clap::{Args, Subcommand, ValueEnum};
+use std::path::PathBuf;
+
+#[derive(Debug, Args)]
+pub(crate) struct ExportArgs {
+    #[command(subcommand)]
+    pub(crate) kind: ExportKind,
+}
+
+/// What a model is exported as.
+#[derive(Debug, Subcommand)]
+pub(crate) enum ExportKind {
+    /// Write an FMU for Simulink, OpenModelica, FMPy, OMSimulator and others: co-simulation and model exchange
+    Fmu(FmuArgs),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct FmuArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Version of the FMI standard
+    #[arg(long, value_enum, default_value_t = FmiVersion::Three)]
+    pub(crate) fmi: FmiVersion,
+    /// Inputs of the FMU that a stimulus of the experiment drives; the stimulus is left out: `--input r,inject`
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub(crate) input: Vec<String>,
+    /// Outputs of the FMU: `--output saddle.s,motor.i` [default: the variables of the model itself]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub(crate) output: Vec<String>,
+    /// Put the source text of the model into the FMU, for people to read
+    #[arg(long)]
+    pub(crate) with_source: bool,
+    /// File of the FMU [default: the model and the experiment, `Axis_positioning.fmu`]
+    #[arg(long, value_name = "PATH")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// A version of the FMI standard.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum FmiVersion {
+    /// FMI 3.0
+    #[value(name = "3")]
+    Three,
+    /// FMI 2.0
+    #[value(name = "2")]
+    Two,
+}

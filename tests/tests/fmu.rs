@@ -1,0 +1,174 @@
+//! FMUs in a real importer: FMPy validates them, simulates them by co-simulation and by model exchange, and agrees with
+//! `hyde run`. Without FMPy in `target/fmpy` these tests say so and pass; `./dev test` installs it.
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stderr,
+    clippy::unwrap_used,
+    reason = "tests open files, tell what they skip, and unwrap what must be there"
+)]
+
+use hyde_tests::fmu::{Compared, KINDS, compare, python, succeed};
+use hyde_tests::root;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const MODELS: &str = "tests/models/fmu.hyde";
+
+fn hyde() -> &'static Path {
+    Path::new(env!("CARGO_BIN_EXE_hyde-tested"))
+}
+
+fn export(arguments: &[&str]) -> Output {
+    let mut command = Command::new(hyde());
+    command.current_dir(root()).args(["export", "fmu"]);
+    command.args(arguments).output().unwrap()
+}
+
+/// Whether FMPy is there; says so if not.
+fn importer() -> bool {
+    python()
+        .map_err(|reason| eprintln!("skipped: {reason}"))
+        .is_ok()
+}
+
+#[test]
+fn fmus_agree_with_the_run_of_their_experiment() {
+    if !importer() {
+        return;
+    }
+    for experiment in ["stepped", "bouncing", "moved"] {
+        for fmi in ["3", "2"] {
+            let compared = Compared {
+                file: MODELS,
+                experiment,
+                fmi,
+                run: &[],
+                tolerance: "1e-10",
+                kinds: &KINDS,
+            };
+            for own in compare(hyde(), &compared).unwrap() {
+                let (samples, quantities, events) = own.compared;
+                assert!(samples > 200 && quantities >= 3 && events >= 1, "{own:?}");
+                // The library's own solver gives the digits of the run.
+                let most = if own.kind == KINDS[2] { 1e-6 } else { 0.0 };
+                assert!(own.deviation.0 <= most, "{experiment} {fmi}: {own:?}");
+                assert!(
+                    own.event_time_error_us <= 1.0,
+                    "{experiment} {fmi}: {own:?}"
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn an_axis_with_stick_and_a_field_agrees_as_well() {
+    if !importer() {
+        return;
+    }
+    let compared = Compared {
+        file: "examples/first/first.hyde",
+        experiment: "push",
+        fmi: "3",
+        run: &[],
+        tolerance: "1e-8",
+        kinds: &KINDS[..2],
+    };
+    for own in compare(hyde(), &compared).unwrap() {
+        assert!(own.deviation.0 <= 0.0 && own.compared.1 > 50, "{own:?}");
+        assert!(own.event_time_error_us <= 1.0, "{own:?}");
+    }
+}
+
+#[test]
+fn importers_set_read_fail_and_begin_again() {
+    let Ok(python) = python() else {
+        importer();
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    for fmi in ["3", "2"] {
+        for (name, model) in [
+            ("lag", ["--model", "Lag"].as_slice()),
+            ("crushed", &["crushed"]),
+            ("ball", &["bouncing"]),
+        ] {
+            let out = folder.path().join(format!("{name}{fmi}.fmu"));
+            let out = out.to_string_lossy().into_owned();
+            let mut arguments = vec![MODELS];
+            arguments.extend(model);
+            arguments.extend(["--fmi", fmi, "--out", &out]);
+            let output = export(&arguments);
+            assert!(output.status.success(), "{output:?}");
+        }
+    }
+    let mut command = Command::new(python);
+    command.arg("tests/fmu/behaviour.py").arg(folder.path());
+    let printed = succeed(&mut command).unwrap();
+    assert!(printed.ends_with("done\n"), "{printed}");
+}
+
+#[test]
+fn an_fmu_has_the_source_only_if_it_is_asked_for() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("x.fmu");
+    let out_text = out.to_string_lossy().into_owned();
+    let contains = |text: &str| {
+        let bytes = std::fs::read(&out).unwrap();
+        bytes
+            .windows(text.len())
+            .any(|part| part == text.as_bytes())
+    };
+    let plain = [MODELS, "stepped", "--quiet", "--out", &out_text];
+    assert!(export(&plain).status.success());
+    assert!(contains("resources/model.hydefmu") && !contains("resources/source/fmu.hyde"));
+    let mut asked = plain.to_vec();
+    asked.push("--with-source");
+    assert!(export(&asked).status.success());
+    assert!(contains("resources/source/fmu.hyde"));
+}
+
+#[test]
+fn what_cannot_be_exported_is_refused_with_what_there_is() {
+    let refused = |arguments: &[&str], said: &str| {
+        let output = export(arguments);
+        let text = String::from_utf8_lossy(&output.stderr);
+        assert!(!output.status.success() && text.contains(said), "{text}");
+    };
+    refused(
+        &[MODELS, "stepped", "--output", "lag.x"],
+        "no quantity `lag.x`; did you mean `x`?",
+    );
+    refused(
+        &[MODELS, "stepped", "--input", "w"],
+        "no stimulus drives an input `w`; those of the experiment drive `u`",
+    );
+    refused(&[MODELS, "stopped"], "no experiment `stopped`");
+    refused(&["tests/models/delays.hyde", "--model", "Nobody"], "Nobody");
+}
+
+#[test]
+fn without_its_library_the_command_says_where_it_looked() {
+    let folder = tempfile::tempdir_in(hyde().parent().unwrap()).unwrap();
+    let alone: PathBuf = folder.path().join("bin/hyde");
+    std::fs::create_dir(folder.path().join("bin")).unwrap();
+    std::fs::hard_link(hyde(), &alone).unwrap();
+    let mut command = Command::new(alone);
+    let command = command
+        .current_dir(root())
+        .args(["export", "fmu", MODELS, "stepped"]);
+    let output = command.output().unwrap();
+    let text = String::from_utf8_lossy(&output.stderr);
+    assert!(!output.status.success(), "{text}");
+    assert!(text.contains("lib/libhyde_fmu.so"), "{text}");
+}
+
+#[test]
+fn a_model_with_a_delay_is_exported_for_co_simulation_alone() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("x.fmu").to_string_lossy().into_owned();
+    let output = export(&["tests/models/delays.hyde", "closed", "--out", &out]);
+    let text = String::from_utf8_lossy(&output.stdout);
+    assert!(output.status.success(), "{output:?}");
+    assert!(text.contains("no model exchange"), "{text}");
+}
