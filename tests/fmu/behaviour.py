@@ -175,6 +175,78 @@ def instances_in_threads_do_not_disturb_each_other(name):
     lag.remove()
 
 
+def a_saved_state_is_returned_to(name):
+    """Also as bytes and in another instance: the run goes on as it did."""
+    lag = Fmu(name)
+    fmu = lag.instance()
+    get_state, set_state, free_state, serialize, deserialize = (
+        (fmu.getFMUstate, fmu.setFMUstate, fmu.freeFMUstate, fmu.serializeFMUstate, fmu.deSerializeFMUstate)
+        if name.endswith("2")
+        else (fmu.getFMUState, fmu.setFMUState, fmu.freeFMUState, fmu.serializeFMUState, fmu.deserializeFMUState)
+    )
+
+    def on(instance, first):
+        for k in range(first, 10):
+            instance.doStep(0.01 * k, 0.01)
+        return get(instance, lag.vr["x"], lag.vr["count"], lag.vr["u"])
+
+    begin(fmu)
+    put(fmu, lag.vr["u"], 1.0)
+    for k in range(3):
+        fmu.doStep(0.01 * k, 0.01)
+    state = get_state()
+    data = serialize(state)
+    there = get(fmu, lag.vr["x"])[0]
+    straight = on(fmu, 3)
+    put(fmu, lag.vr["u"], 7.0)
+    fmu.doStep(0.1, 0.05)
+    set_state(state)
+    close(get(fmu, lag.vr["x"])[0], there, 0.0)
+    again = on(fmu, 3)
+    free_state(state)
+    other = lag.instance()
+    begin(other)
+    state = (other.deSerializeFMUstate if name.endswith("2") else other.deserializeFMUState)(data)
+    (other.setFMUstate if name.endswith("2") else other.setFMUState)(state)
+    moved = on(other, 3)
+    (other.freeFMUstate if name.endswith("2") else other.freeFMUState)(state)
+    for result in (again, moved):
+        close(result[0], straight[0], 1e-7)
+        close(result[1], straight[1], 0.0)
+        close(result[2], 1.0, 0.0)
+    close(straight[0], 1.0 - math.exp(-2.0), 1e-7)
+    fmu.freeInstance()
+    other.freeInstance()
+    lag.remove()
+
+
+def directional_derivatives_are_those_of_the_equations(name):
+    """T x' = u - x, y = gain x: the derivatives by u, x and T are known."""
+    lag = Fmu(name)
+    fmu = lag.instance()
+    begin(fmu)
+    put(fmu, lag.vr["u"], 1.0)
+    fmu.doStep(0.0, 0.02)
+    x = get(fmu, lag.vr["x"])[0]
+    of = [lag.vr["der(x)"], lag.vr["y"]]
+    by = {"u": (20.0, 0.0), "x": (-20.0, 1.0), "T": (-(1.0 - x) / 0.05**2, 0.0)}
+    for known, true in by.items():
+        found = (
+            fmu.getDirectionalDerivative(of, [lag.vr[known]], [2.0])
+            if name.endswith("2")
+            else fmu.getDirectionalDerivative(unknowns=of, knowns=[lag.vr[known]], seed=[2.0])
+        )
+        for value, derivative in zip(found, true):
+            close(value, 2.0 * derivative, 1e-9 * (1.0 + abs(derivative)))
+    if name.endswith("3"):
+        knowns = [lag.vr[known] for known in by]
+        found = fmu.getAdjointDerivative(of, knowns, [1.0, 3.0], nSensitivity=len(knowns))
+        for value, derivatives in zip(found, by.values()):
+            close(value, derivatives[0] + 3.0 * derivatives[1], 1e-9 * (1.0 + abs(value)))
+    fmu.freeInstance()
+    lag.remove()
+
+
 def guards_are_continuous_functions(name):
     """The guard of the ball is its height: never a sign alone, so that an importer can locate its zero."""
     ball = Fmu(name)
@@ -237,6 +309,8 @@ for fmi in ["3", "2"]:
     parameters_are_set_and_wrong_ones_refused(f"lag{fmi}")
     an_error_leaves_a_usable_instance(f"crushed{fmi}")
     instances_in_threads_do_not_disturb_each_other(f"lag{fmi}")
+    a_saved_state_is_returned_to(f"lag{fmi}")
+    directional_derivatives_are_those_of_the_equations(f"lag{fmi}")
     the_wrong_token_makes_no_instance(f"lag{fmi}")
 guards_are_continuous_functions("ball3")
 an_event_of_a_co_simulation_is_returned_early("ball3")

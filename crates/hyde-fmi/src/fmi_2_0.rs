@@ -30,7 +30,12 @@ impl Described<'_> {
         if interface.no_model_exchange.is_none() {
             xml.leaf(
                 "ModelExchange",
-                &[("modelIdentifier", some(&self.identifier))],
+                &[
+                    ("modelIdentifier", some(&self.identifier)),
+                    ("canGetAndSetFMUstate", some(true)),
+                    ("canSerializeFMUstate", some(true)),
+                    ("providesDirectionalDerivative", some(true)),
+                ],
             );
         }
         xml.leaf(
@@ -38,6 +43,9 @@ impl Described<'_> {
             &[
                 ("modelIdentifier", some(&self.identifier)),
                 ("canHandleVariableCommunicationStepSize", some(true)),
+                ("canGetAndSetFMUstate", some(true)),
+                ("canSerializeFMUstate", some(true)),
+                ("providesDirectionalDerivative", some(true)),
             ],
         );
         self.write_units(&mut xml);

@@ -30,9 +30,10 @@ impl Described<'_> {
                 "ModelExchange",
                 &[
                     ("modelIdentifier", some(&self.identifier)),
-                    ("canGetAndSetFMUState", some(false)),
-                    ("canSerializeFMUState", some(false)),
-                    ("providesDirectionalDerivatives", some(false)),
+                    ("canGetAndSetFMUState", some(true)),
+                    ("canSerializeFMUState", some(true)),
+                    ("providesDirectionalDerivatives", some(true)),
+                    ("providesAdjointDerivatives", some(true)),
                     ("needsCompletedIntegratorStep", some(true)),
                 ],
             );
@@ -41,9 +42,10 @@ impl Described<'_> {
             "CoSimulation",
             &[
                 ("modelIdentifier", some(&self.identifier)),
-                ("canGetAndSetFMUState", some(false)),
-                ("canSerializeFMUState", some(false)),
-                ("providesDirectionalDerivatives", some(false)),
+                ("canGetAndSetFMUState", some(true)),
+                ("canSerializeFMUState", some(true)),
+                ("providesDirectionalDerivatives", some(true)),
+                ("providesAdjointDerivatives", some(true)),
                 ("canHandleVariableCommunicationStepSize", some(true)),
                 ("mightReturnEarlyFromDoStep", some(true)),
                 ("hasEventMode", some(true)),

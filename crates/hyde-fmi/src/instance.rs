@@ -1,8 +1,12 @@
 //! [`Instance`]: one instance of an FMU, as an importer sets, steps and asks it. What goes wrong is a [`Refusal`] and leaves the
 //! instance as it was.
 
+mod derivatives;
 mod exchange;
+mod saved;
 mod values;
+
+pub use self::saved::Saved;
 
 use crate::model::Model;
 use crate::running::{Asked, Running};
@@ -70,7 +74,7 @@ pub struct Update {
     pub next_s: Option<f64>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 enum Phase {
     Instantiated,
     Initialization,

@@ -24,7 +24,7 @@ self_cell::self_cell!(
 );
 
 /// Times and tolerance from an importer.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Asked {
     pub(crate) start_s: Option<f64>,
     pub(crate) stop_s: Option<f64>,

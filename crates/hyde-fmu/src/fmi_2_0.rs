@@ -2,6 +2,7 @@
 
 mod absent;
 mod exchange;
+mod states;
 
 use crate::export::export;
 use crate::fmi_3_0::values::{get, set};

@@ -2,6 +2,7 @@
 
 mod absent;
 pub(crate) mod exchange;
+pub(crate) mod states;
 pub(crate) mod values;
 
 use crate::export::export;

@@ -5,6 +5,7 @@
 //! handle         what a pointer of an importer stands for: instance, log          handle.rs
 //! memory         slices and texts of an importer                                  memory.rs
 //! models         compiled models, shared by the instances of a process            models.rs
+//! states         saved states of instances                                        states.rs
 //! fmi_3_0        FMI 3.0: life, steps, events, states; values; what is not there   fmi_3_0.rs, fmi_3_0/
 //! fmi_2_0        the same for FMI 2.0                                              fmi_2_0.rs, fmi_2_0/
 //! ```
@@ -25,3 +26,4 @@ mod fmi_3_0;
 mod handle;
 mod memory;
 mod models;
+mod states;

@@ -9,6 +9,7 @@ use crate::state::State;
 use hyde_program::{Constant, Program};
 
 /// The times of all clocks and the changes of held values that are still to come.
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Schedule {
     clocks: Vec<Times>,
     pending: Vec<Pending>,
@@ -16,7 +17,7 @@ pub(crate) struct Schedule {
     relations: Vec<(usize, f64)>,
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, serde::Serialize, serde::Deserialize)]
 struct Times {
     period: f64,
     delay: f64,
@@ -26,6 +27,7 @@ struct Times {
 }
 
 /// A held value that changes later.
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
 struct Pending {
     t: f64,
     target: usize,

@@ -20,10 +20,12 @@ const MAX_HALVINGS: usize = 8;
 const BETWEEN: [f64; 2] = [0.15, 0.62];
 
 /// The histories of all delayed quantities.
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Delays {
     lines: Vec<Line>,
 }
 
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
 struct Line {
     time_s: f64,
     /// The equations read it: where it jumps they need new consistent values.

@@ -21,7 +21,7 @@ pub(crate) const PLACES: [f64; 7] = [
 const WEIGHTS: [f64; 7] = [0.5, -1.0, 1.0, -1.0, 1.0, -1.0, 0.5];
 
 /// A step, or a part of it.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Step {
     pub(crate) from: f64,
     pub(crate) to: f64,
@@ -30,7 +30,7 @@ pub(crate) struct Step {
 }
 
 /// Steps over which the quantity is smooth.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 struct Piece {
     /// The value it begins with.
     first: f64,
@@ -40,7 +40,7 @@ struct Piece {
 }
 
 /// A quantity over the last while.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct History {
     pieces: VecDeque<Piece>,
     /// The largest value it had: what is much smaller is rounding.

@@ -106,6 +106,16 @@ impl<'a> Inputs<'a> {
         changed
     }
 
+    /// The instant that columns which step were read at last.
+    pub(crate) fn since_s(&self) -> f64 {
+        self.since_s
+    }
+
+    /// Reads those columns as they were at an instant.
+    pub(crate) fn stay_since(&mut self, t: f64) {
+        self.since_s = t;
+    }
+
     /// Reads all columns.
     pub(crate) fn read(&mut self, t: f64, u: &mut [f64]) {
         for (number, column) in self.columns.iter_mut().enumerate() {

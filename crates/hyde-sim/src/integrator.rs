@@ -98,6 +98,11 @@ impl<'a> Integrator<'a> {
         Ok(before)
     }
 
+    /// The same values again that were the largest before.
+    pub(crate) fn set_largest(&mut self, largest: Vec<f64>) {
+        self.largest = largest;
+    }
+
     /// Takes note of the largest values.
     pub(crate) fn note_largest(&mut self) {
         for (largest, value) in self.largest.iter_mut().zip(&self.y) {

@@ -63,8 +63,9 @@ pub use results::{
     Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Reduced, Results,
     Statistics, Yielded,
 };
-pub use session::{Advance, Session};
+pub use session::{Advance, Session, Variation};
 pub use setup::Setup;
+pub use simulation::Snapshot;
 
 use hyde_program::Program;
 

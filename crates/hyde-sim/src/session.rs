@@ -7,7 +7,7 @@
 use crate::failure::Failure;
 use crate::results::Event;
 use crate::setup::Setup;
-use crate::simulation::{Advanced, Simulation};
+use crate::simulation::{Advanced, Simulation, Snapshot};
 use hyde_program::Program;
 
 /// How far a session goes beyond what is asked for, and where it stops before.
@@ -17,6 +17,17 @@ pub struct Advance {
     pub may_pass: bool,
     /// Stop in front of an event: the caller asks for it by [`Session::happen`].
     pub stop_at_events: bool,
+}
+
+/// A change of what a session is given at a point, or of what follows from it there.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Variation {
+    /// Of the solver's vector.
+    pub y: Vec<f64>,
+    /// Of its derivative.
+    pub yp: Vec<f64>,
+    /// Of the outputs.
+    pub outputs: Vec<f64>,
 }
 
 /// A run under way.
@@ -135,6 +146,34 @@ impl<'a> Session<'a> {
     /// Accepts the caller's point as the end of a step of its own integration. Returns whether an event has been passed.
     pub fn accept(&mut self) -> bool {
         self.run.accept()
+    }
+
+    /// Where the session is, to return to.
+    ///
+    /// # Errors
+    /// There are no consistent values at the caller's time.
+    pub fn snapshot(&mut self) -> Result<Snapshot, Box<Failure>> {
+        self.run.snapshot()
+    }
+
+    /// Returns to where a session of this program was, whichever it was. Whether the snapshot is one of this program; if not,
+    /// nothing changes.
+    ///
+    /// # Errors
+    /// The solver cannot begin there.
+    pub fn restore(&mut self, snapshot: Snapshot) -> Result<bool, Box<Failure>> {
+        self.run.restore(snapshot)
+    }
+
+    /// How values at the caller's point change with states (positions in the solver's vector) and parameters (positions in the
+    /// parameter vector), each by so much: the derivative in that direction, by the equations as they are there. None while
+    /// the run slides on a surface, or where the equations are singular.
+    pub fn vary(
+        &mut self,
+        states: &[(usize, f64)],
+        parameters: &[(usize, f64)],
+    ) -> Option<Variation> {
+        self.run.vary(states, parameters)
     }
 
     /// Works on the events at the point that the caller has come to by its own integration.

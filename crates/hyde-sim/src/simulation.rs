@@ -1,14 +1,17 @@
 //! The run itself: start, steps, events, rows.
 
+mod derivatives;
 mod instant;
 mod point;
 mod reduce;
 mod rows;
 mod session;
+mod snapshot;
 mod steady;
 mod step;
 
 pub(crate) use self::session::Advanced;
+pub use self::snapshot::Snapshot;
 
 use self::reduce::Reduced;
 use self::session::Pieces;

@@ -21,14 +21,14 @@ use hyde_program::{Function, Jacobian, Wrt};
 const NONE: f64 = 1e-12;
 
 /// The mode that is changed by a switch, on the lower and on the upper side.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ModePair {
     pub(crate) automaton: usize,
     pub(crate) modes: [usize; 2],
 }
 
 /// A switch that is held at its surface.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Slide {
     /// The relation whose root function is held at zero; it is positive on the upper side.
     pub(crate) surface: usize,

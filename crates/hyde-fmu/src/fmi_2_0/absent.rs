@@ -5,8 +5,8 @@ use crate::export::export;
 use crate::handle::Status;
 use fmi_sys::fmi2 as sys;
 use fmi_sys::fmi2::{
-    fmi2Byte, fmi2Component, fmi2FMUstate, fmi2Integer, fmi2Real, fmi2Status, fmi2StatusKind,
-    fmi2String, fmi2ValueReference,
+    fmi2Component, fmi2Integer, fmi2Real, fmi2Status, fmi2StatusKind, fmi2String,
+    fmi2ValueReference,
 };
 use hyde_fmi::Refusal;
 
@@ -36,55 +36,6 @@ export! { sys::fmi2SetStringTYPE, fmi2SetString(
 ) -> fmi2Status {
     // SAFETY: an importer passes its instance.
     unsafe { absent(c, nvr, "values of this type") }
-} }
-
-export! { sys::fmi2GetFMUstateTYPE, fmi2GetFMUstate(
-    c: fmi2Component, _FMUstate: *mut fmi2FMUstate,
-) -> fmi2Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(c, 1, "states of an instance") }
-} }
-
-export! { sys::fmi2SetFMUstateTYPE, fmi2SetFMUstate(
-    c: fmi2Component, _FMUstate: fmi2FMUstate,
-) -> fmi2Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(c, 1, "states of an instance") }
-} }
-
-export! { sys::fmi2FreeFMUstateTYPE, fmi2FreeFMUstate(
-    c: fmi2Component, _FMUstate: *mut fmi2FMUstate,
-) -> fmi2Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(c, 1, "states of an instance") }
-} }
-
-export! { sys::fmi2SerializedFMUstateSizeTYPE, fmi2SerializedFMUstateSize(
-    c: fmi2Component, _FMUstate: fmi2FMUstate, _size: *mut usize,
-) -> fmi2Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(c, 1, "states of an instance") }
-} }
-
-export! { sys::fmi2SerializeFMUstateTYPE, fmi2SerializeFMUstate(
-    c: fmi2Component, _FMUstate: fmi2FMUstate, _serializedState: *mut fmi2Byte, _size: usize,
-) -> fmi2Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(c, 1, "states of an instance") }
-} }
-
-export! { sys::fmi2DeSerializeFMUstateTYPE, fmi2DeSerializeFMUstate(
-    c: fmi2Component, _serializedState: *const fmi2Byte, _size: usize, _FMUstate: *mut fmi2FMUstate,
-) -> fmi2Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(c, 1, "states of an instance") }
-} }
-
-export! { sys::fmi2GetDirectionalDerivativeTYPE, fmi2GetDirectionalDerivative(
-    c: fmi2Component, _vUnknown_ref: *const fmi2ValueReference, _nUnknown: usize, _vKnown_ref: *const fmi2ValueReference, _nKnown: usize, _dvKnown: *const fmi2Real, _dvUnknown: *mut fmi2Real,
-) -> fmi2Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(c, 1, "derivatives of variables") }
 } }
 
 export! { sys::fmi2SetRealInputDerivativesTYPE, fmi2SetRealInputDerivatives(

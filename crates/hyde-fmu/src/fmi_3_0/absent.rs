@@ -5,9 +5,9 @@ use crate::export::export;
 use crate::handle::Status;
 use fmi_sys::fmi3 as sys;
 use fmi_sys::fmi3::{
-    fmi3Binary, fmi3Boolean, fmi3Byte, fmi3Clock, fmi3DependencyKind, fmi3FMUState, fmi3Float32,
-    fmi3Float64, fmi3Instance, fmi3Int8, fmi3Int16, fmi3Int32, fmi3Int64, fmi3IntervalQualifier,
-    fmi3Status, fmi3String, fmi3UInt8, fmi3UInt16, fmi3UInt32, fmi3UInt64, fmi3ValueReference,
+    fmi3Binary, fmi3Boolean, fmi3Clock, fmi3DependencyKind, fmi3Float32, fmi3Float64, fmi3Instance,
+    fmi3Int8, fmi3Int16, fmi3Int32, fmi3Int64, fmi3IntervalQualifier, fmi3Status, fmi3String,
+    fmi3UInt8, fmi3UInt16, fmi3UInt32, fmi3UInt64, fmi3ValueReference,
 };
 use hyde_fmi::Refusal;
 
@@ -200,62 +200,6 @@ export! { sys::fmi3GetVariableDependenciesTYPE, fmi3GetVariableDependencies(
 ) -> fmi3Status {
     // SAFETY: an importer passes its instance.
     unsafe { absent(instance, 1, "dependencies of variables") }
-} }
-
-export! { sys::fmi3GetFMUStateTYPE, fmi3GetFMUState(
-    instance: fmi3Instance, _FMUState: *mut fmi3FMUState,
-) -> fmi3Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(instance, 1, "states of an instance") }
-} }
-
-export! { sys::fmi3SetFMUStateTYPE, fmi3SetFMUState(
-    instance: fmi3Instance, _FMUState: fmi3FMUState,
-) -> fmi3Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(instance, 1, "states of an instance") }
-} }
-
-export! { sys::fmi3FreeFMUStateTYPE, fmi3FreeFMUState(
-    instance: fmi3Instance, _FMUState: *mut fmi3FMUState,
-) -> fmi3Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(instance, 1, "states of an instance") }
-} }
-
-export! { sys::fmi3SerializedFMUStateSizeTYPE, fmi3SerializedFMUStateSize(
-    instance: fmi3Instance, _FMUState: fmi3FMUState, _size: *mut usize,
-) -> fmi3Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(instance, 1, "states of an instance") }
-} }
-
-export! { sys::fmi3SerializeFMUStateTYPE, fmi3SerializeFMUState(
-    instance: fmi3Instance, _FMUState: fmi3FMUState, _serializedState: *mut fmi3Byte, _size: usize,
-) -> fmi3Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(instance, 1, "states of an instance") }
-} }
-
-export! { sys::fmi3DeserializeFMUStateTYPE, fmi3DeserializeFMUState(
-    instance: fmi3Instance, _serializedState: *const fmi3Byte, _size: usize, _FMUState: *mut fmi3FMUState,
-) -> fmi3Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(instance, 1, "states of an instance") }
-} }
-
-export! { sys::fmi3GetDirectionalDerivativeTYPE, fmi3GetDirectionalDerivative(
-    instance: fmi3Instance, _unknowns: *const fmi3ValueReference, _nUnknowns: usize, _knowns: *const fmi3ValueReference, _nKnowns: usize, _seed: *const fmi3Float64, _nSeed: usize, _sensitivity: *mut fmi3Float64, _nSensitivity: usize,
-) -> fmi3Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(instance, 1, "derivatives of variables") }
-} }
-
-export! { sys::fmi3GetAdjointDerivativeTYPE, fmi3GetAdjointDerivative(
-    instance: fmi3Instance, _unknowns: *const fmi3ValueReference, _nUnknowns: usize, _knowns: *const fmi3ValueReference, _nKnowns: usize, _seed: *const fmi3Float64, _nSeed: usize, _sensitivity: *mut fmi3Float64, _nSensitivity: usize,
-) -> fmi3Status {
-    // SAFETY: an importer passes its instance.
-    unsafe { absent(instance, 1, "derivatives of variables") }
 } }
 
 export! { sys::fmi3GetOutputDerivativesTYPE, fmi3GetOutputDerivatives(

@@ -123,11 +123,7 @@ impl Simulation<'_> {
 
     /// Sets the parameter vector at the caller's time, as an instant of its own.
     pub(crate) fn enter_parameters(&mut self, parameters: Vec<f64>) -> Result<(), Box<Failure>> {
-        let t = self.pieces.place.t;
-        if let Some((step, target)) = self.pieces.ahead.take() {
-            self.finish_step(step.until(t), target.t)?;
-            self.stand_at(t)?;
-        }
+        self.stop_here()?;
         let left = delays::limits(&mut self.integrator, Some(&mut self.consistent));
         self.integrator.state_mut().p = parameters;
         self.be_consistent()?;
@@ -136,6 +132,41 @@ impl Simulation<'_> {
         self.restart()?;
         self.stand();
         Ok(())
+    }
+
+    /// Ends the step that the caller's time is in there.
+    fn stop_here(&mut self) -> Result<(), Box<Failure>> {
+        let t = self.pieces.place.t;
+        if let Some((step, target)) = self.pieces.ahead.take() {
+            self.finish_step(step.until(t), target.t)?;
+            self.stand_at(t)?;
+        }
+        Ok(())
+    }
+
+    /// The same, and the solver goes on from there.
+    pub(super) fn cut(&mut self) -> Result<(), Box<Failure>> {
+        if self.is_ahead() {
+            self.stop_here()?;
+            self.restart()?;
+            self.stand();
+        }
+        Ok(())
+    }
+
+    /// Whether the solver has passed the caller's time.
+    pub(super) fn is_ahead(&self) -> bool {
+        self.pieces.ahead.is_some()
+    }
+
+    /// Nothing was computed beyond the caller's time, and nothing waits.
+    pub(super) fn forget_pieces(&mut self) {
+        self.pieces = Pieces::default();
+    }
+
+    /// Something waits at the caller's time.
+    pub(super) fn wait(&mut self, work: Work) {
+        self.pieces.waits = Some(work);
     }
 
     /// The same within a step of the caller's.
@@ -237,7 +268,7 @@ impl Simulation<'_> {
     }
 
     /// The caller is where the run is.
-    fn stand(&mut self) {
+    pub(super) fn stand(&mut self) {
         self.pieces.place = Place {
             t: self.integrator.t,
             y: self.integrator.y.clone(),
