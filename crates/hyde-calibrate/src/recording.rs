@@ -31,6 +31,8 @@ pub enum RecordError {
     BeginsAgain(String, usize, f64),
     /// It has fewer rows than an observer needs to settle: record and rows.
     Short(String, usize),
+    /// A channel has fewer readings than the record has rows: channel, time between its readings and between rows, s.
+    Slow(String, f64, f64),
     /// A channel cannot be prepared as the experiment says: channel and cause.
     Preparation(String, String),
 }
@@ -67,6 +69,9 @@ pub struct Recording {
 
 /// The rows after which an observer has settled: its start is that of the model, not of the axis.
 const SETTLING_ROWS: usize = 150;
+
+/// A channel is slow whose readings are so many rows apart.
+const SLOW: f64 = 1.5;
 
 impl Recording {
     /// A record for a program in the observed form.
@@ -107,6 +112,11 @@ impl Recording {
             let column = table
                 .column(&measured.source.1)
                 .ok_or_else(|| missing(&measured.source))?;
+            // A reading that is held until the next one would count as a new one in every row.
+            let slow = table.usual_step().filter(|own| *own > SLOW * step_s);
+            if let Some(own) = slow {
+                return Err(RecordError::Slow(measured.name.clone(), own, step_s));
+            }
             let period = program.kernels.constant(Constant::Wrap(number), &p);
             let again = period.is_none().then(|| begins_again(column.values()));
             if let Some((times, by)) = again.flatten() {

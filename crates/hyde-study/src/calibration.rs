@@ -3,7 +3,7 @@
 use crate::asked::Asked;
 use crate::package::links_out;
 use crate::project::{Aim, Loaded, Project, Records};
-use crate::record_settings;
+use crate::record_files;
 use crate::refused::{Fault, Refused};
 use crate::unobservable::{unreadable, unsupported};
 use crate::world::{World, matching};
@@ -235,7 +235,7 @@ fn files_of(
         .clone()
         .or_else(|| asked.file.parent().map(Path::to_path_buf))
         .unwrap_or_default();
-    let mut patterns: Vec<(String, String, Span)> = Vec::new();
+    let mut patterns: Vec<(String, String, Span, bool)> = Vec::new();
     for (number, (record, pattern)) in source.patterns.iter().enumerate() {
         let own = experiment
             .records
@@ -256,7 +256,8 @@ fn files_of(
             );
             return Vec::new();
         };
-        patterns.push((record, pattern.text.clone(), pattern.span));
+        let whole = record_files::is_sum(&pattern.text);
+        patterns.push((record, pattern.text.clone(), pattern.span, whole));
     }
     for item in &experiment.records {
         if let Some(default) = &item.default
@@ -264,12 +265,21 @@ fn files_of(
                 .iter()
                 .any(|(record, ..)| *record == item.name.text)
         {
-            patterns.push((item.name.text.clone(), default.text.clone(), source.span));
+            // What the experiment itself reads is one record.
+            let name = item.name.text.clone();
+            patterns.push((name, default.text.clone(), source.span, true));
         }
     }
     let mut sets: Vec<Vec<(String, PathBuf)>> = Vec::new();
-    for (record, pattern, span) in &patterns {
-        let matching = matching(asked.world.as_ref(), &folder, pattern);
+    for (record, pattern, span, whole) in &patterns {
+        let (matching, files) = match whole {
+            true => record_files::Files::named(asked.world.as_ref(), &folder, pattern)
+                .one_record(asked.world.as_ref()),
+            false => {
+                let found = matching(asked.world.as_ref(), &folder, pattern);
+                (found.clone(), found)
+            }
+        };
         if matching.is_empty() {
             let help = match asked.data {
                 None => "name the folder of the records: `--data DIR`",
@@ -285,7 +295,7 @@ fn files_of(
             );
             return Vec::new();
         }
-        if let Some(path) = matching
+        if let Some(path) = files
             .iter()
             .find(|path| links_out(asked.world.as_ref(), &folder, path))
         {
@@ -355,6 +365,7 @@ fn recording(
     span: Span,
 ) -> Result<Recording, Box<Diagnostic>> {
     let mut tables: BTreeMap<String, hyde_signal::Table> = BTreeMap::new();
+    let mut name = String::new();
     for (record, path) in set {
         let item = experiment
             .records
@@ -366,11 +377,16 @@ fn recording(
                 Diagnostic::error(Code::BadStudy, message).label(span, "in this study"),
             ));
         };
-        let content = world.read(path).map_err(|reason| {
-            Box::new(Diagnostic::error(Code::NoFiles, reason).label(span, "in this study"))
-        })?;
-        let side = world.read(&record_settings::side_file(path)).ok();
-        let table = record_settings::table(item, None, path, &content, side).map_err(Box::new)?;
+        let files = record_files::Files::named(world, Path::new(""), &path.to_string_lossy());
+        if name.is_empty() {
+            name = files.names();
+        }
+        let open = |file: &Path| world.read(file);
+        let missing = |reason: &str| {
+            Diagnostic::error(Code::NoFiles, reason.to_owned()).label(span, "in this study")
+        };
+        let read = record_files::joined(item, None, files, &open, &missing);
+        let table = read.map_err(Box::new)?.table;
         tables.insert(record.clone(), table);
     }
     let mut all: Vec<(&str, &mut hyde_signal::Table)> = tables
@@ -378,12 +394,6 @@ fn recording(
         .map(|(name, table)| (name.as_str(), table))
         .collect();
     hyde_signal::align(&mut all);
-    let name = set.first().map_or_else(String::new, |(_, path)| {
-        path.file_name()
-            .unwrap_or_default()
-            .to_string_lossy()
-            .into_owned()
-    });
     Recording::new(&name, &compiled.program, tables)
         .map_err(|error| Box::new(unreadable(&name, &error, span)))
 }

@@ -37,6 +37,41 @@ impl Files {
     }
 }
 
+impl Files {
+    /// The names of all without their folders.
+    pub(crate) fn names(&self) -> String {
+        let names = self.all.iter().map(|file| own_name(file));
+        names.collect::<Vec<_>>().join(AND)
+    }
+
+    /// The files as the one record that a study names, beside all of them; neither if one is missing or outside the folder.
+    pub(crate) fn one_record(self, world: &dyn World) -> (Vec<PathBuf>, Vec<PathBuf>) {
+        let inside = |file: &PathBuf| {
+            let mut parts = file.components();
+            world.is_file(file) && !parts.any(|part| part == std::path::Component::ParentDir)
+        };
+        match !self.all.is_empty() && self.all.iter().all(inside) {
+            true => {
+                let texts = self.all.iter().map(|file| file.to_string_lossy());
+                let sum = texts.collect::<Vec<_>>().join(AND);
+                (vec![PathBuf::from(sum)], self.all)
+            }
+            false => (Vec::new(), Vec::new()),
+        }
+    }
+}
+
+/// A file's name without its folder.
+fn own_name(file: &Path) -> String {
+    let name = file.file_name().unwrap_or(file.as_os_str());
+    name.to_string_lossy().into_owned()
+}
+
+/// Whether a text names several files that are one record.
+pub(crate) fn is_sum(text: &str) -> bool {
+    text.contains(AND)
+}
+
 fn of_parts(world: &dyn World, root: &Path, text: &str) -> Vec<PathBuf> {
     let beside = Path::new(parts(text).next().unwrap_or_default()).parent();
     let mut files: Vec<PathBuf> = Vec::new();
@@ -84,7 +119,7 @@ fn of_pattern(world: &dyn World, path: &Path) -> Vec<PathBuf> {
     matching(world, &folder, &rest.to_string_lossy())
 }
 
-/// Reads the files of a record and joins them.
+/// Reads the files of a record that is asked for, and joins them.
 pub(crate) fn read(
     item: &RecordItem,
     settings: Option<&RecordItem>,
@@ -92,23 +127,35 @@ pub(crate) fn read(
     asked: &Asked,
     needed: Records,
 ) -> Result<Record, Diagnostic> {
+    let open = |file: &Path| asked.read(Kind::Record, "", &file.to_string_lossy(), file);
+    joined(item, settings, files, &open, &|reason| {
+        missing(item, needed, reason)
+    })
+}
+
+/// The same with `open` for the content of a file, and a diagnostic for one that is not there.
+pub(crate) fn joined(
+    item: &RecordItem,
+    settings: Option<&RecordItem>,
+    files: Files,
+    open: &dyn Fn(&Path) -> Result<Vec<u8>, String>,
+    missing: &dyn Fn(&str) -> Diagnostic,
+) -> Result<Record, Diagnostic> {
     let Files { shown, all: files } = files;
     if files.is_empty() {
-        let reason = format!("no file is named as `{}`", shown.display());
-        return Err(missing(item, needed, &reason));
+        return Err(missing(&format!(
+            "no file is named as `{}`",
+            shown.display()
+        )));
     }
     let mut hash = Sha256::new();
     let mut tables: Vec<(String, Table)> = Vec::new();
     for file in &files {
-        let content = asked
-            .read(Kind::Record, "", &file.to_string_lossy(), file)
-            .map_err(|reason| missing(item, needed, &reason))?;
+        let content = open(file).map_err(|reason| missing(&reason))?;
         hash.update(&content);
-        let side = side_file(file);
-        let side = asked.read(Kind::Record, "", &side.to_string_lossy(), &side);
-        let table = record_settings::table(item, settings, file, &content, side.ok())?;
-        let name = file.file_name().unwrap_or(file.as_os_str());
-        tables.push((name.to_string_lossy().into_owned(), table));
+        let side = open(&side_file(file)).ok();
+        let table = record_settings::table(item, settings, file, &content, side)?;
+        tables.push((own_name(file), table));
     }
     let several = files.len() > 1;
     let mut table = hyde_signal::join(tables).map_err(|error| {

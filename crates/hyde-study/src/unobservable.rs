@@ -46,6 +46,15 @@ pub fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnostic {
             ),
             "record for longer, or at a higher rate",
         ),
+        RecordError::Slow(channel, own, rows) => (
+            format!(
+                "`{channel}` has a reading every {}, the first measured channel every {}; an observer would take the readings \
+                 between for new ones",
+                time(*own),
+                time(*rows)
+            ),
+            "compare only channels of one rate: leave this channel out of the `measured` declarations of a second experiment, and name that one in the study",
+        ),
         RecordError::Preparation(channel, cause) => (
             format!("the channel `{channel}`: {cause}"),
             "change the preparation of the column in the `measured` declaration",
