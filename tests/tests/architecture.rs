@@ -78,6 +78,10 @@ const EDGES: &[(&str, &[&str])] = &[
     ),
     ("fmu", &["fmi", "study"]),
     (
+        "editor",
+        &["calibrate", "compiler", "diag", "format", "study", "syntax"],
+    ),
+    (
         "report",
         &["calibrate", "diag", "experiment", "signal", "units"],
     ),

@@ -7,7 +7,7 @@ mod study;
 mod traces;
 
 pub(crate) use batch::{Engine, SweepArgs, TableFormat};
-pub(crate) use editor::{ExplainArgs, FmtArgs};
+pub(crate) use editor::{ExplainArgs, FmtArgs, LspArgs};
 pub(crate) use export::{ExportArgs, ExportKind, FmiVersion, FmuArgs};
 pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 pub(crate) use traces::{LookArgs, NewArgs, TemplateName};
@@ -68,6 +68,8 @@ pub(crate) enum Command {
     New(NewArgs),
     /// Format model files: indentation, spaces, line breaks; comments and meaning stay as they are
     Fmt(FmtArgs),
+    /// Serve an editor by the Language Server Protocol, on standard input and output
+    Lsp(LspArgs),
     /// Write HTML documentation of a package, of a file, or of the library
     Doc(DocArgs),
     /// Explain a diagnostic code

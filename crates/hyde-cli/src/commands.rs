@@ -14,6 +14,7 @@ pub(crate) mod export;
 pub(crate) mod fit;
 pub(crate) mod fmt;
 pub(crate) mod look;
+pub(crate) mod lsp;
 pub(crate) mod man;
 pub(crate) mod modes;
 pub(crate) mod new;

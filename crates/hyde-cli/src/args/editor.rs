@@ -24,3 +24,10 @@ pub(crate) struct ExplainArgs {
     /// The code, such as `E0503` [default: list all codes]
     pub(crate) code: Option<String>,
 }
+
+#[derive(Debug, Args)]
+pub(crate) struct LspArgs {
+    /// Accepted because some editors add it; the server has no other way
+    #[arg(long, hide = true)]
+    pub(crate) stdio: bool,
+}

@@ -53,7 +53,7 @@ fn plain(page: &str) -> String {
 macro_rules! pages {
     ($($name:ident $file:literal;)*) => {
         /// The page of a code, from the book.
-        fn page(code: Code) -> &'static str {
+        pub(super) fn page(code: Code) -> &'static str {
             match code {
                 $(Code::$name => include_str!(concat!("../../../../book/src/errors/", $file, ".md")),)*
             }

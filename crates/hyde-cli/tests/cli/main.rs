@@ -13,6 +13,7 @@ mod effects;
 mod files;
 mod fmt;
 mod long_runs;
+mod lsp;
 mod parquet;
 mod plot;
 mod printed;

@@ -1,0 +1,119 @@
+//! `hyde lsp` with Neovim as the editor. `./dev setup` installs it; without it the test says so and looks at nothing.
+
+use crate::command::{Folder, command, errors, text};
+use serde_json::Value;
+use std::io::Write as _;
+use std::process::{Command, Stdio};
+
+/// Opens a file, waits for its diagnostics, asks for a hover, a definition, completions and the layout, and prints all as
+/// JSON.
+const SCRIPT: &str = r#"
+local file, server = vim.env.HYDE_FILE, vim.env.HYDE_COMMAND
+vim.cmd("edit " .. vim.fn.fnameescape(file))
+local client = vim.lsp.start_client({ name = "hyde", cmd = { server, "lsp" }, root_dir = vim.fn.fnamemodify(file, ":h") })
+vim.lsp.buf_attach_client(0, client)
+local out = {}
+vim.wait(60000, function() return #vim.diagnostic.get(0) > 0 end, 20)
+for _, own in ipairs(vim.diagnostic.get(0)) do
+  table.insert(out, { code = own.code, line = own.lnum, message = own.message })
+end
+local function ask(method, line, column)
+  vim.api.nvim_win_set_cursor(0, { line, column })
+  local params = vim.lsp.util.make_position_params(0, "utf-16")
+  params.options = { tabSize = 2, insertSpaces = true }
+  local found = vim.lsp.buf_request_sync(0, method, params, 60000)
+  return found and found[client] and found[client].result or vim.NIL
+end
+local result = {
+  diagnostics = out,
+  hover = ask("textDocument/hover", 5, 18),
+  definition = ask("textDocument/definition", 5, 18),
+  completion = ask("textDocument/completion", 5, 18),
+  formatting = ask("textDocument/formatting", 1, 0),
+}
+io.stdout:write(vim.json and vim.json.encode(result) or vim.fn.json_encode(result))
+io.stdout:flush()
+vim.cmd("qa!")
+"#;
+
+const MODEL: &str = "package pushed;\nimport SI.*;\nmodel Pushed\n  parameter Force F0 = 3 [N] \"that pushes\";\n  Real twice = 2*F0;\n  Length s = 1 [kg];\nend Pushed;\n";
+
+#[test]
+fn neovim_shows_what_the_server_says() {
+    if Command::new("nvim").arg("--version").output().is_err() {
+        let mut log = std::io::stderr();
+        writeln!(
+            log,
+            "skipped: Neovim is not installed; `./dev setup` does it"
+        )
+        .unwrap();
+        return;
+    }
+    let folder = Folder::new();
+    let file = folder.file("pushed.hyde", MODEL);
+    let script = folder.file("ask.lua", SCRIPT);
+    let server = command(&[]).get_program().to_owned();
+    let output = Command::new("nvim")
+        .args(["--clean", "--headless", "-i", "NONE", "-n", "-c"])
+        .arg(format!("luafile {script}"))
+        .env("HYDE_FILE", &file)
+        .env("HYDE_COMMAND", server)
+        .env("XDG_STATE_HOME", folder.path("state"))
+        .env("XDG_CACHE_HOME", folder.path("cache"))
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let said = text(&output);
+    let answer: Value = serde_json::from_str(&said)
+        .unwrap_or_else(|error| panic!("{error}:\n{said}\n{}", errors(&output)));
+    let codes: Vec<&str> = answer["diagnostics"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .filter_map(|own| own["code"].as_str())
+        .collect();
+    assert!(codes.contains(&"E0301"), "{answer}");
+    let hover = answer["hover"]["contents"]["value"].as_str().unwrap();
+    assert!(
+        hover.contains("parameter Force F0 = 3 [N]") && hover.contains("that pushes"),
+        "{hover}"
+    );
+    assert_eq!(answer["definition"]["range"]["start"]["line"], 3);
+    let labels = answer["completion"].as_array().unwrap();
+    assert!(labels.iter().any(|own| own["label"] == "F0"), "{labels:?}");
+    assert_eq!(answer["formatting"].as_array().map(Vec::len), Some(0));
+}
+
+#[test]
+fn a_session_ends_with_success_and_an_editor_that_is_gone_ends_it_too() {
+    let message = |body: &str| format!("Content-Length: {}\r\n\r\n{body}", body.len());
+    let begin =
+        message(r#"{"jsonrpc":"2.0","id":1,"method":"initialize","params":{"capabilities":{}}}"#)
+            + &message(r#"{"jsonrpc":"2.0","method":"initialized","params":{}}"#);
+    let end = message(r#"{"jsonrpc":"2.0","id":2,"method":"shutdown"}"#)
+        + &message(r#"{"jsonrpc":"2.0","method":"exit"}"#);
+    for (input, success) in [(format!("{begin}{end}"), true), (begin, false)] {
+        let mut child = command(&["lsp", "--stdio"])
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        child
+            .stdin
+            .take()
+            .unwrap()
+            .write_all(input.as_bytes())
+            .unwrap();
+        let output = child.wait_with_output().unwrap();
+        assert!(output.status.code().is_some(), "it ends");
+        assert!(
+            text(&output).contains("\"hoverProvider\":true"),
+            "{}",
+            text(&output)
+        );
+        if success {
+            assert_eq!(output.status.code(), Some(0), "{}", errors(&output));
+        }
+    }
+}

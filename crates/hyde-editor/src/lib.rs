@@ -1,0 +1,33 @@
+//! A language server for Hyde: what an editor asks about a text, answered with the functions of hyde-study.
+//!
+//! ```text
+//! server        messages in and out, and the pause before a full check     server.rs
+//! check         a full check, on a thread of its own                       check.rs
+//! answer        each request with its answer                               answer.rs
+//! documents     the texts that are open, over the files of the disk        documents.rs
+//! analysis      a text with the packages it names, parsed                  analysis.rs
+//! scope         what a name means                                          scope.rs
+//! occurrences   every name of a file with its meaning                      occurrences.rs
+//! position      places as the protocol counts them                         position.rs
+//! ```
+//! Start reading at [`serve`] in `server.rs`. Nothing here opens files of its own or prints: files are those of a
+//! [`hyde_study::world::World`], and what needs the machine is asked of a [`Host`].
+
+mod analysis;
+mod answer;
+mod check;
+mod complete;
+mod describe;
+mod documents;
+mod fixes;
+mod occurrences;
+mod outline;
+mod position;
+mod publish;
+mod rename;
+mod scope;
+mod server;
+mod tokens;
+mod uri;
+
+pub use server::{Host, serve};

@@ -1,0 +1,404 @@
+//! Messages in and out: the texts follow the editor, syntax errors are shown at every change, and a full check runs after a
+//! pause. A change that comes before drops the check.
+
+use crate::analysis::Analysis;
+use crate::answer::answer;
+use crate::check::{Checked, Job, check};
+use crate::documents::Documents;
+use crate::position::Encoding;
+use crate::publish::published;
+use crate::tokens;
+use crate::uri;
+use crossbeam_channel::{Receiver, Sender, after, bounded, never, select, unbounded};
+use hyde_diag::{Code, Diagnostics, Sources};
+use hyde_study::world::{World, read_text};
+use hyde_syntax::ast::File;
+use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
+use lsp_types::notification as tell;
+use lsp_types::notification::Notification as _;
+use lsp_types::{
+    CodeActionKind, CodeActionOptions, CodeActionProviderCapability, CompletionOptions,
+    HoverProviderCapability, InitializeParams, NumberOrString, OneOf, Position,
+    PositionEncodingKind, PublishDiagnosticsParams, RenameOptions,
+    SelectionRangeProviderCapability, SemanticTokensFullOptions, SemanticTokensOptions,
+    ServerCapabilities, TextDocumentSyncCapability, TextDocumentSyncKind,
+};
+use serde_json::{Value, json};
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// The pause after the last change before a full check.
+const PAUSE: Duration = Duration::from_millis(250);
+
+/// What the server asks of the program that it is part of.
+pub trait Host {
+    /// The file of a package of the library, written if it is not there: an editor opens files. `name` is that of the source
+    /// text, `Drives/Screws.hyde`.
+    fn library_file(&self, name: &str, text: &str) -> Option<PathBuf>;
+
+    /// What a code means, as Markdown.
+    fn explanation(&self, code: Code) -> String;
+}
+
+/// The state of a session.
+pub(crate) struct Server {
+    pub(crate) documents: Documents,
+    pub(crate) encoding: Encoding,
+    /// The folders that the editor works in.
+    pub(crate) folders: Vec<PathBuf>,
+    pub(crate) host: Box<dyn Host>,
+    /// What was published for each text.
+    published: BTreeMap<PathBuf, Vec<lsp_types::Diagnostic>>,
+    /// The analyses of the present revision.
+    analyses: RefCell<(u64, BTreeMap<PathBuf, Rc<Analysis>>)>,
+}
+
+/// Serves an editor until it ends the session.
+///
+/// # Errors
+/// The editor does not keep to the protocol.
+pub fn serve(
+    connection: &Connection,
+    disk: Arc<dyn World>,
+    host: Box<dyn Host>,
+) -> Result<(), String> {
+    let (id, params) = connection
+        .initialize_start()
+        .map_err(|error| error.to_string())?;
+    let params: InitializeParams =
+        serde_json::from_value(params).map_err(|error| error.to_string())?;
+    let encoding = encoding(&params);
+    let answer = json!({
+        "capabilities": capabilities(encoding),
+        "serverInfo": { "name": "hyde", "version": env!("CARGO_PKG_VERSION") },
+    });
+    connection
+        .initialize_finish(id, answer)
+        .map_err(|error| error.to_string())?;
+    let server = Server {
+        documents: Documents::over(disk),
+        encoding,
+        folders: folders(&params),
+        host,
+        published: BTreeMap::new(),
+        analyses: RefCell::default(),
+    };
+    let (jobs, to_do) = bounded::<Job>(1);
+    let (done, results) = unbounded::<Checked>();
+    std::thread::scope(|scope| {
+        scope.spawn(move || work(&to_do, &done));
+        server.run(connection, jobs, &results)
+    })
+}
+
+/// Checks one text after the other.
+fn work(jobs: &Receiver<Job>, done: &Sender<Checked>) {
+    for job in jobs {
+        if done.send(check(&job)).is_err() {
+            return;
+        }
+    }
+}
+
+/// The first encoding that both know.
+fn encoding(params: &InitializeParams) -> Encoding {
+    let general = params.capabilities.general.as_ref();
+    let known = general.and_then(|general| general.position_encodings.as_ref());
+    match known.is_some_and(|known| known.contains(&PositionEncodingKind::UTF8)) {
+        true => Encoding::Utf8,
+        false => Encoding::Utf16,
+    }
+}
+
+#[allow(
+    deprecated,
+    reason = "older clients say where they work in this field alone"
+)]
+fn folders(params: &InitializeParams) -> Vec<PathBuf> {
+    let folders = params.workspace_folders.iter().flatten();
+    let mut found: Vec<PathBuf> = folders.filter_map(|own| uri::path(&own.uri)).collect();
+    if found.is_empty() {
+        found.extend(params.root_uri.as_ref().and_then(uri::path));
+    }
+    found
+}
+
+fn capabilities(encoding: Encoding) -> ServerCapabilities {
+    ServerCapabilities {
+        position_encoding: Some(match encoding {
+            Encoding::Utf8 => PositionEncodingKind::UTF8,
+            Encoding::Utf16 => PositionEncodingKind::UTF16,
+        }),
+        text_document_sync: Some(TextDocumentSyncCapability::Kind(
+            TextDocumentSyncKind::INCREMENTAL,
+        )),
+        document_formatting_provider: Some(OneOf::Left(true)),
+        document_symbol_provider: Some(OneOf::Left(true)),
+        folding_range_provider: Some(true.into()),
+        selection_range_provider: Some(SelectionRangeProviderCapability::Simple(true)),
+        hover_provider: Some(HoverProviderCapability::Simple(true)),
+        definition_provider: Some(OneOf::Left(true)),
+        references_provider: Some(OneOf::Left(true)),
+        document_highlight_provider: Some(OneOf::Left(true)),
+        rename_provider: Some(OneOf::Right(RenameOptions {
+            prepare_provider: Some(true),
+            work_done_progress_options: Default::default(),
+        })),
+        completion_provider: Some(CompletionOptions {
+            trigger_characters: Some([".", "(", "[", ","].map(str::to_owned).to_vec()),
+            ..CompletionOptions::default()
+        }),
+        code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
+            code_action_kinds: Some(vec![CodeActionKind::QUICKFIX]),
+            ..CodeActionOptions::default()
+        })),
+        semantic_tokens_provider: Some(
+            SemanticTokensOptions {
+                legend: tokens::legend(),
+                full: Some(SemanticTokensFullOptions::Bool(true)),
+                ..SemanticTokensOptions::default()
+            }
+            .into(),
+        ),
+        workspace_symbol_provider: Some(OneOf::Left(true)),
+        ..ServerCapabilities::default()
+    }
+}
+
+impl Server {
+    /// Follows the editor until it says `exit`, or is gone.
+    fn run(
+        mut self,
+        connection: &Connection,
+        jobs: Sender<Job>,
+        results: &Receiver<Checked>,
+    ) -> Result<(), String> {
+        // The texts to check once the pause is over.
+        let mut due: BTreeSet<PathBuf> = BTreeSet::new();
+        let mut pause = never();
+        let (mut quiet, mut busy) = (true, false);
+        loop {
+            if quiet
+                && !busy
+                && let Some(path) = due.pop_first()
+            {
+                busy = jobs.send(self.job(path)).is_ok();
+            }
+            select! {
+                recv(connection.receiver) -> message => {
+                    let Ok(message) = message else {
+                        return Ok(());
+                    };
+                    match message {
+                        Message::Request(request) => {
+                            let ended = connection
+                                .handle_shutdown(&request)
+                                .map_err(|error| error.to_string())?;
+                            if ended {
+                                return Ok(());
+                            }
+                            send(connection, Message::Response(self.respond(request)));
+                        }
+                        Message::Notification(told) => {
+                            let paths = self.follow(connection, told);
+                            if !paths.is_empty() {
+                                due.extend(paths);
+                                quiet = false;
+                                pause = after(PAUSE);
+                            }
+                        }
+                        Message::Response(_) => {}
+                    }
+                }
+                recv(results) -> checked => {
+                    busy = false;
+                    if let Ok(checked) = checked {
+                        self.checked(connection, checked);
+                    }
+                }
+                recv(pause) -> _ => {
+                    quiet = true;
+                    pause = never();
+                }
+            }
+        }
+    }
+
+    fn respond(&self, request: Request) -> Response {
+        let (id, method) = (request.id, request.method);
+        // A defect in an answer must not end the session.
+        let found = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
+            answer(self, &method, request.params)
+        }));
+        match found {
+            Ok(Ok(value)) => Response::new_ok(id, value),
+            Ok(Err((code, reason))) => Response::new_err(id, code as i32, reason),
+            Err(_) => {
+                let reason = format!("`{method}` failed; this is a defect of Hyde");
+                Response::new_err(id, ErrorCode::InternalError as i32, reason)
+            }
+        }
+    }
+
+    /// Follows a notification; the texts that must be checked again.
+    fn follow(&mut self, connection: &Connection, told: Notification) -> Vec<PathBuf> {
+        let changed = match told.method.as_str() {
+            tell::DidOpenTextDocument::METHOD => self.opened(told.params),
+            tell::DidChangeTextDocument::METHOD => self.changed(told.params),
+            tell::DidCloseTextDocument::METHOD => {
+                self.closed(connection, told.params);
+                None
+            }
+            tell::DidSaveTextDocument::METHOD | tell::DidChangeWatchedFiles::METHOD => {
+                self.documents.disk_changed();
+                return self.documents.paths().cloned().collect();
+            }
+            _ => return Vec::new(),
+        };
+        let Some(path) = changed else {
+            return Vec::new();
+        };
+        let syntax = self.syntax(&path);
+        self.publish(connection, &path, syntax);
+        // The others may import it.
+        self.documents.paths().cloned().collect()
+    }
+
+    fn opened(&mut self, params: Value) -> Option<PathBuf> {
+        let params: lsp_types::DidOpenTextDocumentParams = serde_json::from_value(params).ok()?;
+        let path = uri::path(&params.text_document.uri)?;
+        let document = params.text_document;
+        self.documents
+            .open(path.clone(), document.text, document.version);
+        Some(path)
+    }
+
+    fn changed(&mut self, params: Value) -> Option<PathBuf> {
+        let params: lsp_types::DidChangeTextDocumentParams = serde_json::from_value(params).ok()?;
+        let path = uri::path(&params.text_document.uri)?;
+        let version = params.text_document.version;
+        self.documents
+            .change(&path, version, params.content_changes, self.encoding);
+        Some(path)
+    }
+
+    fn closed(&mut self, connection: &Connection, params: Value) {
+        let params = serde_json::from_value::<lsp_types::DidCloseTextDocumentParams>(params);
+        let path = params
+            .ok()
+            .and_then(|own| uri::path(&own.text_document.uri));
+        if let Some(path) = path {
+            self.documents.close(&path);
+            self.publish(connection, &path, Vec::new());
+            self.published.remove(&path);
+        }
+    }
+
+    /// The syntax errors of a text.
+    fn syntax(&self, path: &Path) -> Vec<lsp_types::Diagnostic> {
+        let Some(document) = self.documents.get(path) else {
+            return Vec::new();
+        };
+        let mut sources = Sources::new();
+        let file = sources.add(path.to_string_lossy(), document.text.as_str());
+        let mut diagnostics = Diagnostics::new();
+        hyde_syntax::parse(&sources, file, &mut diagnostics);
+        let found = diagnostics.iter();
+        found
+            .map(|own| published(own, &sources, Some(file), self.encoding))
+            .collect()
+    }
+
+    fn job(&self, path: PathBuf) -> Job {
+        Job {
+            version: self.documents.get(&path).map(|own| own.version),
+            world: self.documents.world(),
+            revision: self.documents.revision,
+            encoding: self.encoding,
+            path,
+        }
+    }
+
+    /// Shows what a check found, unless a file has changed since: then another check is due.
+    fn checked(&mut self, connection: &Connection, checked: Checked) {
+        let current = self.documents.get(&checked.path).map(|own| own.version);
+        if checked.revision == self.documents.revision && current == checked.version {
+            self.publish(connection, &checked.path, checked.diagnostics);
+        }
+    }
+
+    fn publish(
+        &mut self,
+        connection: &Connection,
+        path: &Path,
+        diagnostics: Vec<lsp_types::Diagnostic>,
+    ) {
+        let Some(uri) = uri::of(path) else {
+            return;
+        };
+        let version = self.documents.get(path).map(|own| own.version);
+        self.published
+            .insert(path.to_path_buf(), diagnostics.clone());
+        let params = PublishDiagnosticsParams::new(uri, diagnostics, version);
+        let method = tell::PublishDiagnostics::METHOD.to_owned();
+        send(
+            connection,
+            Message::Notification(Notification::new(method, params)),
+        );
+    }
+
+    /// The codes of the diagnostics that are shown at a place.
+    pub(crate) fn codes_at(&self, path: &Path, position: Position) -> Vec<String> {
+        let shown = self.published.get(path).into_iter().flatten();
+        let here = shown.filter(|own| own.range.start <= position && position <= own.range.end);
+        let mut codes: Vec<String> = here
+            .filter_map(|own| match &own.code {
+                Some(NumberOrString::String(code)) => Some(code.clone()),
+                Some(NumberOrString::Number(_)) | None => None,
+            })
+            .collect();
+        codes.dedup();
+        codes
+    }
+
+    /// The text of a file as the editor shows it.
+    pub(crate) fn text(&self, path: &Path) -> Option<String> {
+        match self.documents.get(path) {
+            Some(document) => Some(document.text.clone()),
+            None => read_text(self.documents.world().as_ref(), path).ok(),
+        }
+    }
+
+    /// The tree of a file alone, and its text.
+    pub(crate) fn tree(&self, path: &Path) -> Option<(File, String)> {
+        let text = self.text(path)?;
+        let mut sources = Sources::new();
+        let file = sources.add("", text.as_str());
+        let tree = hyde_syntax::parse(&sources, file, &mut Diagnostics::new());
+        Some((tree, text))
+    }
+
+    /// The analysis of a file, made once for each state of the files.
+    pub(crate) fn analysis(&self, path: &Path) -> Option<Rc<Analysis>> {
+        let mut known = self.analyses.borrow_mut();
+        let revision = self.documents.revision;
+        if known.0 != revision {
+            *known = (revision, BTreeMap::new());
+        }
+        if let Some(analysis) = known.1.get(path) {
+            return Some(Rc::clone(analysis));
+        }
+        let analysis = Rc::new(Analysis::of(&self.documents.world(), path)?);
+        known.1.insert(path.to_path_buf(), Rc::clone(&analysis));
+        Some(analysis)
+    }
+}
+
+/// A message to the editor; one that is gone gets none.
+fn send(connection: &Connection, message: Message) {
+    drop(connection.sender.send(message));
+}
