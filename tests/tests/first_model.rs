@@ -41,6 +41,7 @@ fn each_template_runs_at_once_and_arrives() {
         let text = std::fs::read_to_string(scratch.path().join(&file)).unwrap();
         assert!(!text.contains('@'), "{text}");
         right(scratch.path(), &["check", &file]);
+        right(scratch.path(), &["fmt", "--check", &file]);
         right(scratch.path(), &["run", &file, "move", "--out", template]);
         let rows =
             std::fs::read_to_string(scratch.path().join(template).join("results.csv")).unwrap();

@@ -54,7 +54,7 @@ fn written(args: &NewArgs) -> Result<(PathBuf, FirstModel), Failed> {
         ratio: quantity(args.ratio.as_deref(), "ratio", ratio_unit(template)).map_err(wrong)?,
         traces,
     };
-    let model = first_model(&wish)
+    let mut model = first_model(&wish)
         .map_err(|no| (Exit::Model, format!("{}\n  help: {}", no.message, no.help)))?;
     let path = folder.join(format!("{}.hyde", args.name));
     if files::is_file(&path) {
@@ -62,6 +62,10 @@ fn written(args: &NewArgs) -> Result<(PathBuf, FirstModel), Failed> {
             "`{}` is there already: give another name, or another folder by `--out DIR`",
             path.display()
         )));
+    }
+    // A text that the formatter cannot take is left as it is written.
+    if let Ok(formatted) = hyde_format::format(&args.name, &model.text) {
+        model.text = formatted.text;
     }
     files::make_folder(&folder).map_err(wrong)?;
     files::write(&path, model.text.as_bytes()).map_err(wrong)?;
