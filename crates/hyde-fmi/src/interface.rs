@@ -178,14 +178,22 @@ impl Interface {
                 .as_ref()
                 .map_or(Dimension::DIMENSIONLESS, |unit| unit.unit().dimension);
             let unit = NamedUnit::usual(unit.divide(Dimension::TIME));
-            let derivative = Variable {
-                name: format!("der({})", of.name),
-                unit: shown_unit(unit.unit().dimension, &unit),
-                derivative_of: Some(state),
-                ..Variable::inside(Source::Derivative(position))
+            let name = derivative_name(&of.name);
+            // The model may report the derivative itself.
+            let number = match names.get(&name) {
+                Some(&number) => number,
+                None => {
+                    self.variables.push(Variable {
+                        name,
+                        unit: shown_unit(unit.unit().dimension, &unit),
+                        ..Variable::inside(Source::Derivative(position))
+                    });
+                    self.variables.len() - 1
+                }
             };
-            self.derivatives.push(self.variables.len());
-            self.variables.push(derivative);
+            self.variables[number].source = Source::Derivative(position);
+            self.variables[number].derivative_of = Some(state);
+            self.derivatives.push(number);
         }
         let relations = program.relations.iter().enumerate();
         for (number, relation) in relations.filter(|(_, relation)| !relation.scheduled) {
@@ -241,6 +249,14 @@ impl Variable {
             bounds: (None, None),
             derivative_of: None,
         }
+    }
+}
+
+/// The name of the derivative of a variable, as the standard writes it.
+fn derivative_name(of: &str) -> String {
+    match of.strip_prefix("der(").and_then(|of| of.strip_suffix(')')) {
+        Some(of) => format!("der({of},2)"),
+        None => format!("der({of})"),
     }
 }
 
