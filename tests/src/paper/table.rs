@@ -90,7 +90,9 @@ fn package_text(package: &str) -> Result<String, String> {
 
 /// What stands between `model NAME` and `end NAME`.
 fn body<'t>(text: &'t str, name: &str) -> Option<&'t str> {
-    let (_, rest) = text.split_once(&format!("\nmodel {name} "))?;
+    // Its doc string stands behind the name or on the next line.
+    let begins = |end: char| text.split_once(&format!("\nmodel {name}{end}"));
+    let (_, rest) = begins(' ').or_else(|| begins('\n'))?;
     let (body, _) = rest.split_once(&format!("\nend {name};"))?;
     Some(body)
 }
