@@ -34,29 +34,6 @@ pub enum Template {
 }
 
 impl Template {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Screw,
-        Self::Belt,
-        Self::Rack,
-        Self::Linear,
-        Self::Table,
-        Self::Bench,
-    ];
-
-    /// Its name on the command line.
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Screw => "screw",
-            Self::Belt => "belt",
-            Self::Rack => "rack",
-            Self::Linear => "linear",
-            Self::Table => "table",
-            Self::Bench => "bench",
-        }
-    }
-
     /// What it is, in a line.
     #[must_use]
     pub fn about(self) -> &'static str {
@@ -147,7 +124,7 @@ pub fn first_model(wish: &Wish) -> Result<FirstModel, NoModel> {
     let shown = estimate::of(trace, &channels, wish.template, ratio.value);
     notes.push(match &shown {
         Some(found) => format!(
-            "inertia and friction follow from the trace for the torque or force per current given: they explain {:.0} % of the current",
+            "inertia and friction follow from the trace for the torque or force per current in the file: they explain {:.0} % of the current",
             100.0 * found.explained
         ),
         None => "the trace shows neither inertia nor friction: both are guesses".to_owned(),

@@ -39,6 +39,19 @@ pub(super) struct Measured {
     pub(super) unit: String,
 }
 
+impl Measured {
+    /// Whether a channel of the motor gives its position or speed as a way of the load.
+    pub(super) fn is_way(&self, template: Template) -> bool {
+        let dimension = |text: &str| {
+            NamedUnit::parse(text)
+                .ok()
+                .map(|unit| unit.unit().dimension)
+        };
+        let own = dimension(&self.unit);
+        template.slides() && (own == dimension("m") || own == dimension("m/s"))
+    }
+}
+
 /// Chooses the channels.
 pub(super) fn of(trace: &Trace, template: Template) -> Result<Channels, NoModel> {
     let all = &trace.look.channels;

@@ -9,8 +9,7 @@
 
 use super::channels::Channels;
 use super::{Template, Trace};
-use hyde_signal::{Column, Cursor};
-use hyde_units::NamedUnit;
+use hyde_signal::Cursor;
 use nalgebra::{DMatrix, DVector};
 
 /// The length of a block in s, and the fewest samples in one.
@@ -42,7 +41,8 @@ pub(super) fn of(
     ratio: f64,
 ) -> Option<Estimate> {
     let (measured, factor) = match (&channels.motor, &channels.load) {
-        (Some(motor), _) => (motor, at_motor(trace, &motor.name, template, ratio)),
+        (Some(motor), _) if motor.is_way(template) => (motor, 1.0 / ratio),
+        (Some(motor), _) => (motor, 1.0),
         (None, Some(load)) if template == Template::Linear => (load, 1.0),
         (None, Some(load)) if template.slides() => (load, 1.0 / ratio),
         (None, Some(load)) => (load, ratio),
@@ -68,22 +68,6 @@ pub(super) fn of(
     let block_s = step_s * length as f64;
     let motion = motion(&shown, &current, block_s, measured.is_speed);
     solve(&motion)
-}
-
-/// A channel of the motor in its own unit: a length is that of the load.
-fn at_motor(trace: &Trace, name: &str, template: Template, ratio: f64) -> f64 {
-    let is = |unit: &str| {
-        let wanted = NamedUnit::parse(unit)
-            .ok()
-            .map(|unit| unit.unit().dimension);
-        trace.table.column(name).and_then(Column::dimension) == wanted
-    };
-    let slides = is("m") || is("m/s");
-    if template.slides() && slides {
-        1.0 / ratio
-    } else {
-        1.0
-    }
 }
 
 /// Current, acceleration and speed at a block.

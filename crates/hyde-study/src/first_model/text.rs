@@ -3,7 +3,6 @@
 use super::channels::{Channels, Measured};
 use super::parts::Parts;
 use super::{FirstModel, Template, Wish};
-use hyde_units::NamedUnit;
 use std::f64::consts::TAU;
 
 const TURNS: &str = "import SI.*;
@@ -283,7 +282,7 @@ fn compared(measured: &Measured, side: &str, reversed: bool, template: Template)
         (_, false) => "position",
         (_, true) => "speed",
     };
-    let as_way = side == "motor_" && is_way(measured, template);
+    let as_way = side == "motor_" && measured.is_way(template);
     let shown = if as_way {
         format!("lead*{shown}")
     } else {
@@ -321,7 +320,7 @@ fn start(channels: &Channels, parts: &Parts, template: Template) -> String {
     let load = channels.load.as_ref().filter(place).map(first);
     let motor = channels.motor.as_ref().filter(place);
     let sign = if parts.motor_reversed { "-" } else { "" };
-    let motor = motor.map(|motor| match (is_way(motor, template), template) {
+    let motor = motor.map(|motor| match (motor.is_way(template), template) {
         (true, Template::Linear) => first(motor),
         (true, _) => {
             let lead = digits(parts.ratio * TAU * 1e3, 6);
@@ -338,17 +337,6 @@ fn start(channels: &Channels, parts: &Parts, template: Template) -> String {
         true => String::new(),
         false => format!("({})", starts.join(", ")),
     }
-}
-
-/// Whether a channel of the motor gives its position or speed as a way of the load.
-fn is_way(measured: &Measured, template: Template) -> bool {
-    let dimension = |text: &str| {
-        NamedUnit::parse(text)
-            .ok()
-            .map(|unit| unit.unit().dimension)
-    };
-    let own = dimension(&measured.unit);
-    template.slides() && (own == dimension("m") || own == dimension("m/s"))
 }
 
 /// A column as an experiment writes it.
