@@ -93,14 +93,18 @@ impl<'a> Words<'a> {
             let parsed = (!part.broken && !part.pieces.is_empty())
                 .then(|| reader.part(&part.pieces))
                 .flatten();
-            parts.push(match parsed {
-                Some(pieces) => Part::Parsed(pieces),
-                None => {
-                    reader.words.truncate(count);
-                    reader.kept(part.start, part.end);
-                    Part::Kept(count)
-                }
-            });
+            if let Some(pieces) = parsed {
+                parts.push(Part::Parsed(pieces));
+                continue;
+            }
+            reader.words.truncate(count);
+            // Where one error ends and the next begins depends on line breaks: such neighbours stay together.
+            if let Some(Part::Kept(_)) = parts.last() {
+                reader.keep_more(part.end);
+            } else {
+                reader.keep(part.start, part.end);
+                parts.push(Part::Kept(count));
+            }
         }
         let rest = reader.before().unwrap_or_default();
         Self {
@@ -203,7 +207,7 @@ impl<'a> Reader<'a> {
     }
 
     /// A part that stays as it is.
-    fn kept(&mut self, start: usize, end: usize) {
+    fn keep(&mut self, start: usize, end: usize) {
         // The parser begins a part behind white space and comments, and may end it behind them too.
         let before = self.before().unwrap_or_default();
         let start = start.max(self.at);
@@ -214,6 +218,15 @@ impl<'a> Reader<'a> {
             text: &self.text[start..end],
             before,
         });
+    }
+
+    /// The last word, which is a part that stays as it is, reaches further.
+    fn keep_more(&mut self, end: usize) {
+        if let Some(word) = self.words.last_mut() {
+            let start = self.at - word.text.len();
+            word.text = self.text[start..end.max(self.at)].trim_end();
+            self.at = start + word.text.len();
+        }
     }
 
     /// Moves past white space and comments.

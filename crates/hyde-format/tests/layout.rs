@@ -148,6 +148,9 @@ fn texts_that_are_no_model_do_not_panic() {
         "\u{a0}// c\u{a0}\nmodel A end A;",
         "experiment e of",
         "model A equation x = - /* c */ 1; end A;",
+        "/*//\n*/model//modelmodel",
+        "\"//\"end=//\"}\"",
+        "model//\nA(end end*/\n",
     ] {
         let formatted = format(text);
         assert_eq!(format(&formatted), formatted);

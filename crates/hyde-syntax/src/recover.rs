@@ -1,6 +1,6 @@
 //! Where to go on after an error: past the statement or block that holds it.
 
-/// Words, single characters and nothing of comments, strings or white space, each with its place.
+/// Words, strings and single characters, nothing of comments or white space, each with its place.
 pub(crate) struct Scanner<'a> {
     text: &'a str,
     at: usize,
@@ -23,9 +23,11 @@ impl<'a> Iterator for Scanner<'a> {
             if rest.starts_with("//") {
                 self.at += rest.find('\n').unwrap_or(rest.len());
             } else if rest.starts_with("/*") {
-                self.at += rest.find("*/").map_or(rest.len(), |end| end + 2);
+                self.at += comment_len(rest);
             } else if first == '"' {
-                self.at += string_len(rest);
+                let len = string_len(rest);
+                self.at += len;
+                return Some((start, &rest[..len]));
             } else if first.is_whitespace() {
                 self.at += first.len_utf8();
             } else if first.is_alphabetic() || first == '_' {
@@ -52,7 +54,7 @@ pub(crate) fn without_end(text: &str) -> Option<(usize, &'static str)> {
             at += rest.find('\n')?;
             continue;
         } else if rest.starts_with("/*") {
-            ("/*", rest.get(2..)?.find("*/").map(|end| end + 4))
+            ("/*", comment_end(rest))
         } else if rest.starts_with('"') {
             ("\"", string_end(rest))
         } else {
@@ -84,7 +86,7 @@ pub(crate) fn skip_blank(text: &str, at: usize) -> usize {
         if trimmed.starts_with("//") {
             at += trimmed.find('\n').unwrap_or(trimmed.len());
         } else if trimmed.starts_with("/*") {
-            at += trimmed.find("*/").map_or(trimmed.len(), |end| end + 2);
+            at += comment_len(trimmed);
         } else {
             return at;
         }
@@ -181,6 +183,15 @@ pub(crate) const ITEMS: [&str; 8] = [
     "diagnose",
     "sweep",
 ];
+
+fn comment_len(rest: &str) -> usize {
+    comment_end(rest).unwrap_or(rest.len())
+}
+
+/// Behind the `*/` that ends a comment; `/*/` begins one only.
+fn comment_end(rest: &str) -> Option<usize> {
+    rest.get(2..)?.find("*/").map(|end| end + 4)
+}
 
 fn string_len(rest: &str) -> usize {
     string_end(rest).unwrap_or(rest.len())
