@@ -8,7 +8,7 @@ mod traces;
 
 pub(crate) use batch::{Engine, SweepArgs, TableFormat};
 pub(crate) use editor::{ExplainArgs, FmtArgs, LspArgs};
-pub(crate) use export::{ExportArgs, ExportKind, FmiVersion, FmuArgs};
+pub(crate) use export::{ExportArgs, ExportKind, FmiVersion, FmuArgs, StateSpaceArgs};
 pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 pub(crate) use traces::{LookArgs, NewArgs, TemplateName};
 
@@ -205,6 +205,8 @@ pub(crate) enum Format {
     Parquet,
     /// `results.json`, one list per column
     Json,
+    /// `results.mat`, trajectories as Dymola and OpenModelica write them
+    Mat,
 }
 
 #[derive(Debug, Args)]

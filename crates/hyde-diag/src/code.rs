@@ -100,6 +100,7 @@ codes! {
     NoResponse "E0812" "a frequency response is not defined here";
     BadSweep "E0813" "a sweep cannot be planned";
     CannotCut "E0814" "a loop cannot be opened at this signal";
+    CannotExport "E0815" "a part of the model cannot be expressed in the exported form";
     BadStudy "E0901" "a study is incomplete or invalid";
     NoFiles "E0902" "no file matches the pattern of a study";
     CannotVary "E0903" "a parameter cannot be varied";

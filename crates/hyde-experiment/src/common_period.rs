@@ -216,6 +216,11 @@ impl<'a> CommonPeriod<'a> {
         self.period
     }
 
+    /// The first instant of the period, in s.
+    pub(crate) fn first_s(&self) -> f64 {
+        self.instants.first().map_or(0.0, |instant| instant.t)
+    }
+
     /// What becomes of (xi, m, h) over the common period without an input.
     pub(crate) fn transition(&self) -> DMatrix<f64> {
         let (nx, nm) = (self.linear.a.nrows(), self.sampled.select.ncols());

@@ -1,5 +1,5 @@
 //! What is asked of a program beside one solution: a run with its record ([`read_record`]), measures and expectations ([`run`]); the
-//! system linearised about an operating point ([`linearize`]), its frequency response with the sampled loop closed
+//! system linearised about an operating point ([`linearize`]), as a [`state_space`], its frequency response with the sampled loop closed
 //! ([`frequency_response`]), the margins of a loop cut at a signal ([`margins`]) and its modes ([`modes`]); the response on the full hybrid model, swept ([`swept_response`]) and
 //! stepped ([`stepped_response`]), and measured ones ([`measured_curve`]); parameters from measured modes
 //! ([`fit_modes`]); the forces between components ([`flows`]) and the error budget ([`BudgetOf`]); the limit
@@ -29,6 +29,7 @@ mod record;
 mod rows;
 mod run;
 mod sampled;
+mod state_space;
 mod stepped;
 mod swept;
 
@@ -57,5 +58,6 @@ pub use run::{
     record_value, run, run_again, setup,
 };
 pub use sampled::{Clocked, Sampled};
+pub use state_space::{SampleTimes, StateSpace, StateSpaceSignal, state_space};
 pub use stepped::{Level, SteppedOutput, SteppedPoint, Steps, stepped_response};
 pub use swept::{Swept, swept_response};

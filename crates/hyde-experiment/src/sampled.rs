@@ -15,6 +15,8 @@ pub struct Sampled {
     pub holder: Vec<usize>,
     /// The program's outputs by memory.
     pub outputs: DMatrix<f64>,
+    /// Positions of the memory that is kept.
+    pub written: Vec<usize>,
 }
 
 /// One clock: memory after its tick is `memory*m + by_state*x + by_input*u + by_held*h`, all just before the tick.
@@ -135,5 +137,6 @@ pub(crate) fn sampled(
         holder: holder.collect(),
         clocks,
         select,
+        written,
     })
 }

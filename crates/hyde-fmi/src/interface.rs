@@ -4,9 +4,8 @@
 //! A value reference is the number of the variable. The order: time, parameters, inputs, reported quantities, states that are
 //! not reported, derivatives of states, guards.
 
-use hyde_diag::MadeBy;
-use hyde_program::Function;
-use hyde_program::{Constant, Firmness, InitialCondition, Output, Parameter, Program, Wrt};
+use hyde_program::{Output, Parameter, Program};
+use hyde_study::ports::{chosen_outputs, fixed_places, is_input};
 use hyde_units::{Dimension, Kind, NamedUnit};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -277,52 +276,6 @@ fn no_model_exchange(program: &Program) -> Option<String> {
         .then(|| "the model reads quantities as they were some time ago".to_owned())
 }
 
-/// Whether a parameter is an input that the importer sets: made for a free input, whose value is reported by its name.
-fn is_input(program: &Program, parameter: &Parameter) -> bool {
-    parameter.origin.made_by == MadeBy::Experiment && program.output(&parameter.name).is_some()
-}
-
-fn chosen_outputs(program: &Program, asked: &[String]) -> Result<BTreeSet<usize>, String> {
-    if asked.is_empty() {
-        let shown = |(_, output): &(usize, &Output)| !output.auxiliary;
-        let numbers = |keep: &dyn Fn(&str) -> bool| {
-            let all = program.outputs.iter().enumerate().filter(shown);
-            let kept = all.filter(|(_, output)| keep(&output.name));
-            kept.map(|(number, _)| number).collect::<BTreeSet<usize>>()
-        };
-        let inputs: Vec<&str> = program
-            .parameters
-            .iter()
-            .filter(|parameter| is_input(program, parameter))
-            .map(|parameter| parameter.name.as_str())
-            .collect();
-        let own = numbers(&|name| !name.contains(['.', '[']) && !inputs.contains(&name));
-        return Ok(match own.is_empty() {
-            true => numbers(&|name| !name.contains('[')),
-            false => own,
-        });
-    }
-    asked
-        .iter()
-        .map(|name| {
-            program.output(name).ok_or_else(|| {
-                let last = name.rsplit('.').next().unwrap_or(name);
-                let near = program.outputs.iter().filter(|output| {
-                    !output.auxiliary && output.name.rsplit('.').next() == Some(last)
-                });
-                let near: Vec<&str> = near.map(|output| output.name.as_str()).take(3).collect();
-                match near.as_slice() {
-                    [] => format!("the model reports no quantity `{name}`"),
-                    _ => format!(
-                        "the model reports no quantity `{name}`; did you mean `{}`?",
-                        near.join("`, `")
-                    ),
-                }
-            })
-        })
-        .collect()
-}
-
 fn of_output(output: &Output, number: usize, chosen: &BTreeSet<usize>) -> Variable {
     Variable {
         name: output.name.clone(),
@@ -384,66 +337,4 @@ fn shown_unit(dimension: Dimension, unit: &NamedUnit) -> Option<NamedUnit> {
     let bare = dimension.is_dimensionless() && unit.unit().is_si();
     let bare = bare && dimension.si_exponents().is_none_or(|all| all == [0; 8]);
     (!bare).then(|| unit.clone())
-}
-
-/// The places of parameters that count at the start alone: instants, fixed states, start values and initial equations are made
-/// of them.
-fn fixed_places(program: &Program, parameters: &[f64]) -> BTreeSet<usize> {
-    let kernels = &program.kernels;
-    let mut read: BTreeSet<usize> = BTreeSet::new();
-    let instants = (0..program.clocks.len()).flat_map(|clock| {
-        [
-            Constant::Period(clock),
-            Constant::Delay(clock),
-            Constant::Phase(clock),
-        ]
-    });
-    let scheduled = (0..program.relations.len()).filter(|&r| program.relations[r].scheduled);
-    for which in instants.chain(scheduled.map(Constant::TimeEvent)) {
-        let partials = kernels.instant_partials(which, parameters);
-        read.extend(partials.into_iter().map(|(place, _)| place));
-    }
-    read.extend(
-        kernels
-            .start_partials(parameters)
-            .into_iter()
-            .map(|(_, place, _)| place),
-    );
-    let first_pin = program.assignments.len();
-    let of = |function: Function, first: usize| {
-        let entries = kernels.still_entries(function).into_iter();
-        entries.filter_map(move |entry| match entry.wrt {
-            Wrt::Parameter(place) if entry.row >= first => Some(place),
-            Wrt::Parameter(_)
-            | Wrt::Unknown(_)
-            | Wrt::Derivative(_)
-            | Wrt::Memory(_)
-            | Wrt::Delayed(_)
-            | Wrt::Time => None,
-        })
-    };
-    read.extend(of(Function::Assignments, first_pin));
-    let initial = program.initial.iter().any(|condition| match condition {
-        InitialCondition::Equation { .. } => true,
-        InitialCondition::Fixed { firmness, .. } => *firmness == Firmness::Free,
-        InitialCondition::Check { .. } => true,
-    });
-    if initial {
-        read.extend(of(Function::Initial, 0));
-    }
-    if read.is_empty() {
-        return read;
-    }
-    let plain: Vec<usize> = program
-        .parameters
-        .iter()
-        .flat_map(|parameter| parameter.place..parameter.place + parameter.len)
-        .collect();
-    let directions = kernels.parameter_directions(&plain, parameters);
-    let reaches = |direction: &Vec<f64>| read.iter().any(|&place| direction[place] != 0.0);
-    let reached = plain.iter().zip(&directions);
-    reached
-        .filter(|(_, direction)| reaches(direction))
-        .map(|(place, _)| *place)
-        .collect()
 }

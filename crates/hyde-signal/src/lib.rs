@@ -1,7 +1,8 @@
 //! Sampled signals with names and units: CSV and Parquet, interpolation, filters, spectra.
 //!
 //! A record is a [`Table`]: columns of equal length over one time, read by [`csv::read`] and written by
-//! [`csv::write`] in the same form, or by [`parquet`] with the same numbers, so that a result can stand in for a measurement. Columns whose unit is known hold
+//! [`csv::write`] in the same form, or by [`parquet`] with the same numbers, so that a result can stand in for a measurement
+//! ([`mat`] writes for other tools). Columns whose unit is known hold
 //! SI values. A [`Signal`] is one column over the time; it reads between the rows. [`filter`], [`spectrum`] and
 //! [`statistics`] work on plain slices of equally spaced samples, unless they say otherwise.
 //!
@@ -20,6 +21,7 @@
 pub mod csv;
 pub mod filter;
 pub mod look;
+pub mod mat;
 pub mod parquet;
 pub mod sinumerik;
 pub mod spectrum;

@@ -10,6 +10,7 @@
 //! tables         the files of lookup tables                              tables.rs
 //! record_settings  how a record is to be read                            record_settings.rs
 //! records        the records of an experiment                            records.rs
+//! ports          inputs and outputs of a program for another tool        ports.rs
 //! project        a file parsed once; its model, experiment, program      project.rs
 //! calibration    a calibration with its records and its observer         calibration.rs
 //! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
@@ -27,6 +28,7 @@ mod diagnosis;
 pub mod first_model;
 mod inputs;
 mod package;
+pub mod ports;
 mod project;
 mod record_files;
 pub mod record_settings;

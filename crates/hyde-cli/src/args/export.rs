@@ -1,6 +1,6 @@
 //! Arguments of `hyde export`.
 
-use super::ModelArgs;
+use super::{AboutArgs, ModelArgs};
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
 
@@ -15,6 +15,9 @@ pub(crate) struct ExportArgs {
 pub(crate) enum ExportKind {
     /// Write an FMU for Simulink, OpenModelica, FMPy, OMSimulator and others: co-simulation and model exchange
     Fmu(FmuArgs),
+    /// Write the linearised model as matrices A, B, C, D with names: for MATLAB, Octave, python-control, or as JSON
+    #[command(name = "statespace")]
+    StateSpace(StateSpaceArgs),
 }
 
 #[derive(Debug, Args)]
@@ -47,4 +50,25 @@ pub(crate) enum FmiVersion {
     /// FMI 2.0
     #[value(name = "2")]
     Two,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct StateSpaceArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) about: AboutArgs,
+    /// Export only the plant, continuous; outputs of clocked controllers stay constant
+    #[arg(long)]
+    pub(crate) open: bool,
+    /// Inputs: `--input F,load` [default: every free input of the model]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub(crate) input: Vec<String>,
+    /// Outputs: `--output saddle.s,motor.i` [default: the variables of the model itself]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub(crate) output: Vec<String>,
+    /// File; its ending is the format: `.mat` (level 5), `.json`, `.py` (python-control) or `.m` (Octave, MATLAB)
+    /// [default: the model and the experiment, `Axis_positioning.mat`]
+    #[arg(long, value_name = "PATH")]
+    pub(crate) out: Option<PathBuf>,
 }

@@ -131,6 +131,7 @@ pages! {
     NoResponse "E0812";
     BadSweep "E0813";
     CannotCut "E0814";
+    CannotExport "E0815";
     BadStudy "E0901";
     NoFiles "E0902";
     CannotVary "E0903";

@@ -4,25 +4,24 @@
 mod inverse;
 mod over;
 mod page;
+mod point;
+
+pub(crate) use self::point::{Prepared, prepared};
 
 use crate::args::{ModelArgs, ModesArgs};
 use crate::assumed;
 use crate::assumptions;
 use crate::exit::Exit;
-use crate::project::{self, Aim, Project, Records, Told as _, complain, print_output};
-use hyde_compiler::Compiled;
+use crate::project::{complain, print_output};
 use hyde_experiment::{
     About, Linear, LinearizeError, ModeShape, NaturalMode, Pole, Poles, linearize_about,
-    mode_shape, parameters, poles,
+    mode_shape, poles,
 };
-use hyde_program::{Constant, Moment, Program};
+use hyde_program::Program;
 use hyde_report::Block;
-use hyde_signal::Table;
-use hyde_sim::PointTime;
 use hyde_study::settings::Setting;
 use hyde_units::significant;
 use serde_json::{Map, Value, json};
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// Prints the modes of vibration.
@@ -100,58 +99,6 @@ fn table(args: &ModesArgs) -> Result<String, Exit> {
     Ok(text)
 }
 
-/// An experiment ready to be linearised.
-struct Prepared {
-    project: Project,
-    compiled: Compiled,
-    tables: BTreeMap<String, Table>,
-    parameters: Vec<f64>,
-    /// Modes of automata.
-    chosen: Vec<(usize, usize)>,
-    /// The operating point.
-    time: PointTime,
-}
-
-fn prepared(args: &ModesArgs, model: &ModelArgs, set: Option<&Setting>) -> Result<Prepared, Exit> {
-    let mut project = project::load(model, Records::Needed)?;
-    project.settings.extend(set.cloned());
-    let compiled = project.compile_or_report(model, Aim::Linearize)?;
-    project.print_warnings(model);
-    let program = &compiled.program;
-    let wrong = |reason: String| complain(model, Exit::CommandLine, &reason);
-    let tables = hyde_study::tables(&project.records);
-    let parameters = parameters(program, &tables, &project.set())
-        .map_err(|error| project.report_refused(model, program, &error))?;
-    let mut chosen = program
-        .experiment
-        .bodes
-        .first()
-        .map(|bode| bode.modes.clone())
-        .unwrap_or_default();
-    for text in &args.about.in_modes {
-        chosen.insert(0, assumed::in_mode(program, text).map_err(wrong)?);
-    }
-    let experiment = &program.experiment;
-    let constant = |which| program.kernels.constant(which, &parameters);
-    let of_bode = experiment
-        .bodes
-        .first()
-        .map(|bode| (bode.at, Constant::RespondsAt(0)));
-    let of_cut = || Some((experiment.cuts.first()?.at, Constant::CutAt(0)));
-    let (moment, time) = of_bode
-        .or_else(of_cut)
-        .map_or((Moment::Start, None), |(at, time)| (at, constant(time)));
-    let time = assumed::moment(args.about.at.as_deref(), moment, time).map_err(wrong)?;
-    Ok(Prepared {
-        project,
-        compiled,
-        tables,
-        parameters,
-        chosen,
-        time,
-    })
-}
-
 /// The modes of an experiment, with one more parameter set if so.
 pub(crate) fn found(
     args: &ModesArgs,
@@ -165,7 +112,7 @@ pub(crate) fn found(
         parameters: p,
         chosen,
         time,
-    } = prepared(args, model, set)?;
+    } = prepared(&args.about, model, set)?;
     let program = &compiled.program;
     let about = About {
         time,

@@ -1,5 +1,7 @@
 //! `hyde run`: solves an experiment and compares it with its records.
 
+mod trajectories;
+
 use crate::args::{Format, RunArgs};
 use crate::exit::Exit;
 use crate::files;
@@ -195,9 +197,15 @@ fn leave_results(
             let text = format!("{}\n", results_json(program, results));
             ("results.json", text.into_bytes())
         }
+        Format::Mat => ("results.mat", trajectories::mat(program, results)),
     };
     files::write(&folder.join(name), &content)?;
-    let others = ["results.csv", "results.parquet", "results.json"];
+    let others = [
+        "results.csv",
+        "results.parquet",
+        "results.json",
+        "results.mat",
+    ];
     others
         .iter()
         .filter(|other| **other != name)

@@ -1,6 +1,7 @@
 //! `hyde export fmu`: an FMU of a model, written without a compiler: a library that is the same for every model, and what it
 //! runs.
 
+use super::identifier;
 use crate::args::{FmiVersion, FmuArgs};
 use crate::exit::Exit;
 use crate::files;
@@ -92,19 +93,6 @@ fn kept(args: &FmuArgs, project: &Project, inputs: &Inputs) -> Result<Kept, Exit
     kept.inputs.clone_from(&args.input);
     kept.outputs.clone_from(&args.output);
     Ok(kept)
-}
-
-/// The name of the library in the FMU: model and experiment as C writes names.
-fn identifier(project: &Project) -> String {
-    let mut name = project.model.clone();
-    if let Some(experiment) = &project.experiment {
-        name = format!("{name}_{experiment}");
-    }
-    let letter = |c: char| match c.is_ascii_alphanumeric() {
-        true => c,
-        false => '_',
-    };
-    name.chars().map(letter).collect()
 }
 
 /// Where the library is.

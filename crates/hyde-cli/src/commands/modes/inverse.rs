@@ -28,7 +28,7 @@ pub(super) fn fitted(args: &ModesArgs) -> Result<String, Exit> {
         tables,
         chosen,
         ..
-    } = prepared(args, &args.model, None)?;
+    } = prepared(&args.about, &args.model, None)?;
     let program = &compiled.program;
     let request = ModeFitRequest {
         program,

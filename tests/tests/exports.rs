@@ -1,0 +1,91 @@
+//! What `hyde export` and `hyde run --format mat` write for other tools, read by those tools: SciPy, python-control and DyMat.
+//! Without them in `target/fmpy` these tests say so and pass; `./dev test` installs them.
+#![allow(
+    clippy::disallowed_methods,
+    clippy::print_stderr,
+    clippy::unwrap_used,
+    reason = "tests open files, tell what they skip, and unwrap what must be there"
+)]
+
+use hyde_tests::fmu::{python, succeed};
+use hyde_tests::root;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+const LINEAR: &str = "tests/models/state_space.hyde";
+
+fn hyde(arguments: &[&str]) -> Output {
+    let mut command = Command::new(Path::new(env!("CARGO_BIN_EXE_hyde-tested")));
+    command
+        .current_dir(root())
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+fn done(arguments: &[&str]) {
+    let output = hyde(arguments);
+    assert!(output.status.success(), "{arguments:?}: {output:?}");
+}
+
+#[test]
+fn state_spaces_and_trajectories_are_read_by_other_tools() {
+    let Ok(python) = python().map_err(|reason| eprintln!("skipped: {reason}")) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    for ending in ["mat", "json", "py", "m"] {
+        let out = place(&format!("oscillator.{ending}"));
+        let model = ["export", "statespace", LINEAR, "--model", "Oscillator"];
+        let outputs = ["--output", "v,spring", "--quiet", "--out", &out];
+        done(&[&model[..], &outputs].concat());
+    }
+    let loop_of_clocks = ["export", "statespace", LINEAR, "stepped", "--quiet"];
+    done(&[&loop_of_clocks[..], &["--out", &place("servo.py")]].concat());
+    for (model, experiment, format, out) in [
+        (LINEAR, "stepped", "json", "servo"),
+        ("tests/models/fmu.hyde", "bouncing", "mat", "ball"),
+        ("tests/models/fmu.hyde", "bouncing", "json", "ball-json"),
+    ] {
+        let run = ["run", model, experiment, "--quiet"];
+        done(&[&run[..], &["--format", format, "--out", &place(out)]].concat());
+    }
+    let mut command = Command::new(python);
+    command
+        .arg("tests/exports/state_space.py")
+        .arg(folder.path());
+    let printed = succeed(&mut command).unwrap();
+    assert!(printed.ends_with("done\n"), "{printed}");
+}
+
+#[test]
+fn a_state_space_says_what_it_is_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let out: PathBuf = folder.path().join("first.mat");
+    let out = out.to_string_lossy().into_owned();
+    let model = ["export", "statespace", "examples/first/first.hyde", "push"];
+    let output = hyde(&[&model[..], &["--out", &out]].concat());
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        output.status.success() && said.contains("continuous: "),
+        "{said}"
+    );
+    // The mode that is taken, as `hyde modes` tells it.
+    assert!(
+        said.contains("guide                    slip, in the run stuck"),
+        "{said}"
+    );
+    let output = hyde(&[&model[..], &["--out", "first.xls"]].concat());
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        !output.status.success() && said.contains("write `.mat`, `.json`"),
+        "{said}"
+    );
+    let wrong = hyde(&[&model[..], &["--input", "force", "--out", &out]].concat());
+    let said = String::from_utf8(wrong.stderr).unwrap();
+    assert!(
+        said.contains("its inputs are `T`"),
+        "{said}"
+    );
+}
