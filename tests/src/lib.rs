@@ -9,6 +9,7 @@ mod data;
 pub mod events;
 mod example;
 pub mod figures;
+pub mod fixed_step;
 pub mod fmu;
 mod folder;
 pub mod gradient;

@@ -77,6 +77,7 @@ const EDGES: &[(&str, &[&str])] = &[
         ],
     ),
     ("fmu", &["fmi", "study"]),
+    ("c", &["diag", "program", "study", "units"]),
     (
         "editor",
         &["calibrate", "compiler", "diag", "format", "study", "syntax"],

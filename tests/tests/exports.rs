@@ -84,8 +84,5 @@ fn a_state_space_says_what_it_is_of() {
     );
     let wrong = hyde(&[&model[..], &["--input", "force", "--out", &out]].concat());
     let said = String::from_utf8(wrong.stderr).unwrap();
-    assert!(
-        said.contains("its inputs are `T`"),
-        "{said}"
-    );
+    assert!(said.contains("its inputs are `T`"), "{said}");
 }

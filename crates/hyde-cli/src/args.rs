@@ -8,7 +8,9 @@ mod traces;
 
 pub(crate) use batch::{Engine, SweepArgs, TableFormat};
 pub(crate) use editor::{ExplainArgs, FmtArgs, LspArgs};
-pub(crate) use export::{ExportArgs, ExportKind, FmiVersion, FmuArgs, StateSpaceArgs};
+pub(crate) use export::{
+    CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, StateSpaceArgs,
+};
 pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 pub(crate) use traces::{LookArgs, NewArgs, TemplateName};
 

@@ -42,3 +42,11 @@ pub fn emit(request: &Request<'_>, stage: Stage, diagnostics: &mut Diagnostics) 
         Stage::Asm => hyde_jit::emit_assembly(&dae),
     })
 }
+
+/// The kernels as C.
+///
+/// `None` if there were errors; all of them are in `diagnostics`.
+pub fn kernels_as_c(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<String> {
+    let dae = analyze(request, diagnostics)?;
+    Some(hyde_jit::emit_c(&dae))
+}

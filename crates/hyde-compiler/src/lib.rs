@@ -15,7 +15,7 @@ mod written;
 
 pub use candidates::{Additions, Candidate, Knob, candidates};
 pub use diagnosis::DiagnosisPlan;
-pub use emit::{Stage, emit};
+pub use emit::{Stage, emit, kernels_as_c};
 pub use hyde_flatten::{Form, FreeInputs, Header, TableFile};
 pub use hyde_jit::Backend;
 pub use ideal::{changed, ideals};

@@ -6,7 +6,7 @@ use crate::routine::{self, Leaf, Routine, Slot, Step};
 use crate::some_rows::{Chosen, Known};
 use crate::still::Still;
 use hyde_ir::dae::{self, Dae, Space};
-use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, Range, VariableKind};
+use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, VariableKind};
 use hyde_program::{
     Constant, Function, Kernels, PartialEntry, Point, SomeRows, TickWrt, Workspace, Wrt,
 };
@@ -97,7 +97,12 @@ impl Compiled {
         let parameters = dae
             .parameter_order
             .iter()
-            .map(|&param| (param, parameter_code(&dae, param)))
+            .map(|&param| {
+                (
+                    param,
+                    Interpreter::new(&dae, &Routine::parameter(&dae, param)),
+                )
+            })
             .collect();
         let start = Interpreter::new(&dae, &start_routine(&dae));
         let n_inputs = 2 * dae.columns.len() + dae.n_delayed();
@@ -432,37 +437,6 @@ pub(crate) fn in_dae(function: Function) -> dae::Function {
         Function::Initial => dae::Function::Initial,
         Function::Delayed => dae::Function::Delayed,
     }
-}
-
-fn parameter_code(dae: &Dae, param: ParamId) -> Interpreter {
-    let place = i32::try_from(dae.parameter_places[param]).unwrap_or(0);
-    let parameter = &dae.parameters[param];
-    let size = i32::try_from(parameter.size()).unwrap_or(0);
-    let steps = match parameter.value.as_slice() {
-        [value] if size > 1 => vec![Step {
-            range: Range {
-                first: 0,
-                last: size - 1,
-            },
-            slot: Slot::Out,
-            target: Index {
-                stride: 1,
-                offset: place,
-            },
-            value: *value,
-        }],
-        values => values
-            .iter()
-            .zip(place..)
-            .map(|(&value, at)| Step {
-                range: Range::SCALAR,
-                slot: Slot::Out,
-                target: Index::fixed(at),
-                value,
-            })
-            .collect(),
-    };
-    Interpreter::new(dae, &Routine::plain(&parameter.name, steps))
 }
 
 /// Start values of the vector, then of the memory.

@@ -9,6 +9,7 @@
 //! Machine code is made at the first use of a kernel and freed with the last program that holds it.
 
 mod bending;
+mod c;
 mod compiled;
 mod delays;
 mod emit;
@@ -25,6 +26,7 @@ mod still;
 mod tables;
 mod vector;
 
+pub use c::emit_c;
 pub use compiled::Backend;
 pub use emit::{emit_assembly, emit_clif, instruction_count};
 

@@ -1,7 +1,7 @@
 //! [`Routine`]: what a kernel computes, step by step, with every leaf resolved to a place in memory.
 
 use hyde_ir::dae::{Dae, Function, Partial, Space};
-use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, Range, VarId, VariableKind};
+use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, Range, VarId, VariableKind};
 use std::collections::BTreeSet;
 
 /// The memory a kernel reads and writes.
@@ -181,6 +181,38 @@ impl Routine {
             value: reaction.condition,
         });
         Self::with_definitions(dae, "conditions".to_owned(), steps.collect(), None)
+    }
+
+    /// The values of a parameter's elements, from parameters alone.
+    pub(crate) fn parameter(dae: &Dae, param: ParamId) -> Self {
+        let place = i32::try_from(dae.parameter_places[param]).unwrap_or(0);
+        let parameter = &dae.parameters[param];
+        let size = i32::try_from(parameter.size()).unwrap_or(0);
+        let steps = match parameter.value.as_slice() {
+            [value] if size > 1 => vec![Step {
+                range: Range {
+                    first: 0,
+                    last: size - 1,
+                },
+                slot: Slot::Out,
+                target: Index {
+                    stride: 1,
+                    offset: place,
+                },
+                value: *value,
+            }],
+            values => values
+                .iter()
+                .zip(place..)
+                .map(|(&value, at)| Step {
+                    range: Range::SCALAR,
+                    slot: Slot::Out,
+                    target: Index::fixed(at),
+                    value,
+                })
+                .collect(),
+        };
+        Self::plain(&parameter.name, steps)
     }
 
     /// Steps with nothing before them.

@@ -243,7 +243,34 @@ pub enum Aim {
     Export,
 }
 
+impl Aim {
+    fn free_inputs(self) -> FreeInputs {
+        match self {
+            Self::Linearize => FreeInputs::All,
+            Self::Export => FreeInputs::Undriven,
+            Self::Run | Self::Ledger | Self::Observe => FreeInputs::None,
+        }
+    }
+}
+
 impl Project {
+    /// The kernels of what [`Project::compile`] makes for [`Aim::Export`], as C; what is wrong stays in the project's
+    /// diagnostics.
+    pub fn kernels_as_c(&mut self) -> Option<String> {
+        let settings: BTreeMap<String, f64> = self.set().into_iter().collect();
+        let headers = records::headers(&self.records);
+        let request = Request {
+            free_inputs: Aim::Export.free_inputs(),
+            ..self.request(&settings, &headers, Form::Run)
+        };
+        let mut diagnostics = Diagnostics::new();
+        let found = hyde_compiler::kernels_as_c(&request, &mut diagnostics);
+        if found.is_none() {
+            self.diagnostics = diagnostics;
+        }
+        found
+    }
+
     /// Compiles; what is wrong stays in the project's diagnostics.
     ///
     /// # Errors
@@ -262,11 +289,7 @@ impl Project {
             experiment: self.experiment.as_deref(),
             settings: &settings,
             records: &headers,
-            free_inputs: match aim {
-                Aim::Linearize => FreeInputs::All,
-                Aim::Export => FreeInputs::Undriven,
-                Aim::Run | Aim::Ledger | Aim::Observe => FreeInputs::None,
-            },
+            free_inputs: aim.free_inputs(),
             ledger: matches!(aim, Aim::Ledger | Aim::Linearize),
             form: match aim {
                 Aim::Observe => Form::Observed,

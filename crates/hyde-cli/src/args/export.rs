@@ -15,6 +15,8 @@ pub(crate) struct ExportArgs {
 pub(crate) enum ExportKind {
     /// Write an FMU for Simulink, OpenModelica, FMPy, OMSimulator and others: co-simulation and model exchange
     Fmu(FmuArgs),
+    /// Write the model as one C11 file and header with a fixed step, for controllers and hardware in the loop
+    C(CArgs),
     /// Write the linearised model as matrices A, B, C, D with names: for MATLAB, Octave, python-control, or as JSON
     #[command(name = "statespace")]
     StateSpace(StateSpaceArgs),
@@ -71,4 +73,25 @@ pub(crate) struct StateSpaceArgs {
     /// [default: the model and the experiment, `Axis_positioning.mat`]
     #[arg(long, value_name = "PATH")]
     pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// The step in s; the periods and delays of all clocks are multiples of it
+    #[arg(long, value_name = "SECONDS")]
+    pub(crate) step: f64,
+    /// Inputs that a stimulus of the experiment drives; the stimulus is left out: `--input r,inject`
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub(crate) input: Vec<String>,
+    /// Outputs: `--output saddle.s,motor.i` [default: the variables of the model itself]
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub(crate) output: Vec<String>,
+    /// Name of the type and the beginning of all public names [default: the model and the experiment]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) name: Option<String>,
+    /// Folder of the two files, `NAME.c` and `NAME.h`
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    pub(crate) out: PathBuf,
 }

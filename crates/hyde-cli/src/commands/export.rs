@@ -1,5 +1,6 @@
 //! `hyde export`: a model for other tools.
 
+mod c;
 mod fmu;
 mod state_space;
 
@@ -10,6 +11,7 @@ use crate::project::Project;
 /// Exports a model.
 pub(crate) fn export(args: &ExportArgs) -> Exit {
     match &args.kind {
+        ExportKind::C(args) => c::export(args),
         ExportKind::Fmu(args) => fmu::fmu(args),
         ExportKind::StateSpace(args) => state_space::export(args),
     }

@@ -215,7 +215,8 @@ fn differentiated(program: &Program, input: &str) -> Diagnostic {
 }
 
 fn delayed(program: &Program) -> Diagnostic {
-    let message = "a model with a `delay` has infinitely many states, and a state space finitely many";
+    let message =
+        "a model with a `delay` has infinitely many states, and a state space finitely many";
     let diagnostic = Diagnostic::error(Code::CannotExport, message);
     let diagnostic = match program.delays.first() {
         Some(delay) => diagnostic.label(delay.origin.span, "delayed here"),

@@ -1,0 +1,487 @@
+/* ---- The step: implicit Euler, then what happens at its end --------------------------------------------------- */
+
+/* Newton's method ends where changes are below this part of the largest values so far, or where they are small and become no smaller with
+   a new matrix: then they are rounding. */
+#define HY_RELATIVE 1e-12
+#define HY_ABSOLUTE 1e-14
+#define HY_ROUNDING 1e6
+#define HY_ITERATIONS 40
+#define HY_ROUNDS 50
+
+static double hy_time(const @NAME@ *m, long long count)
+{
+    (void)m;
+    return HY_START + (double)count * @NAME@_STEP;
+}
+
+static int hy_in_mode(const @NAME@ *m, int automaton, int mode)
+{
+    return m->z[hy_automaton_place[automaton]] == (double)mode;
+}
+
+static void hy_apply_pins(@NAME@ *m)
+{
+    for (int k = 0; k < HY_PINS; ++k) {
+        if (m->pin_on[k]) {
+            m->y[hy_pin_state[k]] = m->pin_value[k];
+            m->yp[hy_pin_state[k]] = 0.0;
+        }
+    }
+}
+
+/* The states that modes fix, and their values. */
+static void hy_pin(@NAME@ *m, double t)
+{
+    if (HY_PINS == 0) {
+        return;
+    }
+    hy_assignments(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->values);
+    for (int k = 0; k < HY_PINS; ++k) {
+        m->pin_on[k] = (unsigned char)hy_in_mode(m, hy_pin_automaton[k], hy_pin_mode[k]);
+        m->pin_value[k] = m->values[HY_ASSIGNMENTS + k];
+    }
+    hy_apply_pins(m);
+}
+
+/* The matrix of Newton's method, by rates of states and by the other unknowns, as triangular factors with the largest
+   pivots of rows that are scaled. */
+static int hy_factor(@NAME@ *m, double t, double h, int kind)
+{
+    double *a = m->matrix[kind];
+    hy_residual_partials(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->partials);
+    memset(a, 0, sizeof m->matrix[kind]);
+    for (int k = 0; k < HY_PARTIALS; ++k) {
+        const int row = hy_partial_row[k], column = hy_partial_column[k];
+        if (hy_partial_kind[k] == 1) {
+            a[row * HY_N + column] += m->partials[k];
+        } else if (hy_partial_kind[k] == 0) {
+            a[row * HY_N + column] += hy_differential[column] ? h * m->partials[k] : m->partials[k];
+        }
+    }
+    for (int row = 0; row < HY_N; ++row) {
+        double most = 0.0;
+        for (int column = 0; column < HY_N; ++column) {
+            most = fmax(most, fabs(a[row * HY_N + column]));
+        }
+        if (!(most > 0.0) || most > 1e300) {
+            return @NAME@_SINGULAR;
+        }
+        m->scale[kind][row] = 1.0 / most;
+        for (int column = 0; column < HY_N; ++column) {
+            a[row * HY_N + column] /= most;
+        }
+    }
+    for (int k = 0; k < HY_N; ++k) {
+        int pivot = k;
+        for (int row = k + 1; row < HY_N; ++row) {
+            if (fabs(a[row * HY_N + k]) > fabs(a[pivot * HY_N + k])) {
+                pivot = row;
+            }
+        }
+        m->pivot[kind][k] = pivot;
+        if (!(fabs(a[pivot * HY_N + k]) > 1e-300)) {
+            return @NAME@_SINGULAR;
+        }
+        if (pivot != k) {
+            for (int column = 0; column < HY_N; ++column) {
+                const double other = a[k * HY_N + column];
+                a[k * HY_N + column] = a[pivot * HY_N + column];
+                a[pivot * HY_N + column] = other;
+            }
+        }
+        for (int row = k + 1; row < HY_N; ++row) {
+            const double factor = a[row * HY_N + k] / a[k * HY_N + k];
+            a[row * HY_N + k] = factor;
+            if (factor != 0.0) {
+                for (int column = k + 1; column < HY_N; ++column) {
+                    a[row * HY_N + column] -= factor * a[k * HY_N + column];
+                }
+            }
+        }
+    }
+    return @NAME@_OK;
+}
+
+static void hy_substitute(@NAME@ *m, int kind, double *b)
+{
+    const double *a = m->matrix[kind];
+    for (int row = 0; row < HY_N; ++row) {
+        b[row] *= m->scale[kind][row];
+    }
+    for (int k = 0; k < HY_N; ++k) {
+        const int pivot = m->pivot[kind][k];
+        const double other = b[k];
+        b[k] = b[pivot];
+        b[pivot] = other;
+    }
+    for (int row = 0; row < HY_N; ++row) {
+        for (int column = 0; column < row; ++column) {
+            b[row] -= a[row * HY_N + column] * b[column];
+        }
+    }
+    for (int row = HY_N - 1; row >= 0; --row) {
+        for (int column = row + 1; column < HY_N; ++column) {
+            b[row] -= a[row * HY_N + column] * b[column];
+        }
+        b[row] /= a[row * HY_N + row];
+    }
+}
+
+/* Solves for the rates of the states and the other unknowns; with a step (kind 0) the states are base + h rate, without one
+   (kind 1, h = 0) they stay. */
+static int hy_solve(@NAME@ *m, double t, double h, int kind)
+{
+    double last = HUGE_VAL;
+    int since = 2;
+    if (HY_N == 0) {
+        return @NAME@_OK;
+    }
+    hy_apply_pins(m);
+    memcpy(m->base, kind == 0 ? m->before_y : m->y, sizeof m->base);
+    for (int k = 0; k < HY_PINS; ++k) {
+        if (m->pin_on[k]) {
+            m->base[hy_pin_state[k]] = m->pin_value[k];
+        }
+    }
+    for (int iteration = 0; iteration < HY_ITERATIONS; ++iteration) {
+        double size = 0.0;
+        int stalls;
+        since += since < 2;
+        hy_residual(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->residual);
+        if (!m->fresh[kind]) {
+            const int status = hy_factor(m, t, h, kind);
+            if (status != @NAME@_OK) {
+                return status;
+            }
+            m->fresh[kind] = 1;
+            since = 0;
+        }
+        hy_substitute(m, kind, m->residual);
+        for (int k = 0; k < HY_N; ++k) {
+            double *value = hy_differential[k] ? &m->yp[k] : &m->y[k];
+            const double change = m->residual[k];
+            *value -= change;
+            if (hy_differential[k]) {
+                m->y[k] = m->base[k] + h * m->yp[k];
+            }
+            double part;
+            m->largest[k] = fmax(m->largest[k], fabs(*value));
+            part = fabs(change) / (HY_RELATIVE * m->largest[k] + HY_ABSOLUTE);
+            if (hy_differential[k]) {
+                /* What matters of a rate is what it makes of its state in a step. */
+                part = fmin(part, @NAME@_STEP * fabs(change) / (HY_RELATIVE * fabs(m->y[k]) + HY_ABSOLUTE));
+            }
+            if (!(part <= size)) {
+                size = part;
+            }
+        }
+        if (!(size < HUGE_VAL)) {
+            return @NAME@_NOT_FINITE;
+        }
+        stalls = size > 0.25 * last;
+        if (size <= 1.0 || (size <= HY_ROUNDING && stalls && since < 2)) {
+            hy_apply_pins(m);
+            return @NAME@_OK;
+        }
+        if (stalls) {
+            m->fresh[kind] = 0;
+        }
+        last = size;
+    }
+    return @NAME@_NOT_SOLVED;
+}
+
+/* Whether a relation matters in the current modes. */
+static int hy_matters(const @NAME@ *m, int relation)
+{
+    return hy_relation_automaton[relation] < 0 ||
+           hy_in_mode(m, hy_relation_automaton[relation], hy_relation_mode[relation]);
+}
+
+static void hy_turn(@NAME@ *m)
+{
+    for (int k = 0; k < HY_RELATIONS; ++k) {
+        if (m->flipped[k]) {
+            m->z[k] = 1.0 - m->z[k];
+        }
+    }
+}
+
+/* Reactions fire together until nothing fires. */
+static int hy_settle(@NAME@ *m, double t, int at_start)
+{
+    if (HY_RELATIONS == 0 && HY_REACTIONS == 0) {
+        return @NAME@_OK;
+    }
+    for (int round = 0; round < HY_ROUNDS; ++round) {
+        int any = 0, edges = 0;
+        const int first = at_start && round == 0;
+        hy_roots(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->roots);
+        if (HY_SCHEDULED) {
+            /* An instant that is known beforehand counts as passed at the step that ends there. */
+            hy_roots(t + 1e-3 * @NAME@_STEP, m->y, m->yp, m->z, m->u, m->p, m->w, m->later);
+        }
+        for (int k = 0; k < HY_RELATIONS; ++k) {
+            const double root = hy_relation_scheduled[k] ? m->later[k] : m->roots[k];
+            const double truth = (root > 0.0 || (root == 0.0 && hy_relation_inclusive[k])) ? 1.0 : 0.0;
+            m->flipped[k] = 0;
+            if (hy_matters(m, k) && m->z[k] != truth) {
+                m->z[k] = truth;
+                m->flipped[k] = (unsigned char)hy_relation_equation[k];
+                any |= hy_relation_equation[k];
+            }
+        }
+        hy_conditions(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->truths);
+        for (int k = 0; k < HY_REACTIONS; ++k) {
+            if (hy_reaction_kind[k] == 2) {
+                edges = 1;
+                m->z[hy_reaction_a[k]] = (!first && m->truths[k] != 0.0 && !m->conditions[k]) ? 1.0 : 0.0;
+            }
+        }
+        if (edges) {
+            hy_conditions(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->truths);
+        }
+        memset(m->left, 0, sizeof m->left);
+        memset(m->clause, 0, sizeof m->clause);
+        for (int k = 0; k < HY_REACTIONS; ++k) {
+            const int now = m->truths[k] != 0.0, before = m->conditions[k];
+            const int a = hy_reaction_a[k];
+            m->fired[k] = 0;
+            m->conditions[k] = (unsigned char)now;
+            if (hy_reaction_kind[k] == 0 && now && hy_in_mode(m, a, hy_reaction_from[k]) && !m->left[a]) {
+                m->left[a] = 1;
+                m->fired[k] = 1;
+            } else if (hy_reaction_kind[k] == 1 && now && !before && !first && !m->clause[a]) {
+                m->clause[a] = 1;
+                m->fired[k] = 1;
+            } else if (hy_reaction_kind[k] == 3 && now) {
+                m->broken = k;
+                return @NAME@_ASSERT;
+            }
+            any |= m->fired[k];
+        }
+        if (!any) {
+            for (int k = 0; k < HY_REACTIONS; ++k) {
+                if (hy_reaction_kind[k] == 2) {
+                    m->z[hy_reaction_a[k]] = 0.0;
+                }
+            }
+            return @NAME@_OK;
+        }
+        hy_turn(m);
+        hy_assignments(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->values);
+        hy_turn(m);
+        for (int k = 0; k < HY_REACTIONS; ++k) {
+            if (m->fired[k]) {
+                for (int n = hy_reaction_first[k]; n < hy_reaction_end[k]; ++n) {
+                    (hy_assignment_memory[n] ? m->z : m->y)[hy_assignment_place[n]] = m->values[n];
+                }
+            }
+        }
+        for (int k = 0; k < HY_REACTIONS; ++k) {
+            if (m->fired[k] && hy_reaction_kind[k] == 0) {
+                m->z[hy_automaton_place[hy_reaction_a[k]]] = (double)hy_reaction_to[k];
+            }
+        }
+        m->fresh[0] = m->fresh[1] = 0;
+        hy_pin(m, t);
+        const int status = hy_solve(m, t, 0.0, 1);
+        if (status != @NAME@_OK) {
+            return status;
+        }
+    }
+    m->unsettled += 1;
+    return @NAME@_OK;
+}
+
+/* Clocks tick on the values before the events of the instant; whether something that equations read has changed. */
+static int hy_tick(@NAME@ *m, double t)
+{
+    int changed = 0, due = 0;
+    for (int k = 0; k < HY_CLOCKS; ++k) {
+        due |= (m->count + hy_clock_period[k] - hy_clock_phase[k]) % hy_clock_period[k] == 0 && m->count >= hy_clock_phase[k];
+    }
+    for (int k = 0; k < HY_HOLDS; ++k) {
+        due |= m->pending_at[k] == m->count;
+    }
+    if (!due) {
+        return 0;
+    }
+    memcpy(m->now_z, m->z, sizeof m->z);
+    memcpy(m->z, m->left_z, sizeof m->z);
+    for (int k = 0; k < HY_CLOCKS; ++k) {
+        const int clock = hy_clock_order[k];
+        if (m->count < hy_clock_phase[clock] || (m->count - hy_clock_phase[clock]) % hy_clock_period[clock] != 0) {
+            continue;
+        }
+        memcpy(m->after_z, m->z, sizeof m->z);
+        hy_ticks(clock, t, m->left_y, m->left_yp, m->z, m->u, m->p, m->w, m->after_z);
+        memcpy(m->z, m->after_z, sizeof m->z);
+        for (int n = 0; n < HY_HOLDS; ++n) {
+            if (hy_hold_clock[n] == clock) {
+                m->pending[n] = m->z[hy_hold_source[n]];
+                m->pending_at[n] = m->count + hy_clock_delay[clock];
+            }
+        }
+    }
+    for (int n = 0; n < HY_HOLDS; ++n) {
+        if (m->pending_at[n] == m->count) {
+            changed |= hy_hold_read[n] && m->z[hy_hold_target[n]] != m->pending[n];
+            m->z[hy_hold_target[n]] = m->pending[n];
+            m->pending_at[n] = -1;
+        }
+    }
+    for (int k = 0; k < HY_MEMORY; ++k) {
+        if (m->z[k] == m->left_z[k]) {
+            m->z[k] = m->now_z[k];
+        }
+    }
+    return changed;
+}
+
+/* Everything that happens at the end of a step, or at the start. */
+static int hy_instant(@NAME@ *m, int at_start)
+{
+    const double t = hy_time(m, m->count);
+    int status;
+    memcpy(m->left_y, m->y, sizeof m->y);
+    memcpy(m->left_yp, m->yp, sizeof m->yp);
+    memcpy(m->left_z, m->z, sizeof m->z);
+    status = hy_settle(m, t, at_start);
+    if (status == @NAME@_OK && hy_tick(m, t)) {
+        status = hy_solve(m, t, 0.0, 1);
+        if (status == @NAME@_OK) {
+            status = hy_settle(m, t, 0);
+        }
+    }
+    if (status == @NAME@_OK) {
+        hy_outputs(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->out);
+    }
+    return status;
+}
+
+int @NAME@_init(@NAME@ *m)
+{
+    memset(m, 0, sizeof *m);
+    memcpy(m->p, hy_start_p, sizeof m->p);
+    memcpy(m->y, hy_start_y, sizeof m->y);
+    memcpy(m->yp, hy_start_yp, sizeof m->yp);
+    memcpy(m->z, hy_start_z, sizeof m->z);
+    memcpy(m->given, hy_given, sizeof m->given);
+    for (int k = 0; k < HY_HOLDS; ++k) {
+        m->pending_at[k] = -1;
+    }
+    hy_parameters(m->given, m->p);
+    hy_pin(m, hy_time(m, 0));
+    return hy_instant(m, 1);
+}
+
+int @NAME@_step(@NAME@ *m)
+{
+    int status;
+    if (m->set) {
+        hy_parameters(m->given, m->p);
+        m->set = 0;
+    }
+    memcpy(m->before_y, m->y, sizeof m->y);
+    memcpy(m->before_yp, m->yp, sizeof m->yp);
+    memcpy(m->before_z, m->z, sizeof m->z);
+    memcpy(m->before_conditions, m->conditions, sizeof m->conditions);
+    memcpy(m->before_pin_on, m->pin_on, sizeof m->pin_on);
+    memcpy(m->before_pin_value, m->pin_value, sizeof m->pin_value);
+    memcpy(m->before_pending, m->pending, sizeof m->pending);
+    memcpy(m->before_pending_at, m->pending_at, sizeof m->pending_at);
+    for (int k = 0; k < HY_N; ++k) {
+        if (hy_differential[k]) {
+            m->y[k] += @NAME@_STEP * m->yp[k];
+        }
+    }
+    status = hy_solve(m, hy_time(m, m->count + 1), @NAME@_STEP, 0);
+    if (status == @NAME@_OK) {
+        m->count += 1;
+        status = hy_instant(m, 0);
+        m->count -= 1;
+    }
+    if (status != @NAME@_OK) {
+        memcpy(m->y, m->before_y, sizeof m->y);
+        memcpy(m->yp, m->before_yp, sizeof m->yp);
+        memcpy(m->z, m->before_z, sizeof m->z);
+        memcpy(m->conditions, m->before_conditions, sizeof m->conditions);
+        memcpy(m->pin_on, m->before_pin_on, sizeof m->pin_on);
+        memcpy(m->pin_value, m->before_pin_value, sizeof m->pin_value);
+        memcpy(m->pending, m->before_pending, sizeof m->pending);
+        memcpy(m->pending_at, m->before_pending_at, sizeof m->pending_at);
+        m->fresh[0] = m->fresh[1] = 0;
+        return status;
+    }
+    m->count += 1;
+    return @NAME@_OK;
+}
+
+double @NAME@_time(const @NAME@ *m)
+{
+    return hy_time(m, m->count);
+}
+
+int @NAME@_set(@NAME@ *m, int input, double value)
+{
+    if (input < 0 || input >= @NAME@_INPUTS) {
+        return @NAME@_NO_SUCH;
+    }
+    if (hy_input_column[input]) {
+        /* A column of a record, read linearly and as it is held. */
+        m->u[hy_input_place[input]] = value;
+        m->u[hy_input_place[input] + 1] = value;
+    } else {
+        m->p[hy_input_place[input]] = value;
+        m->set = 1;
+    }
+    return @NAME@_OK;
+}
+
+int @NAME@_set_parameter(@NAME@ *m, int parameter, double value)
+{
+    if (parameter < 0 || parameter >= @NAME@_PARAMETERS) {
+        return @NAME@_NO_SUCH;
+    }
+    m->p[hy_parameter_place[parameter]] = value;
+    m->given[hy_parameter_place[parameter]] = 1;
+    m->fresh[0] = m->fresh[1] = 0;
+    m->set = 1;
+    return @NAME@_OK;
+}
+
+double @NAME@_get_parameter(const @NAME@ *m, int parameter)
+{
+    return parameter < 0 || parameter >= @NAME@_PARAMETERS ? (double)NAN : m->p[hy_parameter_place[parameter]];
+}
+
+double @NAME@_get(const @NAME@ *m, int output)
+{
+    return output < 0 || output >= @NAME@_OUTPUTS ? (double)NAN : m->out[hy_output_place[output]];
+}
+
+long long @NAME@_unsettled(const @NAME@ *m)
+{
+    return m->unsettled;
+}
+
+const char *@NAME@_message(const @NAME@ *m, int status)
+{
+    switch (status) {
+    case @NAME@_OK:
+        return "in order";
+    case @NAME@_NOT_SOLVED:
+        return "the equations of a step have no solution that Newton's method finds";
+    case @NAME@_SINGULAR:
+        return "the equations of a step do not determine all unknowns";
+    case @NAME@_NOT_FINITE:
+        return "an equation has no finite value";
+    case @NAME@_ASSERT:
+        return hy_reaction_text[m->broken];
+    case @NAME@_NO_SUCH:
+        return "no such input or parameter";
+    default:
+        return "no such status";
+    }
+}
