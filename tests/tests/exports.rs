@@ -1,4 +1,5 @@
-//! What `hyde export` and `hyde run --format mat` write for other tools, read by those tools: SciPy, python-control and DyMat.
+//! What `hyde export` and `hyde run --format mat` write for other tools, read by those tools: SciPy, python-control and DyMat; and
+//! `hyde mcp` with the Python SDK of the protocol.
 //! Without them in `target/fmpy` these tests say so and pass; `./dev test` installs them.
 #![allow(
     clippy::disallowed_methods,
@@ -85,4 +86,19 @@ fn a_state_space_says_what_it_is_of() {
     let wrong = hyde(&[&model[..], &["--input", "force", "--out", &out]].concat());
     let said = String::from_utf8(wrong.stderr).unwrap();
     assert!(said.contains("its inputs are `T`"), "{said}");
+}
+
+#[test]
+fn an_assistant_uses_hyde_through_the_protocol() {
+    let Ok(python) = python().map_err(|reason| eprintln!("skipped: {reason}")) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = Command::new(python);
+    command.arg("tests/exports/mcp_client.py");
+    command.arg(env!("CARGO_BIN_EXE_hyde-tested"));
+    let printed = succeed(command.arg(folder.path())).unwrap();
+    assert!(printed.ends_with("done\n"), "{printed}");
+    let results = folder.path().join("results.csv");
+    assert!(results.is_file(), "the samples are in the folder");
 }

@@ -7,7 +7,7 @@ mod study;
 mod traces;
 
 pub(crate) use batch::{Engine, SweepArgs, TableFormat};
-pub(crate) use editor::{ExplainArgs, FmtArgs, LspArgs};
+pub(crate) use editor::{ExplainArgs, FmtArgs, LspArgs, McpArgs};
 pub(crate) use export::{
     CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, StateSpaceArgs,
 };
@@ -72,6 +72,8 @@ pub(crate) enum Command {
     Fmt(FmtArgs),
     /// Serve an editor by the Language Server Protocol, on standard input and output
     Lsp(LspArgs),
+    /// Serve an assistant by the Model Context Protocol, on standard input and output: tools that give summaries and paths
+    Mcp(McpArgs),
     /// Write HTML documentation of a package, of a file, or of the library
     Doc(DocArgs),
     /// Explain a diagnostic code

@@ -16,6 +16,7 @@ pub(crate) mod fmt;
 pub(crate) mod look;
 pub(crate) mod lsp;
 pub(crate) mod man;
+pub(crate) mod mcp;
 pub(crate) mod modes;
 pub(crate) mod new;
 pub(crate) mod params;

@@ -82,6 +82,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::New(args) => commands::new::new(args),
         Command::Fmt(args) => commands::fmt::fmt(args),
         Command::Lsp(_) => commands::lsp::lsp(),
+        Command::Mcp(_) => commands::mcp::mcp(),
         Command::Doc(args) => commands::doc::doc(args),
         Command::Explain(args) => commands::explain::explain(args),
         Command::Export(args) => commands::export::export(args),

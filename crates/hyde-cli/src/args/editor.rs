@@ -31,3 +31,7 @@ pub(crate) struct LspArgs {
     #[arg(long, hide = true)]
     pub(crate) stdio: bool,
 }
+
+/// It has no options; the protocol negotiates everything.
+#[derive(Debug, Args)]
+pub(crate) struct McpArgs {}

@@ -1,0 +1,165 @@
+//! A scripted client: the handshake, the list of tools, calls, mistakes.
+#![allow(clippy::unwrap_used, reason = "tests unwrap what must be there")]
+
+use hyde_mcp::{Host, Ran, serve};
+use serde_json::{Value, json};
+use std::cell::RefCell;
+
+/// A machine that remembers what it was asked.
+#[derive(Default)]
+struct Recording {
+    ran: RefCell<Vec<Vec<String>>>,
+    written: RefCell<Vec<String>>,
+    answer: Ran,
+}
+
+impl Host for Recording {
+    fn run(&self, arguments: &[String]) -> Result<Ran, String> {
+        self.ran.borrow_mut().push(arguments.to_vec());
+        Ok(self.answer.clone())
+    }
+
+    fn write(&self, folder: &str, name: &str, text: &str) -> Result<String, String> {
+        self.written.borrow_mut().push(text.to_owned());
+        Ok(format!("{folder}/{name}"))
+    }
+
+    fn folder(&self) -> String {
+        "somewhere".to_owned()
+    }
+}
+
+fn talk(host: &dyn Host, lines: &[&str]) -> Vec<Value> {
+    let mut output = Vec::new();
+    serve(&mut lines.join("\n").as_bytes(), &mut output, host).unwrap();
+    let text = String::from_utf8(output).unwrap();
+    text.lines()
+        .map(|line| serde_json::from_str(line).unwrap())
+        .collect()
+}
+
+#[test]
+fn a_client_and_the_server_agree_on_a_version() {
+    let asked = |version: &str| {
+        let message = json!({
+            "jsonrpc": "2.0", "id": 1, "method": "initialize",
+            "params": { "protocolVersion": version, "capabilities": {}, "clientInfo": { "name": "test", "version": "1" } },
+        });
+        let done = r#"{"jsonrpc":"2.0","method":"notifications/initialized"}"#;
+        let answers = talk(&Recording::default(), &[&message.to_string(), done]);
+        assert_eq!(answers.len(), 1, "a notification has no answer");
+        answers[0]["result"].clone()
+    };
+    assert_eq!(asked("2025-06-18")["protocolVersion"], "2025-06-18");
+    assert_eq!(asked("1999-01-01")["protocolVersion"], "2025-11-25");
+    assert!(asked("2025-11-25")["capabilities"]["tools"].is_object());
+    assert_eq!(asked("2025-11-25")["serverInfo"]["name"], "hyde");
+}
+
+#[test]
+fn tools_are_listed_with_schemas() {
+    let answers = talk(
+        &Recording::default(),
+        &[r#"{"jsonrpc":"2.0","id":"a","method":"tools/list"}"#],
+    );
+    assert_eq!(answers[0]["id"], "a");
+    let tools = answers[0]["result"]["tools"].as_array().unwrap();
+    let names: Vec<&str> = tools
+        .iter()
+        .map(|tool| tool["name"].as_str().unwrap())
+        .collect();
+    for name in [
+        "check",
+        "run",
+        "modes",
+        "bode",
+        "fit",
+        "diagnose",
+        "look",
+        "explain",
+        "components",
+    ] {
+        assert!(names.contains(&name), "{name}");
+    }
+    for tool in tools {
+        assert_eq!(tool["inputSchema"]["type"], "object");
+        assert!(tool["description"].as_str().unwrap().len() > 20);
+    }
+    assert_eq!(tools[1]["inputSchema"]["required"], json!(["file"]));
+}
+
+#[test]
+fn samples_stay_on_the_disk() {
+    let samples: Vec<f64> = (0..500).map(f64::from).collect();
+    let host = Recording {
+        answer: Ran {
+            stdout: json!({ "ok": true, "x": samples }).to_string(),
+            ..Ran::default()
+        },
+        ..Recording::default()
+    };
+    let call = json!({
+        "jsonrpc": "2.0", "id": 7, "method": "tools/call",
+        "params": { "name": "run", "arguments": { "file": "a.hyde" } },
+    });
+    let answers = talk(&host, &[&call.to_string()]);
+    let result = &answers[0]["result"];
+    assert_eq!(result["isError"], false);
+    let text = result["content"][0]["text"].as_str().unwrap();
+    let told: Value = serde_json::from_str(text).unwrap();
+    assert_eq!(
+        told["x"],
+        json!({ "numbers": 500, "least": 0.0, "most": 499.0 })
+    );
+    assert_eq!(told["complete_answer"], "somewhere/run.json");
+    assert!(host.written.borrow()[0].contains("499.0"));
+    let line = ["run", "--out=somewhere", "--json", "--", "a.hyde"];
+    assert_eq!(host.ran.borrow()[0], line);
+}
+
+#[test]
+fn mistakes_are_answered() {
+    let answers = talk(
+        &Recording::default(),
+        &[
+            "no json",
+            "[1]",
+            "",
+            r#"{"jsonrpc":"2.0","id":1,"method":"tools/call","params":{"name":"format_disk"}}"#,
+            r#"{"jsonrpc":"2.0","id":2,"method":"tools/call","params":{"name":"run","arguments":{}}}"#,
+            r#"{"jsonrpc":"2.0","id":3,"method":"resources/list"}"#,
+            r#"{"jsonrpc":"2.0","id":4,"method":"ping"}"#,
+        ],
+    );
+    let codes: Vec<&Value> = answers.iter().map(|own| &own["error"]["code"]).collect();
+    assert_eq!(
+        codes,
+        [
+            &json!(-32700),
+            &json!(-32600),
+            &json!(-32602),
+            &Value::Null,
+            &json!(-32601),
+            &Value::Null
+        ]
+    );
+    // The caller can mend its arguments: that is an answer of the tool.
+    assert_eq!(answers[3]["result"]["isError"], true);
+    assert_eq!(answers[5]["result"], json!({}));
+}
+
+#[test]
+fn the_library_is_listed() {
+    let call = r#"{"jsonrpc":"2.0","id":1,"method":"tools/call","params":{"name":"components","arguments":{"containing":"backlash"}}}"#;
+    let answers = talk(&Recording::default(), &[call]);
+    let text = answers[0]["result"]["content"][0]["text"].as_str().unwrap();
+    let told: Value = serde_json::from_str(text).unwrap();
+    let found = told["components"].as_array().unwrap();
+    assert!(
+        found
+            .iter()
+            .any(|own| own["name"].as_str().unwrap().contains("Backlash")),
+        "{text}"
+    );
+    assert!(found.len() < 40, "{}", found.len());
+}
