@@ -19,6 +19,7 @@ mod gradient;
 mod ivp;
 mod ledger;
 mod linear;
+mod lsp;
 mod mode_error;
 mod msl;
 mod paper_rows;
@@ -88,6 +89,11 @@ pub const FIGURES: &[Figure] = &[
     fmu::DEVIATION,
     fmu::EVENTS,
     fmu::EXPORT,
+    lsp::SYNTAX,
+    lsp::FULL,
+    lsp::COMPLETION,
+    lsp::HOVER,
+    lsp::MEMORY,
     selftest::FALSE_ALARMS,
     selftest::TOP1,
     selftest::FALSE_ALARMS_RACK,

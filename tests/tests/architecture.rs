@@ -81,7 +81,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("c", &["diag", "program", "study", "units"]),
     (
         "editor",
-        &["calibrate", "compiler", "diag", "format", "study", "syntax"],
+        &["compiler", "diag", "format", "study", "syntax", "units"],
     ),
     (
         "report",

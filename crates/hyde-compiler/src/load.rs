@@ -1,8 +1,10 @@
 //! The user's file and the packages it names.
 
+use crate::library_trees;
 use crate::named::{packages_named, tables_named, words_named};
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use hyde_flatten::TableFile;
+use hyde_library::Package;
 use hyde_syntax::ast::{self, Item};
 use std::collections::BTreeMap;
 
@@ -75,10 +77,14 @@ pub fn load(
                 continue;
             };
             let id = sources.add(found.place, found.text);
-            let tree = hyde_syntax::parse(sources, id, diagnostics);
-            if !found.of_library {
-                check_name(sources, id, &tree, &name, diagnostics);
-            }
+            let tree = match found.of_library {
+                Some(package) => library_trees::tree(package, sources, id),
+                None => {
+                    let tree = hyde_syntax::parse(sources, id, diagnostics);
+                    check_name(sources, id, &tree, &name, diagnostics);
+                    tree
+                }
+            };
             files.push((id, tree));
         }
         at += 1;
@@ -97,7 +103,7 @@ pub fn load(
 struct Found {
     place: String,
     text: String,
-    of_library: bool,
+    of_library: Option<Package>,
 }
 
 /// The package that a file names; a name that the library has too is reported.
@@ -110,7 +116,7 @@ fn find(
     let of_library = hyde_library::package(name).map(|package| Found {
         place: format!("{}.hyde", name.replace('.', "/")),
         text: package.text.to_owned(),
-        of_library: true,
+        of_library: Some(package),
     });
     // Packages of the library import each other and nothing else.
     let by_library = hyde_library::PACKAGES
@@ -141,7 +147,7 @@ fn find(
         (Ok(Some((place, text))), None) => Some(Found {
             place,
             text,
-            of_library: false,
+            of_library: None,
         }),
         (Ok(None), of_library) => of_library,
     }
@@ -320,9 +326,15 @@ impl File {
         if missing.is_empty() {
             return;
         }
-        let library = hyde_library::PACKAGES.iter();
-        let library = library.map(|package| (package.name.to_owned(), package.text.to_owned()));
-        for (name, text) in library.chain((packages.all)()) {
+        for (word, model) in &missing {
+            for package in library_trees::declaring(word, *model) {
+                if !self.has(package) {
+                    let packages = self.elsewhere.entry(word.clone()).or_default();
+                    packages.push(package.to_owned());
+                }
+            }
+        }
+        for (name, text) in (packages.all)() {
             if self.has(&name) {
                 continue;
             }

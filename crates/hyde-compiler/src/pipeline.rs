@@ -51,19 +51,41 @@ pub fn compile(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<C
     compile_with(request, &Additions::new(), diagnostics)
 }
 
+/// The same, given up without an error where `stop` is true before a stage.
+pub fn compile_unless(
+    request: &Request<'_>,
+    stop: &dyn Fn() -> bool,
+    diagnostics: &mut Diagnostics,
+) -> Option<Compiled> {
+    staged(request, &Additions::new(), stop, diagnostics)
+}
+
 /// The same with effects put on the model beside those of its text.
 pub fn compile_with(
     request: &Request<'_>,
     additions: &Additions,
     diagnostics: &mut Diagnostics,
 ) -> Option<Compiled> {
+    staged(request, additions, &|| false, diagnostics)
+}
+
+fn staged(
+    request: &Request<'_>,
+    additions: &Additions,
+    stop: &dyn Fn() -> bool,
+    diagnostics: &mut Diagnostics,
+) -> Option<Compiled> {
+    let go_on = || (!stop()).then_some(());
     let mut times = Vec::new();
+    go_on()?;
     let flat = step("flatten", &mut times, || {
         flat(request, additions, diagnostics)
     })?;
+    go_on()?;
     let dae = step("analyze", &mut times, || {
         checked(hyde_analysis::analyze(flat, request.settings, diagnostics))
     })?;
+    go_on()?;
     let states = States::of(&dae);
     let program = step("compile", &mut times, || {
         hyde_jit::compile(dae, request.backend)

@@ -4,13 +4,17 @@ use crate::analysis::Analysis;
 use crate::complete::complete;
 use crate::describe;
 use crate::fixes::fixes;
+use crate::inlay;
+use crate::lens;
 use crate::outline;
 use crate::position::Encoding;
 use crate::rename::{self, Uses};
 use crate::scope::Definition;
 use crate::server::Server;
+use crate::signature;
 use crate::tokens;
 use crate::uri;
+use crate::values;
 use hyde_diag::Code;
 use lsp_server::ErrorCode;
 use lsp_types::request as ask;
@@ -54,6 +58,10 @@ pub(crate) fn answer(server: &Server, method: &str, params: Value) -> Result<Val
         ask::PrepareRenameRequest => prepare_rename;
         ask::Rename => renamed;
         ask::Completion => completion;
+        ask::SignatureHelpRequest => signatures;
+        ask::InlayHintRequest => hints;
+        ask::CodeLensRequest => lenses;
+        ask::ExecuteCommand => execute;
         ask::CodeActionRequest => actions;
         ask::SemanticTokensFullRequest => semantic;
         ask::WorkspaceSymbolRequest => workspace_symbols;
@@ -170,14 +178,31 @@ fn hover(server: &Server, params: lsp_types::HoverParams) -> Result<Option<Hover
     let Some(asked) = Asked::of(server, &at.text_document.uri) else {
         return Ok(None);
     };
-    let found = asked.analysis.occurrence_at(asked.byte(at.position));
+    let byte = asked.byte(at.position);
+    let found = asked.analysis.occurrence_at(byte);
+    // An operator behind a name is what the mouse is on, not the name.
+    let next = asked.analysis.text().get(byte..).unwrap_or_default();
+    let operator = next.starts_with(|c: char| !c.is_whitespace() && !";,)]}".contains(c));
+    let found = found.filter(|own| byte < own.span.end as usize || !operator);
     let mut parts = Vec::new();
     let mut range = None;
     if let Some(found) = found
         && let Some(meaning) = &found.meaning
     {
-        parts.push(describe::hover(&asked.analysis, meaning));
+        let mut text = describe::hover(&asked.analysis, meaning);
+        for line in values::of_name(&asked.analysis, &found) {
+            let between = if text.ends_with("```") {
+                "\n\n"
+            } else {
+                "  \n"
+            };
+            text.push_str(&format!("{between}{line}"));
+        }
+        parts.push(text);
         range = Some(asked.range(found.span.start as usize..found.span.end as usize));
+    } else if let Some((bytes, text)) = values::of_expression(&asked.analysis, byte) {
+        parts.push(text);
+        range = Some(asked.range(bytes));
     }
     for code in server.codes_at(&asked.path, at.position) {
         if let Some(code) = Code::ALL.iter().find(|own| own.as_str() == code) {
@@ -332,6 +357,59 @@ fn completion(
     };
     let list = complete(&asked.analysis, asked.byte(at.position));
     Ok(Some(lsp_types::CompletionResponse::Array(list)))
+}
+
+fn signatures(
+    server: &Server,
+    params: lsp_types::SignatureHelpParams,
+) -> Result<Option<lsp_types::SignatureHelp>, Refusal> {
+    let at = params.text_document_position_params;
+    let Some(asked) = Asked::of(server, &at.text_document.uri) else {
+        return Ok(None);
+    };
+    Ok(signature::signature(
+        &asked.analysis,
+        asked.byte(at.position),
+    ))
+}
+
+fn hints(
+    server: &Server,
+    params: lsp_types::InlayHintParams,
+) -> Result<Option<Vec<lsp_types::InlayHint>>, Refusal> {
+    let Some(asked) = Asked::of(server, &params.text_document.uri) else {
+        return Ok(None);
+    };
+    let bytes = asked.byte(params.range.start)..asked.byte(params.range.end) + 1;
+    Ok(Some(inlay::hints(&asked.analysis, &bytes, asked.encoding)))
+}
+
+fn lenses(
+    server: &Server,
+    params: lsp_types::CodeLensParams,
+) -> Result<Option<Vec<lsp_types::CodeLens>>, Refusal> {
+    let uri = &params.text_document.uri;
+    let found = uri::path(uri).and_then(|path| server.tree(&path));
+    Ok(found.map(|(tree, text)| lens::lenses(&tree, &text, uri.as_str(), server.encoding)))
+}
+
+/// Starts what a lens asks for; its page is shown when it is there.
+fn execute(
+    server: &Server,
+    params: lsp_types::ExecuteCommandParams,
+) -> Result<Option<Value>, Refusal> {
+    let refuse = |reason: String| Err((ErrorCode::RequestFailed, reason));
+    let Some(order) = lens::order(&params.command, &params.arguments) else {
+        return refuse(format!(
+            "`{}` is not a command of this server",
+            params.command
+        ));
+    };
+    if server.is_unsaved(&order.file) {
+        return refuse("save the file first: the command reads it from the disk".to_owned());
+    }
+    server.start(order);
+    Ok(None)
 }
 
 fn actions(

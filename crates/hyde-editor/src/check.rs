@@ -1,16 +1,15 @@
-//! A full check: every experiment of a file compiled, or its last model, and its studies read.
+//! A full check, as `hyde check` makes it, given up as soon as a file changes.
 
 use crate::position::Encoding;
 use crate::publish::published;
-use hyde_calibrate::CalibrationPlan;
-use hyde_compiler::DiagnosisPlan;
-use hyde_diag::Diagnostics;
+use hyde_compiler::File;
+use hyde_diag::{Diagnostics, Sources};
 use hyde_study::world::World;
-use hyde_study::{Aim, Asked, Loaded, Project, Records};
-use hyde_syntax::ast::StudyKind;
+use hyde_study::{Asked, Loaded};
 use lsp_types::{DiagnosticSeverity, Position, Range};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A file to be checked.
 pub(crate) struct Job {
@@ -20,6 +19,15 @@ pub(crate) struct Job {
     pub(crate) revision: u64,
     pub(crate) version: Option<i32>,
     pub(crate) encoding: Encoding,
+    /// The newest revision that the server knows.
+    pub(crate) newest: Arc<AtomicU64>,
+}
+
+impl Job {
+    /// Whether a file has changed since the check was asked for.
+    fn is_out_of_date(&self) -> bool {
+        self.newest.load(Ordering::Relaxed) != self.revision
+    }
 }
 
 /// What a check found.
@@ -32,11 +40,8 @@ pub(crate) struct Checked {
 
 /// Checks a file.
 pub(crate) fn check(job: &Job) -> Checked {
-    let encoding = job.encoding;
     // A defect of the compiler must not end the editor's session.
-    let found = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| {
-        all(&job.path, &job.world, encoding)
-    }));
+    let found = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| all(job)));
     Checked {
         path: job.path.clone(),
         revision: job.revision,
@@ -46,92 +51,47 @@ pub(crate) fn check(job: &Job) -> Checked {
     }
 }
 
-fn all(path: &Path, world: &Arc<dyn World>, encoding: Encoding) -> Vec<lsp_types::Diagnostic> {
+fn all(job: &Job) -> Vec<lsp_types::Diagnostic> {
     let asked = Asked {
-        world: Arc::clone(world),
-        ..Asked::of_file(path)
+        world: Arc::clone(&job.world),
+        ..Asked::of_file(&job.path)
     };
-    let loaded = match Loaded::of(&asked) {
-        Ok(loaded) => loaded,
+    let stop = || job.is_out_of_date();
+    let found = match Loaded::of(&asked) {
+        Ok(loaded) if has_nothing(&loaded) => {
+            return shown(&loaded.file, &loaded.sources, &loaded.diagnostics, job);
+        }
+        Ok(_) => hyde_study::check(&asked, &stop, &mut |_, _| {}),
+        Err(reason) => Err(reason),
+    };
+    let found = match found {
+        Ok(found) => found,
         Err(reason) => return vec![plain(reason)],
     };
-    let studies = |kind| loaded.file.studies().any(|study| study.kind == kind);
-    // A diagnosis names effects of packages that its model need not use.
-    let whole_library = studies(StudyKind::Diagnose);
-    let experiments = loaded.file.experiments();
-    let mut chosen: Vec<Option<String>> = experiments
-        .map(|experiment| Some(experiment.name.text.clone()))
-        .collect();
-    if chosen.is_empty() {
-        chosen.push(None);
-    }
-    let nothing = chosen == [None] && loaded.file.models().next().is_none();
-    if loaded.diagnostics.has_errors() || nothing {
-        let own = loaded.file.files.first().map(|(id, _)| *id);
-        let found = loaded.diagnostics.iter();
-        return found
-            .map(|found| published(found, &loaded.sources, own, encoding))
-            .collect();
-    }
-    let mut list: Vec<lsp_types::Diagnostic> = Vec::new();
-    let mut last: Option<Project> = None;
-    for experiment in chosen {
-        let asked = Asked {
-            experiment,
-            whole_library,
-            ..asked.clone()
-        };
-        match hyde_study::load(&asked, Records::IfThere) {
-            Ok(mut project) => {
-                if !project.diagnostics.has_errors() {
-                    let aim = match project.experiment {
-                        None => Aim::Linearize,
-                        Some(_) => Aim::Ledger,
-                    };
-                    // What is wrong is among the project's diagnostics.
-                    let _compiled = project.compile(aim);
-                }
-                // The files are the same, so places are: what is wrong with a model is shown once.
-                if let Some(before) = last {
-                    let own = std::mem::replace(&mut project.diagnostics, before.diagnostics);
-                    own.iter()
-                        .for_each(|own| project.diagnostics.push(own.clone()));
-                }
-                last = Some(project);
-            }
-            Err(reason) => list.push(plain(reason)),
-        }
-    }
-    if let Some(mut project) = last {
-        read_studies(&mut project);
-        let own = project.file.files.first().map(|(id, _)| *id);
-        let found = project.diagnostics.iter();
-        list.extend(found.map(|found| published(found, &project.sources, own, encoding)));
+    let mut list: Vec<lsp_types::Diagnostic> = found.refused.into_iter().map(plain).collect();
+    if let Some(project) = found.project {
+        let all = shown(&project.file, &project.sources, &project.diagnostics, job);
+        list.extend(all);
     }
     list
 }
 
-/// Reads calibrations and diagnoses, as the check of the command line does.
-fn read_studies(project: &mut Project) {
-    let mut diagnostics = std::mem::take(&mut project.diagnostics);
-    for study in project.file.studies() {
-        read_study(project, study, &mut diagnostics);
-    }
-    project.diagnostics = diagnostics;
+/// Whether a file has neither experiments nor models: types and functions alone.
+fn has_nothing(loaded: &Loaded) -> bool {
+    loaded.file.experiments().next().is_none() && loaded.file.models().next().is_none()
 }
 
-fn read_study(project: &Project, study: &hyde_syntax::ast::Study, diagnostics: &mut Diagnostics) {
-    match study.kind {
-        StudyKind::Calibrate => drop(CalibrationPlan::read(study, diagnostics)),
-        StudyKind::Diagnose => {
-            drop(DiagnosisPlan::read(
-                &project.file,
-                &study.name.text,
-                diagnostics,
-            ));
-        }
-        StudyKind::Sweep => {}
-    }
+fn shown(
+    file: &File,
+    sources: &Sources,
+    diagnostics: &Diagnostics,
+    job: &Job,
+) -> Vec<lsp_types::Diagnostic> {
+    let own = file.files.first().map(|(id, _)| *id);
+    let found = diagnostics.iter();
+    found
+        .map(|found| published(found, sources, own, job.encoding))
+        .collect()
 }
 
 /// What has no place in the text.

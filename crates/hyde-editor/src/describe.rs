@@ -3,7 +3,7 @@
 use crate::analysis::Analysis;
 use crate::scope::{Definition, FileIndex, Thing};
 use hyde_diag::Span;
-use hyde_syntax::ast::{AccountKind, ClassKind, Prefix, Reference, StudyKind};
+use hyde_syntax::ast::{AccountKind, Reference};
 use hyde_syntax::{format_expression, format_reference};
 
 /// A name as Markdown.
@@ -40,17 +40,9 @@ pub(crate) fn signature(
             let base = item.base.dotted();
             (format!("type {name} = {base}{unit}"), item.doc.clone())
         }
-        Thing::Class(class) => {
-            let word = match class.kind {
-                ClassKind::Model => "model",
-                ClassKind::Connector => "connector",
-                ClassKind::Effect => "effect",
-                ClassKind::Function => "function",
-            };
-            (format!("{word} {name}"), class.doc.clone())
-        }
+        Thing::Class(class) => (format!("{} {name}", class.kind.word()), class.doc.clone()),
         Thing::Variable(declaration, declarator) => {
-            let words = declaration.prefixes.iter().map(|prefix| word(*prefix));
+            let words = declaration.prefixes.iter().map(|prefix| prefix.word());
             let mut line: Vec<String> = words.map(str::to_owned).collect();
             line.push(format_reference(&declaration.type_name));
             line.push(name.clone());
@@ -70,12 +62,7 @@ pub(crate) fn signature(
             (line.join(" "), declarator.doc.clone())
         }
         Thing::Measure(measure, kind) => {
-            let word = match kind {
-                None => "measure",
-                Some(AccountKind::Stored) => "stored",
-                Some(AccountKind::Dissipated) => "dissipated",
-                Some(AccountKind::Supplied) => "supplied",
-            };
+            let word = kind.map_or("measure", AccountKind::word);
             let value = format_expression(&measure.value);
             let type_name = measure.type_name.dotted();
             (
@@ -107,11 +94,7 @@ pub(crate) fn signature(
             experiment.doc.clone(),
         ),
         Thing::Study(study) => {
-            let word = match study.kind {
-                StudyKind::Calibrate => "calibrate",
-                StudyKind::Diagnose => "diagnose",
-                StudyKind::Sweep => "sweep",
-            };
+            let word = study.kind.word();
             (
                 format!("{word} {name} of {}", study.of.dotted()),
                 study.doc.clone(),
@@ -124,23 +107,7 @@ pub(crate) fn signature(
 fn facts(analysis: &Analysis, definition: &Definition<'_>) -> Vec<String> {
     let mut facts = Vec::new();
     let file = definition.file;
-    let type_name = match definition.thing {
-        Thing::Variable(declaration, _) => Some(&declaration.type_name),
-        Thing::Measure(measure, _) => Some(&measure.type_name),
-        Thing::ModeParameter(type_name) => Some(type_name),
-        Thing::Package(_)
-        | Thing::Type(_)
-        | Thing::Class(_)
-        | Thing::Domain(_)
-        | Thing::Coordinate(_)
-        | Thing::Clocked(_)
-        | Thing::Modes(_)
-        | Thing::Mode
-        | Thing::Counter
-        | Thing::Record(_)
-        | Thing::Experiment(_)
-        | Thing::Study(_) => None,
-    };
+    let type_name = type_name(definition);
     if let Some(type_name) = type_name
         && let Some(item) = if let Thing::Variable(declaration, _) = definition.thing {
             analysis.files().declared(file, declaration)
@@ -167,6 +134,27 @@ fn facts(analysis: &Analysis, definition: &Definition<'_>) -> Vec<String> {
     facts
 }
 
+/// The type of what is declared with one.
+pub(crate) fn type_name<'a>(definition: &Definition<'a>) -> Option<&'a Reference> {
+    match definition.thing {
+        Thing::Variable(declaration, _) => Some(&declaration.type_name),
+        Thing::Measure(measure, _) => Some(&measure.type_name),
+        Thing::ModeParameter(type_name) => Some(type_name),
+        Thing::Package(_)
+        | Thing::Type(_)
+        | Thing::Class(_)
+        | Thing::Domain(_)
+        | Thing::Coordinate(_)
+        | Thing::Clocked(_)
+        | Thing::Modes(_)
+        | Thing::Mode
+        | Thing::Counter
+        | Thing::Record(_)
+        | Thing::Experiment(_)
+        | Thing::Study(_) => None,
+    }
+}
+
 /// The unit of a type, through the types that it is made from.
 pub(crate) fn unit(analysis: &Analysis, file: FileIndex, type_name: &Reference) -> Option<String> {
     let (mut file, mut name) = (file, type_name);
@@ -185,20 +173,4 @@ pub(crate) fn unit(analysis: &Analysis, file: FileIndex, type_name: &Reference) 
 
 fn place(analysis: &Analysis, span: Span) -> String {
     analysis.loaded.sources.place(span)
-}
-
-fn word(prefix: Prefix) -> &'static str {
-    match prefix {
-        Prefix::Parameter => "parameter",
-        Prefix::Constant => "constant",
-        Prefix::Final => "final",
-        Prefix::Flow => "flow",
-        Prefix::Input => "input",
-        Prefix::Output => "output",
-        Prefix::Replaceable => "replaceable",
-        Prefix::Site => "site",
-        Prefix::Field => "field",
-        Prefix::Size => "size",
-        Prefix::Shape => "shape",
-    }
 }

@@ -1,11 +1,12 @@
 //! The texts that are open in the editor, over the files of the disk.
 
 use crate::position::Encoding;
-use hyde_study::world::{Buffers, World};
+use hyde_study::world::{Buffers, World, read_text};
 use lsp_types::TextDocumentContentChangeEvent;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// A text that is open.
 #[derive(Clone, Debug)]
@@ -20,6 +21,8 @@ pub(crate) struct Documents {
     open: BTreeMap<PathBuf, Document>,
     /// Grows with every change of any file: an answer of another revision is out of date.
     pub(crate) revision: u64,
+    /// The same, for checks under way.
+    pub(crate) newest: Arc<AtomicU64>,
 }
 
 impl Documents {
@@ -28,17 +31,23 @@ impl Documents {
             disk,
             open: BTreeMap::new(),
             revision: 0,
+            newest: Arc::default(),
         }
+    }
+
+    fn touched(&mut self) {
+        self.revision += 1;
+        self.newest.store(self.revision, Ordering::Relaxed);
     }
 
     pub(crate) fn open(&mut self, path: PathBuf, text: String, version: i32) {
         self.open.insert(path, Document { text, version });
-        self.revision += 1;
+        self.touched();
     }
 
     pub(crate) fn close(&mut self, path: &Path) {
         self.open.remove(path);
-        self.revision += 1;
+        self.touched();
     }
 
     /// Applies changes in their order.
@@ -49,7 +58,7 @@ impl Documents {
         changes: Vec<TextDocumentContentChangeEvent>,
         encoding: Encoding,
     ) {
-        self.revision += 1;
+        self.touched();
         let Some(document) = self.open.get_mut(path) else {
             return;
         };
@@ -68,11 +77,16 @@ impl Documents {
 
     /// Something changed on the disk.
     pub(crate) fn disk_changed(&mut self) {
-        self.revision += 1;
+        self.touched();
     }
 
     pub(crate) fn get(&self, path: &Path) -> Option<&Document> {
         self.open.get(path)
+    }
+
+    /// The text of a file on the disk.
+    pub(crate) fn saved(&self, path: &Path) -> Option<String> {
+        read_text(self.disk.as_ref(), path).ok()
     }
 
     pub(crate) fn paths(&self) -> impl Iterator<Item = &PathBuf> {

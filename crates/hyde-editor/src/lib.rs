@@ -7,6 +7,9 @@
 //! documents     the texts that are open, over the files of the disk        documents.rs
 //! analysis      a text with the packages it names, parsed                  analysis.rs
 //! scope         what a name means                                          scope.rs
+//! place         which names are known at a place, what a bracket is about  place.rs
+//! values        values, spreads and dimensions                             values.rs
+//! lens          commands over experiments and diagnoses                    lens.rs
 //! occurrences   every name of a file with its meaning                      occurrences.rs
 //! position      places as the protocol counts them                         position.rs
 //! ```
@@ -15,19 +18,26 @@
 
 mod analysis;
 mod answer;
+mod before;
 mod check;
 mod complete;
 mod describe;
 mod documents;
 mod fixes;
+mod inlay;
+mod lens;
 mod occurrences;
 mod outline;
+mod place;
 mod position;
 mod publish;
 mod rename;
 mod scope;
 mod server;
+mod signature;
 mod tokens;
 mod uri;
+mod values;
 
-pub use server::{Host, serve};
+pub use lens::{Action, Order};
+pub use server::{Host, PAUSE, serve};

@@ -322,12 +322,7 @@ impl<'a> Walk<'a> {
 
     /// The name of a class, and its package.
     pub(super) fn class_name(&mut self, name: &'a Reference) {
-        let class = self.files.class(self.file, name);
-        let meaning = class.map(|(file, class)| Definition {
-            file,
-            name: &class.name,
-            thing: Thing::Class(class),
-        });
+        let meaning = self.files.class_definition(self.file, name);
         self.path(name, meaning);
     }
 

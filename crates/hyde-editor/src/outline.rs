@@ -8,7 +8,7 @@
 use crate::position::Encoding;
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::{
-    Class, ClassBody, ClassKind, Element, ExperimentItem, File, Item, Name, Prefix, StudyKind,
+    Class, ClassBody, ClassKind, Declared, Element, ExperimentItem, File, Item, Name, Prefix,
 };
 use hyde_syntax::{Node, Rule, Written};
 use lsp_types::{DocumentSymbol, FoldingRange, FoldingRangeKind, SelectionRange, SymbolKind};
@@ -59,12 +59,7 @@ impl Outline<'_> {
             }
             Item::Study(study) => {
                 let span = study.span.start as usize..study.span.end as usize;
-                let word = match study.kind {
-                    StudyKind::Calibrate => "calibrate",
-                    StudyKind::Diagnose => "diagnose",
-                    StudyKind::Sweep => "sweep",
-                };
-                let detail = format!("{word} {}", study.of.dotted());
+                let detail = format!("{} {}", study.kind.word(), study.of.dotted());
                 self.symbol(&study.name, SymbolKind::EVENT, span, detail)
             }
         }
@@ -93,51 +88,43 @@ impl Outline<'_> {
     fn elements(&self, elements: &[Element]) -> Vec<DocumentSymbol> {
         let mut list = Vec::new();
         for element in elements {
-            match element {
-                Element::Declaration(declaration) => {
-                    let kind = match declaration.prefixes.contains(&Prefix::Parameter) {
-                        true => SymbolKind::CONSTANT,
-                        false => SymbolKind::VARIABLE,
-                    };
-                    for declarator in &declaration.declarators {
-                        let name = &declarator.name;
-                        let whole = name.span.start as usize..name.span.end as usize;
-                        list.push(self.symbol(name, kind, whole, declaration.type_name.dotted()));
-                    }
+            if let Element::Modes(modes) = element {
+                for mode in &modes.modes {
+                    let whole = mode.name.span.start as usize..mode.name.span.end as usize;
+                    let detail = "mode".to_owned();
+                    list.push(self.symbol(&mode.name, SymbolKind::ENUM_MEMBER, whole, detail));
                 }
-                Element::Clocked(clocked) => {
-                    let whole = clocked.span.start as usize..clocked.span.end as usize;
-                    let detail = "clocked".to_owned();
-                    let mut own = self.symbol(&clocked.name, SymbolKind::MODULE, whole, detail);
-                    own.children = Some(self.elements(&clocked.elements));
-                    list.push(own);
-                }
-                Element::Modes(modes) => {
-                    for mode in &modes.modes {
-                        let whole = mode.name.span.start as usize..mode.name.span.end as usize;
-                        let detail = "mode".to_owned();
-                        list.push(self.symbol(&mode.name, SymbolKind::ENUM_MEMBER, whole, detail));
-                    }
-                }
-                Element::Measure(measure) | Element::Account(_, measure) => {
-                    let name = &measure.name;
-                    let whole = name.span.start as usize..measure.value.span.end as usize;
-                    let detail = measure.type_name.dotted();
-                    list.push(self.symbol(name, SymbolKind::NUMBER, whole, detail));
-                }
-                Element::Extends(..)
-                | Element::Domain(_)
-                | Element::Discretize(_)
-                | Element::Equation(_)
-                | Element::InitialEquation(_)
-                | Element::Wrap(..)
-                | Element::Add(_)
-                | Element::Replace(..)
-                | Element::Signature(_)
-                | Element::Confounds(_) => {}
+                continue;
             }
+            let declared = element.declared().into_iter();
+            list.extend(declared.filter_map(|(name, own)| self.declared(name, own)));
         }
         list
+    }
+
+    fn declared(&self, name: &Name, declared: Declared<'_>) -> Option<DocumentSymbol> {
+        let own = name.span.start as usize..name.span.end as usize;
+        Some(match declared {
+            Declared::Variable(declaration, _) => {
+                let kind = match declaration.prefixes.contains(&Prefix::Parameter) {
+                    true => SymbolKind::CONSTANT,
+                    false => SymbolKind::VARIABLE,
+                };
+                self.symbol(name, kind, own, declaration.type_name.dotted())
+            }
+            Declared::Clocked(clocked) => {
+                let whole = clocked.span.start as usize..clocked.span.end as usize;
+                let mut own = self.symbol(name, SymbolKind::MODULE, whole, "clocked".to_owned());
+                own.children = Some(self.elements(&clocked.elements));
+                own
+            }
+            Declared::Measure(measure, _) => {
+                let whole = own.start..measure.value.span.end as usize;
+                let detail = measure.type_name.dotted();
+                self.symbol(name, SymbolKind::NUMBER, whole, detail)
+            }
+            Declared::Domain(_) | Declared::Coordinate(_) | Declared::Modes(_) => return None,
+        })
     }
 
     #[allow(deprecated, reason = "the field must be given a value")]

@@ -2,17 +2,16 @@
 //! names of blocks.
 
 use hyde_diag::FileId;
+use hyde_syntax::Lookup;
 use hyde_syntax::ast::{
-    AccountKind, Change, Class, ClassBody, Clocked, Declaration, Declarator, Domain, Element,
-    Experiment, ExperimentItem, File, Item, Measure, Modes, Name, Part, Prefix, RecordItem,
+    AccountKind, Change, Class, ClassBody, Clocked, Declaration, Declarator, Declared, Domain,
+    Element, Experiment, ExperimentItem, File, Item, Measure, Modes, Name, Prefix, RecordItem,
     Reference, Study, TypeItem,
 };
+pub(crate) use hyde_syntax::{FileIndex, dotted};
 
 /// The most classes that extend each other, or names in one reference.
 const DEEPEST: usize = 32;
-
-/// A file among those loaded, by its number.
-pub(crate) type FileIndex = usize;
 
 /// Something that is declared.
 #[derive(Clone, Copy, Debug)]
@@ -66,12 +65,13 @@ impl<'a> Files<'a> {
         self.files.get(index).map(|(_, tree)| tree)
     }
 
+    fn lookup(self) -> Lookup<'a> {
+        Lookup { files: self.files }
+    }
+
     /// The package of a name.
     pub(crate) fn package(self, name: &str) -> Option<FileIndex> {
-        self.files.iter().position(|(_, tree)| {
-            let package = tree.package.as_ref();
-            package.is_some_and(|(path, _)| path.dotted() == name)
-        })
+        self.lookup().package(name)
     }
 
     /// What a package is, as something declared.
@@ -87,13 +87,26 @@ impl<'a> Files<'a> {
 
     /// What the name of a type means in a file: a quantity, or else a class.
     pub(crate) fn item(self, file: FileIndex, name: &Reference) -> Option<Definition<'a>> {
-        self.look_up(file, name, type_of).or_else(|| {
-            let (file, class) = self.class(file, name)?;
-            Some(Definition {
-                file,
-                name: &class.name,
-                thing: Thing::Class(class),
-            })
+        let quantity = self.lookup().type_item(file, name);
+        let quantity = quantity.map(|(file, item)| Definition {
+            file,
+            name: &item.name,
+            thing: Thing::Type(item),
+        });
+        quantity.or_else(|| self.class_definition(file, name))
+    }
+
+    /// The class that a name means in a file, as something declared.
+    pub(crate) fn class_definition(
+        self,
+        file: FileIndex,
+        name: &Reference,
+    ) -> Option<Definition<'a>> {
+        let (file, class) = self.class(file, name)?;
+        Some(Definition {
+            file,
+            name: &class.name,
+            thing: Thing::Class(class),
         })
     }
 
@@ -119,7 +132,7 @@ impl<'a> Files<'a> {
             .iter()
             .any(|own| quantity.contains(own));
         let part = |own: &Declarator| own.binding.is_none() && own.is_modified();
-        let class = self.look_up(file, &declaration.type_name, class_of);
+        let class = self.class_definition(file, &declaration.type_name);
         match class {
             Some(class) if plain && declaration.declarators.iter().any(part) => Some(class),
             Some(_) | None => self.item(file, &declaration.type_name),
@@ -128,48 +141,7 @@ impl<'a> Files<'a> {
 
     /// The class that a name means in a file.
     pub(crate) fn class(self, file: FileIndex, name: &Reference) -> Option<(FileIndex, &'a Class)> {
-        let found = self.look_up(file, name, class_of)?;
-        let Thing::Class(class) = found.thing else {
-            return None;
-        };
-        Some((found.file, class))
-    }
-
-    /// As the compiler looks a name up: in the file, among single imports, among whole packages, and by its full name.
-    fn look_up(
-        self,
-        file: FileIndex,
-        name: &Reference,
-        pick: fn(FileIndex, &'a Item) -> Option<Definition<'a>>,
-    ) -> Option<Definition<'a>> {
-        let in_file = |index: FileIndex, word: &str| {
-            let items = self.file(index)?.items.iter();
-            let mut own = items.filter_map(|item| pick(index, item));
-            own.find(|found| found.name.text == word)
-        };
-        let (last, package) = name.parts.split_last()?;
-        let word = last.name.text.as_str();
-        if !package.is_empty() {
-            return in_file(self.package(&dotted(package))?, word);
-        }
-        if let Some(found) = in_file(file, word) {
-            return Some(found);
-        }
-        let imports = &self.file(file)?.imports;
-        let mut exact = imports.iter().filter(|import| !import.everything);
-        let exact = exact.find_map(|import| {
-            let (last, package) = import.path.parts.split_last()?;
-            let own = last.name.text == word;
-            in_file(self.package(&dotted(package)).filter(|_| own)?, word)
-        });
-        exact.or_else(|| {
-            let whole = imports.iter().filter(|import| import.everything);
-            let mut found =
-                whole.filter_map(|import| in_file(self.package(&import.path.dotted())?, word));
-            let first = found.next()?;
-            // A name that two packages have means neither.
-            found.all(|other| other.file == first.file).then_some(first)
-        })
+        self.lookup().class(file, name)
     }
 
     /// An experiment of a file.
@@ -318,28 +290,6 @@ impl<'a> Files<'a> {
     }
 }
 
-fn class_of(file: FileIndex, item: &Item) -> Option<Definition<'_>> {
-    match item {
-        Item::Class(class) => Some(Definition {
-            file,
-            name: &class.name,
-            thing: Thing::Class(class),
-        }),
-        Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
-    }
-}
-
-fn type_of(file: FileIndex, item: &Item) -> Option<Definition<'_>> {
-    match item {
-        Item::Type(item) => Some(Definition {
-            file,
-            name: &item.name,
-            thing: Thing::Type(item),
-        }),
-        Item::Class(_) | Item::Experiment(_) | Item::Study(_) => None,
-    }
-}
-
 /// A mode of a block.
 pub(crate) fn mode_of<'a>(file: FileIndex, modes: &'a Modes, word: &str) -> Option<Definition<'a>> {
     let mode = modes.modes.iter().find(|mode| mode.name.text == word)?;
@@ -377,41 +327,15 @@ pub(crate) fn own_of_experiment<'a>(
 }
 
 fn own_members<'a>(file: FileIndex, element: &'a Element, visit: &mut dyn FnMut(Definition<'a>)) {
-    let mut show = |name: &'a Name, thing| visit(Definition { file, name, thing });
-    match element {
-        Element::Declaration(declaration) => {
-            for declarator in &declaration.declarators {
-                show(&declarator.name, Thing::Variable(declaration, declarator));
-            }
-        }
-        Element::Domain(domain) => {
-            show(&domain.name, Thing::Domain(domain));
-            show(&domain.coordinate, Thing::Coordinate(domain));
-        }
-        Element::Modes(modes) => {
-            if let Some(name) = &modes.name {
-                show(name, Thing::Modes(modes));
-            }
-        }
-        Element::Clocked(clocked) => show(&clocked.name, Thing::Clocked(clocked)),
-        Element::Measure(measure) => show(&measure.name, Thing::Measure(measure, None)),
-        Element::Account(kind, measure) => {
-            show(&measure.name, Thing::Measure(measure, Some(*kind)));
-        }
-        Element::Extends(..)
-        | Element::Discretize(_)
-        | Element::Equation(_)
-        | Element::InitialEquation(_)
-        | Element::Wrap(..)
-        | Element::Add(_)
-        | Element::Replace(..)
-        | Element::Signature(_)
-        | Element::Confounds(_) => {}
+    for (name, declared) in element.declared() {
+        let thing = match declared {
+            Declared::Variable(declaration, declarator) => Thing::Variable(declaration, declarator),
+            Declared::Domain(domain) => Thing::Domain(domain),
+            Declared::Coordinate(domain) => Thing::Coordinate(domain),
+            Declared::Modes(modes) => Thing::Modes(modes),
+            Declared::Clocked(clocked) => Thing::Clocked(clocked),
+            Declared::Measure(measure, kind) => Thing::Measure(measure, kind),
+        };
+        visit(Definition { file, name, thing });
     }
-}
-
-/// A dotted name from its parts.
-pub(crate) fn dotted(parts: &[Part]) -> String {
-    let words: Vec<&str> = parts.iter().map(|part| part.name.text.as_str()).collect();
-    words.join(".")
 }

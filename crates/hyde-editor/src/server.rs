@@ -5,6 +5,7 @@ use crate::analysis::Analysis;
 use crate::answer::answer;
 use crate::check::{Checked, Job, check};
 use crate::documents::Documents;
+use crate::lens::{self, Order};
 use crate::position::Encoding;
 use crate::publish::published;
 use crate::tokens;
@@ -13,15 +14,17 @@ use crossbeam_channel::{Receiver, Sender, after, bounded, never, select, unbound
 use hyde_diag::{Code, Diagnostics, Sources};
 use hyde_study::world::{World, read_text};
 use hyde_syntax::ast::File;
-use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
+use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
 use lsp_types::notification as tell;
 use lsp_types::notification::Notification as _;
+use lsp_types::request::{Request as _, ShowDocument};
 use lsp_types::{
-    CodeActionKind, CodeActionOptions, CodeActionProviderCapability, CompletionOptions,
-    HoverProviderCapability, InitializeParams, NumberOrString, OneOf, Position,
-    PositionEncodingKind, PublishDiagnosticsParams, RenameOptions,
-    SelectionRangeProviderCapability, SemanticTokensFullOptions, SemanticTokensOptions,
-    ServerCapabilities, TextDocumentSyncCapability, TextDocumentSyncKind,
+    CodeActionKind, CodeActionOptions, CodeActionProviderCapability, CodeLensOptions,
+    CompletionOptions, ExecuteCommandOptions, HoverProviderCapability, InitializeParams,
+    MessageType, NumberOrString, OneOf, Position, PositionEncodingKind, PublishDiagnosticsParams,
+    RenameOptions, SelectionRangeProviderCapability, SemanticTokensFullOptions,
+    SemanticTokensOptions, ServerCapabilities, ShowDocumentParams, ShowMessageParams,
+    SignatureHelpOptions, TextDocumentSyncCapability, TextDocumentSyncKind,
 };
 use serde_json::{Value, json};
 use std::cell::RefCell;
@@ -32,7 +35,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 /// The pause after the last change before a full check.
-const PAUSE: Duration = Duration::from_millis(250);
+pub const PAUSE: Duration = Duration::from_millis(250);
 
 /// What the server asks of the program that it is part of.
 pub trait Host {
@@ -42,6 +45,9 @@ pub trait Host {
 
     /// What a code means, as Markdown.
     fn explanation(&self, code: Code) -> String;
+
+    /// Starts a command and comes back at once; `done` is told the page that the command wrote, or why there is none.
+    fn start(&self, order: Order, done: Box<dyn FnOnce(Result<PathBuf, String>) + Send>);
 }
 
 /// The state of a session.
@@ -53,6 +59,10 @@ pub(crate) struct Server {
     pub(crate) host: Box<dyn Host>,
     /// What was published for each text.
     published: BTreeMap<PathBuf, Vec<lsp_types::Diagnostic>>,
+    /// Whether the editor can show a page.
+    shows_documents: bool,
+    /// Where commands tell that they are done.
+    pages: Sender<Result<PathBuf, String>>,
     /// The analyses of the present revision.
     analyses: RefCell<(u64, BTreeMap<PathBuf, Rc<Analysis>>)>,
 }
@@ -79,7 +89,10 @@ pub fn serve(
     connection
         .initialize_finish(id, answer)
         .map_err(|error| error.to_string())?;
+    let (pages, shown) = unbounded();
     let server = Server {
+        shows_documents: shows_documents(&params),
+        pages,
         documents: Documents::over(disk),
         encoding,
         folders: folders(&params),
@@ -91,7 +104,7 @@ pub fn serve(
     let (done, results) = unbounded::<Checked>();
     std::thread::scope(|scope| {
         scope.spawn(move || work(&to_do, &done));
-        server.run(connection, jobs, &results)
+        server.run(connection, jobs, (&results, &shown))
     })
 }
 
@@ -127,6 +140,13 @@ fn folders(params: &InitializeParams) -> Vec<PathBuf> {
     found
 }
 
+/// Whether the editor can show a page in a browser.
+fn shows_documents(params: &InitializeParams) -> bool {
+    let window = params.capabilities.window.as_ref();
+    let shows = window.and_then(|window| window.show_document.as_ref());
+    shows.is_some_and(|own| own.support)
+}
+
 fn capabilities(encoding: Encoding) -> ServerCapabilities {
     ServerCapabilities {
         position_encoding: Some(match encoding {
@@ -152,6 +172,18 @@ fn capabilities(encoding: Encoding) -> ServerCapabilities {
             trigger_characters: Some([".", "(", "[", ","].map(str::to_owned).to_vec()),
             ..CompletionOptions::default()
         }),
+        signature_help_provider: Some(SignatureHelpOptions {
+            trigger_characters: Some(["(", ","].map(str::to_owned).to_vec()),
+            ..SignatureHelpOptions::default()
+        }),
+        inlay_hint_provider: Some(OneOf::Left(true)),
+        code_lens_provider: Some(CodeLensOptions {
+            resolve_provider: Some(false),
+        }),
+        execute_command_provider: Some(ExecuteCommandOptions {
+            commands: lens::commands(),
+            ..ExecuteCommandOptions::default()
+        }),
         code_action_provider: Some(CodeActionProviderCapability::Options(CodeActionOptions {
             code_action_kinds: Some(vec![CodeActionKind::QUICKFIX]),
             ..CodeActionOptions::default()
@@ -175,8 +207,9 @@ impl Server {
         mut self,
         connection: &Connection,
         jobs: Sender<Job>,
-        results: &Receiver<Checked>,
+        (results, pages): (&Receiver<Checked>, &Receiver<Result<PathBuf, String>>),
     ) -> Result<(), String> {
+        let mut asked = 0;
         // The texts to check once the pause is over.
         let mut due: BTreeSet<PathBuf> = BTreeSet::new();
         let mut pause = never();
@@ -220,12 +253,57 @@ impl Server {
                         self.checked(connection, checked);
                     }
                 }
+                recv(pages) -> page => {
+                    if let Ok(page) = page {
+                        asked += 1;
+                        self.show(connection, page, asked);
+                    }
+                }
                 recv(pause) -> _ => {
                     quiet = true;
                     pause = never();
                 }
             }
         }
+    }
+
+    /// Has the editor show a page that a command wrote, or the reason why there is none.
+    fn show(&self, connection: &Connection, page: Result<PathBuf, String>, number: i32) {
+        let say = |typ: MessageType, message: String| {
+            let params = ShowMessageParams { typ, message };
+            let method = tell::ShowMessage::METHOD.to_owned();
+            send(connection, Notification::new(method, params).into());
+        };
+        match page {
+            Err(reason) => say(MessageType::ERROR, reason),
+            Ok(page) => match uri::of(&page).filter(|_| self.shows_documents) {
+                None => say(MessageType::INFO, format!("the page is {}", page.display())),
+                Some(uri) => {
+                    let params = ShowDocumentParams {
+                        uri,
+                        external: Some(true),
+                        take_focus: Some(true),
+                        selection: None,
+                    };
+                    let method = ShowDocument::METHOD.to_owned();
+                    let id = RequestId::from(format!("page-{number}"));
+                    send(connection, Request::new(id, method, params).into());
+                }
+            },
+        }
+    }
+
+    /// Starts what a lens asks for.
+    pub(crate) fn start(&self, order: Order) {
+        let pages = self.pages.clone();
+        let done = move |page| drop(pages.send(page));
+        self.host.start(order, Box::new(done));
+    }
+
+    /// Whether a text is open and is not what the file on the disk has.
+    pub(crate) fn is_unsaved(&self, path: &Path) -> bool {
+        let open = self.documents.get(path).map(|own| &own.text);
+        open.is_some_and(|text| self.documents.saved(path).as_ref() != Some(text))
     }
 
     fn respond(&self, request: Request) -> Response {
@@ -319,6 +397,7 @@ impl Server {
             world: self.documents.world(),
             revision: self.documents.revision,
             encoding: self.encoding,
+            newest: Arc::clone(&self.documents.newest),
             path,
         }
     }

@@ -44,8 +44,8 @@ const OF_ANGLE: [(&str, UnaryOp); 3] = [
     ("tan", UnaryOp::Tan),
 ];
 
-/// Every function name, for near misses.
-const ALL: [&str; 50] = [
+/// The names of the functions of the language.
+pub const FUNCTIONS: [&str; 50] = [
     "der",
     "pre",
     "sample",
@@ -98,8 +98,9 @@ const ALL: [&str; 50] = [
     "smooth_table",
 ];
 
-/// How a function is called, for the repair of a call with the wrong arguments.
-fn usage(name: &str) -> Option<&'static str> {
+/// How a function of the language is called; nothing of those with one plain argument.
+#[must_use]
+pub fn usage(name: &str) -> Option<&'static str> {
     Some(match name {
         "der" | "abs" | "sign" | "sqrt" | "exp" | "log" | "log10" | "sin" | "cos" | "tan"
         | "asin" | "acos" | "atan" | "sinh" | "cosh" | "tanh" | "floor" | "ceil" | "integer"
@@ -142,7 +143,7 @@ impl<'a> Model<'a, '_> {
         let Some(name) = function.as_word() else {
             return self.method(function, arguments, scope, span);
         };
-        if !ALL.contains(&name)
+        if !FUNCTIONS.contains(&name)
             && let Some(found) = self.function_named(function)
         {
             return self.function(found, arguments, scope, span);
@@ -266,7 +267,7 @@ impl<'a> Model<'a, '_> {
                     format!("there is no function `{name}`"),
                 )
                 .label(function.span, "not known");
-                let near = nearest(name, ALL.iter().copied());
+                let near = nearest(name, FUNCTIONS.iter().copied());
                 self.report(match near {
                     Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
                     None => diagnostic,

@@ -29,6 +29,7 @@ mod instance;
 mod instantiate;
 mod ledger;
 mod lower;
+mod meaning;
 mod model;
 mod modes;
 mod names;
@@ -39,7 +40,9 @@ mod wrap;
 mod zero;
 
 pub use additions::Additions;
+pub use call::{FUNCTIONS, usage};
 pub use candidates::{Candidate, Knob};
+pub use meaning::{Meaning, MeaningOf, ValueOf};
 
 use hyde_diag::{Diagnostics, FileId, Sources};
 use hyde_ir::FlatModel;
@@ -133,6 +136,17 @@ pub fn candidates(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Ve
     flat_model(input, true, diagnostics).map(|(_, candidates)| candidates)
 }
 
+/// What the expressions and parameters of the first file mean, as far as they are understood; what is wrong with the others
+/// is in `diagnostics`.
+pub fn meaning(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Meaning {
+    let mut model = model::Model::new(input, diagnostics);
+    model.lowered = Some(Vec::new());
+    match build(&mut model) {
+        Some(()) => model.meaning(),
+        None => Meaning::default(),
+    }
+}
+
 /// The flat model, with the effects that fit on it if they are asked for.
 fn flat_model(
     input: &Input<'_>,
@@ -142,6 +156,14 @@ fn flat_model(
     let before = diagnostics.error_count();
     let mut model = model::Model::new(input, diagnostics);
     model.offering = offering;
+    build(&mut model)?;
+    let candidates = model.candidates();
+    let flat = model.flat;
+    (diagnostics.error_count() == before).then_some((flat, candidates))
+}
+
+/// Builds the flat model; `None` if there is no model of that name.
+fn build(model: &mut model::Model<'_, '_>) -> Option<()> {
     let root = model.instantiate_root()?;
     model.find_replays(root);
     model.lower_bindings();
@@ -160,7 +182,5 @@ fn flat_model(
     model.finish();
     model.ports();
     model.check_effect_words();
-    let candidates = model.candidates();
-    let flat = model.flat;
-    (diagnostics.error_count() == before).then_some((flat, candidates))
+    Some(())
 }

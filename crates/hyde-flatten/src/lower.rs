@@ -21,6 +21,12 @@ use hyde_units::{AngleExponent, NamedUnit, UnitError};
 impl<'a> Model<'a, '_> {
     /// Lowers an expression. What is wrong with it is reported, and something harmless takes its place.
     pub(crate) fn lower(&mut self, expr: &'a Expr, scope: &Scope<'a>) -> Typed {
+        let typed = self.lower_kind(expr, scope);
+        self.note_meaning(expr.span, &typed);
+        typed
+    }
+
+    fn lower_kind(&mut self, expr: &'a Expr, scope: &Scope<'a>) -> Typed {
         let span = expr.span;
         match &expr.kind {
             ExprKind::Number(value, unit) => self.number(*value, unit.as_ref(), span),

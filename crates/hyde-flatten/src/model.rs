@@ -39,6 +39,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) hooks: Vec<crate::instantiate::Hook<'a>>,
     pub(crate) wraps: Vec<crate::wrap::Wrap<'a>>,
     pub(crate) replacements: Vec<crate::instantiate::Replacement<'a>>,
+    /// The expressions of the first file as they were lowered, where somebody asks for them.
+    pub(crate) lowered: Option<Vec<crate::meaning::Lowered>>,
     /// Whether effects are offered to what they fit on, and those that were.
     pub(crate) offering: bool,
     pub(crate) offers: Vec<crate::instantiate::Offer<'a>>,
@@ -90,6 +92,7 @@ impl<'a, 'd> Model<'a, 'd> {
             hooks: Vec::new(),
             wraps: Vec::new(),
             replacements: Vec::new(),
+            lowered: None,
             offering: false,
             offers: Vec::new(),
             replays: Vec::new(),

@@ -2,12 +2,11 @@
 
 use crate::Input;
 use hyde_diag::{Code, Diagnostic, FileId, Span};
+pub(crate) use hyde_syntax::FileIndex;
+use hyde_syntax::Lookup;
 use hyde_syntax::ast::{self, Class, Item, Reference, TypeItem};
 use hyde_units::Kind;
 use std::collections::BTreeMap;
-
-/// A file by its number in the input.
-pub(crate) type FileIndex = usize;
 
 /// What a type name means.
 #[derive(Clone, Copy)]
@@ -49,12 +48,13 @@ impl<'a> Names<'a> {
         self.files.iter().position(|(id, _)| *id == span.file)
     }
 
+    fn lookup(self) -> Lookup<'a> {
+        Lookup { files: self.files }
+    }
+
     /// The class a name means in a file.
     pub(crate) fn class(self, file: FileIndex, name: &Reference) -> Option<(FileIndex, &'a Class)> {
-        self.look_up(file, name, |item, word| match item {
-            Item::Class(class) if class.name.text == word => Some(class),
-            Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
-        })
+        self.lookup().class(file, name)
     }
 
     /// The type a name means in a file.
@@ -65,7 +65,7 @@ impl<'a> Names<'a> {
             Some("Boolean") => return Some(TypeName::Boolean),
             Some(_) | None => {}
         }
-        let (file, item) = self.type_item(file, name)?;
+        let (file, item) = self.lookup().type_item(file, name)?;
         // `type Teeth = Integer;` is an Integer.
         let mut base = (file, item);
         let mut seen = vec![item];
@@ -75,20 +75,13 @@ impl<'a> Names<'a> {
                 Some("Boolean") => return Some(TypeName::Boolean),
                 Some(_) | None => {}
             }
-            match self.type_item(base.0, &base.1.base) {
+            match self.lookup().type_item(base.0, &base.1.base) {
                 Some(next) if !seen.iter().any(|known| std::ptr::eq(*known, next.1)) => base = next,
                 Some(_) | None => break,
             }
             seen.push(base.1);
         }
         Some(TypeName::Quantity(file, item))
-    }
-
-    fn type_item(self, file: FileIndex, name: &Reference) -> Option<(FileIndex, &'a TypeItem)> {
-        self.look_up(file, name, |item, word| match item {
-            Item::Type(item) if item.name.text == word => Some(item),
-            Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
-        })
     }
 
     /// A class of the first file, by its name.
@@ -233,7 +226,7 @@ impl<'a> Names<'a> {
         let mut found: Vec<String> = Vec::new();
         for import in tree.imports.iter().filter(|import| import.everything) {
             let package = import.path.dotted();
-            if self.package(&package).is_some_and(has) && !found.contains(&package) {
+            if self.lookup().package(&package).is_some_and(has) && !found.contains(&package) {
                 found.push(package);
             }
         }
@@ -263,64 +256,13 @@ impl<'a> Names<'a> {
             .flat_map(|(_, file)| &file.items)
     }
 
-    fn look_up<T: ?Sized>(
-        self,
-        file: FileIndex,
-        name: &Reference,
-        pick: impl Fn(&'a Item, &str) -> Option<&'a T>,
-    ) -> Option<(FileIndex, &'a T)> {
-        let in_file = |index: FileIndex, word: &str| {
-            let tree = &self.files.get(index)?.1;
-            tree.items
-                .iter()
-                .find_map(|item| pick(item, word))
-                .map(|found| (index, found))
-        };
-        let (last, package) = name.parts.split_last()?;
-        let word = last.name.text.as_str();
-        if package.is_empty() {
-            if let Some(found) = in_file(file, word) {
-                return Some(found);
-            }
-            let imports = &self.files.get(file)?.1.imports;
-            let exact = imports
-                .iter()
-                .filter(|import| !import.everything)
-                .find_map(|import| {
-                    let (last, package) = import.path.parts.split_last()?;
-                    if last.name.text != word {
-                        return None;
-                    }
-                    in_file(self.package(&dotted(package))?, word)
-                });
-            return exact.or_else(|| {
-                let mut found = imports
-                    .iter()
-                    .filter(|import| import.everything)
-                    .filter_map(|import| in_file(self.package(&import.path.dotted())?, word));
-                let first = found.next()?;
-                // A name that two packages have means neither: [`Names::unknown`] tells.
-                found.all(|(index, _)| index == first.0).then_some(first)
-            });
-        }
-        in_file(self.package(&dotted(package))?, word)
-    }
-
-    fn package(self, name: &str) -> Option<FileIndex> {
-        self.files.iter().position(|(_, tree)| {
-            tree.package
-                .as_ref()
-                .is_some_and(|(path, _)| path.dotted() == name)
-        })
-    }
-
     fn imports_everything(self, file: FileIndex, other: FileIndex) -> bool {
         let Some((_, tree)) = self.files.get(file) else {
             return false;
         };
-        tree.imports
-            .iter()
-            .any(|import| import.everything && self.package(&import.path.dotted()) == Some(other))
+        tree.imports.iter().any(|import| {
+            import.everything && self.lookup().package(&import.path.dotted()) == Some(other)
+        })
     }
 }
 
@@ -342,11 +284,6 @@ pub(crate) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> O
         })
         .min()
         .map(|(.., candidate)| candidate)
-}
-
-fn dotted(parts: &[ast::Part]) -> String {
-    let words: Vec<&str> = parts.iter().map(|part| part.name.text.as_str()).collect();
-    words.join(".")
 }
 
 fn declared_name(item: &Item) -> Option<&str> {

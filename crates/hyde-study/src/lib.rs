@@ -12,6 +12,7 @@
 //! records        the records of an experiment                            records.rs
 //! ports          inputs and outputs of a program for another tool        ports.rs
 //! project        a file parsed once; its model, experiment, program      project.rs
+//! check          everything in a file compiled, and nothing run         check.rs
 //! calibration    a calibration with its records and its observer         calibration.rs
 //! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
 //! first_model    a first model of an axis, from a trace                  first_model.rs
@@ -24,6 +25,7 @@
 
 mod asked;
 mod calibration;
+mod check;
 mod diagnosis;
 pub mod first_model;
 mod inputs;
@@ -43,6 +45,7 @@ pub mod world;
 
 pub use asked::Asked;
 pub use calibration::{Calibration, calibration, chosen};
+pub use check::{Checked, check};
 pub use diagnosis::diagnosis;
 pub use inputs::{Content, Inputs, Key, Kind};
 pub use package::{MANIFEST, Manifest, Root, Roots, is_inside, links_out};

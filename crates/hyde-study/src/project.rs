@@ -48,6 +48,7 @@ pub enum Records {
 }
 
 /// A file that was parsed, with the packages and tables it names.
+#[derive(Clone)]
 pub struct Loaded {
     /// The texts.
     pub sources: Sources,
@@ -276,6 +277,14 @@ impl Project {
     /// # Errors
     /// What is at fault.
     pub fn compile(&mut self, aim: Aim) -> Result<Compiled, Fault> {
+        self.compile_unless(aim, &|| false)
+    }
+
+    /// The same, ended early if `stop` is true before a stage: what there is then is [`Fault::Interrupted`].
+    ///
+    /// # Errors
+    /// What is at fault.
+    pub fn compile_unless(&mut self, aim: Aim, stop: &dyn Fn() -> bool) -> Result<Compiled, Fault> {
         let settings = self
             .settings
             .iter()
@@ -297,9 +306,12 @@ impl Project {
             },
             backend: Backend::Native,
         };
-        let compiled = hyde_compiler::compile(&request, &mut self.diagnostics);
+        let compiled = hyde_compiler::compile_unless(&request, stop, &mut self.diagnostics);
         let Some(compiled) = compiled else {
-            return Err(Fault::Model);
+            return Err(match self.diagnostics.has_errors() {
+                true => Fault::Model,
+                false => Fault::Interrupted,
+            });
         };
         for setting in &self.settings {
             let checked = match compiled.program.parameter(&setting.path) {

@@ -5,6 +5,7 @@
 
 mod class;
 mod declaration;
+mod declared;
 mod equation;
 mod experiment;
 mod expression;
@@ -19,6 +20,7 @@ pub use class::{
     Measure,
 };
 pub use declaration::{Change, Declaration, Declarator, Prefix, Prior};
+pub use declared::Declared;
 pub use equation::{Equation, EquationKind, Place};
 pub use experiment::{
     Bode, Channel, Drive, Experiment, ExperimentItem, Figure, Ideal, LayoutSetting, Margins,

@@ -9,6 +9,7 @@ pub mod ast;
 mod format;
 mod grammar;
 mod habits;
+mod lookup;
 mod nesting;
 mod parse;
 mod recover;
@@ -20,6 +21,7 @@ pub use format::{
 };
 pub use grammar::Rule;
 pub use habits::instead_of;
+pub use lookup::{FileIndex, Lookup, dotted};
 pub use parse::{parse, parse_record};
 pub use words::is_reserved;
 pub use written::{Node, Part, Written, written};

@@ -115,6 +115,7 @@ pub struct Session {
     pub(crate) diagnoses: OnceCell<Result<Vec<super::diagnosis::SetResult>, String>>,
     pub(crate) two_mass: OnceCell<Result<Vec<Measured>, String>>,
     pub(crate) ivp: OnceCell<Result<Option<Vec<f64>>, String>>,
+    pub(crate) waits: OnceCell<Result<super::lsp::Waits, String>>,
     pub(crate) fmus: OnceCell<Result<Vec<crate::fmu::Agreement>, String>>,
 }
 
@@ -131,6 +132,7 @@ impl Session {
             diagnoses: OnceCell::new(),
             two_mass: OnceCell::new(),
             ivp: OnceCell::new(),
+            waits: OnceCell::new(),
             fmus: OnceCell::new(),
         }
     }

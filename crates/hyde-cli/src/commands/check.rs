@@ -7,10 +7,9 @@ use crate::batch::order::Order;
 use crate::batch::prepare::Prepared;
 use crate::exit::Exit;
 use crate::files;
-use crate::project::{self, Aim, Project, Records, Told as _, print_output};
+use crate::project::{self, Project, Records, Told as _, print_output};
 use crate::render;
-use hyde_calibrate::CalibrationPlan;
-use hyde_compiler::{DiagnosisPlan, States, ideals};
+use hyde_compiler::{Compiled, States};
 use hyde_diag::Origin;
 use hyde_program::Program;
 use hyde_study::Inputs;
@@ -100,64 +99,36 @@ impl Found {
 /// have nothing but types and functions.
 fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
     let mut found = Found::default();
-    let mut models: Vec<String> = Vec::new();
-    let mut exit = Exit::Done;
-    let mut last: Option<Project> = None;
-    let diagnoses = has_diagnoses(args)?;
-    for args in each(args, folder)? {
-        // A diagnosis names effects of packages that its model need not use.
-        let args = ModelArgs {
-            whole_library: diagnoses,
-            ..args
-        };
-        let mut project = project::load_silently(&args, Records::IfThere)?;
-        let aim = match project.experiment {
-            None => Aim::Linearize,
-            Some(_) => Aim::Ledger,
-        };
-        let compiled = match project.diagnostics.has_errors() {
-            true => Err(Exit::Model),
-            false => project.compile(aim).map_err(Exit::from),
-        };
-        let compiled = compiled.and_then(|compiled| {
-            check_ideals(&mut project, aim)?;
-            Ok(compiled)
-        });
-        match compiled {
-            Ok(compiled) => {
-                let what = project.experiment.as_ref().map_or_else(
-                    || format!("model {}", project.model),
-                    |experiment| format!("experiment {experiment}"),
-                );
-                found.note(&project, &compiled.program);
-                let unknowns = counted(compiled.program.n_unknowns, "unknown");
-                found.names.push(format!("{what} ({unknowns})"));
-                if !models.contains(&project.model) {
-                    let states = &compiled.states;
-                    found
-                        .choices
-                        .extend(choices(&project.model, states, &project));
-                    found
-                        .states
-                        .push(states_json(&project.model, states, &project));
-                    models.push(project.model.clone());
-                }
-            }
-            Err(failed) => exit = exit.max(failed),
-        }
-        // The files are the same, so places are: what is wrong with a model is said once.
-        if let Some(before) = last {
-            let own = std::mem::take(&mut project.diagnostics);
-            project.diagnostics = before.diagnostics;
-            own.iter().for_each(|d| project.diagnostics.push(d.clone()));
-        }
-        last = Some(project);
+    if each(args, folder)?.is_empty() {
+        return Ok(found);
     }
-    let Some(mut project) = last else {
+    let mut models: Vec<String> = Vec::new();
+    let mut visit = |project: &Project, compiled: &Compiled| {
+        let what = project.experiment.as_ref().map_or_else(
+            || format!("model {}", project.model),
+            |experiment| format!("experiment {experiment}"),
+        );
+        found.note(project, &compiled.program);
+        let unknowns = counted(compiled.program.n_unknowns, "unknown");
+        found.names.push(format!("{what} ({unknowns})"));
+        if !models.contains(&project.model) {
+            let states = &compiled.states;
+            let choices = choices(&project.model, states, project);
+            found.choices.extend(choices);
+            let json = states_json(&project.model, states, project);
+            found.states.push(json);
+            models.push(project.model.clone());
+        }
+    };
+    let complain = |reason: String| project::complain(args, Exit::CommandLine, &reason);
+    let all = hyde_study::check(&project::asked(args)?, &|| false, &mut visit).map_err(complain)?;
+    if let Some(reason) = all.refused.into_iter().next() {
+        return Err(complain(reason));
+    }
+    let Some(project) = all.project else {
         return Ok(found);
     };
-    exit = exit.max(studies(&mut project));
-    if exit != Exit::Done {
+    if let Some(exit) = all.faults.into_iter().map(Exit::from).max() {
         project.finish_with_errors(args);
         return Err(exit);
     }
@@ -167,22 +138,6 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
         found.warnings = list;
     }
     Ok(found)
-}
-
-/// Compiles the model as each part of the experiment's budget makes it.
-fn check_ideals(project: &mut Project, aim: Aim) -> Result<(), Exit> {
-    let Some(name) = project.experiment.clone() else {
-        return Ok(());
-    };
-    let own = project.file.clone();
-    let experiments = own.experiments();
-    let asked = experiments.filter(|known| known.name.text == name);
-    for ideal in asked.flat_map(ideals) {
-        project.file = own.idealised(&name, |other| other.name.text == ideal.name.text);
-        project.compile(aim)?;
-    }
-    project.file = own;
-    Ok(())
 }
 
 /// The sweeps of a file, each laid out.
@@ -214,31 +169,6 @@ fn sweeps(args: &ModelArgs, project: &Project) -> Result<Vec<String>, Exit> {
         }
     }
     Ok(names)
-}
-
-/// Whether a file has diagnoses.
-fn has_diagnoses(args: &ModelArgs) -> Result<bool, Exit> {
-    let loaded = project::parsed(args)?;
-    Ok(loaded
-        .file
-        .studies()
-        .any(|study| study.kind == StudyKind::Diagnose))
-}
-
-/// Whether the calibrations and diagnoses of a file are in order; what is wrong in them is reported.
-fn studies(project: &mut Project) -> Exit {
-    let mut in_order = true;
-    for study in project.file.studies() {
-        let diagnostics = &mut project.diagnostics;
-        in_order &= match study.kind {
-            StudyKind::Calibrate => CalibrationPlan::read(study, diagnostics).is_some(),
-            StudyKind::Diagnose => {
-                DiagnosisPlan::read(&project.file, &study.name.text, diagnostics).is_some()
-            }
-            StudyKind::Sweep => true,
-        };
-    }
-    if in_order { Exit::Done } else { Exit::Model }
 }
 
 /// Lines on states where the equations left a choice, or a start value is no condition of the model.

@@ -1,11 +1,14 @@
 //! `hyde lsp`: the language server, on standard input and output.
 
+mod commands;
+
 use super::explain;
 use crate::exit::Exit;
 use crate::files;
 use crate::output::print_error;
+use commands::Commands;
 use hyde_diag::Code;
-use hyde_editor::Host;
+use hyde_editor::{Host, Order};
 use hyde_study::world::Disk;
 use lsp_server::Connection;
 use std::path::{Path, PathBuf};
@@ -14,7 +17,7 @@ use std::sync::Arc;
 /// Serves one editor until it ends the session.
 pub(crate) fn lsp() -> Exit {
     let (connection, threads) = Connection::stdio();
-    let served = hyde_editor::serve(&connection, Arc::new(Disk), Box::new(Machine));
+    let served = hyde_editor::serve(&connection, Arc::new(Disk), Box::<Machine>::default());
     // The threads end when nobody can send any more.
     drop(connection);
     let joined = threads.join().map_err(|error| error.to_string());
@@ -28,7 +31,10 @@ pub(crate) fn lsp() -> Exit {
 }
 
 /// What the server needs of the machine.
-struct Machine;
+#[derive(Default)]
+struct Machine {
+    commands: Commands,
+}
 
 impl Host for Machine {
     fn library_file(&self, name: &str, text: &str) -> Option<PathBuf> {
@@ -49,6 +55,16 @@ impl Host for Machine {
         // What stands before the first example.
         let words = page.split("```").next().unwrap_or(page);
         words.trim_start_matches("# ").trim_end().to_owned()
+    }
+
+    fn start(&self, order: Order, done: Box<dyn FnOnce(Result<PathBuf, String>) + Send>) {
+        match cache() {
+            Some(cache) => self.commands.start(&cache, order, done),
+            None => done(Err(
+                "there is no folder for the page: neither XDG_CACHE_HOME nor HOME is set"
+                    .to_owned(),
+            )),
+        }
     }
 }
 

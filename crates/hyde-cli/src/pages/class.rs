@@ -5,18 +5,13 @@ use super::html::{code, documentation, escaped, table};
 use super::links::Links;
 use hyde_diag::Span;
 use hyde_syntax::ast::{
-    self, Class, ClassBody, ClassKind, Declaration, Declarator, Element, Item, Prefix,
+    self, Class, ClassBody, ClassKind, Declaration, Declarator, Declared, Element, Item, Prefix,
 };
 
 /// The section of a class.
 pub(super) fn class(class: &Class, number: usize, library: &Library, links: &Links<'_>) -> String {
     let name = &class.name.text;
-    let word = match class.kind {
-        ClassKind::Model => "model",
-        ClassKind::Connector => "connector",
-        ClassKind::Effect => "effect",
-        ClassKind::Function => "function",
-    };
+    let word = class.kind.word();
     let mut html = format!("<section id=\"{name}\">\n<h3>{name} <small>{word}</small></h3>\n");
     html += &documentation(class.doc.as_deref().unwrap_or_default());
     match &class.body {
@@ -120,54 +115,52 @@ impl<'l> Members<'l> {
         below: &[&'l Class],
     ) {
         for element in elements {
-            match element {
-                Element::Extends(base, _) => {
-                    if let Some((number, class)) = self.links.class(number, base)
-                        && let ClassBody::Long { elements, .. } = &class.body
-                        && !below.iter().any(|known| std::ptr::eq(*known, class))
-                    {
-                        let below = [below, &[class]].concat();
-                        self.of_elements(elements, number, Some(&class.name.text), &below);
+            if let Element::Extends(base, _) = element
+                && let Some((number, class)) = self.links.class(number, base)
+                && let ClassBody::Long { elements, .. } = &class.body
+                && !below.iter().any(|known| std::ptr::eq(*known, class))
+            {
+                let below = [below, &[class]].concat();
+                self.of_elements(elements, number, Some(&class.name.text), &below);
+            }
+            for (name, declared) in element.declared() {
+                match declared {
+                    Declared::Variable(declaration, item) => {
+                        self.variable((declaration, item), number, from);
                     }
+                    Declared::Clocked(clocked) => {
+                        let name = format!("in `{}`", name.text);
+                        self.of_elements(&clocked.elements, number, Some(&name), below);
+                    }
+                    Declared::Domain(_)
+                    | Declared::Coordinate(_)
+                    | Declared::Modes(_)
+                    | Declared::Measure(..) => {}
                 }
-                Element::Declaration(declaration) => self.declaration(declaration, number, from),
-                Element::Clocked(clocked) => {
-                    let name = format!("in `{}`", clocked.name.text);
-                    self.of_elements(&clocked.elements, number, Some(&name), below);
-                }
-                Element::Domain(_)
-                | Element::Discretize(_)
-                | Element::Modes(_)
-                | Element::Equation(_)
-                | Element::InitialEquation(_)
-                | Element::Wrap(..)
-                | Element::Add(_)
-                | Element::Replace(..)
-                | Element::Signature(_)
-                | Element::Confounds(_)
-                | Element::Measure(_)
-                | Element::Account(..) => {}
             }
         }
     }
 
-    fn declaration(&mut self, declaration: &'l Declaration, number: usize, from: Option<&str>) {
+    fn variable(
+        &mut self,
+        (declaration, item): (&'l Declaration, &'l Declarator),
+        number: usize,
+        from: Option<&str>,
+    ) {
         let has = |prefix| declaration.prefixes.contains(&prefix);
         let class = self.links.class(number, &declaration.type_name);
         let quantity = [Prefix::Flow, Prefix::Site, Prefix::Field];
-        for item in &declaration.declarators {
-            let part = class.filter(|_| item.binding.is_none() && !quantity.into_iter().any(has));
-            let kind = match part {
-                _ if has(Prefix::Size) || has(Prefix::Shape) => 2,
-                _ if has(Prefix::Parameter) || has(Prefix::Constant) => 3,
-                _ if has(Prefix::Input) || has(Prefix::Output) => 1,
-                Some((_, class)) if class.kind == ClassKind::Connector => 0,
-                Some(_) => 4,
-                None => 5,
-            };
-            let row = self.row(kind, declaration, item, number, from);
-            self.tables[kind].push(row);
-        }
+        let part = class.filter(|_| item.binding.is_none() && !quantity.into_iter().any(has));
+        let kind = match part {
+            _ if has(Prefix::Size) || has(Prefix::Shape) => 2,
+            _ if has(Prefix::Parameter) || has(Prefix::Constant) => 3,
+            _ if has(Prefix::Input) || has(Prefix::Output) => 1,
+            Some((_, class)) if class.kind == ClassKind::Connector => 0,
+            Some(_) => 4,
+            None => 5,
+        };
+        let row = self.row(kind, declaration, item, number, from);
+        self.tables[kind].push(row);
     }
 
     fn row(
@@ -204,23 +197,9 @@ impl<'l> Members<'l> {
                 format!("<code>{}</code>", escaped(&format!("{target}{value}")))
             })
             .collect();
-        let words: Vec<&str> = declaration
-            .prefixes
-            .iter()
-            .filter_map(|prefix| match prefix {
-                Prefix::Final => Some("final"),
-                Prefix::Constant => Some("constant"),
-                Prefix::Flow => Some("flow"),
-                Prefix::Input => Some("input"),
-                Prefix::Output => Some("output"),
-                Prefix::Replaceable => Some("replaceable"),
-                Prefix::Site => Some("site"),
-                Prefix::Field => Some("field"),
-                Prefix::Size => Some("size"),
-                Prefix::Shape => Some("shape"),
-                Prefix::Parameter => None,
-            })
-            .collect();
+        let words = declaration.prefixes.iter();
+        let words = words.filter(|prefix| **prefix != Prefix::Parameter);
+        let words: Vec<&str> = words.map(|prefix| prefix.word()).collect();
         let name = format!(
             "<b>{}</b>{dims}{}",
             item.name.text,

@@ -26,17 +26,39 @@ local function ask(method, line, column)
 end
 local result = {
   diagnostics = out,
-  hover = ask("textDocument/hover", 5, 18),
-  definition = ask("textDocument/definition", 5, 18),
-  completion = ask("textDocument/completion", 5, 18),
+  hover = ask("textDocument/hover", 5, 22),
+  definition = ask("textDocument/definition", 5, 22),
+  completion = ask("textDocument/completion", 5, 22),
   formatting = ask("textDocument/formatting", 1, 0),
+  signature = ask("textDocument/signatureHelp", 5, 21),
 }
+-- The lens over an experiment: its page is named, as this editor shows no documents.
+local shown = nil
+vim.lsp.handlers["window/showMessage"] = function(_, params) shown = params.message end
+vim.lsp.handlers["window/showDocument"] = function(_, params)
+  shown = params.uri
+  return { success = true }
+end
+vim.cmd("edit " .. vim.fn.fnameescape(vim.env.HYDE_EXPERIMENT))
+vim.lsp.buf_attach_client(0, client)
+local lenses = ask("textDocument/codeLens", 1, 0)
+result.lenses = lenses
+result.hints = vim.lsp.buf_request_sync(0, "textDocument/inlayHint", {
+  textDocument = vim.lsp.util.make_text_document_params(0),
+  range = { start = { line = 0, character = 0 }, ["end"] = { line = 99, character = 0 } },
+}, 60000)[client].result
+local command = lenses[1].command
+vim.lsp.buf_request_sync(0, "workspace/executeCommand", { command = command.command, arguments = command.arguments }, 60000)
+vim.wait(60000, function() return shown ~= nil end, 20)
+result.shown = shown
 io.stdout:write(vim.json and vim.json.encode(result) or vim.fn.json_encode(result))
 io.stdout:flush()
 vim.cmd("qa!")
 "#;
 
-const MODEL: &str = "package pushed;\nimport SI.*;\nmodel Pushed\n  parameter Force F0 = 3 [N] \"that pushes\";\n  Real twice = 2*F0;\n  Length s = 1 [kg];\nend Pushed;\n";
+const MODEL: &str = "package pushed;\nimport SI.*;\nmodel Pushed\n  parameter Force F0 = 3 [N] \"that pushes\";\n  Real twice = abs(2*F0);\n  Length s = 1 [kg];\nend Pushed;\n";
+
+const EXPERIMENT: &str = "package coasting;\nimport SI.*;\nmodel Coasting\n  parameter Real k = 2*3 [1/s];\n  Real x(start = 1);\nequation\n  der(x) = -k*x;\nend Coasting;\nexperiment rest of Coasting\n  solve ida(rtol = 1e-6) stop 1 [s] every 10 [ms];\nend rest;\n";
 
 #[test]
 fn neovim_shows_what_the_server_says() {
@@ -57,6 +79,7 @@ fn neovim_shows_what_the_server_says() {
         .args(["--clean", "--headless", "-i", "NONE", "-n", "-c"])
         .arg(format!("luafile {script}"))
         .env("HYDE_FILE", &file)
+        .env("HYDE_EXPERIMENT", folder.file("coasting.hyde", EXPERIMENT))
         .env("HYDE_COMMAND", server)
         .env("XDG_STATE_HOME", folder.path("state"))
         .env("XDG_CACHE_HOME", folder.path("cache"))
@@ -82,6 +105,13 @@ fn neovim_shows_what_the_server_says() {
     let labels = answer["completion"].as_array().unwrap();
     assert!(labels.iter().any(|own| own["label"] == "F0"), "{labels:?}");
     assert_eq!(answer["formatting"].as_array().map(Vec::len), Some(0));
+    assert_eq!(answer["signature"]["signatures"][0]["label"], "abs(x)");
+    assert_eq!(answer["lenses"][0]["command"]["title"], "Run");
+    assert_eq!(answer["hints"][0]["label"], "[1/s]");
+    let page = answer["shown"].as_str().unwrap();
+    let at = page.find('/').unwrap();
+    let html = std::fs::read_to_string(page[at..].trim_start_matches("//")).unwrap();
+    assert!(html.contains("rest"), "{page}");
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! An editor that speaks the protocol with a server in the same process.
 
 use hyde_diag::Code;
-use hyde_editor::Host;
+use hyde_editor::{Host, Order};
 use hyde_study::world::Disk;
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
 use serde_json::{Value, json};
@@ -18,6 +18,8 @@ pub(crate) struct Client {
     server: Option<JoinHandle<Result<(), String>>>,
     last: i32,
     pub(crate) told: Vec<Notification>,
+    /// What the server asked of the editor.
+    pub(crate) asked: Vec<Request>,
 }
 
 struct Machine;
@@ -29,6 +31,11 @@ impl Host for Machine {
 
     fn explanation(&self, code: Code) -> String {
         format!("{code}: {}", code.title())
+    }
+
+    fn start(&self, order: Order, done: Box<dyn FnOnce(Result<PathBuf, String>) + Send>) {
+        let page = format!("/pages/{}-{}.html", order.action.title(), order.name);
+        done(Ok(PathBuf::from(page)));
     }
 }
 
@@ -43,8 +50,10 @@ impl Client {
             server: Some(server),
             last: 0,
             told: Vec::new(),
+            asked: Vec::new(),
         };
-        let general = json!({ "general": { "positionEncodings": encodings } });
+        let general = json!({ "general": { "positionEncodings": encodings },
+            "window": { "showDocument": { "support": true } } });
         let answer = client.ask("initialize", json!({ "capabilities": general }));
         assert!(
             answer["capabilities"]["hoverProvider"].is_boolean(),
@@ -75,7 +84,8 @@ impl Client {
                     };
                 }
                 Message::Notification(own) => self.told.push(own),
-                other @ (Message::Request(_) | Message::Response(_)) => panic!("{other:?}"),
+                Message::Request(own) => self.asked.push(own),
+                other @ Message::Response(_) => panic!("{other:?}"),
             }
         }
     }
@@ -108,9 +118,12 @@ impl Client {
     pub(crate) fn of(&mut self, method: &str, path: &str) -> Value {
         let options = json!({ "tabSize": 2, "insertSpaces": true });
         let document = json!({ "uri": uri(path) });
+        // The whole file.
+        let range = json!({ "start": { "line": 0, "character": 0 },
+            "end": { "line": 100_000, "character": 0 } });
         self.ask(
             method,
-            json!({ "textDocument": document, "options": options }),
+            json!({ "textDocument": document, "options": options, "range": range }),
         )
     }
 
@@ -131,9 +144,22 @@ impl Client {
             }
             match self.connection.receiver.recv_timeout(LONGEST).unwrap() {
                 Message::Notification(own) => self.told.push(own),
-                other @ (Message::Request(_) | Message::Response(_)) => panic!("{other:?}"),
+                Message::Request(own) => self.asked.push(own),
+                other @ Message::Response(_) => panic!("{other:?}"),
             }
         }
+    }
+
+    /// The next request of the server.
+    pub(crate) fn request(&mut self) -> Request {
+        while self.asked.is_empty() {
+            match self.connection.receiver.recv_timeout(LONGEST).unwrap() {
+                Message::Notification(own) => self.told.push(own),
+                Message::Request(own) => self.asked.push(own),
+                other @ Message::Response(_) => panic!("{other:?}"),
+            }
+        }
+        self.asked.remove(0)
     }
 
     /// Ends the session as an editor does.
@@ -192,4 +218,9 @@ pub(crate) fn edited(text: &str, edits: &Value) -> String {
         text.replace_range(start..end, &new);
     }
     text
+}
+
+/// Whether `./dev long` asks for everything.
+pub(crate) fn is_long() -> bool {
+    std::env::var_os("HYDE_LONG").is_some()
 }

@@ -20,6 +20,8 @@ fn answers(client: &mut Client, text: &str, seed: u64) -> Vec<Value> {
         client.of("textDocument/foldingRange", PATH),
         client.of("textDocument/semanticTokens/full", PATH),
         client.of("textDocument/formatting", PATH),
+        client.of("textDocument/inlayHint", PATH),
+        client.of("textDocument/codeLens", PATH),
     ];
     for _ in 0..3 {
         let mut byte = next(&mut state) % (text.len() + 1);
@@ -32,6 +34,7 @@ fn answers(client: &mut Client, text: &str, seed: u64) -> Vec<Value> {
             "textDocument/definition",
             "textDocument/completion",
             "textDocument/documentHighlight",
+            "textDocument/signatureHelp",
         ] {
             list.push(client.at(method, PATH, at));
         }
@@ -41,6 +44,14 @@ fn answers(client: &mut Client, text: &str, seed: u64) -> Vec<Value> {
 
 #[test]
 fn after_any_edits_the_answers_are_those_of_a_new_server() {
+    match crate::client::is_long() {
+        true => edit(100_000, 50),
+        false => edit(400, 20),
+    }
+}
+
+/// So many random edits; now and then the answers are compared.
+fn edit(count: i32, compared: i32) {
     let first = include_str!("../../../../examples/first/first.hyde");
     let pieces = [
         "",
@@ -75,7 +86,7 @@ fn after_any_edits_the_answers_are_those_of_a_new_server() {
     let mut client = Client::new(&["utf-16"]);
     let mut text = first.to_owned();
     client.open(PATH, &text);
-    for version in 2..200 {
+    for version in 2..count + 2 {
         let mut cut = [0_usize; 2];
         for own in &mut cut {
             *own = next(&mut state) % (text.len() + 1);
@@ -95,7 +106,7 @@ fn after_any_edits_the_answers_are_those_of_a_new_server() {
         let change = json!([{ "range": { "start": range[0], "end": range[1] }, "text": new }]);
         client.change(PATH, version, change);
         text.replace_range(start..end, new);
-        if version % 10 == 0 {
+        if version % compared == 0 {
             let seed = state;
             let own = answers(&mut client, &text, seed);
             let mut fresh = Client::new(&["utf-16"]);

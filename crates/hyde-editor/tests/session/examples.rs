@@ -4,15 +4,18 @@ use crate::client::{Client, place};
 use serde_json::json;
 use std::path::{Path, PathBuf};
 
-const AT: [&str; 6] = [
+const AT: [&str; 7] = [
     "textDocument/hover",
     "textDocument/definition",
     "textDocument/documentHighlight",
     "textDocument/completion",
     "textDocument/prepareRename",
     "textDocument/references",
+    "textDocument/signatureHelp",
 ];
-const OF: [&str; 4] = [
+const OF: [&str; 6] = [
+    "textDocument/codeLens",
+    "textDocument/inlayHint",
     "textDocument/documentSymbol",
     "textDocument/foldingRange",
     "textDocument/semanticTokens/full",

@@ -10,4 +10,5 @@ mod answers;
 mod client;
 mod edits;
 mod examples;
+mod numbers;
 mod renames;

@@ -18,6 +18,19 @@ pub enum ClassKind {
     Function,
 }
 
+impl ClassKind {
+    /// The word as written.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Model => "model",
+            Self::Connector => "connector",
+            Self::Effect => "effect",
+            Self::Function => "function",
+        }
+    }
+}
+
 /// A model, connector or effect.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Class {
@@ -109,6 +122,18 @@ pub enum AccountKind {
     Dissipated,
     /// `supplied`: a power that it has from outside the model.
     Supplied,
+}
+
+impl AccountKind {
+    /// The word as written.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Stored => "stored",
+            Self::Dissipated => "dissipated",
+            Self::Supplied => "supplied",
+        }
+    }
 }
 
 /// `domain bar(x in 0 .. len);`

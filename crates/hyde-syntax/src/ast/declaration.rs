@@ -30,6 +30,26 @@ pub enum Prefix {
     Shape,
 }
 
+impl Prefix {
+    /// The word as written.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Parameter => "parameter",
+            Self::Constant => "constant",
+            Self::Final => "final",
+            Self::Flow => "flow",
+            Self::Input => "input",
+            Self::Output => "output",
+            Self::Replaceable => "replaceable",
+            Self::Site => "site",
+            Self::Field => "field",
+            Self::Size => "size",
+            Self::Shape => "shape",
+        }
+    }
+}
+
 /// `prefixes Type[dims] a, b;`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Declaration {

@@ -14,6 +14,18 @@ pub enum StudyKind {
     Sweep,
 }
 
+impl StudyKind {
+    /// The word as written.
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Calibrate => "calibrate",
+            Self::Diagnose => "diagnose",
+            Self::Sweep => "sweep",
+        }
+    }
+}
+
 /// `calibrate bench of Axis … end bench;`
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {

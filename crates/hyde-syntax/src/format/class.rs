@@ -4,17 +4,12 @@ use super::declaration::{declaration_text, measure_text, modification};
 use super::expression::{call_arguments, optional_arguments, range};
 use super::name::{doc, reference};
 use super::{Printer, expression};
-use crate::ast::{AccountKind, Class, ClassBody, ClassKind, EffectUse, Element};
+use crate::ast::{Class, ClassBody, EffectUse, Element};
 use std::fmt::Write as _;
 
 impl Printer {
     pub(super) fn class(&mut self, class: &Class) {
-        let word = match class.kind {
-            ClassKind::Model => "model",
-            ClassKind::Connector => "connector",
-            ClassKind::Effect => "effect",
-            ClassKind::Function => "function",
-        };
+        let word = class.kind.word();
         let name = &class.name.text;
         match &class.body {
             ClassBody::Short {
@@ -133,12 +128,7 @@ impl Printer {
             }
             Element::Measure(measure) => self.line(&measure_text("measure", measure)),
             Element::Account(kind, measure) => {
-                let word = match kind {
-                    AccountKind::Stored => "stored",
-                    AccountKind::Dissipated => "dissipated",
-                    AccountKind::Supplied => "supplied",
-                };
-                self.line(&measure_text(word, measure));
+                self.line(&measure_text(kind.word(), measure));
             }
         }
     }

@@ -3,13 +3,13 @@
 use super::expression;
 use super::expression::range;
 use super::name::{bracketed, doc, quoted, reference, subscripts};
-use crate::ast::{Change, Declaration, Declarator, Measure, Prefix, Prior};
+use crate::ast::{Change, Declaration, Declarator, Measure, Prior};
 use std::fmt::Write as _;
 
 pub(super) fn declaration_text(declaration: &Declaration) -> String {
     let mut text = String::new();
     for prefix in &declaration.prefixes {
-        text.push_str(prefix_word(*prefix));
+        text.push_str(prefix.word());
         text.push(' ');
     }
     text.push_str(&reference(&declaration.type_name));
@@ -99,20 +99,4 @@ fn prior_text(prior: Option<&Prior>) -> String {
 
 fn source_text(source: Option<&str>) -> String {
     source.map_or_else(String::new, |text| format!(" from {}", quoted(text)))
-}
-
-fn prefix_word(prefix: Prefix) -> &'static str {
-    match prefix {
-        Prefix::Parameter => "parameter",
-        Prefix::Constant => "constant",
-        Prefix::Final => "final",
-        Prefix::Flow => "flow",
-        Prefix::Input => "input",
-        Prefix::Output => "output",
-        Prefix::Replaceable => "replaceable",
-        Prefix::Site => "site",
-        Prefix::Field => "field",
-        Prefix::Size => "size",
-        Prefix::Shape => "shape",
-    }
 }

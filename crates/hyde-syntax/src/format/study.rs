@@ -8,11 +8,11 @@ use crate::ast::{SettingValue, Study, StudyItem, StudyKind, Varied};
 
 impl Printer {
     pub(super) fn study(&mut self, study: &Study) {
-        let (word, of) = match study.kind {
-            StudyKind::Calibrate => ("calibrate", "of"),
-            StudyKind::Diagnose => ("diagnose", "of calibrate"),
-            StudyKind::Sweep => ("sweep", "of"),
+        let of = match study.kind {
+            StudyKind::Diagnose => "of calibrate",
+            StudyKind::Calibrate | StudyKind::Sweep => "of",
         };
+        let word = study.kind.word();
         let name = &study.name.text;
         self.line(&format!(
             "{word} {name} {of} {}{}",

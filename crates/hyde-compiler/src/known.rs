@@ -1,8 +1,8 @@
-//! Which effects fit where on a model.
+//! What is known of a model beside its program: which effects fit where on it, and what its expressions mean.
 
 use crate::pipeline::{Request, input};
 use hyde_diag::Diagnostics;
-pub use hyde_flatten::{Additions, Candidate, Knob};
+pub use hyde_flatten::{Additions, Candidate, Knob, Meaning, MeaningOf, ValueOf};
 
 /// Every effect of the files loaded at every site of the model where it fits; `None` if the model has errors.
 ///
@@ -12,4 +12,9 @@ pub fn candidates(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Optio
         return None;
     }
     hyde_flatten::candidates(&input(request, &Additions::new()), diagnostics)
+}
+
+/// What the expressions and parameters of the user's file mean in the model, as far as they are understood, errors or not.
+pub fn meaning(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Meaning {
+    hyde_flatten::meaning(&input(request, &Additions::new()), diagnostics)
 }
