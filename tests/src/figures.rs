@@ -19,6 +19,7 @@ mod gradient;
 mod ivp;
 mod ledger;
 mod linear;
+mod live;
 mod lsp;
 mod mode_error;
 mod msl;
@@ -89,6 +90,7 @@ pub const FIGURES: &[Figure] = &[
     fmu::DEVIATION,
     fmu::EVENTS,
     fmu::EXPORT,
+    live::SLIDER,
     lsp::SYNTAX,
     lsp::FULL,
     lsp::COMPLETION,

@@ -7,10 +7,8 @@ mod study;
 mod traces;
 
 pub(crate) use batch::{Engine, SweepArgs, TableFormat};
-pub(crate) use editor::{ExplainArgs, FmtArgs, LspArgs, McpArgs};
-pub(crate) use export::{
-    CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, StateSpaceArgs,
-};
+pub(crate) use editor::{ExplainArgs, FmtArgs, LiveArgs, LspArgs, McpArgs};
+pub(crate) use export::{CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, StateSpaceArgs};
 pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 pub(crate) use traces::{LookArgs, NewArgs, TemplateName};
 
@@ -68,6 +66,8 @@ pub(crate) enum Command {
     Look(LookArgs),
     /// Write a first model of an axis, from a trace or from guesses; every line with a guess ends with `// confirm`
     New(NewArgs),
+    /// Show an experiment in the browser, run again whenever its file or a slider changes
+    Live(LiveArgs),
     /// Format model files: indentation, spaces, line breaks; comments and meaning stay as they are
     Fmt(FmtArgs),
     /// Serve an editor by the Language Server Protocol, on standard input and output

@@ -13,6 +13,7 @@ pub(crate) mod explain;
 pub(crate) mod export;
 pub(crate) mod fit;
 pub(crate) mod fmt;
+pub(crate) mod live;
 pub(crate) mod look;
 pub(crate) mod lsp;
 pub(crate) mod man;

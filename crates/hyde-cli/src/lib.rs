@@ -20,6 +20,7 @@ mod interruption;
 mod ledger;
 mod left_model;
 mod limits;
+mod live;
 mod output;
 mod pages;
 mod project;
@@ -81,6 +82,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Look(args) => commands::look::look(args),
         Command::New(args) => commands::new::new(args),
         Command::Fmt(args) => commands::fmt::fmt(args),
+        Command::Live(args) => commands::live::live(args),
         Command::Lsp(_) => commands::lsp::lsp(),
         Command::Mcp(_) => commands::mcp::mcp(),
         Command::Doc(args) => commands::doc::doc(args),

@@ -6,13 +6,18 @@ use hyde_compiler::Compiled;
 use hyde_experiment::Run;
 use hyde_program::Method;
 use hyde_report::{
-    Block, ChannelError, Event, EventTable, Outcome, Parameter, RunReport, Section, Verdict,
+    Block, ChannelError, Event, EventTable, Outcome, Page, Parameter, RunReport, Section, Verdict,
     to_html,
 };
 use hyde_units::{format_value, significant};
 
-/// The page.
+/// The page as one text.
 pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String {
+    to_html(&page(project, compiled, run))
+}
+
+/// The page.
+pub(crate) fn page(project: &Project, compiled: &Compiled, run: &Run) -> Page {
     let program = &compiled.program;
     let title = project.experiment.as_ref().map_or_else(
         || program.name.clone(),
@@ -197,5 +202,5 @@ pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String 
         let heading = "Start".to_owned();
         page.sections.insert(place, Section { heading, blocks });
     }
-    to_html(&page)
+    page
 }

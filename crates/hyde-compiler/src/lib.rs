@@ -12,6 +12,7 @@ mod named;
 mod pipeline;
 mod states;
 mod write_back;
+mod write_values;
 mod written;
 
 pub use diagnosis::DiagnosisPlan;
@@ -26,4 +27,5 @@ pub use load::{File, Find, Packages, Place, check_name, load};
 pub use pipeline::{Compiled, Request, analyze, compile, compile_unless, compile_with};
 pub use states::States;
 pub use write_back::{Calibrated, Found, Written, write_back};
+pub use write_values::{NewValue, write_values};
 pub use written::with_written;

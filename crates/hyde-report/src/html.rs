@@ -4,7 +4,8 @@ use crate::escape::escape;
 use crate::page::{Align, Block, Column, Outcome, Page, Section, Table, Verdict};
 use crate::{Figure, to_svg};
 
-const STYLE: &str = include_str!("html/style.css");
+/// The style of all pages.
+pub const STYLE: &str = include_str!("html/style.css");
 
 /// The page as one HTML text that needs no other file and no network.
 #[must_use]
@@ -15,12 +16,7 @@ pub fn to_html(page: &Page) -> String {
         .iter()
         .map(|(name, value)| fact(name, value))
         .collect();
-    let sections: String = page
-        .sections
-        .iter()
-        .enumerate()
-        .map(|(place, section)| write_section(place, section))
-        .collect();
+    let body = to_body(page);
     let footer = if page.footer.is_empty() {
         String::new()
     } else {
@@ -30,9 +26,19 @@ pub fn to_html(page: &Page) -> String {
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <title>{title}</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n<header>\n<h1>{title}</h1>\n\
-         <dl>{facts}</dl>\n</header>\n{}<main>\n{sections}</main>\n{footer}</body>\n</html>\n",
+         <dl>{facts}</dl>\n</header>\n{}{body}{footer}</body>\n</html>\n",
         contents(page)
     )
+}
+
+/// The sections of a page alone, for a page of another program that has [`STYLE`].
+#[must_use]
+pub fn to_body(page: &Page) -> String {
+    let sections = page.sections.iter().enumerate();
+    let sections: String = sections
+        .map(|(place, section)| write_section(place, section))
+        .collect();
+    format!("<main>\n{sections}</main>\n")
 }
 
 fn fact(name: &str, value: &str) -> String {

@@ -55,7 +55,7 @@ pub use diagnosis_report::{
 pub use escape::escape;
 pub use event_strip::{EventRow, EventStrip, Span};
 pub use figure::{Band, Between, Direction, Figure, Line, LineStyle, Marker, Panel, Reference};
-pub use html::to_html;
+pub use html::{STYLE, to_body, to_html};
 pub use open_loop_plot::{OpenLoop, nichols_plot, nyquist_plot};
 pub use page::{Align, Block, Column, Outcome, Page, Section, Table, Verdict};
 pub use png::to_png;

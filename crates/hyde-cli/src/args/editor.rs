@@ -1,5 +1,6 @@
 //! The options of the commands that help to write models.
 
+use super::ModelArgs;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -23,6 +24,15 @@ pub(crate) struct FmtArgs {
 pub(crate) struct ExplainArgs {
     /// The code, such as `E0503` [default: list all codes]
     pub(crate) code: Option<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct LiveArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Port of the page on the loopback interface [default: a free one]
+    #[arg(long, default_value_t = 0, hide_default_value = true)]
+    pub(crate) port: u16,
 }
 
 #[derive(Debug, Args)]

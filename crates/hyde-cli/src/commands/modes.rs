@@ -6,7 +6,7 @@ mod over;
 mod page;
 mod point;
 
-pub(crate) use self::point::{Prepared, prepared};
+pub(crate) use self::point::{Prepared, asked_point, prepared};
 
 use crate::args::{ModelArgs, ModesArgs};
 use crate::assumed;

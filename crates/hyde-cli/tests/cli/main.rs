@@ -12,6 +12,7 @@ mod diagnose;
 mod effects;
 mod files;
 mod fmt;
+mod live;
 mod long_runs;
 mod lsp;
 mod parquet;

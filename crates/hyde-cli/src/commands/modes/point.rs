@@ -7,7 +7,7 @@ use crate::exit::Exit;
 use crate::project::{self, Aim, Project, Records, Told as _, complain};
 use hyde_compiler::Compiled;
 use hyde_experiment::parameters;
-use hyde_program::{Constant, Moment};
+use hyde_program::{Constant, Moment, Program};
 use hyde_signal::Table;
 use hyde_sim::PointTime;
 use hyde_study::settings::Setting;
@@ -40,25 +40,10 @@ pub(crate) fn prepared(
     let tables = hyde_study::tables(&project.records);
     let parameters = parameters(program, &tables, &project.set())
         .map_err(|error| project.report_refused(model, program, &error))?;
-    let mut chosen = program
-        .experiment
-        .bodes
-        .first()
-        .map(|bode| bode.modes.clone())
-        .unwrap_or_default();
+    let (mut chosen, moment, time) = asked_point(program, &parameters);
     for text in &about.in_modes {
         chosen.insert(0, assumed::in_mode(program, text).map_err(wrong)?);
     }
-    let experiment = &program.experiment;
-    let constant = |which| program.kernels.constant(which, &parameters);
-    let of_bode = experiment
-        .bodes
-        .first()
-        .map(|bode| (bode.at, Constant::RespondsAt(0)));
-    let of_cut = || Some((experiment.cuts.first()?.at, Constant::CutAt(0)));
-    let (moment, time) = of_bode
-        .or_else(of_cut)
-        .map_or((Moment::Start, None), |(at, time)| (at, constant(time)));
     let time = assumed::moment(about.at.as_deref(), moment, time).map_err(wrong)?;
     Ok(Prepared {
         project,
@@ -68,4 +53,21 @@ pub(crate) fn prepared(
         chosen,
         time,
     })
+}
+
+/// The operating point that the experiment asks for: modes of automata, and the moment with its time if it has one.
+pub(crate) fn asked_point(
+    program: &Program,
+    parameters: &[f64],
+) -> (Vec<(usize, usize)>, Moment, Option<f64>) {
+    let experiment = &program.experiment;
+    let constant = |which| program.kernels.constant(which, parameters);
+    let bode = experiment.bodes.first();
+    let modes = bode.map(|bode| bode.modes.clone()).unwrap_or_default();
+    let of_bode = bode.map(|bode| (bode.at, Constant::RespondsAt(0)));
+    let of_cut = || Some((experiment.cuts.first()?.at, Constant::CutAt(0)));
+    let (moment, time) = of_bode
+        .or_else(of_cut)
+        .map_or((Moment::Start, None), |(at, time)| (at, constant(time)));
+    (modes, moment, time)
 }

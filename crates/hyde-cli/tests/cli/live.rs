@@ -1,0 +1,177 @@
+//! `hyde live`: its page in a browser without a screen; a slider, the file saved, values written back. Without a browser the
+//! test says so and drives the server alone.
+
+mod browser;
+mod http;
+
+use crate::command::{Folder, LAG, command, errors, hyde, status};
+use browser::Browser;
+use http::{ask, post};
+use serde_json::{Value, json};
+use std::io::{BufRead as _, BufReader, Write as _};
+use std::process::{Child, Stdio};
+
+/// The command, ended with the test.
+struct Live {
+    child: Child,
+    address: String,
+}
+
+impl Live {
+    fn start(arguments: &[&str]) -> Self {
+        let mut all = vec!["live"];
+        all.extend(arguments);
+        let mut child = command(&all).stdout(Stdio::piped()).spawn().unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let address = lines.next().unwrap().unwrap();
+        assert!(address.starts_with("http://127.0.0.1:"), "{address}");
+        Self { child, address }
+    }
+
+    fn at(&self, path: &str) -> String {
+        format!("{}{path}", self.address)
+    }
+}
+
+impl Drop for Live {
+    fn drop(&mut self) {
+        drop(self.child.kill());
+        drop(self.child.wait());
+    }
+}
+
+/// The lag, with a time constant that is uncertain and a comment.
+fn model() -> String {
+    LAG.replace("T = 10 [ms];", "T = 10 [ms] ~ ±20%; // of the filter")
+}
+
+#[test]
+fn a_browser_moves_a_slider_and_writes_the_value_back() {
+    let Some(name) = crate::report::browser() else {
+        let mut log = std::io::stderr();
+        writeln!(
+            log,
+            "skipped: no browser is here; `./dev setup` installs one"
+        )
+        .unwrap();
+        return;
+    };
+    let folder = Folder::new();
+    let file = folder.file("lag.hyde", &model());
+    let live = Live::start(&[&file]);
+    let mut browser = Browser::open(name, &folder, &live.address);
+    browser.wait("document.querySelectorAll('#result svg').length > 0");
+    assert_eq!(
+        browser.value("document.getElementById('title').textContent"),
+        json!("step of Lag")
+    );
+    let curve = "document.querySelector('#result svg').innerHTML.length + ':' + \
+                 Array.from(document.querySelectorAll('#result svg path')).map(p => p.getAttribute('d')).join('')";
+    let before = browser.value(curve);
+    // By the keyboard: ten steps to the right.
+    browser.value("document.getElementById('p-T').focus(); document.body.dataset.runs = '0'; 0");
+    browser.key("ArrowRight", true);
+    browser.wait("Number(document.body.dataset.runs) > 0");
+    let moved = browser.value("document.querySelector('.moved input[type=number]').value");
+    assert_eq!(moved, json!("10.8"), "ten of 200 steps of 16 ms");
+    let after = browser.value(curve);
+    assert_ne!(before, after, "another curve");
+    browser.value("document.getElementById('write').click(); 0");
+    browser.wait("document.getElementById('told').textContent.startsWith('written')");
+    let text = std::fs::read_to_string(&file).unwrap();
+    assert_eq!(text, model().replace("T = 10 [ms]", "T = 10.8 [ms]"));
+    // The page follows the file: nothing is moved any more.
+    browser.wait("document.querySelectorAll('.moved').length === 0");
+    // An error is shown as the console shows it, and goes when it is repaired.
+    std::fs::write(&file, text.replace("u - x", "u - y")).unwrap();
+    browser.wait("!document.getElementById('error').hidden");
+    let shown = browser.value("document.getElementById('error').textContent");
+    assert!(
+        shown.as_str().unwrap().contains("error[E0201]")
+            || shown.as_str().unwrap().contains("there is no `y`"),
+        "{shown}"
+    );
+    std::fs::write(&file, &text).unwrap();
+    browser.wait("document.getElementById('error').hidden");
+    // Nothing was fetched from elsewhere.
+    let foreign = "performance.getEntriesByType('resource').filter(e => !e.name.startsWith(location.origin)).length";
+    assert_eq!(browser.value(foreign), json!(0));
+}
+
+#[test]
+fn a_run_with_other_values_has_another_curve_and_nothing_else_gets_an_answer() {
+    let folder = Folder::new();
+    let file = folder.file("lag.hyde", &model());
+    let live = Live::start(&[&file, "step"]);
+    let state: Value = serde_json::from_str(&ask(&live.at("state")).1).unwrap();
+    assert_eq!(state["sliders"][0]["name"], "T", "{state}");
+    assert_eq!(state["sliders"][0]["unit"], "ms");
+    let run = |values: Value| -> Value {
+        let (status, body) = post(&live.at("run"), &values.to_string());
+        assert_eq!(status, 200, "{body}");
+        serde_json::from_str(&body).unwrap()
+    };
+    let (first, slow) = (run(json!({})), run(json!({ "T": 20.0 })));
+    assert_eq!(first["ok"], true, "{first}");
+    assert!(first["body"].as_str().unwrap().contains("<svg"));
+    assert_ne!(first["body"], slow["body"]);
+    let refused = run(json!({ "tau": 1.0 }));
+    assert!(
+        refused["error"]
+            .as_str()
+            .unwrap()
+            .contains("no parameter `tau`"),
+        "{refused}"
+    );
+    let (_, begun) = post(&live.at("begin"), "{}");
+    assert!(begun.contains("<svg"), "{begun}");
+    let (status, body) = post(&live.at("frequencies"), "{}");
+    assert!(
+        status == 200 && body.contains("Natural frequencies"),
+        "{body}"
+    );
+    // Another address, another name of the host, another way: nothing.
+    let (at, _) = live.address.trim_end_matches('/').rsplit_once('/').unwrap();
+    assert_eq!(ask(&format!("{at}/")).0, 404);
+    assert_eq!(
+        ask(&format!("{at}/0123456789abcdef0123456789abcdef/state")).0,
+        404
+    );
+    assert_eq!(
+        http::request(&live.at("state"), "GET", "evil.example", "").0,
+        404
+    );
+    // A value that is written goes into the experiment where the file has no number for it.
+    let text = model().replace("T = 10 [ms]", "T = 2*(5 [ms])");
+    std::fs::write(&file, &text).unwrap();
+    let mut written = String::new();
+    for _ in 0..100 {
+        std::thread::sleep(std::time::Duration::from_millis(50));
+        (_, written) = post(&live.at("write"), &json!({ "T": 0.0125 }).to_string());
+        if written.contains("\"ok\":true") {
+            break;
+        }
+    }
+    assert!(written.contains("\"ok\":true"), "{written}");
+    let new = std::fs::read_to_string(&file).unwrap();
+    assert_eq!(
+        new,
+        text.replace("step of Lag", "step of Lag(T = 0.0125 [s])")
+    );
+}
+
+#[test]
+fn what_cannot_be_shown_is_told_before_a_page_is_there() {
+    let folder = Folder::new();
+    let output = hyde(&["live", &folder.path("none.hyde")]);
+    assert_eq!(status(&output), 2);
+    assert!(errors(&output).contains("none.hyde"), "{}", errors(&output));
+    let model = folder.file("lag.hyde", LAG.split("experiment").next().unwrap());
+    let output = hyde(&["live", &model]);
+    assert_eq!(status(&output), 2);
+    assert!(
+        errors(&output).contains("no experiment"),
+        "{}",
+        errors(&output)
+    );
+}
