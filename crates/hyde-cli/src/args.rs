@@ -2,12 +2,14 @@
 
 mod batch;
 mod editor;
+mod excite;
 mod export;
 mod study;
 mod traces;
 
 pub(crate) use batch::{Engine, SweepArgs, TableFormat};
 pub(crate) use editor::{ExplainArgs, FmtArgs, LiveArgs, LspArgs, McpArgs};
+pub(crate) use excite::{ExciteArgs, SignalFormat, SignalName};
 pub(crate) use export::{CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, StateSpaceArgs};
 pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 pub(crate) use traces::{LookArgs, NewArgs, TemplateName};
@@ -64,6 +66,8 @@ pub(crate) enum Command {
     Test(TestArgs),
     /// Show what is in traces: layout, channels, rates, gaps, noise, delays, and the line for a model file
     Look(LookArgs),
+    /// Design what to record next within the limits of the axis: multisine, chirp, jogs, reversals
+    Excite(ExciteArgs),
     /// Write a first model of an axis, from a trace or from guesses; every line with a guess ends with `// confirm`
     New(NewArgs),
     /// Show an experiment in the browser, run again whenever its file or a slider changes

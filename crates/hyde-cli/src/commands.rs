@@ -9,6 +9,7 @@ pub(crate) mod doc;
 pub(crate) mod effects;
 mod effects_check;
 pub(crate) mod emit;
+pub(crate) mod excite;
 pub(crate) mod explain;
 pub(crate) mod export;
 pub(crate) mod fit;

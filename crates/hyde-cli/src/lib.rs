@@ -80,6 +80,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Selftest(args) => commands::selftest::selftest(args),
         Command::Trend(args) => commands::trend::trend(args),
         Command::Look(args) => commands::look::look(args),
+        Command::Excite(args) => commands::excite::excite(args),
         Command::New(args) => commands::new::new(args),
         Command::Fmt(args) => commands::fmt::fmt(args),
         Command::Live(args) => commands::live::live(args),

@@ -1,4 +1,4 @@
-//! Sampled signals with names and units: CSV and Parquet, interpolation, filters, spectra.
+//! Sampled signals with names and units: CSV and Parquet, interpolation, filters, spectra, signals to record.
 //!
 //! A record is a [`Table`]: columns of equal length over one time, read by [`csv::read`] and written by
 //! [`csv::write`] in the same form, or by [`parquet`] with the same numbers, so that a result can stand in for a measurement
@@ -19,6 +19,7 @@
 //! ```
 
 pub mod csv;
+pub mod excite;
 pub mod filter;
 pub mod look;
 pub mod mat;

@@ -10,6 +10,7 @@ mod analyses;
 mod command;
 mod diagnose;
 mod effects;
+mod excite;
 mod files;
 mod fmt;
 mod live;

@@ -1,0 +1,248 @@
+//! What the options ask for: limits, band, times; and what is assumed of those that are missing.
+
+use super::quantity::{self, Quantity, quantity};
+use crate::args::{ExciteArgs, SignalName};
+use hyde_signal::excite::{Bounds, Limits, Shape, Wish};
+use hyde_units::{Agreement, Dimension, NamedUnit};
+
+/// What is asked for.
+pub(super) struct Asked {
+    pub(super) wish: Wish,
+    pub(super) column: String,
+    /// What is assumed, in the words of the command line.
+    pub(super) assumed: Vec<String>,
+}
+
+/// Limits of an axis that slides and of one that turns, where none is given: those of the library's `Stroke`.
+const SLIDES: [&str; 4] = ["100 [mm]", "100 [mm/s]", "1 [m/s2]", "50 [m/s3]"];
+const TURNS: [&str; 4] = ["90 [deg]", "90 [deg/s]", "900 [deg/s2]", "45000 [deg/s3]"];
+const NAMES: [&str; 4] = ["travel", "speed", "acceleration", "jerk"];
+const EFFORTS: [&str; 4] = ["A", "N", "N.m", "V"];
+const DURATION: &str = "20 [s]";
+const EVERY: &str = "1 [ms]";
+/// A band of which nothing is said begins with the fourth part of the record, or here, and ends here, Hz.
+const BAND_HZ: (f64, f64) = (1.0, 100.0);
+/// A sine of the highest frequency has so many samples.
+const SAMPLES_OF_A_SINE: f64 = 10.0;
+
+/// What the options ask for.
+pub(super) fn of(args: &ExciteArgs) -> Result<Asked, String> {
+    let mut assumed = Vec::new();
+    let (bounds, unit) = bounds(args, &mut assumed)?;
+    let mut time = |name: &str, given: &Option<String>, usual: &str| {
+        let text = or_assumed(name, given.as_ref(), usual, &mut assumed);
+        let found = quantity(name, &text, &["s"])?;
+        match found.value > 0.0 {
+            true => Ok(found.value),
+            false => Err(format!(
+                "`--{name} '{text}'` is not positive\n  help: write `--{name} '{usual}'`"
+            )),
+        }
+    };
+    let duration_s = time("duration", &args.duration, DURATION)?;
+    let step_s = time("every", &args.every, EVERY)?;
+    let shape = shape(args.signal);
+    let banded = matches!(shape, Shape::Multisine | Shape::Chirp);
+    let band_hz = match &args.band {
+        Some(text) => quantity::band(text)?,
+        None => {
+            let from = BAND_HZ.0.max(4.0 / duration_s);
+            let to = BAND_HZ
+                .1
+                .min(1.0 / (SAMPLES_OF_A_SINE * step_s))
+                .max(2.0 * from);
+            if banded {
+                assumed.push(format!(
+                    "--band '{} .. {} [Hz]'",
+                    hyde_units::significant(from, 4),
+                    hyde_units::significant(to, 4)
+                ));
+            }
+            (from, to)
+        }
+    };
+    let own = |option: &str, given: &Option<String>| {
+        let text = given.as_ref();
+        text.map(|text| quantity(option, text, &[unit.text()]))
+            .transpose()
+    };
+    let start = own("start", &args.start)?.map_or(0.0, |found| found.value);
+    let reversal = match (own("reversal", &args.reversal)?, bounds) {
+        (Some(found), _) => found.value,
+        (None, Bounds::Motion(limits)) => {
+            let size = 1e-3 * limits.travel;
+            if shape == Shape::Reversals {
+                assumed.push(format!(
+                    "--reversal '{} [{unit}]'",
+                    hyde_units::significant(unit.unit().from_si(size), 6)
+                ));
+            }
+            size
+        }
+        (None, Bounds::Effort(_)) => 0.0,
+    };
+    if reversal <= 0.0 && matches!(bounds, Bounds::Motion(_)) {
+        return Err(format!(
+            "`--reversal` is not positive\n  help: write a size larger than the backlash, `--reversal '0.2 [{unit}]'`"
+        ));
+    }
+    let usual = match bounds {
+        Bounds::Motion(_) => "r",
+        Bounds::Effort(_) => "u",
+    };
+    let column = args.column.clone().unwrap_or_else(|| usual.to_owned());
+    if column.is_empty() || column.contains(['"', ',', '\n', '[', ']']) {
+        return Err(format!(
+            "`--column '{column}'` cannot be the name of a column\n  help: write letters and digits, `--column r`"
+        ));
+    }
+    if args.start.is_none() && matches!(bounds, Bounds::Motion(_)) {
+        assumed.push(format!("--start '0 [{unit}]'"));
+    }
+    Ok(Asked {
+        wish: Wish {
+            shape,
+            bounds,
+            band_hz,
+            duration_s,
+            step_s,
+            start,
+            unit,
+            speeds: args.speeds,
+            places: args.places,
+            reversal,
+        },
+        column,
+        assumed,
+    })
+}
+
+/// The limits, and the unit of the column.
+fn bounds(args: &ExciteArgs, assumed: &mut Vec<String>) -> Result<(Bounds, NamedUnit), String> {
+    let given = &args.limits;
+    if let Some(text) = &given.effort {
+        let Quantity { value, unit } = quantity("effort", text, &EFFORTS)?;
+        positive("effort", text, value, "10 [A]")?;
+        let unit = unit_of(args, unit)?;
+        return Ok((Bounds::Effort(value), unit));
+    }
+    let options = [
+        &given.travel,
+        &given.speed,
+        &given.acceleration,
+        &given.jerk,
+    ];
+    // An axis slides if no limit says that it turns.
+    let per_time = ["", "/s", "/s2", "/s3"];
+    let units = |number: usize| {
+        per_time.map(|per| [format!("mm{per}"), format!("deg{per}")])[number].clone()
+    };
+    let mut found: [Option<Quantity>; 4] = [None, None, None, None];
+    for (number, text) in options.into_iter().enumerate() {
+        if let Some(text) = text {
+            let [slides, turns] = units(number);
+            let own = quantity(NAMES[number], text, &[&slides, &turns])?;
+            positive(NAMES[number], text, own.value, SLIDES[number])?;
+            found[number] = Some(own);
+        }
+    }
+    let turned = |number: usize| {
+        let own = found[number].as_ref()?;
+        let slides = NamedUnit::parse(&units(number)[0]).ok()?;
+        Some(own.unit.unit().dimension.agreement(slides.unit().dimension) != Agreement::Same)
+    };
+    let kinds: Vec<(usize, bool)> = (0..4)
+        .filter_map(|number| Some((number, turned(number)?)))
+        .collect();
+    let turns = kinds.first().is_some_and(|(_, turns)| *turns);
+    if let (Some((first, _)), Some((other, _))) =
+        (kinds.first(), kinds.iter().find(|(_, own)| *own != turns))
+    {
+        return Err(format!(
+            "`--{}` is of an axis that {}, `--{}` of one that {}\n  help: give all limits in units of one kind",
+            NAMES[*first],
+            if turns { "turns" } else { "slides" },
+            NAMES[*other],
+            if turns { "slides" } else { "turns" },
+        ));
+    }
+    let usual = if turns { TURNS } else { SLIDES };
+    let mut values = [0.0; 4];
+    for (number, value) in values.iter_mut().enumerate() {
+        *value = match &found[number] {
+            Some(own) => own.value,
+            None => {
+                let text = or_assumed(NAMES[number], None, usual[number], assumed);
+                quantity(
+                    NAMES[number],
+                    &text,
+                    &[units(number)[usize::from(turns)].as_str()],
+                )?
+                .value
+            }
+        };
+    }
+    let [travel, speed, acceleration, jerk] = values;
+    let own = match &found[0] {
+        Some(travel) => travel.unit.clone(),
+        None => named(if turns { "deg" } else { "mm" })?,
+    };
+    let unit = unit_of(args, own)?;
+    let limits = Limits {
+        travel,
+        speed,
+        acceleration,
+        jerk,
+    };
+    Ok((Bounds::Motion(limits), unit))
+}
+
+fn positive(name: &str, text: &str, value: f64, usual: &str) -> Result<(), String> {
+    match value > 0.0 {
+        true => Ok(()),
+        false => Err(format!(
+            "`--{name} '{text}'` is not positive\n  help: write the largest size either way, `--{name} '{usual}'`"
+        )),
+    }
+}
+
+/// The unit of the column: that which is given, if it is of the same dimension.
+fn unit_of(args: &ExciteArgs, usual: NamedUnit) -> Result<NamedUnit, String> {
+    let Some(text) = &args.unit else {
+        return Ok(usual);
+    };
+    let dimension = |unit: &NamedUnit| -> Dimension { unit.unit().dimension };
+    let unit = named(text)?;
+    match dimension(&unit).agreement(dimension(&usual)) == Agreement::Same {
+        true => Ok(unit),
+        false => Err(format!(
+            "`--unit {text}`: the limits are in {usual}\n  help: write a unit of the same kind, `--unit {usual}`"
+        )),
+    }
+}
+
+fn named(text: &str) -> Result<NamedUnit, String> {
+    let text = text.trim_start_matches('[').trim_end_matches(']');
+    NamedUnit::parse(text).map_err(|error| format!("`--unit {text}`: {error}"))
+}
+
+fn or_assumed(
+    name: &str,
+    given: Option<&String>,
+    usual: &str,
+    assumed: &mut Vec<String>,
+) -> String {
+    given.cloned().unwrap_or_else(|| {
+        assumed.push(format!("--{name} '{usual}'"));
+        usual.to_owned()
+    })
+}
+
+fn shape(name: SignalName) -> Shape {
+    match name {
+        SignalName::Multisine => Shape::Multisine,
+        SignalName::Chirp => Shape::Chirp,
+        SignalName::Jogs => Shape::Jogs,
+        SignalName::Reversals => Shape::Reversals,
+    }
+}
