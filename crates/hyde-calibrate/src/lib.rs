@@ -11,6 +11,7 @@
 //! plan           what a `calibrate` block asks for                                 plan.rs
 //! calibration    bounded least squares on innovations and priors                  least_squares.rs, solution.rs, blocks.rs, varied.rs
 //! its worth      errors before and after, intervals, groups                       fit.rs
+//!                what records would tell beforehand                               information.rs
 //!                why it taught nothing, where it did not                           standstill.rs
 //! measures       the error in three measures, before and after, over its floor                  measures.rs, windows.rs, free_run.rs
 //! what is left   what innovations depend on, and whether they are white                        residual_map.rs, whiteness.rs
@@ -32,6 +33,7 @@ mod free_run;
 mod frozen;
 mod gain;
 mod held;
+mod information;
 mod input_noise;
 mod inputs;
 mod lateness;
@@ -68,6 +70,7 @@ pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_para
 pub use free_run::{FreeChannel, free_run};
 pub use frozen::{Frozen, frozen};
 pub use gain::{Observer, Taken};
+pub use information::{Information, UNKNOWN};
 pub use least_squares::Problem;
 pub use measures::{FreeMeasure, Measures, Model};
 pub use observer::Innovations;
@@ -77,7 +80,7 @@ pub use recording::{RecordError, Recording};
 pub use residual_map::{ResidualMap, residual_maps};
 pub use selftest::{
     Asked, Axis, Case, Claim, Fault, Faulty, Found, Outcome, Planting, Row, SelftestError,
-    Simulated, Size, Tally, cases, simulated, tables_of, tally, try_case,
+    Separation, Simulated, Size, Tally, cases, separation, simulated, tables_of, tally, try_case,
 };
 pub use solution::Solution;
 pub use standstill::{Cause, standstill};

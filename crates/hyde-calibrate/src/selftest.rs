@@ -5,6 +5,7 @@
 //! case           what is planted: an effect, a wrong parameter, a faulty sensor     selftest/case.rs
 //! simulated      the records that the axis would leave: noise, rounding             selftest/simulated.rs
 //! expected       what a planted effect gains at best, and where it begins to show   selftest/expected.rs
+//! separation     what effects gain over each other on records                   selftest/separation.rs
 //! trial          a case simulated, diagnosed, judged                                selftest/trial.rs
 //! table          the outcomes of all cases, counted                                 selftest/table.rs
 //! ```
@@ -12,11 +13,13 @@
 mod case;
 mod expected;
 mod random;
+mod separation;
 mod simulated;
 mod table;
 mod trial;
 
 pub use case::{Asked, Case, Fault, Planting, Size, cases};
+pub use separation::{Separation, separation};
 pub use simulated::{Faulty, Simulated, simulated};
 pub use table::{Found, Row, Table as Tally, tally};
 pub use trial::{Axis, Claim, Outcome, SelftestError, tables_of, try_case};

@@ -4,7 +4,9 @@ use crate::args::{ModelArgs, StudyArgs};
 use crate::exit::Exit;
 use crate::project::{self, Asked, Loaded, Told as _, complain};
 use hyde_compiler::DiagnosisPlan;
+use hyde_study::excitation::Bench;
 use hyde_study::{Calibration, Refused};
+use hyde_units::NamedUnit;
 
 /// Loads the calibration that the arguments name.
 pub(crate) fn calibration(args: &StudyArgs) -> Result<Calibration, Exit> {
@@ -27,6 +29,21 @@ pub(crate) fn diagnosis(args: &StudyArgs) -> Result<(DiagnosisPlan, Calibration)
     })?;
     calibration.project.print_warnings(&model_args);
     Ok((plan, calibration))
+}
+
+/// Loads the model of a calibration, for records that are to be designed.
+pub(crate) fn bench(
+    model_args: &ModelArgs,
+    study: Option<&str>,
+    step_s: f64,
+    column: Option<&str>,
+    unit: &NamedUnit,
+) -> Result<Bench, Exit> {
+    let bench = loaded(model_args, |loaded, asked| {
+        hyde_study::excitation::bench(loaded, asked, study, step_s, column, unit)
+    })?;
+    bench.project.print_warnings(model_args);
+    Ok(bench)
 }
 
 /// What is made of the file that the arguments name, parsed once.

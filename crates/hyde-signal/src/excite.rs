@@ -8,7 +8,7 @@
 //! path         moves and dwells; jogs both ways, small reversals                  excite/path.rs, jogs.rs, reversals.rs
 //! pulses       an effort there and back                                           excite/pulses.rs
 //! written      decimal digits whose differences keep the limits                   excite/written.rs
-//! design       one of these, asked for and made                                   excite/design.rs
+//! design       one of these, asked for and made                                   excite/design.rs, design/joined.rs
 //! set points   what a controller reads                                            excite/set_points.rs
 //! ```
 //!

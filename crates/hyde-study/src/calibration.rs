@@ -70,27 +70,13 @@ pub fn calibration(
         ..asked.clone()
     };
     let project = loaded.choose(&of_first, Records::Needed);
-    let mut project = project.map_err(Refused::Asked)?;
-    if project.diagnostics.has_errors() {
-        return Err(project.refused(Fault::Model));
-    }
-    let compiled = match project.compile(Aim::Observe) {
-        Ok(compiled) => compiled,
-        Err(fault) => return Err(project.refused(fault)),
-    };
-    let program = &compiled.program;
-    let set: Vec<(usize, f64)> = project
-        .set()
-        .iter()
-        .filter_map(|(name, value)| {
-            let (parameter, element) = program.parameter(name)?;
-            (!parameter.structural).then_some((parameter.place + element, *value))
-        })
-        .collect();
-    let mut p = vec![0.0; program.n_parameters];
-    program.kernels.parameters(&set, &mut p);
-    let mut wrong = Vec::new();
-    let varied = varied(&plan, &compiled, &p, &mut wrong);
+    let Prepared {
+        mut project,
+        compiled,
+        set,
+        varied,
+        mut wrong,
+    } = prepared(project.map_err(Refused::Asked)?, &plan)?;
     let (mut recordings, mut count) = (Vec::new(), 0);
     let lists = if wrong.is_empty() {
         [fitted, holdout]
@@ -116,6 +102,7 @@ pub fn calibration(
     }
     let holdout = recordings.split_off(count);
     let fitted = recordings;
+    let program = &compiled.program;
     let observer = match wrong.is_empty() {
         true => {
             Observer::new(program, &fitted, &set).map_err(|u| Box::new(unsupported(&u, plan.span)))
@@ -143,8 +130,50 @@ pub fn calibration(
     }
 }
 
+/// The model of a calibration, before its records are read.
+pub(crate) struct Prepared {
+    pub(crate) project: Project,
+    pub(crate) compiled: Compiled,
+    /// Values set from outside: position and value.
+    pub(crate) set: Vec<(usize, f64)>,
+    pub(crate) varied: Vec<Varied>,
+    /// What is wrong with what is varied.
+    pub(crate) wrong: Vec<Diagnostic>,
+}
+
+/// Compiles a project in the observed form, and finds what its calibration varies.
+pub(crate) fn prepared(mut project: Project, plan: &CalibrationPlan) -> Result<Prepared, Refused> {
+    if project.diagnostics.has_errors() {
+        return Err(project.refused(Fault::Model));
+    }
+    let compiled = match project.compile(Aim::Observe) {
+        Ok(compiled) => compiled,
+        Err(fault) => return Err(project.refused(fault)),
+    };
+    let program = &compiled.program;
+    let set: Vec<(usize, f64)> = project
+        .set()
+        .iter()
+        .filter_map(|(name, value)| {
+            let (parameter, element) = program.parameter(name)?;
+            (!parameter.structural).then_some((parameter.place + element, *value))
+        })
+        .collect();
+    let mut p = vec![0.0; program.n_parameters];
+    program.kernels.parameters(&set, &mut p);
+    let mut wrong = Vec::new();
+    let varied = varied(plan, &compiled, &p, &mut wrong);
+    Ok(Prepared {
+        project,
+        compiled,
+        set,
+        varied,
+        wrong,
+    })
+}
+
 /// The block that is meant, and the experiment of its records; `None` where one of them is at fault, as diagnostics say.
-fn plan(
+pub(crate) fn plan(
     loaded: &mut Loaded,
     name: Option<&str>,
 ) -> Result<Option<(CalibrationPlan, Experiment)>, String> {

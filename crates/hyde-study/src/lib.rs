@@ -15,6 +15,7 @@
 //! check          everything in a file compiled, and nothing run         check.rs
 //! calibration    a calibration with its records and its observer         calibration.rs
 //! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
+//! excitation     what to record next for a calibration                excitation.rs
 //! first_model    a first model of an axis, from a trace                  first_model.rs
 //! render         diagnostics as text or JSON                              render.rs
 //! run_failure    a run that could not go on, as a diagnostic             run_failure.rs
@@ -27,6 +28,7 @@ mod asked;
 mod calibration;
 mod check;
 mod diagnosis;
+pub mod excitation;
 pub mod first_model;
 mod inputs;
 mod package;

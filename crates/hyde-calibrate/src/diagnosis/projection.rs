@@ -174,6 +174,12 @@ impl Projection {
         self.h.len()
     }
 
+    /// The product of two changes of innovations without what parameters answer to them.
+    pub(crate) fn common(&self, a: &DVector<f64>, b: &DVector<f64>) -> f64 {
+        let (onto_a, onto_b) = (&self.derivatives * a, &self.derivatives * b);
+        a.dot(b) - onto_a.dot(&self.factor.solve(&onto_b))
+    }
+
     /// What a change of innovations gains, and how far the parameters go to answer it, in units of their scales.
     pub(crate) fn answered(&self, change: &DVector<f64>) -> (f64, Vec<f64>) {
         let changed = &self.innovations + change;

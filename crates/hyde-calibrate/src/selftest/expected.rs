@@ -110,6 +110,10 @@ impl Reference {
         Some(Effect { plain, ..effect })
     }
 
+    pub(super) fn projection(&self) -> &Projection {
+        &self.projection
+    }
+
     /// The deviation of a channel's noise and rounding, SI.
     pub(super) fn noise(&self, channel: usize) -> f64 {
         self.observer.noise.get(channel).copied().unwrap_or(0.0)
@@ -138,11 +142,16 @@ pub(super) struct Effect<'r> {
 }
 
 impl Effect<'_> {
-    /// What it gains at some sizes.
-    pub(super) fn gain(&self, sizes: &[f64]) -> Option<f64> {
+    /// The change of innovations by some sizes.
+    pub(super) fn change(&self, sizes: &[f64]) -> Option<DVector<f64>> {
         let with = self.innovations(sizes)?;
         let differences = with.iter().zip(&self.plain).map(|(a, b)| a - b);
-        let change = DVector::from_iterator(with.len(), differences);
+        Some(DVector::from_iterator(with.len(), differences))
+    }
+
+    /// What it gains at some sizes.
+    pub(super) fn gain(&self, sizes: &[f64]) -> Option<f64> {
+        let change = self.change(sizes)?;
         let back = -&change;
         let projection = &self.reference.projection;
         // Put on and taken off the innovations the noise counts with either sign.

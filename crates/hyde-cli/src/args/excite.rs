@@ -5,9 +5,35 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct ExciteArgs {
-    /// The kind of signal
-    #[arg(long, value_enum, value_name = "KIND")]
-    pub(crate) signal: SignalName,
+    /// File of a model: signals of all kinds are compared by what they tell about its parameters
+    pub(crate) file: Option<PathBuf>,
+    /// Name of the calibration or diagnosis; optional if the file has only one calibration
+    pub(crate) study: Option<String>,
+    /// The kind of signal; with a model the kinds to compare (repeatable) [default: all]
+    #[arg(
+        long,
+        value_enum,
+        value_name = "KIND",
+        required_unless_present = "file"
+    )]
+    pub(crate) signal: Vec<SignalName>,
+    /// What makes a signal the best one for the parameters of a model
+    #[arg(long, value_enum, default_value_t = Criterion::D, requires = "file")]
+    pub(crate) criterion: Criterion,
+    /// Choose the signal that best distinguishes these effects: `--between Backlash@nut,Cogging@motor.shaft`
+    #[arg(
+        long,
+        value_name = "EFFECT[@SITE],…",
+        value_delimiter = ',',
+        requires = "file"
+    )]
+    pub(crate) between: Vec<String>,
+    /// Size of the effects of `--between`, as a part of their range
+    #[arg(long, value_name = "PART", default_value_t = 0.1, requires = "between")]
+    pub(crate) size: f64,
+    /// Set a parameter of the model: `--set saddle.M='320 [kg]'` (repeatable)
+    #[arg(long = "set", value_name = "PATH=VALUE [UNIT]", requires = "file")]
+    pub(crate) settings: Vec<String>,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
     /// Band of a multisine or chirp: `--band '1 .. 100 [Hz]'`
@@ -31,7 +57,7 @@ pub(crate) struct ExciteArgs {
     /// Size of a reversal; it must be larger than the backlash [default: a thousandth of the travel]
     #[arg(long, value_name = "VALUE [UNIT]")]
     pub(crate) reversal: Option<String>,
-    /// Name of the column [default: `r` of a motion, `u` of an effort]
+    /// Name of the column [default: `r` of a motion, `u` of an effort; with a model the first one that a stimulus reads]
     #[arg(long, value_name = "NAME")]
     pub(crate) column: Option<String>,
     /// Unit of the column [default: the unit of the first limit]
@@ -58,20 +84,29 @@ pub(crate) struct ExciteArgs {
 #[derive(Clone, Debug, Default, Args)]
 pub(crate) struct LimitArgs {
     /// Travel from end to end: `--travel '300 [mm]'`, of a rotary axis `'90 [deg]'`
-    #[arg(long, value_name = "VALUE [UNIT]", conflicts_with = "effort")]
+    #[arg(long, value_name = "VALUE [UNIT]")]
     pub(crate) travel: Option<String>,
     /// Largest speed: `--speed '200 [mm/s]'`
-    #[arg(long, value_name = "VALUE [UNIT]", conflicts_with = "effort")]
+    #[arg(long, value_name = "VALUE [UNIT]")]
     pub(crate) speed: Option<String>,
     /// Largest acceleration: `--acceleration '2 [m/s2]'`
-    #[arg(long, value_name = "VALUE [UNIT]", conflicts_with = "effort")]
+    #[arg(long, value_name = "VALUE [UNIT]")]
     pub(crate) acceleration: Option<String>,
     /// Largest jerk: `--jerk '50 [m/s3]'`
-    #[arg(long, value_name = "VALUE [UNIT]", conflicts_with = "effort")]
+    #[arg(long, value_name = "VALUE [UNIT]")]
     pub(crate) jerk: Option<String>,
     /// Largest current, force, torque or voltage, for a signal that is not a motion: `--current '10 [A]'`
     #[arg(long, value_name = "VALUE [UNIT]", visible_aliases = ["current", "force", "torque", "voltage"])]
     pub(crate) effort: Option<String>,
+}
+
+/// What makes a signal the best one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Criterion {
+    /// The smallest volume of the confidence ellipsoid
+    D,
+    /// The smallest mean square of the standard deviations
+    A,
 }
 
 /// A kind of signal.

@@ -4,58 +4,88 @@
 //! quantity     a number with a unit, as an option has it            excite/quantity.rs
 //! wish         what the options ask for, and what is assumed        excite/wish.rs
 //! refused      why there is no such signal, and what to write       excite/refused.rs
-//! text         the table, and the same as JSON                      excite/text.rs
+//! text         a design on the console and as JSON                  excite/text.rs
+//! compared     signals compared on a model                          excite/compared.rs
+//! between      effects that a record is to distinguish              excite/between.rs
+//! table        the comparison on the console and as JSON            excite/table.rs
 //! ```
 
+mod between;
+mod compared;
 mod quantity;
 mod refused;
+mod table;
 mod text;
 mod wish;
 
 use crate::args::{ExciteArgs, SignalFormat};
 use crate::exit::Exit;
 use crate::files;
-use crate::project::{print_error, print_output};
+use crate::project::print_output;
 use hyde_signal::excite::{Bounds, Design, design, g_code, twincat};
 use hyde_units::{NamedUnit, significant};
-use serde_json::json;
 use std::fmt::Write as _;
 use std::path::Path;
 use wish::Asked;
 
+/// Why there is no signal.
+enum Failure {
+    /// The options ask for what cannot be.
+    Asked(String),
+    /// The model is at fault, and that is reported.
+    Told(Exit),
+}
+
 /// Designs a signal, tells and writes it.
 pub(crate) fn excite(args: &ExciteArgs) -> Exit {
-    match designed(args) {
+    let found = match args.file {
+        Some(_) => of_model(args),
+        None => designed(args).map_err(Failure::Asked),
+    };
+    match found {
         Ok(told) => {
             if !told.is_empty() {
                 print_output(&told);
             }
             Exit::Done
         }
-        Err(reason) if args.json => {
-            print_output(&format!("{:#}", json!({ "ok": false, "error": reason })));
-            Exit::CommandLine
-        }
-        Err(reason) => {
-            print_error(&format!("error: {reason}"));
-            Exit::CommandLine
-        }
+        Err(Failure::Asked(reason)) => compared::report(args, &reason),
+        Err(Failure::Told(exit)) => exit,
     }
 }
 
+/// A signal of one kind.
 fn designed(args: &ExciteArgs) -> Result<String, String> {
     let asked = wish::of(args)?;
     let design = design(&asked.wish).map_err(|own| refused::reason(&own, &asked.wish))?;
-    if let Some(path) = &args.out {
-        let format = format_of(args, path);
-        let content = content(args, &asked, &design, format)?;
-        files::write(path, content.as_bytes())?;
-    }
+    leave(args, &asked, &design)?;
     Ok(match (args.json, args.quiet) {
         (true, _) => format!("{:#}", text::json(&asked, &design)),
         (false, true) => String::new(),
-        (false, false) => text::text(&asked, &design, args.out.as_deref()),
+        (false, false) => text::text(None, &asked, &design, args.out.as_deref()),
     })
+}
+
+/// The best signal for a model.
+fn of_model(args: &ExciteArgs) -> Result<String, Failure> {
+    let mut found = compared::compared(args)?;
+    found.asked.column.clone_from(&found.bench.column.1);
+    let best = &found.all[found.best];
+    leave(args, &found.asked, &best.design).map_err(Failure::Asked)?;
+    Ok(match (args.json, args.quiet) {
+        (true, _) => format!("{:#}", table::json(&found)),
+        (false, true) => String::new(),
+        (false, false) => table::text(args, &found),
+    })
+}
+
+/// Writes the file, if one is asked for.
+fn leave(args: &ExciteArgs, asked: &Asked, design: &Design) -> Result<(), String> {
+    let Some(path) = &args.out else {
+        return Ok(());
+    };
+    let content = content(args, asked, design, format_of(args, path))?;
+    files::write(path, content.as_bytes())
 }
 
 fn format_of(args: &ExciteArgs, path: &Path) -> SignalFormat {

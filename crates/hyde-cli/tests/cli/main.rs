@@ -11,6 +11,7 @@ mod command;
 mod diagnose;
 mod effects;
 mod excite;
+mod excite_model;
 mod files;
 mod fmt;
 mod live;

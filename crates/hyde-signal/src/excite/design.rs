@@ -250,5 +250,6 @@ impl Design {
     }
 }
 
+mod joined;
 #[cfg(test)]
 mod tests;

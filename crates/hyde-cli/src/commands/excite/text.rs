@@ -8,12 +8,17 @@ use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// In lines of at most 80 columns.
-pub(super) fn text(asked: &Asked, design: &Design, out: Option<&Path>) -> String {
+/// In lines of at most 80 columns, under its name among others if it has been compared with them.
+pub(super) fn text(
+    known_as: Option<&str>,
+    asked: &Asked,
+    design: &Design,
+    out: Option<&Path>,
+) -> String {
     let wish = &design.wish;
     let mut text = format!(
         "{}: {} s, {} every {} ms\n",
-        wish.shape,
+        known_as.map_or_else(|| wish.shape.to_string(), str::to_owned),
         significant(wish.duration_s, 6),
         counted(design.rows(), "sample"),
         significant(wish.step_s * 1e3, 6)
@@ -63,7 +68,7 @@ pub(super) fn text(asked: &Asked, design: &Design, out: Option<&Path>) -> String
             shown(wish.start, unit),
             shown(limits.travel, unit)
         );
-    } else {
+    } else if known_as.is_none() {
         text.push_str("  the travel of the axis is not checked: that takes a model\n");
     }
     if let Some(quantity) = design.slowed_by {

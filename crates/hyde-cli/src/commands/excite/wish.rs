@@ -41,7 +41,12 @@ pub(super) fn of(args: &ExciteArgs) -> Result<Asked, String> {
     };
     let duration_s = time("duration", &args.duration, DURATION)?;
     let step_s = time("every", &args.every, EVERY)?;
-    let shape = shape(args.signal);
+    // With a model all kinds are compared, and the wish is for each of them.
+    let shape = args
+        .signal
+        .first()
+        .map_or(Shape::Multisine, |name| shape(*name));
+    let compared = args.file.is_some();
     let banded = matches!(shape, Shape::Multisine | Shape::Chirp);
     let band_hz = match &args.band {
         Some(text) => quantity::band(text)?,
@@ -51,7 +56,7 @@ pub(super) fn of(args: &ExciteArgs) -> Result<Asked, String> {
                 .1
                 .min(1.0 / (SAMPLES_OF_A_SINE * step_s))
                 .max(2.0 * from);
-            if banded {
+            if banded || compared {
                 assumed.push(format!(
                     "--band '{} .. {} [Hz]'",
                     hyde_units::significant(from, 4),
@@ -71,7 +76,7 @@ pub(super) fn of(args: &ExciteArgs) -> Result<Asked, String> {
         (Some(found), _) => found.value,
         (None, Bounds::Motion(limits)) => {
             let size = 1e-3 * limits.travel;
-            if shape == Shape::Reversals {
+            if shape == Shape::Reversals || compared {
                 assumed.push(format!(
                     "--reversal '{} [{unit}]'",
                     hyde_units::significant(unit.unit().from_si(size), 6)
@@ -123,50 +128,38 @@ fn bounds(args: &ExciteArgs, assumed: &mut Vec<String>) -> Result<(Bounds, Named
     if let Some(text) = &given.effort {
         let Quantity { value, unit } = quantity("effort", text, &EFFORTS)?;
         positive("effort", text, value, "10 [A]")?;
+        if let (None, Some(name)) = (&args.file, (0..4).find(|&n| option(args, n).is_some())) {
+            return Err(format!(
+                "`--{}` cannot be used with the limit of an effort: only a model says how far that moves the axis\n  help: name the file of a model, or leave one of them out",
+                NAMES[name]
+            ));
+        }
         let unit = unit_of(args, unit)?;
         return Ok((Bounds::Effort(value), unit));
     }
-    let options = [
-        &given.travel,
-        &given.speed,
-        &given.acceleration,
-        &given.jerk,
-    ];
-    // An axis slides if no limit says that it turns.
-    let per_time = ["", "/s", "/s2", "/s3"];
-    let units = |number: usize| {
-        per_time.map(|per| [format!("mm{per}"), format!("deg{per}")])[number].clone()
-    };
     let mut found: [Option<Quantity>; 4] = [None, None, None, None];
-    for (number, text) in options.into_iter().enumerate() {
-        if let Some(text) = text {
-            let [slides, turns] = units(number);
-            let own = quantity(NAMES[number], text, &[&slides, &turns])?;
-            positive(NAMES[number], text, own.value, SLIDES[number])?;
-            found[number] = Some(own);
-        }
+    for (number, own) in found.iter_mut().enumerate() {
+        *own = limit(args, number)?;
     }
-    let turned = |number: usize| {
-        let own = found[number].as_ref()?;
-        let slides = NamedUnit::parse(&units(number)[0]).ok()?;
-        Some(own.unit.unit().dimension.agreement(slides.unit().dimension) != Agreement::Same)
-    };
+    // An axis slides if no limit says that it turns.
+    let turned = |number: usize| Some(turns(&found[number].as_ref()?.unit, number));
     let kinds: Vec<(usize, bool)> = (0..4)
         .filter_map(|number| Some((number, turned(number)?)))
         .collect();
-    let turns = kinds.first().is_some_and(|(_, turns)| *turns);
-    if let (Some((first, _)), Some((other, _))) =
-        (kinds.first(), kinds.iter().find(|(_, own)| *own != turns))
-    {
+    let is_turned = kinds.first().is_some_and(|(_, turns)| *turns);
+    if let (Some((first, _)), Some((other, _))) = (
+        kinds.first(),
+        kinds.iter().find(|(_, own)| *own != is_turned),
+    ) {
         return Err(format!(
             "`--{}` is of an axis that {}, `--{}` of one that {}\n  help: give all limits in units of one kind",
             NAMES[*first],
-            if turns { "turns" } else { "slides" },
+            if is_turned { "turns" } else { "slides" },
             NAMES[*other],
-            if turns { "slides" } else { "turns" },
+            if is_turned { "slides" } else { "turns" },
         ));
     }
-    let usual = if turns { TURNS } else { SLIDES };
+    let usual = if is_turned { TURNS } else { SLIDES };
     let mut values = [0.0; 4];
     for (number, value) in values.iter_mut().enumerate() {
         *value = match &found[number] {
@@ -176,7 +169,7 @@ fn bounds(args: &ExciteArgs, assumed: &mut Vec<String>) -> Result<(Bounds, Named
                 quantity(
                     NAMES[number],
                     &text,
-                    &[units(number)[usize::from(turns)].as_str()],
+                    &[units(number)[usize::from(is_turned)].as_str()],
                 )?
                 .value
             }
@@ -185,7 +178,7 @@ fn bounds(args: &ExciteArgs, assumed: &mut Vec<String>) -> Result<(Bounds, Named
     let [travel, speed, acceleration, jerk] = values;
     let own = match &found[0] {
         Some(travel) => travel.unit.clone(),
-        None => named(if turns { "deg" } else { "mm" })?,
+        None => named(if is_turned { "deg" } else { "mm" })?,
     };
     let unit = unit_of(args, own)?;
     let limits = Limits {
@@ -195,6 +188,44 @@ fn bounds(args: &ExciteArgs, assumed: &mut Vec<String>) -> Result<(Bounds, Named
         jerk,
     };
     Ok((Bounds::Motion(limits), unit))
+}
+
+/// The text of a limit of a motion: travel, speed, acceleration, jerk.
+fn option(args: &ExciteArgs, number: usize) -> Option<&String> {
+    let given = &args.limits;
+    let all = [
+        &given.travel,
+        &given.speed,
+        &given.acceleration,
+        &given.jerk,
+    ];
+    all[number].as_ref()
+}
+
+/// The units of such a limit: of an axis that slides, and of one that turns.
+fn units(number: usize) -> [String; 2] {
+    let per = ["", "/s", "/s2", "/s3"][number];
+    [format!("mm{per}"), format!("deg{per}")]
+}
+
+/// Such a limit, if it is given.
+pub(super) fn limit(args: &ExciteArgs, number: usize) -> Result<Option<Quantity>, String> {
+    let Some(text) = option(args, number) else {
+        return Ok(None);
+    };
+    let [slides, turns] = units(number);
+    let own = quantity(NAMES[number], text, &[&slides, &turns])?;
+    positive(NAMES[number], text, own.value, SLIDES[number])?;
+    Ok(Some(own))
+}
+
+/// Whether a unit of such a limit is that of an axis that turns.
+pub(super) fn turns(unit: &NamedUnit, number: usize) -> bool {
+    let slides = NamedUnit::parse(&units(number)[0]);
+    slides.is_ok_and(|slides| {
+        let (own, known) = (unit.unit().dimension, slides.unit().dimension);
+        own.agreement(known) != Agreement::Same
+    })
 }
 
 fn positive(name: &str, text: &str, value: f64, usual: &str) -> Result<(), String> {
@@ -238,7 +269,8 @@ fn or_assumed(
     })
 }
 
-fn shape(name: SignalName) -> Shape {
+/// The kind of an option.
+pub(super) fn shape(name: SignalName) -> Shape {
     match name {
         SignalName::Multisine => Shape::Multisine,
         SignalName::Chirp => Shape::Chirp,

@@ -1,0 +1,133 @@
+//! Effects that a record is to distinguish: those named by `--between`.
+
+use super::Failure;
+use crate::args::{ExciteArgs, ModelArgs};
+use crate::commands::diagnose;
+use crate::project::Told as _;
+use crate::unknown;
+use hyde_calibrate::{Hypothesis, Recording, Separation, separation};
+use hyde_compiler::{Candidate, Form};
+use hyde_study::excitation::{Bench, Failed};
+use std::collections::BTreeMap;
+
+/// The effects of the model, and the numbers of those to distinguish.
+pub(super) struct Effects {
+    candidates: Vec<Candidate>,
+    hypotheses: Vec<Hypothesis>,
+    numbers: Vec<usize>,
+}
+
+/// How far effects are apart.
+pub(super) struct Apart {
+    /// The least gain of an effect over another one, as a part of its threshold.
+    pub(super) least: f64,
+    /// Names and gains.
+    pub(super) names: Vec<String>,
+    pub(super) separation: Separation,
+}
+
+/// The effects that are named; `None` if none is.
+pub(super) fn of(
+    args: &ExciteArgs,
+    model_args: &ModelArgs,
+    bench: &mut Bench,
+) -> Result<Option<Effects>, Failure> {
+    if args.between.is_empty() {
+        return Ok(None);
+    }
+    if !(args.size > 0.0 && args.size <= 1.0) {
+        return Err(Failure::Asked(format!(
+            "`--size {}` is not a part of a range\n  help: write a number above 0 and up to 1, `--size 0.1`",
+            args.size
+        )));
+    }
+    let candidates = bench.project.candidates_or_report(model_args);
+    let candidates = candidates.map_err(Failure::Told)?;
+    let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnose::hypothesis).collect();
+    let mut numbers = Vec::new();
+    for name in &args.between {
+        let number = number_of(name, &hypotheses).map_err(Failure::Asked)?;
+        if !numbers.contains(&number) {
+            numbers.push(number);
+        }
+    }
+    if numbers.len() < 2 {
+        return Err(Failure::Asked(
+            "one effect has nothing to be distinguished from\n  help: write two or more, `--between Backlash@nut,Cogging@motor.shaft`"
+                .to_owned(),
+        ));
+    }
+    Ok(Some(Effects {
+        candidates,
+        hypotheses,
+        numbers,
+    }))
+}
+
+/// The number of an effect, with its site after `@` if there are several.
+fn number_of(name: &str, hypotheses: &[Hypothesis]) -> Result<usize, String> {
+    let (effect, site) = match name.split_once('@') {
+        Some((effect, site)) => (effect, Some(site)),
+        None => (name, None),
+    };
+    let effect = effect.rsplit('.').next().unwrap_or(effect);
+    let own = |h: &Hypothesis| h.effect == effect;
+    let at = |h: &Hypothesis| {
+        site.is_none_or(|site| h.site == site || h.aliases.iter().any(|alias| alias == site))
+    };
+    let all: Vec<usize> = (0..hypotheses.len())
+        .filter(|&number| own(&hypotheses[number]) && at(&hypotheses[number]))
+        .collect();
+    match all.as_slice() {
+        [only] => Ok(*only),
+        [] => Err(format!(
+            "the model has no effect `{name}`\n  help: `hyde effects FILE` lists the effects and their sites"
+        )),
+        several => {
+            let sites: Vec<String> = several
+                .iter()
+                .map(|&number| format!("`{effect}@{}`", hypotheses[number].site))
+                .collect();
+            Err(format!(
+                "`{name}` fits at several sites\n  help: write one of {}",
+                sites.join(", ")
+            ))
+        }
+    }
+}
+
+/// How far a record would set the effects apart, each at a part of its range; `None` if a model with one of them cannot be
+/// observed.
+pub(super) fn apart(
+    bench: &Bench,
+    effects: &Effects,
+    recording: Recording,
+    part: f64,
+) -> Result<Option<Apart>, Failed> {
+    let project = &bench.project;
+    let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
+    let headers = hyde_study::headers(&project.records);
+    let request = project.request(&settings, &headers, Form::Observed);
+    let author = |known: &[usize], written: &[hyde_calibrate::Written]| {
+        unknown::built(&request, &effects.candidates, known, written)
+    };
+    let found = separation(
+        &bench.compiled.program,
+        vec![recording],
+        (&bench.varied, &project.set()),
+        &effects.hypotheses,
+        &effects.numbers,
+        part,
+        &author,
+    );
+    let separation = found.map_err(Failed::Unsupported)?;
+    let names = effects.numbers.iter().map(|&number| {
+        let own = &effects.hypotheses[number];
+        format!("{} at {}", own.effect, own.site)
+    });
+    Ok(separation.least().map(|least| Apart {
+        least,
+        names: names.collect(),
+        separation,
+    }))
+}
