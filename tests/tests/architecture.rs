@@ -77,6 +77,7 @@ const EDGES: &[(&str, &[&str])] = &[
         ],
     ),
     ("fmu", &["fmi", "study"]),
+    ("modelica", &["compiler", "diag", "ir", "study"]),
     ("mcp", &["diag", "library", "syntax"]),
     ("c", &["diag", "program", "study", "units"]),
     (

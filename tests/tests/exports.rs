@@ -1,4 +1,4 @@
-//! What `hyde export` and `hyde run --format mat` write for other tools, read by those tools: SciPy, python-control and DyMat; and
+//! What `hyde export` and `hyde run --format mat` write for other tools, read by those tools: SciPy, python-control, DyMat and rumoca; and
 //! `hyde mcp` with the Python SDK of the protocol.
 //! Without them in `target/fmpy` these tests say so and pass; `./dev test` installs them.
 #![allow(
@@ -14,6 +14,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
 const LINEAR: &str = "tests/models/state_space.hyde";
+const FMU: &str = "tests/models/fmu.hyde";
 
 fn hyde(arguments: &[&str]) -> Output {
     let mut command = Command::new(Path::new(env!("CARGO_BIN_EXE_hyde-tested")));
@@ -46,8 +47,8 @@ fn state_spaces_and_trajectories_are_read_by_other_tools() {
     done(&[&loop_of_clocks[..], &["--out", &place("servo.py")]].concat());
     for (model, experiment, format, out) in [
         (LINEAR, "stepped", "json", "servo"),
-        ("tests/models/fmu.hyde", "bouncing", "mat", "ball"),
-        ("tests/models/fmu.hyde", "bouncing", "json", "ball-json"),
+        (FMU, "bouncing", "mat", "ball"),
+        (FMU, "bouncing", "json", "ball-json"),
     ] {
         let run = ["run", model, experiment, "--quiet"];
         done(&[&run[..], &["--format", format, "--out", &place(out)]].concat());
@@ -101,4 +102,65 @@ fn an_assistant_uses_hyde_through_the_protocol() {
     assert!(printed.ends_with("done\n"), "{printed}");
     let results = folder.path().join("results.csv");
     assert!(results.is_file(), "the samples are in the folder");
+}
+
+#[test]
+fn classes_of_modelica_run_in_rumoca() {
+    let Ok(python) = python().map_err(|reason| eprintln!("skipped: {reason}")) else {
+        return;
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let place = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+    let mut asked = Vec::new();
+    for (file, experiment, class, quantities) in [
+        (FMU, "stepped", "Lag_stepped", "x,count:1e-4"),
+        (FMU, "bouncing", "Ball_bouncing", "h:1e-3"),
+        (FMU, "moved", "Sampled_moved", "mass.s,mass.v:1e-3"),
+        (
+            "examples/first/first.hyde",
+            "push",
+            "Axis_push",
+            "table.a.s:1e-3",
+        ),
+    ] {
+        let out = place(&format!("{class}.mo"));
+        done(&[
+            "export", "modelica", file, experiment, "--quiet", "--out", &out,
+        ]);
+        let run = ["run", file, experiment, "--quiet", "--format", "json"];
+        done(&[&run[..], &["--out", &place(class)]].concat());
+        asked.push(format!("{class}:{quantities}"));
+    }
+    let stiff = [
+        "export",
+        "modelica",
+        "examples/y_axis/axis.hyde",
+        "positioning",
+    ];
+    let out = place("Axis_positioning.mo");
+    done(&[&stiff[..], &["--quiet", "--out", &out]].concat());
+    asked.push("Axis_positioning::".to_owned());
+    let mut command = Command::new(python);
+    command.arg("tests/exports/modelica.py").arg(folder.path());
+    let printed = succeed(command.args(asked)).unwrap();
+    assert!(printed.ends_with("done\n"), "{printed}");
+}
+
+#[test]
+fn what_modelica_does_not_express_is_refused_with_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder
+        .path()
+        .join("never.mo")
+        .to_string_lossy()
+        .into_owned();
+    for (file, experiment, place) in [
+        ("tests/models/chosen.hyde", "swing", "`x`, `y`"),
+        ("tests/models/reactions.hyde", "edges", "this edge"),
+    ] {
+        let output = hyde(&["export", "modelica", file, experiment, "--out", &out]);
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(!output.status.success(), "{said}");
+        assert!(said.contains("E0815") && said.contains(place), "{said}");
+    }
 }

@@ -10,7 +10,9 @@ mod traces;
 pub(crate) use batch::{Engine, SweepArgs, TableFormat};
 pub(crate) use editor::{ExplainArgs, FmtArgs, LiveArgs, LspArgs, McpArgs};
 pub(crate) use excite::{Criterion, ExciteArgs, SignalFormat, SignalName};
-pub(crate) use export::{CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, StateSpaceArgs};
+pub(crate) use export::{
+    CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, ModelicaArgs, StateSpaceArgs,
+};
 pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 pub(crate) use traces::{LookArgs, NewArgs, TemplateName};
 

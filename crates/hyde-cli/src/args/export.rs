@@ -17,6 +17,8 @@ pub(crate) enum ExportKind {
     Fmu(FmuArgs),
     /// Write the model as one C11 file and header with a fixed step, for controllers and hardware in the loop
     C(CArgs),
+    /// Write the model as one flat class of Modelica: equations after index reduction, events, modes, clocks
+    Modelica(ModelicaArgs),
     /// Write the linearised model as matrices A, B, C, D with names: for MATLAB, Octave, python-control, or as JSON
     #[command(name = "statespace")]
     StateSpace(StateSpaceArgs),
@@ -94,4 +96,16 @@ pub(crate) struct CArgs {
     /// Folder of the two files, `NAME.c` and `NAME.h`
     #[arg(long, value_name = "DIR", default_value = ".")]
     pub(crate) out: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ModelicaArgs {
+    #[command(flatten)]
+    pub(crate) model: ModelArgs,
+    /// Inputs that a stimulus of the experiment drives; the stimulus is left out: `--input r,inject`
+    #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
+    pub(crate) input: Vec<String>,
+    /// File [default: the model and the experiment, `Axis_positioning.mo`]
+    #[arg(long, value_name = "PATH")]
+    pub(crate) out: Option<PathBuf>,
 }

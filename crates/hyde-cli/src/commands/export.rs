@@ -2,6 +2,7 @@
 
 mod c;
 mod fmu;
+mod modelica;
 mod state_space;
 
 use crate::args::{ExportArgs, ExportKind};
@@ -13,6 +14,7 @@ pub(crate) fn export(args: &ExportArgs) -> Exit {
     match &args.kind {
         ExportKind::C(args) => c::export(args),
         ExportKind::Fmu(args) => fmu::fmu(args),
+        ExportKind::Modelica(args) => modelica::export(args),
         ExportKind::StateSpace(args) => state_space::export(args),
     }
 }

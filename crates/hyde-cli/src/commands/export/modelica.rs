@@ -1,0 +1,64 @@
+//! `hyde export modelica`: the model as one flat class of Modelica.
+
+use super::identifier;
+use crate::args::ModelicaArgs;
+use crate::exit::Exit;
+use crate::files;
+use crate::project::{self, Aim, Records, Told as _, complain, print_output};
+use hyde_modelica::written;
+use hyde_units::counted;
+use serde_json::json;
+use std::path::PathBuf;
+
+/// Writes the class.
+pub(crate) fn export(args: &ModelicaArgs) -> Exit {
+    match left(args) {
+        Ok(text) => {
+            if !args.model.quiet {
+                print_output(&text);
+            }
+            Exit::Done
+        }
+        Err(exit) => exit,
+    }
+}
+
+fn left(args: &ModelicaArgs) -> Result<String, Exit> {
+    let own = &args.model;
+    let refused = |reason: String| complain(own, Exit::CommandLine, &reason);
+    let mut project = project::load(own, Records::Needed)?;
+    project.release(&args.input).map_err(refused)?;
+    let compiled = project.compile_or_report(own, Aim::Export)?;
+    project.print_warnings(own);
+    let name = identifier(&project);
+    let Some(class) = written(&mut project, &name) else {
+        return Err(project.finish_with_errors(own));
+    };
+    let default = PathBuf::from(format!("{name}.mo"));
+    let path = args.out.as_ref().unwrap_or(&default);
+    files::write(path, class.text.as_bytes()).map_err(refused)?;
+    let (unknowns, automata, clocks) = class.counts;
+    let path = path.display().to_string();
+    let columns = compiled.program.columns.len();
+    if own.json {
+        let told = json!({
+            "ok": true, "file": path, "class": name, "unknowns": unknowns, "modes_blocks": automata, "clocks": clocks,
+        });
+        return Ok(format!("{told:#}"));
+    }
+    let mut text = format!(
+        "  {path}\n  class {name}: {}, {}, {}",
+        counted(unknowns, "unknown"),
+        counted(automata, "modes block"),
+        counted(clocks, "clock"),
+    );
+    if columns > 0 {
+        text.push_str("\n  columns of records are inputs of the class");
+    }
+    for input in &compiled.program.experiment.differentiated {
+        text.push_str(&format!(
+            "\n  the equations need the derivative of `{input}`; it is 0 in the class"
+        ));
+    }
+    Ok(text)
+}

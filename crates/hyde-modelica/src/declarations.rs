@@ -1,0 +1,243 @@
+//! Parameters, inputs and variables, with units and start values; and the reported quantities that have no variable of their
+//! own.
+
+use crate::expression::{is_state, literal};
+use crate::mode_number;
+use crate::names::{Names, column_name, mode_name, quoted};
+use hyde_ir::dae::{Dae, InitialCondition, Space};
+use hyde_ir::{Interpolation, Quantity};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fmt::Write as _;
+
+/// Writes all declarations.
+pub(crate) fn write(text: &mut String, dae: &Dae, names: &Names<'_>) {
+    parameters(text, dae, names);
+    for column in 0..dae.columns.len() {
+        for interpolation in [Interpolation::Linear, Interpolation::Held] {
+            let name = column_name(dae, column, interpolation);
+            let _ = writeln!(text, "  input Real {name};");
+        }
+    }
+    let starts = starts(dae);
+    let fixed = fixed(dae);
+    for unknown in dae.unknowns.iter() {
+        let variable = &dae.variables[unknown.var];
+        for position in unknown.offset..unknown.offset + unknown.len {
+            let mut parts = unit(&variable.quantity);
+            if let Some((value, counter)) = starts.get(&(Space::Unknown, position)) {
+                parts.push(format!("start = {}", names.number(*value, *counter)));
+            }
+            if fixed.contains(&position) {
+                parts.push("fixed = true".to_owned());
+            }
+            if is_state(dae, position) {
+                parts.push("stateSelect = StateSelect.always".to_owned());
+            }
+            declare(text, "Real", &names.unknown(position), &parts);
+        }
+    }
+    for definition in &dae.definitions {
+        let variable = &dae.variables[definition.var];
+        for counter in definition.range.iter() {
+            let name = names.variable(definition.var, definition.index.at(counter));
+            if !names.is_input(&name) {
+                declare(text, "Real", &name, &unit(&variable.quantity));
+            }
+        }
+    }
+    for delay in dae.delays.iter() {
+        let variable = &dae.variables[delay.var];
+        for element in 0..i32::try_from(delay.range.len()).unwrap_or(0) {
+            let name = names.variable(delay.var, element);
+            declare(text, "Real", &name, &unit(&variable.quantity));
+        }
+    }
+    for (var, variable) in dae.variables.enumerate() {
+        let Some(place) = dae.place(var).filter(|own| own.space == Space::Memory) else {
+            continue;
+        };
+        for element in 0..variable.size() {
+            let name = names.variable(var, i32::try_from(element).unwrap_or(0));
+            let mut parts = unit(&variable.quantity);
+            let start = starts.get(&(Space::Memory, place.base + element));
+            let start = start.map(|(value, counter)| names.number(*value, *counter));
+            parts.push(format!(
+                "start = {}",
+                start.unwrap_or_else(|| "0".to_owned())
+            ));
+            parts.push("fixed = true".to_owned());
+            declare(text, "discrete Real", &name, &parts);
+        }
+    }
+    for automaton in dae.automata.iter() {
+        let modes: Vec<String> = automaton
+            .modes
+            .iter()
+            .enumerate()
+            .map(|(number, name)| format!("{} {name}", mode_number(number)))
+            .collect();
+        let _ = writeln!(
+            text,
+            "  Integer {}(start = {}, fixed = true) \"{}\";",
+            mode_name(&automaton.name),
+            mode_number(automaton.initial),
+            comment(&modes.join(", "))
+        );
+    }
+}
+
+/// Reported quantities that are no variables: aliases and expressions. They are declared and defined behind the equations'
+/// own variables, so their declarations stand in front of the section.
+pub(crate) fn reported(text: &mut String, dae: &Dae, names: &Names<'_>) {
+    let known = declared(dae, names);
+    let mut own = String::new();
+    let mut equations = String::new();
+    let mut seen = BTreeSet::new();
+    for output in &dae.outputs {
+        for (name, counter) in output.names.iter().zip(output.range.iter()) {
+            let name = quoted(name);
+            if known.contains(&name) || !seen.insert(name.clone()) {
+                continue;
+            }
+            declare(&mut own, "Real", &name, &unit(&output.quantity));
+            let value = names.number(output.value, counter);
+            let _ = writeln!(equations, "  {name} = {value};");
+        }
+    }
+    if let Some(at) = text
+        .find("initial equation\n")
+        .or_else(|| text.find("equation\n"))
+    {
+        text.insert_str(at, &own);
+    }
+    text.push_str(&equations);
+}
+
+fn parameters(text: &mut String, dae: &Dae, names: &Names<'_>) {
+    for &param in &dae.parameter_order {
+        let parameter = &dae.parameters[param];
+        let input = dae.experiment.free.contains(&param);
+        for element in 0..parameter.size() {
+            let at = i32::try_from(element).unwrap_or(0);
+            let name = names.parameter(param, at);
+            let value = match parameter.value.as_slice() {
+                [one] => names.number(*one, at),
+                each => each
+                    .get(element)
+                    .map_or_else(|| literal(0.0), |own| names.number(*own, at)),
+            };
+            let mut parts = unit(&parameter.quantity);
+            if input {
+                parts.push(format!("start = {value}"));
+                declare(text, "input Real", &name, &parts);
+                continue;
+            }
+            // What the compiler made of others stands for itself, and an input may be in it.
+            let kind = match (parameter.derived, reads_input(dae, param)) {
+                (_, true) => "Real",
+                (true, false) => "final parameter Real",
+                (false, false) if parameter.is_final => "final parameter Real",
+                (false, false) => "parameter Real",
+            };
+            let about = parameter.source.as_deref().unwrap_or_default();
+            let about = match about.is_empty() {
+                true => String::new(),
+                false => format!(" \"{}\"", comment(about)),
+            };
+            let parts = match parts.is_empty() {
+                true => String::new(),
+                false => format!("({})", parts.join(", ")),
+            };
+            let _ = writeln!(text, "  {kind} {name}{parts} = {value}{about};");
+        }
+    }
+}
+
+/// Whether the value of a parameter is made of an input.
+fn reads_input(dae: &Dae, param: hyde_ir::ParamId) -> bool {
+    let values = &dae.parameters[param].value;
+    dae.exprs.below(values).into_iter().any(|id| {
+        let hyde_ir::Expr::Param(other, _) = dae.exprs[id] else {
+            return false;
+        };
+        dae.experiment.free.contains(&other) || (other != param && reads_input(dae, other))
+    })
+}
+
+fn declare(text: &mut String, kind: &str, name: &str, parts: &[String]) {
+    let parts = match parts.is_empty() {
+        true => String::new(),
+        false => format!("({})", parts.join(", ")),
+    };
+    let _ = writeln!(text, "  {kind} {name}{parts};");
+}
+
+fn unit(quantity: &Quantity) -> Vec<String> {
+    match quantity.dimension.usual_unit().as_str() {
+        "1" => Vec::new(),
+        unit => vec![format!("unit = \"{unit}\"")],
+    }
+}
+
+fn comment(text: &str) -> String {
+    text.replace('\\', "/").replace('"', "'")
+}
+
+/// The start values by place, with the value of the counter there.
+fn starts(dae: &Dae) -> BTreeMap<(Space, usize), (hyde_ir::ExprId, i32)> {
+    let mut found = BTreeMap::new();
+    for start in &dae.starts {
+        for counter in start.range.iter() {
+            let element = usize::try_from(start.index.at(counter)).unwrap_or(0);
+            let place = (start.place.space, start.place.base + element);
+            found.insert(place, (start.value, counter));
+        }
+    }
+    found
+}
+
+/// The states that keep their start values.
+fn fixed(dae: &Dae) -> BTreeSet<usize> {
+    let mut found = BTreeSet::new();
+    for condition in &dae.initial {
+        if let InitialCondition::Fixed {
+            state,
+            len,
+            yields: false,
+            ..
+        } = condition
+        {
+            found.extend(*state..state + len);
+        }
+    }
+    found
+}
+
+/// Every name that has a declaration.
+fn declared(dae: &Dae, names: &Names<'_>) -> BTreeSet<String> {
+    let mut found = BTreeSet::new();
+    for (param, parameter) in dae.parameters.enumerate() {
+        for element in 0..parameter.size() {
+            found.insert(names.parameter(param, i32::try_from(element).unwrap_or(0)));
+        }
+    }
+    found.extend((0..dae.n_unknowns).map(|position| names.unknown(position)));
+    for definition in &dae.definitions {
+        let elements = definition.range.iter().map(|c| definition.index.at(c));
+        found.extend(elements.map(|element| names.variable(definition.var, element)));
+    }
+    for (var, variable) in dae.variables.enumerate() {
+        let stands = dae.place(var).is_some_and(|own| match own.space {
+            Space::Memory | Space::Input => true,
+            Space::Unknown | Space::Work | Space::Parameter => false,
+        });
+        if stands {
+            let elements = 0..i32::try_from(variable.size()).unwrap_or(0);
+            found.extend(elements.map(|element| names.variable(var, element)));
+        }
+    }
+    for column in 0..dae.columns.len() {
+        found.insert(column_name(dae, column, Interpolation::Linear));
+    }
+    found
+}
