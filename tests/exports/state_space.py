@@ -81,6 +81,13 @@ assert abs(x[system.state_labels.index("s")]) > 0.3, "it has moved"
 held = [name for name in system.state_labels if name.startswith("hold(")]
 assert held, system.state_labels
 
+# The plant of that loop: what controllers hold are inputs.
+plant = runpy.run_path(str(folder / "plant.py"))["system"]
+assert plant.dt == 0 and plant.input_labels == ["r", "v_ref", "a"], plant.input_labels
+order = [plant.state_labels.index(name) for name in ["s", "v"]]
+close(plant.A[np.ix_(order, order)], [[0, 1], [0, 0]], 0)
+close(plant.B[order], [[0, 0, 0], [0, 0, 1]], 0)
+
 # Trajectories as Modelica tools write them.
 results = DyMat.DyMatFile(str(folder / "ball" / "results.mat"))
 expected = json.loads((folder / "ball-json" / "results.json").read_text())

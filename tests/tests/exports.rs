@@ -45,6 +45,8 @@ fn state_spaces_and_trajectories_are_read_by_other_tools() {
     }
     let loop_of_clocks = ["export", "statespace", LINEAR, "stepped", "--quiet"];
     done(&[&loop_of_clocks[..], &["--out", &place("servo.py")]].concat());
+    let plant = ["--open", "--out", &place("plant.py")];
+    done(&[&loop_of_clocks[..], &plant].concat());
     for (model, experiment, format, out) in [
         (LINEAR, "stepped", "json", "servo"),
         (FMU, "bouncing", "mat", "ball"),

@@ -5,7 +5,8 @@
 //! x' = A x + B u,      y = C x + D u        without clocks
 //! x[k+1] = A x[k] + B u[k], y[k] = C x[k] + D u[k]   with clocks; u is constant from t[k] to t[k+1]
 //! ```
-//! All are deviations from the operating point, in SI units. With clocks the state is that of the plant, the memory of the
+//! All are deviations from the operating point, in SI units. Of a plant whose clocks are left out ([`crate::About::open`]) the
+//! held values are inputs behind the others. With clocks the state is that of the plant, the memory of the
 //! clocked parts and the held values, all just before the ticks at t[k]; the ticks at t[k] read u[k].
 
 use crate::common_period::CommonPeriod;
@@ -112,15 +113,28 @@ pub fn state_space(
         })
         .collect();
     let rows = |matrix: &DMatrix<f64>| matrix.select_rows(outputs);
-    let inputs: Vec<StateSpaceSignal> = inputs.iter().map(input).collect();
+    let mut inputs: Vec<StateSpaceSignal> = inputs.iter().map(input).collect();
     let d = rows(&linear.d_input);
     let outputs_told = outputs.iter().map(|&number| signal(number)).collect();
     let Some(sampled) = &linear.sampled else {
+        let shown = (0..linear.d_held.ncols()).map(|column| shows_held(program, linear, column));
+        inputs.extend(shown.enumerate().map(|(column, shown)| {
+            match shown {
+                Some(number) => signal(number),
+                None => StateSpaceSignal {
+                    name: format!("held[{}]", column + 1),
+                    unit: None,
+                    value: held_targets(program)
+                        .nth(column)
+                        .map_or(f64::NAN, |target| linear.point.z[target]),
+                },
+            }
+        }));
         return Some(StateSpace {
             a: linear.a.clone(),
-            b: linear.b_input.clone(),
+            b: beside(&linear.b_input, &linear.b_held),
             c: rows(&linear.c),
-            d,
+            d: beside(&d, &rows(&linear.d_held)),
             states,
             inputs,
             outputs: outputs_told,
@@ -229,6 +243,30 @@ fn memory_names(program: &Program, sampled: &Sampled, values: &[f64]) -> Vec<Sta
     (0..shown.ncols()).map(signal).collect()
 }
 
+/// The positions of the held values in the memory.
+fn held_targets(program: &Program) -> impl Iterator<Item = usize> + '_ {
+    let holds = program.holds.iter();
+    holds.flat_map(|hold| hold.target..hold.target + hold.len)
+}
+
+/// The reported quantity that is a held value, whatever the states are.
+fn shows_held(program: &Program, linear: &Linear, column: usize) -> Option<usize> {
+    let alone = |&row: &usize| {
+        let held = linear.d_held.row(row);
+        let others = held
+            .iter()
+            .enumerate()
+            .filter(|(other, _)| *other != column);
+        let nothing_else = others
+            .map(|(_, value)| value)
+            .chain(linear.c.row(row).iter())
+            .chain(linear.d_input.row(row).iter())
+            .all(|value| value.abs() == 0.0);
+        nothing_else && (held[column] - 1.0).abs() == 0.0 && !program.outputs[row].auxiliary
+    };
+    (0..linear.d_held.nrows()).find(alone)
+}
+
 /// The held values, by the memory that they hold.
 fn held_names(
     program: &Program,
@@ -236,8 +274,6 @@ fn held_names(
     memory: &[StateSpaceSignal],
     values: &[f64],
 ) -> Vec<StateSpaceSignal> {
-    let targets = program.holds.iter();
-    let targets = targets.flat_map(|hold| hold.target..hold.target + hold.len);
     let signal = |(row, target): (usize, usize)| {
         let held = (0..memory.len()).find(|&column| sampled.select[(row, column)] != 0.0);
         let held = held.map(|column| &memory[column]);
@@ -250,5 +286,5 @@ fn held_names(
             value: values[target],
         }
     };
-    targets.enumerate().map(signal).collect()
+    held_targets(program).enumerate().map(signal).collect()
 }

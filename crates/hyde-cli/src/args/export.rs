@@ -62,7 +62,7 @@ pub(crate) struct StateSpaceArgs {
     pub(crate) model: ModelArgs,
     #[command(flatten)]
     pub(crate) about: AboutArgs,
-    /// Export only the plant, continuous; outputs of clocked controllers stay constant
+    /// Export only the plant, continuous; the held outputs of clocked controllers are inputs
     #[arg(long)]
     pub(crate) open: bool,
     /// Inputs: `--input F,load` [default: every free input of the model]

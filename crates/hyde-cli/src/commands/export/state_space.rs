@@ -177,7 +177,7 @@ fn loop_told(program: &Program, system: &StateSpace, open: bool) -> String {
             significant(1e3 * times.period_s, 6)
         ),
         None if open && !program.holds.is_empty() => {
-            "plant alone: the outputs of the clocks stay constant\n".to_owned()
+            "plant alone: the held outputs of the clocks are inputs, behind the others\n".to_owned()
         }
         None => String::new(),
     }
