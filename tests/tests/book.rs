@@ -159,6 +159,48 @@ fn every_file_that_a_page_links_to_is_there() {
     assert!(found > 50, "only {found} links were found");
 }
 
+/// Every promise has a figure, or tests of a module, that are there.
+#[test]
+fn every_proof_of_a_promise_exists() {
+    let page = read(&root().join("book/src/how/promises.md"));
+    let proofs: Vec<&str> = page
+        .lines()
+        .filter_map(|line| line.strip_prefix("| ")?.split(" | `").nth(1))
+        .filter_map(|proof| proof.strip_suffix("` |"))
+        .collect();
+    assert!(proofs.len() > 20, "only {} proofs were found", proofs.len());
+    for proof in proofs {
+        if let Some(names) = proof.strip_prefix("./dev figures ") {
+            for name in names.split(' ') {
+                let known = hyde_tests::figures::FIGURES.iter();
+                let known = known.filter(|figure| figure.name == name).count();
+                assert_eq!(known, 1, "there is no figure `{name}`");
+            }
+            continue;
+        }
+        let words: Vec<&str> = proof.split(' ').collect();
+        let ["cargo", "test", "-p", package, rest @ ..] = words.as_slice() else {
+            panic!("`{proof}` is neither a figure nor a test");
+        };
+        let folder = match *package {
+            "hyde-tests" => root().join("tests"),
+            package => root().join("crates").join(package),
+        };
+        let tests = folder.join("tests");
+        match rest {
+            ["--test", target, module] => {
+                let module = tests.join(target).join(module).with_extension("rs");
+                assert!(module.exists(), "{} is not there", module.display());
+            }
+            ["--test", target] => {
+                let file = tests.join(target).with_extension("rs");
+                assert!(file.exists(), "{} is not there", file.display());
+            }
+            _ => assert!(tests.exists(), "{} is not there", tests.display()),
+        }
+    }
+}
+
 /// A model as printed, and the block that follows it at once.
 struct Block {
     code: String,

@@ -310,6 +310,7 @@ pub(crate) fn setup_with<'r>(
     let mut setup = Setup::new(parameters, records, stop_s);
     setup.start_s = start_s;
     setup.method = program.experiment.method;
+    setup.conserve = program.experiment.conserve;
     (setup.rtol, setup.atol) = (rtol, atol);
     setup.max_step_s = max_step_s;
     setup

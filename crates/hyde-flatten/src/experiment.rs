@@ -161,6 +161,10 @@ impl<'a> Model<'a, '_> {
         };
         for argument in arguments {
             let name = argument.name.as_ref().map_or("", |name| name.text.as_str());
+            if name == "conserve" {
+                self.conserve(&argument.value);
+                continue;
+            }
             if !matches!(name, "rtol" | "atol" | "max_step") {
                 self.report(
                     Diagnostic::error(Code::BadSolve, format!("the solver has no option `{name}`"))
@@ -171,7 +175,7 @@ impl<'a> Model<'a, '_> {
                                 .map_or(argument.value.span, |name| name.span),
                             "not known",
                         )
-                        .help("options are `rtol`, `atol` and `max_step`"),
+                        .help("options are `rtol`, `atol`, `max_step` and `conserve`"),
                 );
                 continue;
             }
@@ -181,6 +185,19 @@ impl<'a> Model<'a, '_> {
             }
             self.flat.experiment.solve.push((name.to_owned(), value.id));
         }
+    }
+
+    /// `conserve = true` or `conserve = false`.
+    fn conserve(&mut self, value: &ast::Expr) {
+        if let ast::ExprKind::Boolean(truth) = value.kind {
+            self.flat.experiment.conserve = truth;
+            return;
+        }
+        self.report(
+            Diagnostic::error(Code::BadSolve, "`conserve` is `true` or `false`")
+                .label(value.span, "neither of them")
+                .help("write `conserve = true` where energy must be kept over a long run, else leave it out"),
+        );
     }
 
     fn agree_time(&mut self, value: &Typed, what: &'static str, instance: InstanceId) {

@@ -4,6 +4,8 @@
 //! guide. SUNDIALS has an interface of its own to KLU; this one differs in that a restart of IDA keeps the analysis
 //! and the pivots, that a matrix whose pivots do not serve any more gets new ones at once, which matters when a mode of
 //! the model has changed, and that the unknown without a pivot is known.
+//!
+//! KLU chooses the pivots. With the same pivots the next matrices are factored and solved by [`FixedPivots`].
 
 use std::ptr;
 
@@ -11,18 +13,21 @@ use sundials_sys as sys;
 // Its build script finds the library; without a use of the crate the linker would not see it.
 use suitesparse_sys as _;
 
+use crate::fixed_pivots::{Extracted, FixedPivots};
 use crate::{Error, Pattern, Singular};
 
 /// Below this reciprocal growth of the entries while factoring, the old pivots are given up: half of the digits of the
 /// solution may be lost then (user guide, `klu_rgrowth`).
 const SMALLEST_RECIPROCAL_GROWTH: f64 = 1e-8;
 
-/// A pattern's analysis and, after `factor`, a matrix's factors.
+/// A pattern's analysis and, after `factor`, a matrix's factors: KLU's own or those with its pivots.
 #[derive(Debug)]
 pub(crate) struct KluFactors {
     common: sys::klu_l_common,
     symbolic: *mut sys::klu_l_symbolic,
     numeric: *mut sys::klu_l_numeric,
+    /// The factors of the matrix factored last; none before the first, and where KLU's serve.
+    fixed: Option<FixedPivots>,
 }
 
 /// How the pivots were found.
@@ -56,14 +61,31 @@ impl KluFactors {
             common,
             symbolic,
             numeric: ptr::null_mut(),
+            fixed: None,
         })
     }
 
     /// Factors the matrix with these values; the pattern must be the one analysed.
     pub(crate) fn factor(&mut self, pattern: &Pattern, values: &[f64]) -> Result<Pivots, Singular> {
-        if self.refactor(pattern, values) {
+        if let Some(fixed) = &mut self.fixed
+            && fixed.factor(values) >= SMALLEST_RECIPROCAL_GROWTH
+        {
             return Ok(Pivots::Kept);
         }
+        self.choose_pivots(pattern, values)?;
+        let mut fixed = FixedPivots::new(pattern, &self.extract(pattern.n()));
+        // Where they are of no use even for this matrix, KLU's own factors serve.
+        let serve = |fixed: &mut FixedPivots| fixed.factor(values) >= SMALLEST_RECIPROCAL_GROWTH;
+        self.fixed = fixed.take_if(serve);
+        if self.fixed.is_some() {
+            self.free_numeric();
+        }
+        Ok(Pivots::New)
+    }
+
+    /// Factors the matrix with these values by KLU.
+    fn choose_pivots(&mut self, pattern: &Pattern, values: &[f64]) -> Result<(), Singular> {
+        self.fixed = None;
         self.free_numeric();
         let (starts, rows) = indices(pattern);
         // SAFETY: pattern and values belong together (checked by the caller) and are only read; `symbolic` is theirs.
@@ -82,11 +104,15 @@ impl KluFactors {
                 .min(pattern.n() - 1);
             return Err(Singular { unknown });
         }
-        Ok(Pivots::New)
+        Ok(())
     }
 
     /// Replaces `b` by the solution; the last `factor` must have succeeded.
     pub(crate) fn solve(&mut self, b: &mut [f64]) {
+        if let Some(fixed) = &mut self.fixed {
+            fixed.solve(b);
+            return;
+        }
         // SAFETY: there are factors, and `b` has as many entries as the matrix has rows (both checked by the caller);
         // without factors KLU would do nothing.
         unsafe {
@@ -102,8 +128,12 @@ impl KluFactors {
         }
     }
 
-    /// An estimate of 1 over the condition number in the 1-norm.
+    /// An estimate of 1 over the condition number, in the 1-norm, of the matrix with these values, by factors of its own; 0
+    /// if it is singular.
     pub(crate) fn reciprocal_condition(&mut self, pattern: &Pattern, values: &[f64]) -> f64 {
+        if self.choose_pivots(pattern, values).is_err() {
+            return 0.0;
+        }
         let (starts, _) = indices(pattern);
         // SAFETY: as in `factor`; the values are those of the factors.
         unsafe {
@@ -119,21 +149,46 @@ impl KluFactors {
         1.0 / self.common.condest
     }
 
-    /// Factors with the pivots there are, and says whether they serve.
-    fn refactor(&mut self, pattern: &Pattern, values: &[f64]) -> bool {
-        if self.numeric.is_null() {
-            return false;
-        }
-        let (starts, rows) = indices(pattern);
-        let values = values.as_ptr().cast_mut();
-        // SAFETY: as in `factor`; `numeric` holds factors of a matrix of this pattern.
+    /// Order, pivots and patterns of the factors that KLU has found of a matrix of `n` rows.
+    fn extract(&mut self, n: usize) -> Extracted {
+        let room = |len: i64| vec![0_i64; usize::try_from(len).unwrap_or(0)];
+        // SAFETY: `klu_l_factor` has succeeded, so it points to a complete struct.
+        let numeric = unsafe { &*self.numeric };
+        let starts = || vec![0_i64; n + 1];
+        let mut found = Extracted {
+            lower: (starts(), room(numeric.lnz)),
+            upper: (starts(), room(numeric.unz)),
+            above: (starts(), room(numeric.nzoff)),
+            row_at: vec![0; n],
+            column_at: vec![0; n],
+            blocks: room(numeric.nblocks + 1),
+            scale: vec![1.0; n],
+        };
+        // A pattern is not written without its values, which are not of interest here.
+        let most = found.lower.1.len().max(found.upper.1.len());
+        let mut values = vec![0.0; most.max(found.above.1.len())];
+        // SAFETY: every array has the length that the user guide asks for, that of the values for each of the three.
         unsafe {
-            let (symbolic, numeric, common) = (self.symbolic, self.numeric, &raw mut self.common);
-            sys::klu_l_refactor(starts, rows, values, symbolic, numeric, common) != 0
-                && sys::klu_l_rgrowth(starts, rows, values, symbolic, numeric, common) != 0
+            sys::klu_l_extract(
+                self.numeric,
+                self.symbolic,
+                found.lower.0.as_mut_ptr(),
+                found.lower.1.as_mut_ptr(),
+                values.as_mut_ptr(),
+                found.upper.0.as_mut_ptr(),
+                found.upper.1.as_mut_ptr(),
+                values.as_mut_ptr(),
+                found.above.0.as_mut_ptr(),
+                found.above.1.as_mut_ptr(),
+                values.as_mut_ptr(),
+                found.row_at.as_mut_ptr(),
+                found.column_at.as_mut_ptr(),
+                found.scale.as_mut_ptr(),
+                found.blocks.as_mut_ptr(),
+                &raw mut self.common,
+            );
         }
-        .then_some(self.common.rgrowth)
-        .is_some_and(|growth| growth >= SMALLEST_RECIPROCAL_GROWTH)
+        found
     }
 
     fn free_numeric(&mut self) {

@@ -50,6 +50,7 @@ mod context;
 mod dense;
 mod error;
 mod failure;
+mod fixed_pivots;
 mod klu;
 mod linear;
 mod memory;

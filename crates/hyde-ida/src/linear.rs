@@ -151,11 +151,7 @@ impl SparseSolver {
                     .map_or(0.0, |()| factors.reciprocal_condition())
             }
             Factors::Klu(_) => {
-                let mut factors = KluFactors::new(&self.pattern)?;
-                match factors.factor(&self.pattern, &scaled) {
-                    Ok(_) => factors.reciprocal_condition(&self.pattern, &scaled),
-                    Err(_) => 0.0,
-                }
+                KluFactors::new(&self.pattern)?.reciprocal_condition(&self.pattern, &scaled)
             }
         })
     }

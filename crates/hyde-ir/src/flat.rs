@@ -304,12 +304,12 @@ pub struct Flow {
 /// How the continuous equations are integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// `ida`: backward differentiation, the default.
-    #[default]
+    /// `ida`: backward differentiation.
     Ida,
     /// `esdirk`: a Runge-Kutta method.
     Esdirk,
-    /// `auto`: what suits the model.
+    /// `auto`: what suits the model, the default.
+    #[default]
     Auto,
 }
 
@@ -354,6 +354,8 @@ pub struct Experiment {
     pub skip: Option<ExprId>,
     /// The method of the solver.
     pub method: Method,
+    /// Whether the tolerance of a step falls over long smooth stretches.
+    pub conserve: bool,
     /// Options of the solver by name (`rtol`), of parameters alone.
     pub solve: Vec<(String, ExprId)>,
 }

@@ -29,7 +29,12 @@ pub(crate) fn program(kernels: Compiled) -> Program {
         record_values: record_values(dae),
         columns: columns(dae),
         outputs: outputs(dae),
-        relations: dae.relations.iter().map(relation).collect(),
+        relations: dae
+            .relations
+            .iter()
+            .zip(dae.arithmetic_relations())
+            .map(|(known, arithmetic)| relation(known, arithmetic))
+            .collect(),
         automata: automata(dae),
         reactions: dae.reactions.iter().map(reaction).collect(),
         assignments: dae
@@ -238,10 +243,11 @@ fn outputs(dae: &Dae) -> Vec<Output> {
     found
 }
 
-fn relation(relation: &dae::Relation) -> Relation {
+fn relation(relation: &dae::Relation, arithmetic: bool) -> Relation {
     Relation {
         inclusive: relation.inclusive,
         scheduled: relation.time_event.is_some(),
+        arithmetic,
         used: match relation.used {
             dae::RelationUse::Equation => RelationUse::Equation,
             dae::RelationUse::Exit(automaton, mode) => {

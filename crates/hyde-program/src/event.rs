@@ -22,6 +22,9 @@ pub struct Relation {
     pub inclusive: bool,
     /// Its instant is known beforehand ([`crate::Constant::TimeEvent`]) and scheduled.
     pub scheduled: bool,
+    /// Its root function is sums, products, magnitudes and limits of unknowns: between two steps it turns no more often than
+    /// they do.
+    pub arithmetic: bool,
     /// What it is for.
     pub used: RelationUse,
     /// As written.

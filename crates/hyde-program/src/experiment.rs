@@ -226,11 +226,11 @@ pub struct Stepped {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
     /// Backward differentiation of variable order, by IDA of SUNDIALS.
-    #[default]
     Ida,
     /// An implicit Runge-Kutta method of order 5, which starts anew at an event at no cost.
     Esdirk,
     /// What suits the program.
+    #[default]
     Auto,
 }
 
@@ -264,4 +264,6 @@ pub struct Experiment {
     pub flows: Vec<Flow>,
     /// The method asked for.
     pub method: Method,
+    /// Whether the tolerance of a step falls over long smooth stretches.
+    pub conserve: bool,
 }

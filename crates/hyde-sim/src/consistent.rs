@@ -8,7 +8,7 @@
 use crate::failure::{Failure, FailureKind};
 use crate::singular;
 use crate::state::State;
-use hyde_ida::{LinearMethod, Pattern, SparseSolver};
+use hyde_ida::{LinearMethod, Pattern, Singular, SparseSolver};
 use hyde_program::{Function, Wrt};
 
 /// Newton iterations at most; halvings of a step at most.
@@ -30,6 +30,8 @@ const MAX_SMALL_STEPS: usize = 8;
 pub(crate) struct Consistent {
     solver: Option<SparseSolver>,
     matrix: Vec<f64>,
+    /// The matrix of the factors; empty without any. Between events it often remains the same.
+    factored: Vec<f64>,
     residual: Vec<f64>,
     correction: Vec<f64>,
 }
@@ -46,6 +48,7 @@ impl Consistent {
         Self {
             solver,
             matrix: vec![0.0; jacobian.len()],
+            factored: Vec::new(),
             residual: vec![0.0; n],
             correction: vec![0.0; n],
         }
@@ -172,9 +175,8 @@ impl Consistent {
             *right = -(*right + by_time);
         }
         state.consistent_matrix(t, y, yp, &mut self.matrix);
-        let solver = self.solver.as_mut()?;
-        solver.factor(&self.matrix).ok()?;
-        solver.solve(&mut right);
+        self.factor_matrix().ok()?;
+        self.solver.as_mut()?.solve(&mut right);
         for (index, value) in right.into_iter().enumerate() {
             if state.differential[index] {
                 dyp[index] = value;
@@ -193,14 +195,16 @@ impl Consistent {
         (t, y, yp): (f64, &[f64], &[f64]),
         rights: &mut [Vec<f64>],
     ) -> bool {
-        let Some(solver) = &mut self.solver else {
+        if self.solver.is_none() {
             return true;
-        };
+        }
         state.consistent_matrix(t, y, yp, &mut self.matrix);
-        if solver.factor(&self.matrix).is_err() {
+        if self.factor_matrix().is_err() {
             return false;
         }
-        rights.iter_mut().for_each(|right| solver.solve(right));
+        if let Some(solver) = &mut self.solver {
+            rights.iter_mut().for_each(|right| solver.solve(right));
+        }
         true
     }
 
@@ -250,12 +254,23 @@ impl Consistent {
         at_start: bool,
     ) -> Result<(), Box<Failure>> {
         state.consistent_matrix(t, y, yp, &mut self.matrix);
+        self.factor_matrix().map_err(|stopped| {
+            singular::failure(state, &self.matrix, stopped.unknown, t, y, at_start)
+        })
+    }
+
+    /// Factors the matrix, unless the factors are its own.
+    fn factor_matrix(&mut self) -> Result<(), Singular> {
         let Some(solver) = &mut self.solver else {
             return Ok(());
         };
-        solver.factor(&self.matrix).map_err(|stopped| {
-            singular::failure(state, &self.matrix, stopped.unknown, t, y, at_start)
-        })
+        if self.factored == self.matrix {
+            return Ok(());
+        }
+        self.factored.clear();
+        solver.factor(&self.matrix)?;
+        self.factored.extend_from_slice(&self.matrix);
+        Ok(())
     }
 
     /// Takes the Newton step, halved until the residual does not grow. Returns its size over the tolerance; of a halved one

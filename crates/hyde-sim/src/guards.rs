@@ -1,9 +1,11 @@
 //! Watches the relations over a step and locates the first change (M8).
 //!
-//! After each step the root functions are evaluated at the end and at a few Chebyshev points of the step's interpolant,
-//! and in between where they bend enough to reach zero; a change of sign between two of them brackets a crossing, which
-//! is located on the interpolant. Where consistent values do not show it there, they are looked at over the whole step: if
-//! it went over a kink of a record, the interpolant of a force bends to a crossing that there is not, or later.
+//! After each step the root functions are evaluated at its end. Where they are arithmetic of the unknowns and the ends of
+//! the last steps show that they bend too little to reach zero between, that is all. Else they are evaluated at a few
+//! Chebyshev points of the step's interpolant as well, and in between where they bend enough to reach zero; a change of
+//! sign between two of them brackets a crossing, which is located on the interpolant. Where consistent values do not show
+//! it there, they are looked at over the whole step: if it went over a kink of a record, the interpolant of a force bends
+//! to a crossing that there is not, or later.
 
 use crate::consistent::Consistent;
 use crate::integrator::Integrator;
@@ -13,6 +15,50 @@ use hyde_program::{Function, Program, RelationUse};
 
 /// Chebyshev points inside a step.
 const INSIDE: [f64; 3] = [0.146_446_609_406_726_24, 0.5, 0.853_553_390_593_273_8];
+
+/// Points before a step that show how much a root function bends.
+const BEFORE: usize = 3;
+/// How many times nearer to zero than it bends within a step a root function must not come.
+const CLEARANCE: f64 = 4.0;
+
+/// The root functions at the last points before a step, as long as nothing happens; and room to evaluate them.
+#[derive(Default)]
+pub(crate) struct Trail {
+    watched: Vec<usize>,
+    /// Time in s, and values of the watched relations; the last is where a step begins.
+    points: Vec<(f64, Vec<f64>)>,
+    y: Vec<f64>,
+    yp: Vec<f64>,
+    roots: Vec<f64>,
+}
+
+impl Trail {
+    /// Forgets the points: the equations, or what they remember, are others from here on.
+    pub(crate) fn clear(&mut self) {
+        self.points.clear();
+    }
+
+    /// Forgets the points if they are of other relations, or do not lead to where a step begins.
+    fn lead_to(&mut self, start: f64, watched: &[usize]) {
+        let leads = self
+            .points
+            .last()
+            .is_some_and(|(t, _)| t.to_bits() == start.to_bits());
+        if !leads || self.watched != watched {
+            self.points.clear();
+            self.watched = watched.to_vec();
+        }
+    }
+
+    /// Goes on by points of a step.
+    fn extend(&mut self, points: Vec<(f64, Vec<f64>)>) {
+        let start = self.points.last().map(|(t, _)| *t);
+        let more = points.into_iter().filter(|(t, _)| start != Some(*t));
+        self.points.extend(more);
+        let too_many = self.points.len().saturating_sub(BEFORE);
+        self.points.drain(..too_many);
+    }
+}
 
 /// A located change: its time, and the relations that change; beyond the relations, the margin of a slide.
 pub(crate) struct Crossing {
@@ -51,6 +97,7 @@ pub(crate) fn current_mode(program: &Program, z: &[f64], automaton: usize) -> us
 pub(crate) fn first_change(
     integrator: &mut Integrator<'_>,
     consistent: &mut Consistent,
+    trail: &mut Trail,
     watched: &[usize],
     from: f64,
 ) -> Option<Crossing> {
@@ -58,6 +105,7 @@ pub(crate) fn first_change(
         return None;
     }
     let (start, end) = (from, integrator.t);
+    trail.lead_to(start, watched);
     let n_relations = integrator.state().program.relations.len();
     let state = integrator.state();
     let watch = |&number: &usize| {
@@ -69,23 +117,30 @@ pub(crate) fn first_change(
         }
     };
     let watched: Vec<Watched> = watched.iter().map(watch).collect();
+    let before = std::mem::take(&mut trail.points);
     let mut search = Search {
-        probe: Probe::new(integrator, consistent),
+        probe: Probe::new(integrator, consistent, trail),
         watched: &watched,
+        points: Vec::new(),
     };
-    let mut found = search.first(integrator, start, end);
-    if found.as_ref().is_ok_and(|it| !search.shows(integrator, it)) {
-        search.probe.exact = true;
-        found = search.first(integrator, start, end);
+    let at_end = search.values(integrator, end);
+    let found = if search.goes_on(integrator, &before, (end, &at_end)) {
+        search.points = vec![(end, at_end.clone())];
+        None
+    } else {
+        let at_start = before.last().map(|(_, values)| values.clone());
+        search.first_shown(integrator, (start, at_start), (end, &at_end))
+    };
+    let points = search.points;
+    trail.points = before;
+    if found.is_some() {
+        return found;
     }
-    let at_end = match found {
-        Ok(crossing) => return Some(crossing),
-        Err(at_end) => at_end,
-    };
+    trail.extend(points);
     // What has left its zero is known by its sign from here on.
     let left: Vec<usize> = watched
         .iter()
-        .zip(at_end)
+        .zip(&at_end)
         .filter(|(watched, root)| root.abs() > watched.band)
         .map(|(watched, _)| watched.number)
         .collect();
@@ -101,23 +156,75 @@ const MAX_HALVINGS: usize = 12;
 struct Search<'s> {
     probe: Probe<'s>,
     watched: &'s [Watched],
+    /// The points of the step where the root functions were evaluated.
+    points: Vec<(f64, Vec<f64>)>,
 }
 
 impl Search<'_> {
-    /// The first change in a step. Without one, the root functions at its end.
+    /// Whether nothing has changed at the end of a step, and the root functions, as the points before and the end show, bend
+    /// too little to have come to zero in it.
+    fn goes_on(
+        &self,
+        integrator: &Integrator<'_>,
+        before: &[(f64, Vec<f64>)],
+        (end, at_end): (f64, &[f64]),
+    ) -> bool {
+        let state = integrator.state();
+        let arithmetic = |watched: &Watched| {
+            let relation = state.program.relations.get(watched.number);
+            relation.is_some_and(|relation| relation.arithmetic)
+        };
+        let mut pairs = self.watched.iter().zip(at_end);
+        let [a, b, c] = before else { return false };
+        if !pairs.all(|(watched, root)| arithmetic(watched) && watched.holds(*root)) {
+            return false;
+        }
+        let slope = |a: (f64, f64), b: (f64, f64)| (b.1 - a.1) / (b.0 - a.0);
+        (0..self.watched.len()).all(|k| {
+            let [a, b, c] = [a, b, c].map(|(t, values)| (*t, values[k]));
+            let d = (end, at_end[k]);
+            let (first, second, third) = (slope(a, b), slope(b, c), slope(c, d));
+            let curvature = (second - first) / (c.0 - a.0);
+            let curvature = curvature.abs().max(((third - second) / (d.0 - b.0)).abs());
+            // How far the parabola is from its chord in the middle of the step.
+            let bend = 0.25 * curvature * (d.0 - c.0).powi(2);
+            c.1.abs().min(d.1.abs()) > CLEARANCE * bend
+        })
+    }
+
+    /// The first change in a step, on consistent values where those of the interpolant show one that is not there.
+    fn first_shown(
+        &mut self,
+        integrator: &mut Integrator<'_>,
+        (start, at_start): (f64, Option<Vec<f64>>),
+        (end, at_end): (f64, &[f64]),
+    ) -> Option<Crossing> {
+        let at_start = at_start.unwrap_or_else(|| self.values(integrator, start));
+        let found = self.first(integrator, (start, at_start), (end, at_end.to_vec()))?;
+        if self.shows(integrator, &found) {
+            return Some(found);
+        }
+        self.probe.exact = true;
+        let at_start = self.values(integrator, start);
+        let at_end = self.values(integrator, end);
+        self.first(integrator, (start, at_start), (end, at_end))
+    }
+
+    /// The first change in a step.
     fn first(
         &mut self,
         integrator: &mut Integrator<'_>,
-        start: f64,
-        end: f64,
-    ) -> Result<Crossing, Vec<f64>> {
-        let inside = INSIDE.map(|part| start + part * (end - start));
-        let points: Vec<(f64, Vec<f64>)> = [start]
-            .into_iter()
-            .chain(inside)
-            .chain([end])
-            .map(|t| (t, self.values(integrator, t)))
-            .collect();
+        start: (f64, Vec<f64>),
+        end: (f64, Vec<f64>),
+    ) -> Option<Crossing> {
+        let (from, length) = (start.0, end.0 - start.0);
+        let mut points = vec![start];
+        for part in INSIDE {
+            let t = from + part * length;
+            points.push((t, self.values(integrator, t)));
+        }
+        points.push(end);
+        self.points.clone_from(&points);
         for (number, pair) in points.windows(2).enumerate() {
             let around = &points[number.saturating_sub(1)..(number + 3).min(points.len())];
             let depth = if self.may_reach_zero(around) {
@@ -127,13 +234,11 @@ impl Search<'_> {
             };
             let (a, b) = (&pair[0], &pair[1]);
             let found = self.between(integrator, (a.0, &a.1), (b.0, &b.1), depth);
-            if let Some(crossing) = found {
-                return Ok(crossing);
+            if found.is_some() {
+                return found;
             }
         }
-        Err(points
-            .last()
-            .map_or_else(Vec::new, |(_, roots)| roots.clone()))
+        None
     }
 
     /// Whether consistent values show a change where it was found. What states alone decide they do not change.
@@ -292,36 +397,31 @@ struct Probe<'c> {
     consistent: &'c mut Consistent,
     /// Whether on consistent values with the states of the interpolant.
     exact: bool,
-    y: Vec<f64>,
-    yp: Vec<f64>,
-    roots: Vec<f64>,
+    room: &'c mut Trail,
 }
 
 impl<'c> Probe<'c> {
-    fn new(integrator: &Integrator<'_>, consistent: &'c mut Consistent) -> Self {
+    fn new(
+        integrator: &Integrator<'_>,
+        consistent: &'c mut Consistent,
+        room: &'c mut Trail,
+    ) -> Self {
         let program = integrator.state().program;
+        room.y.resize(program.n_unknowns, 0.0);
+        room.yp.resize(program.n_unknowns, 0.0);
         Self {
             consistent,
             exact: false,
-            y: vec![0.0; program.n_unknowns],
-            yp: vec![0.0; program.n_unknowns],
-            roots: vec![0.0; program.relations.len()],
+            room,
         }
     }
 
     fn roots(&mut self, integrator: &mut Integrator<'_>, t: f64) -> &[f64] {
-        let Self {
-            exact,
-            y,
-            yp,
-            roots,
-            ..
-        } = self;
+        let Trail { y, yp, roots, .. } = &mut *self.room;
         integrator.interpolate(t, y, yp);
         let state = integrator.state_mut();
-        let n_relations = state.program.relations.len();
-        roots.truncate(n_relations);
-        match exact {
+        roots.resize(state.program.relations.len(), 0.0);
+        match self.exact {
             true => self.consistent.make_exact(state, t, y, yp),
             false => self.consistent.refine(state, t, y, yp),
         }

@@ -16,6 +16,7 @@ pub(crate) struct Integrator<'a> {
     pub(crate) y: Vec<f64>,
     pub(crate) yp: Vec<f64>,
     tolerances: (f64, f64),
+    conserve: bool,
     /// Steps since the last start, and the part of the tolerances that a step is given.
     steps: u32,
     part: u32,
@@ -25,9 +26,9 @@ pub(crate) struct Integrator<'a> {
 }
 
 /// The solver bounds the error of a step; over a long smooth stretch the errors of many steps add up, an oscillation
-/// without losses shows it as drifting energy. So the tolerance of a step falls with the steps since the last start, from
-/// this many on, down to a part of the tolerance asked for. At order 5 that is 2.8 times the steps at most. It never
-/// falls below what rounding leaves: there steps become a hundred times shorter and no better.
+/// without losses shows it as drifting energy. Where the run is to conserve energy the tolerance of a step falls with the
+/// steps since the last start, from this many on, down to a part of the tolerance asked for. At order 5 that is 2.8 times
+/// the steps at most. It never falls below what rounding leaves: there steps become a hundred times shorter and no better.
 const SMOOTH_AFTER: u32 = 12;
 const LEAST_PART: u32 = 512;
 const LEAST_RTOL: f64 = 2e-11;
@@ -55,6 +56,7 @@ impl<'a> Integrator<'a> {
             y,
             yp,
             tolerances: (setup.rtol, setup.atol),
+            conserve: setup.conserve,
             steps: 0,
             part: 1,
             largest: vec![0.0; n],
@@ -80,7 +82,8 @@ impl<'a> Integrator<'a> {
         let before = self.t;
         self.steps = self.steps.saturating_add(1);
         let part = self.steps / SMOOTH_AFTER;
-        if part.is_power_of_two()
+        if self.conserve
+            && part.is_power_of_two()
             && (2..=LEAST_PART).contains(&part)
             && self.steps.is_multiple_of(SMOOTH_AFTER)
             && self.tolerances.0 >= LEAST_RTOL * f64::from(part)
@@ -155,7 +158,7 @@ impl<'a> Integrator<'a> {
     /// Starts anew after an event.
     pub(crate) fn restart(&mut self, first: &FirstStep) -> Result<(), Box<Failure>> {
         self.apply_pins();
-        if self.steps >= 2 * SMOOTH_AFTER || self.has_grown() {
+        if self.part > 1 || self.has_grown() {
             self.set_tolerances(1)?;
         }
         self.steps = 0;

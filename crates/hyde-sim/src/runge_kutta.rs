@@ -8,14 +8,16 @@
 //! error (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.8), but is kept while it is nearly
 //! right, for each new one takes a factorization.
 
+mod passes;
 mod stages;
 mod tableau;
 
 use hyde_ida::{
     Error, Failure, FailureKind, LinearMethod, Pattern, SparseSolver, Statistics, System,
 };
-use stages::Obstacle;
-use tableau::{BUBBLE, STAGES};
+use passes::{correct, sum_of_squares};
+use stages::{Obstacle, ROUNDING};
+use tableau::{BUBBLE, GAMMA, STAGES};
 
 /// Of the step that the estimated error allows, the part that is taken.
 const SAFETY: f64 = 0.9;
@@ -24,8 +26,13 @@ const SHRINK: f64 = 0.2;
 const GROW: f64 = 6.0;
 /// A step that could be longer by less is kept.
 const KEEP: f64 = 1.2;
+/// So many steps at most before a stop are made to fit; and how much longer they might be without being so.
+const MOST_FITTED: f64 = 8.0;
+const SERVES: f64 = 1.6;
 /// What an obstacle other than the error makes of a step.
 const RETREAT: f64 = 0.25;
+/// A correction of the interpolant that is no more of the tolerance leaves the solution.
+const NEARLY: f64 = 0.5;
 /// Attempts at a step.
 const MAX_ATTEMPTS: usize = 40;
 /// The last slope: y' at the end of the step.
@@ -44,8 +51,9 @@ pub(crate) struct RungeKutta<S> {
     contraction: Option<f64>,
     rtol: f64,
     atol: Vec<f64>,
-    /// The unknowns whose errors count, and those that are states.
+    /// The unknowns whose errors count, how many there are, and those that are states.
     counts: Vec<bool>,
+    count: f64,
     differential: Vec<bool>,
     /// The largest value of each unknown at the end of a step.
     largest: Vec<f64>,
@@ -60,8 +68,9 @@ pub(crate) struct RungeKutta<S> {
     others: Vec<Vec<f64>>,
     /// Whether the interpolant of the last step is as exact as its end: so it is for what is neither stiff nor algebraic.
     smooth: bool,
-    /// 1 over the tolerance of each unknown.
+    /// 1 over the tolerance of each unknown; the same, and 0 where an error does not count.
     weights: Vec<f64>,
+    counted: Vec<f64>,
     stage: Vec<f64>,
     base: Vec<f64>,
     correction: Vec<f64>,
@@ -82,6 +91,8 @@ impl<S: System> RungeKutta<S> {
         let (n, entries) = (pattern.n(), pattern.n_entries());
         let mut slopes = vec![vec![0.0; n]; STAGES];
         slopes[LAST].copy_from_slice(yp);
+        let counts: Vec<bool> = differential.iter().map(|is| *is || watched).collect();
+        let count = counts.iter().filter(|counts| **counts).count();
         Ok(Self {
             system,
             linear: SparseSolver::new(pattern, LinearMethod::Auto)?,
@@ -91,7 +102,8 @@ impl<S: System> RungeKutta<S> {
             contraction: None,
             rtol: 0.0,
             atol: vec![1.0; n],
-            counts: differential.iter().map(|is| *is || watched).collect(),
+            counts,
+            count: count.max(1) as f64,
             differential,
             largest: y.iter().map(|value| value.abs()).collect(),
             max_step_s,
@@ -104,6 +116,7 @@ impl<S: System> RungeKutta<S> {
             slopes,
             smooth: true,
             weights: vec![0.0; n],
+            counted: vec![0.0; n],
             stage: vec![0.0; n],
             base: vec![0.0; n],
             correction: vec![0.0; n],
@@ -140,7 +153,7 @@ impl<S: System> RungeKutta<S> {
         self.y.copy_from_slice(y);
         self.slopes[LAST].copy_from_slice(yp);
         self.next_step_s = self.next_step_s.min(first_step_s);
-        self.factored_s = None;
+        // The factors may serve on: where only a held value has changed they do. The contraction tells.
         self.contraction = None;
         self.statistics.restarts += 1;
     }
@@ -157,15 +170,13 @@ impl<S: System> RungeKutta<S> {
                 false => self.largest[index],
             };
             *weight = 1.0 / (self.rtol * size + self.atol[index]);
+            self.counted[index] = match self.counts[index] {
+                true => *weight,
+                false => 0.0,
+            };
         }
         let (wanted, left) = (self.next_step_s.min(self.max_step_s), stop - self.from);
-        let step = if left <= wanted * (1.0 + 1e-9) {
-            left
-        } else if left < 2.0 * wanted {
-            0.5 * left
-        } else {
-            wanted
-        };
+        let step = self.fitting(wanted, left);
         let grown = self.take(step, stop)?;
         // A step cut short says nothing against a longer one.
         self.next_step_s = if step < wanted && grown >= step {
@@ -174,6 +185,23 @@ impl<S: System> RungeKutta<S> {
             grown
         };
         Ok(())
+    }
+
+    /// A step in s of about the length `wanted`, so that a few of them lead to a stop `left` s ahead: all of one length, and
+    /// of the length of the last one where that serves, for each other length takes a factorization.
+    fn fitting(&self, wanted: f64, left: f64) -> f64 {
+        let count = left / wanted;
+        if count > MOST_FITTED {
+            return wanted;
+        }
+        if let Some(last) = self.factored_s {
+            let count = (left / last).round();
+            let fits = (left - count * last).abs() <= 1e-9 * left;
+            if fits && count >= 1.0 && last <= wanted * (1.0 + 1e-9) && wanted <= SERVES * last {
+                return left / count;
+            }
+        }
+        left / (count * (1.0 - 1e-9)).ceil().max(1.0)
     }
 
     /// Takes the last step once more, to end at `end` (in s) inside it or before; the next one is as long as it would
@@ -248,23 +276,48 @@ impl<S: System> RungeKutta<S> {
     /// The solution at a time (in s) within the last step, as exact as at its end: the end of a shorter step where the
     /// interpolant is not.
     pub(crate) fn solution(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) {
-        let smooth = self.smooth;
-        if !smooth {
-            std::mem::swap(&mut self.slopes, &mut self.others);
-            self.slopes[0].copy_from_slice(&self.others[0]);
-            let reached = self.attempt(t - self.from).is_ok();
-
-            if reached {
-                y.copy_from_slice(&self.stage);
-                yp.copy_from_slice(&self.slopes[LAST]);
-            }
-            std::mem::swap(&mut self.slopes, &mut self.others);
-            self.smooth = smooth;
-            if reached {
-                return;
-            }
+        if self.smooth || !self.corrected(t, y, yp) && !self.step_to(t, y, yp) {
+            self.interpolate(t, y, yp);
         }
+    }
+
+    /// The end of a step as long as to `t`. Whether there is one.
+    fn step_to(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
+        std::mem::swap(&mut self.slopes, &mut self.others);
+        self.slopes[0].copy_from_slice(&self.others[0]);
+        let smooth = self.smooth;
+        let reached = self.attempt(t - self.from).is_ok();
+        if reached {
+            y.copy_from_slice(&self.stage);
+            yp.copy_from_slice(&self.slopes[LAST]);
+        }
+        std::mem::swap(&mut self.slopes, &mut self.others);
+        self.smooth = smooth;
+        reached
+    }
+
+    /// The interpolant, corrected once by Newton's method with the factors of the step. Whether the correction is so small
+    /// that this is the solution to the tolerance of the step.
+    fn corrected(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
+        let Some(h) = self.factored_s.filter(|h| self.is_length(*h)) else {
+            return false;
+        };
         self.interpolate(t, y, yp);
+        self.statistics.residual_evaluations += 1;
+        let evaluated = self.system.residual(t, y, yp, &mut self.correction);
+        if evaluated.is_err() {
+            return false;
+        }
+        self.linear.solve(&mut self.correction);
+        let cj = 1.0 / (GAMMA * h);
+        correct(y, yp, &self.correction, &self.weights, (cj, ROUNDING));
+        let square = sum_of_squares(&self.correction, &self.counted);
+        (square / self.count).sqrt() <= NEARLY
+    }
+
+    /// Whether the last step is this long, in s.
+    fn is_length(&self, h: f64) -> bool {
+        (self.t - self.from - h).abs() <= 1e-6 * h
     }
 
     /// The same by the interpolant: a polynomial of degree 4, which meets both ends with their

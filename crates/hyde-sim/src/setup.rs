@@ -20,6 +20,9 @@ pub struct Setup<'a> {
     pub stop_s: f64,
     /// The method.
     pub method: Method,
+    /// Whether the tolerance of a step falls with the steps since the last event, so that the errors of a long smooth
+    /// stretch do not add up.
+    pub conserve: bool,
     /// Relative tolerance.
     pub rtol: f64,
     /// Absolute tolerance, SI.
@@ -53,6 +56,7 @@ impl<'a> Setup<'a> {
             start_s: 0.0,
             stop_s,
             method: Method::default(),
+            conserve: false,
             rtol: 1e-6,
             atol: 1e-8,
             max_step_s: f64::INFINITY,

@@ -21,7 +21,7 @@ use crate::consistent::Consistent;
 use crate::delays;
 use crate::failure::{Failure, FailureKind};
 use crate::first_step::first_step;
-use crate::guards::{self, Crossing};
+use crate::guards::{self, Crossing, Trail};
 use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
@@ -48,6 +48,7 @@ pub(crate) struct Simulation<'a> {
     program: &'a Program,
     integrator: Integrator<'a>,
     consistent: Consistent,
+    trail: Trail,
     schedule: Schedule,
     conditions: Vec<bool>,
     results: Results,
@@ -127,6 +128,7 @@ impl<'a> Simulation<'a> {
             program,
             integrator,
             consistent,
+            trail: Trail::default(),
             schedule,
             conditions: vec![false; program.reactions.len()],
             results,
@@ -273,7 +275,8 @@ impl<'a> Simulation<'a> {
     ) -> Result<Option<Crossing>, Box<Failure>> {
         loop {
             let (integrator, consistent) = (&mut self.integrator, &mut self.consistent);
-            let found = guards::first_change(integrator, consistent, watched, from);
+            let trail = &mut self.trail;
+            let found = guards::first_change(integrator, consistent, trail, watched, from);
             let Some(crossing) = &found else {
                 return Ok(None);
             };
@@ -313,6 +316,7 @@ impl<'a> Simulation<'a> {
 
     /// Starts the solver anew, with a first step that the curvature of the solution allows.
     fn restart(&mut self) -> Result<(), Box<Failure>> {
+        self.trail.clear();
         let step = first_step(&mut self.integrator, &mut self.consistent, self.setup);
         self.integrator.restart(&step)
     }

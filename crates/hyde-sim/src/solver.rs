@@ -30,14 +30,27 @@ const LONGER_FIRST_STEP: f64 = 20.0;
 /// Strides that a run without unknowns takes at least.
 const LEAST_STRIDES: f64 = 1000.0;
 
-/// The method for a program: where clocks tick, one that starts anew at no cost. States that are chosen anew need slopes
-/// of them all, which a Runge-Kutta method has not.
+/// The most unknowns of a smooth program for which a one-step method is quicker than IDA, whose steps cost more than the
+/// equations there.
+const SMALL: usize = 16;
+
+/// The method for a program: where something may happen at any moment, a one-step method, which starts anew at no cost;
+/// where all is smooth, IDA. States that are chosen anew need slopes of them all, which a Runge-Kutta method has not.
 pub(crate) fn method(program: &Program, asked: Method) -> Method {
-    match asked {
-        Method::Auto if program.clocks.is_empty() => Method::Ida,
-        Method::Auto | Method::Esdirk if program.selections.is_empty() => Method::Esdirk,
-        Method::Auto | Method::Esdirk | Method::Ida => Method::Ida,
+    let one_step = match asked {
+        Method::Ida => false,
+        Method::Esdirk => true,
+        Method::Auto => may_restart(program) || program.n_unknowns <= SMALL,
+    };
+    match one_step && program.selections.is_empty() {
+        true => Method::Esdirk,
+        false => Method::Ida,
     }
+}
+
+/// Whether clocks tick or relations may change at a moment that is not known before.
+fn may_restart(program: &Program) -> bool {
+    !program.clocks.is_empty() || program.relations.iter().any(|relation| !relation.scheduled)
 }
 
 impl<'a> Solver<'a> {

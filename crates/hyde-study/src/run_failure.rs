@@ -150,7 +150,7 @@ fn no_stop(experiment: Option<&Experiment>) -> (Diagnostic, Fault) {
         Some(experiment) => (
             diagnostic
                 .label(experiment.name.span, "this experiment has no `stop`")
-                .help("write `solve ida(rtol = 1e-6) stop 1 [s];`, or `stop file.end` for the end of a record"),
+                .help("write `solve auto(rtol = 1e-6) stop 1 [s];`, or `stop file.end` for the end of a record"),
             Fault::Model,
         ),
         None => (

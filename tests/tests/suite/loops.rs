@@ -43,8 +43,8 @@ fn a_bridge_of_four_switching_resistances() {
         close(source, (first - p) / on + first / off, 1e-6);
         close((first - p) / on + (second - p) / off, p / r, 1e-6);
         close(source, (p - second) / off - second / on, 1e-6);
-        // Where it switches it changes by 60 V/s, and an instant is known to 1e-12 s.
-        assert!(p >= -1e-10, "the load's voltage is rectified: {p}");
+        // The tolerance of a step, 1e-8 of 10 V.
+        assert!(p >= -1e-7, "the load's voltage is rectified: {p}");
     }
 }
 
@@ -53,7 +53,7 @@ fn a_torn_loop_is_solved_at_every_row() {
     let follow = solve("loops", "follow");
     assert_eq!(follow.compiled.program.n_unknowns, 1);
     for (&t, &y) in follow.time().iter().zip(follow.column("y")) {
-        // The tolerance of the run.
-        close(y * y * y + y, 2.0 * (TAU * t).sin(), 1e-8);
+        // Between two steps the interpolant errs by ten times the tolerance of a step.
+        close(y * y * y + y, 2.0 * (TAU * t).sin(), 1e-7);
     }
 }

@@ -413,9 +413,12 @@ impl Printer<'_> {
             let _ = writeln!(out, "  figure {} = {}", figure.name, curves.join(", "));
         }
         match experiment.method {
-            Method::Ida => {}
+            Method::Ida => out.push_str("  solve ida\n"),
             Method::Esdirk => out.push_str("  solve esdirk\n"),
-            Method::Auto => out.push_str("  solve auto\n"),
+            Method::Auto => {}
+        }
+        if experiment.conserve {
+            out.push_str("  solve conserve\n");
         }
         for (name, value) in &experiment.solve {
             let _ = writeln!(out, "  solve {name} = {}", self.names.expr(*value));

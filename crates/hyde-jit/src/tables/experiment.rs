@@ -152,6 +152,7 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
             flat::Method::Esdirk => Method::Esdirk,
             flat::Method::Auto => Method::Auto,
         },
+        conserve: known.conserve,
     }
 }
 

@@ -8,6 +8,7 @@
 //! step changes, and when the iteration contracts slowly. A linear system is solved by the first iteration, so the
 //! contraction measured last decides whether one is enough; the last stage is always iterated twice, which measures it.
 
+use super::passes::{are_finite, combine, correct, sum_of_squares};
 use super::tableau::{A, C, ERROR, GAMMA, INSIDE, STAGES};
 use super::{LAST, RungeKutta};
 use hyde_ida::System;
@@ -19,7 +20,7 @@ const LEFT: f64 = 0.02;
 /// What it may have left where it trusted a contraction that was better than the next one measured.
 const MOST_LEFT: f64 = 0.1;
 /// Corrections below this, in the same units, are rounding.
-const ROUNDING: f64 = 1e-8;
+pub(super) const ROUNDING: f64 = 1e-8;
 /// A contraction slower than this asks for a new matrix, one slower than that gives up.
 const SLOW: f64 = 0.2;
 const TOO_SLOW: f64 = 0.9;
@@ -48,7 +49,7 @@ impl<S: System> RungeKutta<S> {
     pub(super) fn attempt(&mut self, h: f64) -> Result<(f64, usize), Obstacle> {
         self.fresh = false;
         loop {
-            if self.factored_s != Some(h) {
+            if !self.is_factored(h) {
                 self.factor(h)?;
             }
             match self.stages(h) {
@@ -66,6 +67,12 @@ impl<S: System> RungeKutta<S> {
             self.factored_s = None;
         }
         self.error(h)
+    }
+
+    /// Whether the factors are for steps of this length, but for rounding.
+    fn is_factored(&self, h: f64) -> bool {
+        self.factored_s
+            .is_some_and(|factored| (factored - h).abs() <= 1e-9 * h)
     }
 
     fn factor(&mut self, h: f64) -> Result<(), Obstacle> {
@@ -104,13 +111,8 @@ impl<S: System> RungeKutta<S> {
     /// What the earlier stages say of a stage, and a first guess: a slope that goes on as in the first two.
     fn predict(&mut self, i: usize, h: f64) {
         let (earlier, slope) = self.slopes.split_at_mut(i);
-        self.base.copy_from_slice(&self.before);
-        for (weight, slope) in A[i].iter().zip(&*earlier) {
-            let factor = h * weight;
-            for (base, slope) in self.base.iter_mut().zip(slope) {
-                *base += factor * slope;
-            }
-        }
+        let factors = A[i].map(|weight| h * weight);
+        combine(&mut self.base, &self.before, &factors[..i], earlier);
         let (first, second) = (&earlier[0], &earlier[1.min(i - 1)]);
         let (part, diagonal) = (C[i] / C[1], h * GAMMA);
         for (index, slope) in slope[0].iter_mut().enumerate() {
@@ -130,15 +132,14 @@ impl<S: System> RungeKutta<S> {
             self.system
                 .residual(t, &self.stage, slope, &mut self.correction)
                 .map_err(|_| Obstacle::Residual(None))?;
-            if let Some(row) = self.correction.iter().position(|value| !value.is_finite()) {
-                return Err(Obstacle::Residual(Some(row)));
+            if !are_finite(&self.correction) {
+                let row = self.correction.iter().position(|value| !value.is_finite());
+                return Err(Obstacle::Residual(row));
             }
             self.linear.solve(&mut self.correction);
-            for (index, correction) in self.correction.iter().enumerate() {
-                self.stage[index] -= correction;
-                slope[index] -= cj * correction;
-            }
-            let size = self.size_of_correction();
+            let (stage, correction) = (&mut self.stage, &self.correction);
+            correct(stage, slope, correction, &self.weights, (cj, ROUNDING));
+            let size = (sum_of_squares(correction, &self.counted) / self.count).sqrt();
             if !size.is_finite() {
                 break;
             }
@@ -198,7 +199,7 @@ impl<S: System> RungeKutta<S> {
             .residual(self.from + h, &self.stage, &self.base, &mut self.correction)
             .map_err(|_| Obstacle::Residual(None))?;
         self.linear.solve(&mut self.correction);
-        let error = self.size_of_correction();
+        let error = (sum_of_squares(&self.correction, &self.counted) / self.count).sqrt();
         if !error.is_finite() {
             return Err(Obstacle::Residual(None));
         }
@@ -207,18 +208,6 @@ impl<S: System> RungeKutta<S> {
         } else {
             (error, self.most_corrected())
         })
-    }
-
-    /// The root mean square over the unknowns that count, in units of their tolerances.
-    fn size_of_correction(&self) -> f64 {
-        let (mut square, mut count) = (0.0, 0.0);
-        for (index, correction) in self.correction.iter().enumerate() {
-            if self.counts[index] {
-                square += (correction * self.weights[index]).powi(2);
-                count += 1.0;
-            }
-        }
-        (square / f64::max(count, 1.0)).sqrt()
     }
 
     fn most_corrected(&self) -> usize {

@@ -28,6 +28,7 @@ impl Simulation<'_> {
         restart: bool,
         cause: &Cause,
     ) -> Result<(), Box<Failure>> {
+        self.trail.clear();
         let crossed = self.crossed.clone();
         let limit = self.limit();
         let delayed = delays::limits(&mut self.integrator, Some(&mut self.consistent));

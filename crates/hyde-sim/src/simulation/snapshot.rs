@@ -94,6 +94,7 @@ impl Simulation<'_> {
         (self.schedule, self.conditions) = (snapshot.schedule, snapshot.conditions);
         (self.hurry, self.in_vain) = Default::default();
         self.crossed.clear();
+        self.trail.clear();
         let t = self.integrator.t;
         if let Some(crossed) = snapshot.waits {
             let scheduled = self.schedule.relations_at(t);

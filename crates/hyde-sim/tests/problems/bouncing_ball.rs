@@ -61,6 +61,7 @@ fn ball() -> Program {
         relations: vec![Relation {
             inclusive: false,
             scheduled: false,
+            arithmetic: true,
             used: RelationUse::When,
             text: "h < 0".to_owned(),
             origin: origin.clone(),

@@ -157,6 +157,8 @@ pub(crate) fn run(
     let setup = Setup {
         rtol: RTOL,
         atol: ATOL,
+        // Closed forms over many periods and turns.
+        conserve: true,
         rows_s,
         ..Setup::new(p, &records, stop)
     };

@@ -83,6 +83,7 @@ fn stick_slip() -> Program {
     let exit = |from: usize, text: &str| Relation {
         inclusive: false,
         scheduled: false,
+        arithmetic: true,
         used: RelationUse::Exit(0, from),
         text: text.to_owned(),
         origin: origin("guide"),

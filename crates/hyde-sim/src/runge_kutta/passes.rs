@@ -1,0 +1,135 @@
+//! Passes over vectors, each of which does at once what belongs together: memory is read once, and sums run in four lanes
+//! that the processor adds side by side.
+
+/// Lanes of a sum.
+const LANES: usize = 4;
+
+/// `to = from + sum(factors[j]*slopes[j])`, summed from the first on.
+pub(super) fn combine(to: &mut [f64], from: &[f64], factors: &[f64], slopes: &[Vec<f64>]) {
+    match (factors, slopes) {
+        ([a], [k, ..]) => {
+            for ((to, from), k) in to.iter_mut().zip(from).zip(k) {
+                *to = from + a * k;
+            }
+        }
+        ([a, b], [k, l, ..]) => {
+            for (((to, from), k), l) in to.iter_mut().zip(from).zip(k).zip(l) {
+                *to = from + a * k + b * l;
+            }
+        }
+        ([a, b, c, rest @ ..], [k, l, m, others @ ..]) => {
+            for ((((to, from), k), l), m) in to.iter_mut().zip(from).zip(k).zip(l).zip(m) {
+                *to = from + a * k + b * l + c * m;
+            }
+            add(to, rest, others);
+        }
+        _ => to.copy_from_slice(from),
+    }
+}
+
+/// `to += sum(factors[j]*slopes[j])`.
+fn add(to: &mut [f64], factors: &[f64], slopes: &[Vec<f64>]) {
+    match (factors, slopes) {
+        ([a, b, rest @ ..], [k, l, others @ ..]) => {
+            for ((to, k), l) in to.iter_mut().zip(k).zip(l) {
+                *to = *to + a * k + b * l;
+            }
+            add(to, rest, others);
+        }
+        ([a], [k, ..]) => {
+            for (to, k) in to.iter_mut().zip(k) {
+                *to += a * k;
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Whether all values are finite: what is not, times 0, is not 0.
+pub(super) fn are_finite(values: &[f64]) -> bool {
+    let mut lanes = [0.0; LANES];
+    let mut values = values.chunks_exact(LANES);
+    for values in values.by_ref() {
+        for (lane, value) in lanes.iter_mut().zip(values) {
+            *lane += 0.0 * value;
+        }
+    }
+    let rest = values.remainder().iter().all(|value| value.is_finite());
+    rest && lanes.iter().all(|lane| lane.is_finite())
+}
+
+/// What Newton's method makes of a correction: `stage -= correction` and `slope -= cj*correction`. What is less than
+/// `rounding` in units of the tolerance is left out: what rests must rest to the last bit.
+pub(super) fn correct(
+    stage: &mut [f64],
+    slope: &mut [f64],
+    correction: &[f64],
+    weights: &[f64],
+    (cj, rounding): (f64, f64),
+) {
+    let vectors = stage.iter_mut().zip(slope.iter_mut());
+    for (((stage, slope), correction), weight) in vectors.zip(correction).zip(weights) {
+        let rounded = (correction * weight).abs() <= rounding;
+        let correction = if rounded { 0.0 } else { *correction };
+        *stage -= correction;
+        *slope -= cj * correction;
+    }
+}
+
+/// The sum of the squares of weighted values; NaN if one of them is not finite, whatever its weight.
+pub(super) fn sum_of_squares(values: &[f64], weights: &[f64]) -> f64 {
+    let mut lanes = [0.0; LANES];
+    let (mut values, mut weights) = (values.chunks_exact(LANES), weights.chunks_exact(LANES));
+    for (values, weights) in values.by_ref().zip(weights.by_ref()) {
+        for ((lane, value), weight) in lanes.iter_mut().zip(values).zip(weights) {
+            let part = value * weight;
+            *lane += part * part;
+        }
+    }
+    let rest = values.remainder().iter().zip(weights.remainder());
+    for ((value, weight), lane) in rest.zip(&mut lanes) {
+        let part = value * weight;
+        *lane += part * part;
+    }
+    lanes.iter().sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_are_those_of_one_term_after_the_other() {
+        let slopes: Vec<Vec<f64>> = (0..6)
+            .map(|j| (0..7).map(|i| f64::from(j * 7 + i).sin()).collect())
+            .collect();
+        let from: Vec<f64> = (0..7).map(|i| f64::from(i).cos()).collect();
+        let factors = [0.1, -0.2, 0.3, 0.7, -1.1, 2.0];
+        for count in 0..=factors.len() {
+            let mut to = vec![f64::NAN; 7];
+            combine(&mut to, &from, &factors[..count], &slopes);
+            for (index, value) in to.iter().enumerate() {
+                let terms = factors[..count].iter().zip(&slopes);
+                let expected = terms.fold(from[index], |sum, (a, k)| sum + a * k[index]);
+                assert_eq!(value.to_bits(), expected.to_bits(), "{count} terms");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_not_finite_is_seen_at_any_weight() {
+        let weights = [1.0, 2.0, 0.0, 1.0, 0.0];
+        assert_eq!(sum_of_squares(&[1.0, 1.0, 9.0, 2.0, 9.0], &weights), 9.0);
+        for bad in [f64::NAN, f64::INFINITY] {
+            for place in 0..weights.len() {
+                let mut values = [1.0; 5];
+                values[place] = bad;
+                assert!(
+                    !sum_of_squares(&values, &weights).is_finite(),
+                    "{bad} at {place}"
+                );
+                assert!(!are_finite(&values), "{bad} at {place}");
+            }
+        }
+    }
+}
