@@ -6,7 +6,7 @@ use crate::runge_kutta::RungeKutta;
 use crate::setup::Setup;
 use crate::state::State;
 use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern, Statistics};
-use hyde_program::{Method, Program};
+use hyde_program::{Method, Program, Relation, RelationUse};
 
 /// A solver that owns the state.
 pub(crate) enum Solver<'a> {
@@ -35,12 +35,17 @@ const LEAST_STRIDES: f64 = 1000.0;
 const SMALL: usize = 16;
 
 /// The method for a program: where something may happen at any moment, a one-step method, which starts anew at no cost;
-/// where all is smooth, IDA. States that are chosen anew need slopes of them all, which a Runge-Kutta method has not.
+/// where all is smooth, IDA. So it is where something is struck: a bounce may be lower than the tolerance, and the steps
+/// that IDA begins with are as short. States that are chosen anew need slopes of them all, which a Runge-Kutta method has not.
 pub(crate) fn method(program: &Program, asked: Method) -> Method {
     let one_step = match asked {
         Method::Ida => false,
         Method::Esdirk => true,
-        Method::Auto => may_restart(program) || program.n_unknowns <= SMALL,
+        Method::Auto => {
+            let strikes = searched(program).any(|relation| relation.used == RelationUse::When);
+            let changes = searched(program).next().is_some();
+            !program.clocks.is_empty() || !strikes && (changes || program.n_unknowns <= SMALL)
+        }
     };
     match one_step && program.selections.is_empty() {
         true => Method::Esdirk,
@@ -48,9 +53,10 @@ pub(crate) fn method(program: &Program, asked: Method) -> Method {
     }
 }
 
-/// Whether clocks tick or relations may change at a moment that is not known before.
-fn may_restart(program: &Program) -> bool {
-    !program.clocks.is_empty() || program.relations.iter().any(|relation| !relation.scheduled)
+/// The relations that may change at a moment that is not known before.
+fn searched(program: &Program) -> impl Iterator<Item = &Relation> {
+    let relations = program.relations.iter();
+    relations.filter(|relation| !relation.scheduled)
 }
 
 impl<'a> Solver<'a> {

@@ -86,7 +86,10 @@ impl Habit {
         let free = before != "." && next != "." && next != "=";
         free && match self.place {
             Place::Prefix => word(next) && (before.is_empty() || word(before)),
-            Place::First => (number == 0 && (word(next) || next == ";")) || before == "initial",
+            Place::First => {
+                let goes_on = word(next) || next == ";" || next.starts_with('"');
+                (number == 0 && goes_on) || before == "initial"
+            }
             Place::Call => next == "(",
             Place::Inside => word(next),
         }
