@@ -170,9 +170,12 @@ impl Search<'_> {
         (end, at_end): (f64, &[f64]),
     ) -> bool {
         let state = integrator.state();
+        // A force may have the kinks of a record, which the ends of steps do not show.
+        let kinks = !state.program.columns.is_empty() || !state.program.delays.is_empty();
         let arithmetic = |watched: &Watched| {
             let relation = state.program.relations.get(watched.number);
             relation.is_some_and(|relation| relation.arithmetic)
+                && (!kinks || state.is_of_states(watched.number))
         };
         let mut pairs = self.watched.iter().zip(at_end);
         let [a, b, c] = before else { return false };
