@@ -16,7 +16,7 @@ use hyde_ida::{
     Error, Failure, FailureKind, LinearMethod, Pattern, SparseSolver, Statistics, System,
 };
 use passes::{correct, sum_of_squares};
-use stages::{Obstacle, ROUNDING};
+use stages::Obstacle;
 use tableau::{BUBBLE, GAMMA, STAGES};
 
 /// Of the step that the estimated error allows, the part that is taken.
@@ -310,7 +310,7 @@ impl<S: System> RungeKutta<S> {
         }
         self.linear.solve(&mut self.correction);
         let cj = 1.0 / (GAMMA * h);
-        correct(y, yp, &self.correction, &self.weights, (cj, ROUNDING));
+        correct(y, yp, &self.correction, &self.weights, cj);
         let square = sum_of_squares(&self.correction, &self.counted);
         (square / self.count).sqrt() <= NEARLY
     }

@@ -58,19 +58,22 @@ pub(super) fn are_finite(values: &[f64]) -> bool {
     rest && lanes.iter().all(|lane| lane.is_finite())
 }
 
-/// What Newton's method makes of a correction: `stage -= correction` and `slope -= cj*correction`. What is less than
-/// `rounding` in units of the tolerance is left out: what rests must rest to the last bit.
+/// In units of the tolerance, a correction that is none: it is far below the rounding of what it corrects, unless that is 0.
+const NONE: f64 = 1e-9;
+
+/// What Newton's method makes of a correction: `stage -= correction` and `slope -= cj*correction`. What rests at 0 rests to
+/// the last bit.
 pub(super) fn correct(
     stage: &mut [f64],
     slope: &mut [f64],
     correction: &[f64],
     weights: &[f64],
-    (cj, rounding): (f64, f64),
+    cj: f64,
 ) {
     let vectors = stage.iter_mut().zip(slope.iter_mut());
     for (((stage, slope), correction), weight) in vectors.zip(correction).zip(weights) {
-        let rounded = (correction * weight).abs() <= rounding;
-        let correction = if rounded { 0.0 } else { *correction };
+        let none = (correction * weight).abs() <= NONE;
+        let correction = if none { 0.0 } else { *correction };
         *stage -= correction;
         *slope -= cj * correction;
     }

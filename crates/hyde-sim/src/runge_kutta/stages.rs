@@ -20,7 +20,7 @@ const LEFT: f64 = 0.02;
 /// What it may have left where it trusted a contraction that was better than the next one measured.
 const MOST_LEFT: f64 = 0.1;
 /// Corrections below this, in the same units, are rounding.
-pub(super) const ROUNDING: f64 = 1e-8;
+const ROUNDING: f64 = 1e-8;
 /// A contraction slower than this asks for a new matrix, one slower than that gives up.
 const SLOW: f64 = 0.2;
 const TOO_SLOW: f64 = 0.9;
@@ -138,7 +138,7 @@ impl<S: System> RungeKutta<S> {
             }
             self.linear.solve(&mut self.correction);
             let (stage, correction) = (&mut self.stage, &self.correction);
-            correct(stage, slope, correction, &self.weights, (cj, ROUNDING));
+            correct(stage, slope, correction, &self.weights, cj);
             let size = (sum_of_squares(correction, &self.counted) / self.count).sqrt();
             if !size.is_finite() {
                 break;
