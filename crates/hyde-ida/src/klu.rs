@@ -27,7 +27,7 @@ pub(crate) struct KluFactors {
     symbolic: *mut sys::klu_l_symbolic,
     numeric: *mut sys::klu_l_numeric,
     /// The factors of the matrix factored last; none before the first, and where KLU's serve.
-    fixed: Option<FixedPivots>,
+    fixed: Option<Box<FixedPivots>>,
 }
 
 /// How the pivots were found.
@@ -73,9 +73,10 @@ impl KluFactors {
             return Ok(Pivots::Kept);
         }
         self.choose_pivots(pattern, values)?;
-        let mut fixed = FixedPivots::new(pattern, &self.extract(pattern.n()));
+        let mut fixed = FixedPivots::new(pattern, &self.extract(pattern.n())).map(Box::new);
         // Where they are of no use even for this matrix, KLU's own factors serve.
-        let serve = |fixed: &mut FixedPivots| fixed.factor(values) >= SMALLEST_RECIPROCAL_GROWTH;
+        let serve =
+            |fixed: &mut Box<FixedPivots>| fixed.factor(values) >= SMALLEST_RECIPROCAL_GROWTH;
         self.fixed = fixed.take_if(serve);
         if self.fixed.is_some() {
             self.free_numeric();
