@@ -42,6 +42,8 @@ const LAST: usize = STAGES - 1;
 pub(crate) struct RungeKutta<S> {
     system: S,
     linear: SparseSolver,
+    /// Factors for the steps to rows: what rows are asked for must not change the run.
+    for_rows: Option<SparseSolver>,
     matrix: Vec<f64>,
     /// The step, in s, that the factors are for; none if they are of no use.
     factored_s: Option<f64>,
@@ -96,6 +98,7 @@ impl<S: System> RungeKutta<S> {
         Ok(Self {
             system,
             linear: SparseSolver::new(pattern, LinearMethod::Auto)?,
+            for_rows: None,
             matrix: vec![0.0; entries],
             factored_s: None,
             fresh: false,
@@ -281,18 +284,29 @@ impl<S: System> RungeKutta<S> {
         }
     }
 
-    /// The end of a step as long as to `t`. Whether there is one.
+    /// The end of a step as long as to `t`. Whether there is one. The factors of the run remain as they are.
     fn step_to(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
+        let for_rows = self.for_rows.take();
+        let for_rows = for_rows.map_or_else(
+            || SparseSolver::new(self.linear.pattern().clone(), LinearMethod::Auto),
+            Ok,
+        );
+        let Ok(mut for_rows) = for_rows else {
+            return false;
+        };
+        let of_run = (self.factored_s.take(), self.contraction.take(), self.smooth);
+        std::mem::swap(&mut self.linear, &mut for_rows);
         std::mem::swap(&mut self.slopes, &mut self.others);
         self.slopes[0].copy_from_slice(&self.others[0]);
-        let smooth = self.smooth;
         let reached = self.attempt(t - self.from).is_ok();
         if reached {
             y.copy_from_slice(&self.stage);
             yp.copy_from_slice(&self.slopes[LAST]);
         }
         std::mem::swap(&mut self.slopes, &mut self.others);
-        self.smooth = smooth;
+        std::mem::swap(&mut self.linear, &mut for_rows);
+        self.for_rows = Some(for_rows);
+        (self.factored_s, self.contraction, self.smooth) = of_run;
         reached
     }
 

@@ -27,6 +27,10 @@ pub(crate) enum Solver<'a> {
 /// clock: between 10 and 100 it makes little difference, and a step too long is only taken again).
 const LONGER_FIRST_STEP: f64 = 20.0;
 
+/// Of the tolerance, what a step of IDA is given: so the instants of events are as exact as the tolerance, as they are in a
+/// program written by hand, whose unknowns are states alone (backlash: 1.3e-5 s at rtol 1e-6 without it, 6e-6 s with it).
+const SHARE_OF_A_STEP: f64 = 0.5;
+
 /// Strides that a run without unknowns takes at least.
 const LEAST_STRIDES: f64 = 1000.0;
 
@@ -100,9 +104,9 @@ impl<'a> Solver<'a> {
             return Ok(solver);
         }
         let share = if states_alone {
-            share_of_states(&state)
+            SHARE_OF_A_STEP * share_of_states(&state)
         } else {
-            1.0
+            SHARE_OF_A_STEP
         };
         let scaled = atol.iter().map(|atol| share * atol).collect();
         let mut options = Options::new(share * setup.rtol, scaled, state.differential.clone());

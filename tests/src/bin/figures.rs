@@ -13,8 +13,9 @@ fn main() -> ExitCode {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
     // Figures of batches, diagnoses, self-tests, cases and editors run this very program as the command.
     let commands = [
-        "bode", "budget", "check", "diagnose", "effects", "emit", "export", "fit", "live", "lsp",
-        "modes", "params", "plot", "run", "selftest", "sweep", "test", "trend",
+        "bode", "budget", "check", "diagnose", "effects", "emit", "excite", "explain", "export",
+        "fit", "fmt", "look", "lsp", "modes", "new", "params", "plot", "run", "selftest", "sweep",
+        "test", "trend",
     ];
     if names
         .first()
