@@ -26,7 +26,7 @@ end day;
 
 experiment stepped of Oscillator
   stimulus u = 1;
-  bode from u to x over 1 [Hz] .. 30 [Hz] by stepped(amplitude = 2, points = 4, settle = 9000 [s], periods = 4);
+  bode from u to x over 1 [Hz] .. 30 [Hz] by stepped(amplitude = 2, points = 4, settle = 90000 [s], periods = 4);
   stop 1 [s];
 end stepped;
 
