@@ -34,10 +34,6 @@ const SHARE_OF_A_STEP: f64 = 0.5;
 /// Strides that a run without unknowns takes at least.
 const LEAST_STRIDES: f64 = 1000.0;
 
-/// The most unknowns of a smooth program for which a one-step method is quicker than IDA, whose steps cost more than the
-/// equations there.
-const SMALL: usize = 16;
-
 /// The method for a program: where something may happen at any moment, a one-step method, which starts anew at no cost;
 /// where all is smooth, IDA. So it is where something is struck: a bounce may be lower than the tolerance, and the steps
 /// that IDA begins with are as short. States that are chosen anew need slopes of them all, which a Runge-Kutta method has not.
@@ -48,7 +44,7 @@ pub(crate) fn method(program: &Program, asked: Method) -> Method {
         Method::Auto => {
             let strikes = searched(program).any(|relation| relation.used == RelationUse::When);
             let changes = searched(program).next().is_some();
-            !program.clocks.is_empty() || !strikes && (changes || program.n_unknowns <= SMALL)
+            !program.clocks.is_empty() || changes && !strikes
         }
     };
     match one_step && program.selections.is_empty() {

@@ -301,10 +301,12 @@ fn a_case_is_run_again_exactly() {
         .chain(["--out", &one, "--quiet"])
         .collect();
     assert_eq!(status(&hyde(&words)), 0);
-    let again: Value = serde_json::from_str(&read(&format!("{one}/summary.json"))).unwrap();
+    let again = read(&format!("{one}/summary.json"));
     let case = worst["case"].as_u64().unwrap() as usize;
     let found = frame(&format!("{out}/cases.parquet"));
-    let value = again["measures"][0]["value"].as_f64().unwrap();
+    // As text: serde_json may miss the last bit.
+    let (_, behind) = again.split_once("\"value\": ").unwrap();
+    let value: f64 = behind.split([',', '\n']).next().unwrap().parse().unwrap();
     assert_eq!(
         value.to_bits(),
         found.numbers("peak").unwrap()[case - 1].to_bits()
