@@ -21,7 +21,7 @@ const AT_ONCE: f64 = 1e-9;
 
 /// So many steps that take the run no further than this part of it would never end it.
 const STEPS: u64 = 20_000;
-const NO_FURTHER: f64 = 1e-7;
+const NO_FURTHER: f64 = 1e-5;
 
 /// Whether events follow each other faster and faster, or steps.
 #[derive(Default)]
