@@ -99,10 +99,15 @@ fn a_failed_assert_tells_the_value_that_broke_it() {
 fn without_rounding(shown: &str) -> String {
     let line = |line: &str| match (line.find("` is "), line.ends_with(" there")) {
         (Some(at), true) => format!("{}` is … there\n", &line[..at]),
-        _ => match line.split_once("even with a step of ") {
-            Some((start, _)) => format!("{start}even with a step of …\n"),
-            None => format!("{line}\n"),
-        },
+        _ => {
+            let figure = ["even with a step of ", "advanced it by only "]
+                .into_iter()
+                .find_map(|before| Some((line.split_once(before)?.0, before)));
+            match figure {
+                Some((start, before)) => format!("{start}{before}…\n"),
+                None => format!("{line}\n"),
+            }
+        }
     };
     shown.lines().map(line).collect()
 }

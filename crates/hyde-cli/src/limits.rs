@@ -12,8 +12,10 @@ use hyde_experiment::{Answer, LIMIT_LEFT, LIMIT_PART, Run, limit};
 use hyde_program::Program;
 use hyde_sim::EventKind;
 
-/// Relative tolerance of the runs: a thousandth of a small effect is to stand above it.
-const RTOL: f64 = 1e-9;
+/// What the runs err by of the largest value, and the tolerance of their steps, whose errors add up: a thousandth of a small
+/// effect is to stand above it.
+const ERROR: f64 = 1e-9;
+const RTOL: f64 = 0.1 * ERROR;
 /// States are compared this part of the run away from any event.
 const AWAY: f64 = 0.01;
 /// The parts of the written size that are tried as the typical one.
@@ -96,7 +98,7 @@ pub(crate) fn tested(args: &ModelArgs, size: &Size) -> Result<Tested, Exit> {
         }
         let runs = [&plain, &small, &full].map(|(compiled, run)| (&compiled.program, &run.results));
         let answers = limit(runs[0], runs[1], runs[2], AWAY * plain.1.stop_s);
-        let seen: Vec<&Answer> = answers.iter().filter(|a| a.is_seen(RTOL)).collect();
+        let seen: Vec<&Answer> = answers.iter().filter(|a| a.is_seen(ERROR)).collect();
         let worst = seen
             .iter()
             .map(|answer| answer.left())

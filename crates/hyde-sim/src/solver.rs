@@ -34,6 +34,10 @@ const SHARE_OF_A_STEP: f64 = 0.5;
 /// Strides that a run without unknowns takes at least.
 const LEAST_STRIDES: f64 = 1000.0;
 
+/// The most unknowns of a smooth program for which a one-step method is quicker than IDA, whose steps cost more than the
+/// equations there.
+const SMALL: usize = 16;
+
 /// The method for a program: where something may happen at any moment, a one-step method, which starts anew at no cost;
 /// where all is smooth, IDA. So it is where something is struck: a bounce may be lower than the tolerance, and the steps
 /// that IDA begins with are as short. States that are chosen anew need slopes of them all, which a Runge-Kutta method has not.
@@ -44,7 +48,7 @@ pub(crate) fn method(program: &Program, asked: Method) -> Method {
         Method::Auto => {
             let strikes = searched(program).any(|relation| relation.used == RelationUse::When);
             let changes = searched(program).next().is_some();
-            !program.clocks.is_empty() || changes && !strikes
+            !program.clocks.is_empty() || !strikes && (changes || program.n_unknowns <= SMALL)
         }
     };
     match one_step && program.selections.is_empty() {
@@ -99,11 +103,11 @@ impl<'a> Solver<'a> {
             solver.set_tolerances(setup.rtol, &atol).map_err(failed)?;
             return Ok(solver);
         }
-        let share = if states_alone {
-            SHARE_OF_A_STEP * share_of_states(&state)
-        } else {
-            SHARE_OF_A_STEP
-        };
+        let share = SHARE_OF_A_STEP
+            * match states_alone {
+                true => share_of_states(&state),
+                false => 1.0,
+            };
         let scaled = atol.iter().map(|atol| share * atol).collect();
         let mut options = Options::new(share * setup.rtol, scaled, state.differential.clone());
         options.max_step_s = max_step_s;

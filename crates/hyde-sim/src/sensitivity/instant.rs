@@ -109,7 +109,7 @@ impl Sensitivities {
         let height = self.heights[relation].max(before.abs());
         let (rtol, _) = integrator.tolerances();
         let step_s = t - from;
-        let bent = (before + rate * step_s).abs() - 10.0 * rtol * height;
+        let bent = (before + rate * step_s).abs() - rtol * height;
         let bend = 2.0 * bent.max(0.0) / (step_s * step_s);
         let beyond = 0.5 * rate * rate / bend;
         if rate == 0.0 || beyond < rtol * height {
