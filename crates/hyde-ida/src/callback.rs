@@ -10,6 +10,7 @@ use std::ptr::NonNull;
 
 use sundials_sys as sys;
 
+use crate::convergence::Convergence;
 use crate::operations::{error_weights, find_not_finite};
 use crate::vector::{values, values_mut};
 use crate::{Recoverable, SparseSolver, System};
@@ -33,6 +34,7 @@ pub(crate) struct Bridge<S> {
     pub(crate) residual_evaluations: u64,
     pub(crate) jacobian_evaluations: u64,
     pub(crate) root_evaluations: u64,
+    pub(crate) convergence: Convergence,
     panic: Option<Box<dyn Any + Send>>,
 }
 
@@ -64,6 +66,7 @@ impl<S> Bridge<S> {
             residual_evaluations: 0,
             jacobian_evaluations: 0,
             root_evaluations: 0,
+            convergence: Convergence::new(),
             panic: None,
         }
     }
@@ -81,6 +84,16 @@ impl<S> BridgeBox<S> {
 
     pub(crate) fn user_data(&self) -> *mut c_void {
         self.0.as_ptr().cast()
+    }
+
+    /// Where the test of convergence keeps what it knows of the steps of a solver.
+    pub(crate) fn convergence(&self, ida: *mut c_void) -> *mut c_void {
+        // SAFETY: the box is ours, and IDA does not run.
+        unsafe {
+            let own = &raw mut (*self.0.as_ptr()).convergence;
+            (*own).of(ida);
+            own.cast()
+        }
     }
 
     pub(crate) fn get(&self) -> &Bridge<S> {
@@ -223,6 +236,7 @@ pub(crate) unsafe extern "C" fn factor<S: System>(
     // SAFETY: the content of our linear solver is the user data.
     let bridge = unsafe { reach::<S>((*solver).content) };
     guarded(bridge, |bridge| {
+        bridge.convergence.renew();
         match bridge.linear.factor(&bridge.jacobian) {
             Ok(()) => DONE,
             Err(singular) => bridge.failed(Fault::Singular {

@@ -47,6 +47,7 @@
 
 mod callback;
 mod context;
+mod convergence;
 mod dense;
 mod error;
 mod failure;

@@ -7,6 +7,7 @@ use sundials_sys as sys;
 
 use crate::callback::{self, BridgeBox};
 use crate::context::Context;
+use crate::convergence;
 use crate::failure::accept;
 use crate::vector::Vector;
 use crate::{Error, Options, System};
@@ -15,9 +16,10 @@ use crate::{Error, Options, System};
 /// first guess of the step size knows nothing.
 const ERROR_TEST_FAILURES: c_int = 30;
 
-/// IDA's memory with the linear solver and the matrix it refers to.
+/// IDA's memory with the solvers and the matrix it refers to.
 pub(crate) struct Memory {
     ida: *mut c_void,
+    newton: sys::SUNNonlinearSolver,
     linear: sys::SUNLinearSolver,
     matrix: sys::SUNMatrix,
 }
@@ -38,6 +40,7 @@ impl Memory {
         unsafe {
             let mut memory = Self {
                 ida: ptr::null_mut(),
+                newton: ptr::null_mut(),
                 linear: ptr::null_mut(),
                 matrix: ptr::null_mut(),
             };
@@ -60,6 +63,16 @@ impl Memory {
             accept(sys::IDAWFtolerances(ida, Some(callback::weights::<S>)))?;
             accept(sys::IDASetLinearSolver(ida, memory.linear, memory.matrix))?;
             accept(sys::IDASetJacFn(ida, Some(callback::jacobian::<S>)))?;
+            if options.watch_convergence {
+                memory.newton = NonNull::new(sys::SUNNonlinSol_Newton(y.raw(), context.raw()))
+                    .ok_or(Error::OutOfMemory)?
+                    .as_ptr();
+                accept(sys::IDASetNonlinearSolver(ida, memory.newton))?;
+                // IDA has put its own test in.
+                let known = bridge.convergence(ida);
+                let test: sys::SUNNonlinSolConvTestFn = Some(convergence::test);
+                accept(sys::SUNNonlinSolSetConvTestFn(memory.newton, test, known))?;
+            }
             accept(sys::IDASetSuppressAlg(
                 ida,
                 c_int::from(options.suppress_algebraic),
@@ -97,9 +110,12 @@ impl Memory {
 
 impl Drop for Memory {
     fn drop(&mut self) {
-        // SAFETY: the objects are ours, valid or null; IDA, which refers to the other two, goes first.
+        // SAFETY: the objects are ours, valid or null; IDA, which refers to the others, goes first.
         unsafe {
             sys::IDAFree(&raw mut self.ida);
+            if !self.newton.is_null() {
+                sys::SUNNonlinSolFree(self.newton);
+            }
             sys::SUNLinSolFreeEmpty(self.linear);
             sys::SUNMatFreeEmpty(self.matrix);
         }

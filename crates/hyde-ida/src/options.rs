@@ -27,11 +27,14 @@ pub struct Options {
     pub max_steps_per_solve: Option<u32>,
     /// How linear systems are solved.
     pub linear_method: LinearMethod,
+    /// Looks at the rate of Newton's method again after some steps, where IDA believes the last one that it saw as long as
+    /// steps have one size. Without it an algebraic variable may drift off unseen.
+    pub watch_convergence: bool,
 }
 
 impl Options {
     /// Options with these tolerances and kinds of unknowns and otherwise the usual values: algebraic variables left
-    /// out of the error test, order up to 5, no limits on steps, dense or sparse by size.
+    /// out of the error test, order up to 5, no limits on steps, dense or sparse by size, convergence watched.
     #[must_use]
     pub fn new(rtol: f64, atol: Vec<f64>, differential: Vec<bool>) -> Self {
         Self {
@@ -44,6 +47,7 @@ impl Options {
             first_step_s: None,
             max_steps_per_solve: None,
             linear_method: LinearMethod::Auto,
+            watch_convergence: true,
         }
     }
 

@@ -7,6 +7,7 @@
 )]
 
 mod chain;
+mod convergence;
 mod events;
 mod failures;
 mod initial_conditions;

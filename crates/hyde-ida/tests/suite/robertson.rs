@@ -101,6 +101,8 @@ pub(crate) fn solver(method: LinearMethod) -> Ida<Robertson> {
     let mut options = Options::new(1e-4, vec![1e-8, 1e-6, 1e-6], vec![true, true, false]);
     options.suppress_algebraic = false;
     options.linear_method = method;
+    // As published, digit by digit and step by step.
+    options.watch_convergence = false;
     let pattern = Pattern::dense(3).unwrap();
     Ida::new(
         Robertson,
