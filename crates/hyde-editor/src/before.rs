@@ -1,5 +1,7 @@
 //! What stands before a place in a text that is being written: open brackets, the dotted name at the end.
 
+use hyde_syntax::{comment_end, string_end};
+
 /// The brackets that are open at the end of a text; nothing in a comment or a text.
 pub(crate) fn open_brackets(before: &str) -> Option<Vec<(usize, char)>> {
     let mut open = Vec::new();
@@ -8,16 +10,10 @@ pub(crate) fn open_brackets(before: &str) -> Option<Vec<(usize, char)>> {
         let rest = &before[at..];
         at += if rest.starts_with("//") {
             rest.find('\n')?
-        } else if let Some(inner) = rest.strip_prefix("/*") {
-            inner.find("*/")? + 4
+        } else if rest.starts_with("/*") {
+            comment_end(rest)?
         } else if sign == '"' {
-            let mut escaped = false;
-            let end = rest.char_indices().skip(1).find(|(_, own)| {
-                let ends = *own == '"' && !escaped;
-                escaped = *own == '\\' && !escaped;
-                ends
-            });
-            end?.0 + 1
+            string_end(rest)?
         } else {
             match sign {
                 '(' | '[' | '{' => open.push((at, sign)),

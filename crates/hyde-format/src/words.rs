@@ -1,6 +1,6 @@
 //! The words of a text in a tree: the constructs of the parser with the signs between them, and the comments before each.
 
-use hyde_syntax::{Node, Rule, Written};
+use hyde_syntax::{Node, Rule, Written, comment_end};
 
 /// The words of a file.
 pub(crate) struct Words<'a> {
@@ -248,8 +248,8 @@ impl<'a> Reader<'a> {
             before.breaks += blank.matches('\n').count();
             let len = if trimmed.starts_with("//") {
                 trimmed.find('\n').unwrap_or(trimmed.len())
-            } else if let Some(inner) = trimmed.strip_prefix("/*") {
-                inner.find("*/")? + 4
+            } else if trimmed.starts_with("/*") {
+                comment_end(trimmed)?
             } else {
                 return Some((before, at));
             };

@@ -23,5 +23,6 @@ pub use grammar::Rule;
 pub use habits::instead_of;
 pub use lookup::{FileIndex, Lookup, dotted};
 pub use parse::{parse, parse_record};
+pub use recover::{comment_end, string_end};
 pub use words::is_reserved;
 pub use written::{Node, Part, Written, written};

@@ -188,8 +188,8 @@ fn comment_len(rest: &str) -> usize {
     comment_end(rest).unwrap_or(rest.len())
 }
 
-/// Behind the `*/` that ends a comment; `/*/` begins one only.
-fn comment_end(rest: &str) -> Option<usize> {
+/// Behind the `*/` that ends the comment at the start of a text, if it ends; `/*/` begins one only.
+pub fn comment_end(rest: &str) -> Option<usize> {
     rest.get(2..)?.find("*/").map(|end| end + 4)
 }
 
@@ -197,8 +197,8 @@ fn string_len(rest: &str) -> usize {
     string_end(rest).unwrap_or(rest.len())
 }
 
-/// Behind the quote that ends a text.
-fn string_end(rest: &str) -> Option<usize> {
+/// Behind the quote that ends the string at the start of a text, if it ends.
+pub fn string_end(rest: &str) -> Option<usize> {
     let mut escaped = false;
     for (at, c) in rest.char_indices().skip(1) {
         match c {

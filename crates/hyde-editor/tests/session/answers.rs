@@ -24,23 +24,9 @@ experiment shove of Slide(F0 = 4 [N])
 end shove;
 "#;
 
-fn open() -> Client {
-    let client = Client::new(&["utf-16"]);
-    client.open(PATH, TEXT);
-    client
-}
-
-fn hover(client: &mut Client, after: &str, what: &str) -> String {
-    let found = client.at("textDocument/hover", PATH, find(TEXT, after, what));
-    found["contents"]["value"]
-        .as_str()
-        .unwrap_or_default()
-        .to_owned()
-}
-
 #[test]
 fn a_right_model_has_no_diagnostics_and_a_wrong_one_has_those_of_the_compiler() {
-    let mut client = open();
+    let mut client = Client::with(PATH, TEXT);
     assert!(client.diagnostics(PATH, |_| true).is_empty());
     // Syntax errors come at once, the others after a pause.
     let (line, character) = find(TEXT, "way > 0 [m]", ";");
@@ -64,31 +50,43 @@ fn a_right_model_has_no_diagnostics_and_a_wrong_one_has_those_of_the_compiler() 
 
 #[test]
 fn a_hover_has_declaration_type_unit_value_and_documentation() {
-    let mut client = open();
-    let parameter = hover(&mut client, "push(F = ", "F0");
+    let mut client = Client::with(PATH, TEXT);
+    let parameter = client.hover((PATH, TEXT), "push(F = ", "F0");
     assert_eq!(
         parameter,
         "```hyde\nparameter Force F0 = 3 [N]\n```\n\nthat pushes\n\nunit `N`  \n`F0` = 3 N"
     );
-    let member = hover(&mut client, "body(", "M");
+    let member = client.hover((PATH, TEXT), "body(", "M");
     assert!(member.contains("parameter Mass M"), "{member}");
     assert!(member.contains("unit `kg`"), "{member}");
     assert!(member.contains("Translational.hyde:"), "{member}");
-    let class = hover(&mut client, "F0);\n  ", "Mass");
+    let class = client.hover((PATH, TEXT), "F0);\n  ", "Mass");
     assert!(
         class.contains("model Mass\n```\n\na body that slides"),
         "{class}"
     );
-    assert!(hover(&mut client, "connect(push.", "a").contains("Rail a"));
-    assert!(hover(&mut client, "max(", "body").contains("Mass body"));
-    assert!(hover(&mut client, "expect ", "way").contains("measure Length way"));
-    assert_eq!(hover(&mut client, "sol", "ve"), "");
+    assert!(
+        client
+            .hover((PATH, TEXT), "connect(push.", "a")
+            .contains("Rail a")
+    );
+    assert!(
+        client
+            .hover((PATH, TEXT), "max(", "body")
+            .contains("Mass body")
+    );
+    assert!(
+        client
+            .hover((PATH, TEXT), "expect ", "way")
+            .contains("measure Length way")
+    );
+    assert_eq!(client.hover((PATH, TEXT), "sol", "ve"), "");
     client.end();
 }
 
 #[test]
 fn a_definition_is_in_the_file_or_in_the_library() {
-    let mut client = open();
+    let mut client = Client::with(PATH, TEXT);
     let own = client.at(
         "textDocument/definition",
         PATH,
@@ -107,7 +105,7 @@ fn a_definition_is_in_the_file_or_in_the_library() {
 
 #[test]
 fn completion_knows_members_parameters_units_and_keywords() {
-    let mut client = open();
+    let mut client = Client::with(PATH, TEXT);
     let mut labels = |after: &str, new: &str| -> Vec<String> {
         let at = TEXT.find(after).unwrap() + after.len();
         let text = format!("{}{new}{}", &TEXT[..at], &TEXT[at..]);
@@ -149,7 +147,7 @@ fn completion_knows_members_parameters_units_and_keywords() {
 
 #[test]
 fn uses_are_found_by_scope_and_not_by_text() {
-    let mut client = open();
+    let mut client = Client::with(PATH, TEXT);
     let found = client.at("textDocument/references", PATH, find(TEXT, "Force ", "F0"));
     assert_eq!(found.as_array().unwrap().len(), 3, "{found}");
     let model = client.at(
@@ -167,7 +165,7 @@ fn uses_are_found_by_scope_and_not_by_text() {
 
 #[test]
 fn a_name_is_changed_where_it_is_meant_or_not_at_all() {
-    let mut client = open();
+    let mut client = Client::with(PATH, TEXT);
     let mut rename = |(line, character): (usize, usize), new: &str| {
         client.ask(
             "textDocument/rename",
@@ -206,7 +204,7 @@ fn advice_becomes_a_quick_fix() {
 
 #[test]
 fn a_text_has_symbols_folds_tokens_and_a_layout() {
-    let mut client = open();
+    let mut client = Client::with(PATH, TEXT);
     let symbols = client.of("textDocument/documentSymbol", PATH);
     assert_eq!(symbols[0]["name"], "Slide");
     assert_eq!(symbols[0]["children"].as_array().unwrap().len(), 4);

@@ -63,6 +63,22 @@ impl Client {
         client
     }
 
+    /// A session in which a file is open.
+    pub(crate) fn with(path: &str, text: &str) -> Self {
+        let client = Self::new(&["utf-16"]);
+        client.open(path, text);
+        client
+    }
+
+    /// What a hover over a word says: the first `what` behind the first `after`.
+    pub(crate) fn hover(&mut self, (path, text): (&str, &str), after: &str, what: &str) -> String {
+        let found = self.at("textDocument/hover", path, find(text, after, what));
+        found["contents"]["value"]
+            .as_str()
+            .unwrap_or_default()
+            .to_owned()
+    }
+
     pub(crate) fn tell(&self, method: &str, params: Value) {
         let message = Notification::new(method.to_owned(), params);
         self.connection.sender.send(message.into()).unwrap();

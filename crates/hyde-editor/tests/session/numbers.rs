@@ -1,6 +1,6 @@
 //! Values, spreads, dimensions, hints, brackets that are open, and commands: what needs more than the text.
 
-use crate::client::{Client, find, place};
+use crate::client::{Client, place};
 use serde_json::{Value, json};
 
 const PATH: &str = "/nowhere/numbers.hyde";
@@ -30,60 +30,46 @@ experiment shove of Slide(M0 = 4 [kg])
 end shove;
 "#;
 
-fn open() -> Client {
-    let client = Client::new(&["utf-16"]);
-    client.open(PATH, TEXT);
-    client
-}
-
-fn hover(client: &mut Client, after: &str, what: &str) -> String {
-    let found = client.at("textDocument/hover", PATH, find(TEXT, after, what));
-    found["contents"]["value"]
-        .as_str()
-        .unwrap_or_default()
-        .to_owned()
-}
-
 #[test]
 fn a_hover_shows_values_with_their_spread_and_source() {
-    let mut client = open();
-    let declared = hover(&mut client, "parameter Mass ", "M0");
+    let mut client = Client::with(PATH, TEXT);
+    let declared = client.hover((PATH, TEXT), "parameter Mass ", "M0");
     assert!(
         declared.contains("`M0` = 2 kg ±10%, from data sheet"),
         "{declared}"
     );
-    let used = hover(&mut client, "M = 2*", "M0");
+    let used = client.hover((PATH, TEXT), "M = 2*", "M0");
     assert!(used.contains("`M0` = 2 kg ±10%, from data sheet"), "{used}");
-    let modified = hover(&mut client, "body(", "M");
+    let modified = client.hover((PATH, TEXT), "body(", "M");
     assert!(modified.contains("`body.M` = 4 kg"), "{modified}");
-    let set = hover(&mut client, "shove of Slide(", "M0");
+    let set = client.hover((PATH, TEXT), "shove of Slide(", "M0");
     assert!(set.contains("`M0` = 4 kg"), "the experiment's: {set}");
     client.end();
 }
 
 #[test]
 fn a_hover_shows_the_dimension_of_what_stands_there() {
-    let mut client = open();
-    let found = hover(&mut client, "strain = ", "k");
+    let mut client = Client::with(PATH, TEXT);
+    let found = client.hover((PATH, TEXT), "strain = ", "k");
     assert!(found.contains("`k` = 12 N/m"), "{found}");
-    let sum = hover(&mut client, "strain = k", "*");
+    let sum = client.hover((PATH, TEXT), "strain = k", "*");
     assert!(sum.contains("`k*body.s`  \nunit `N` (kg.m/s2)"), "{sum}");
-    let real = hover(&mut client, "Real ", "strain");
+    let real = client.hover((PATH, TEXT), "Real ", "strain");
     assert!(
         real.contains("unit found from the equations: `N`"),
         "{real}"
     );
-    let call = hover(&mut client, "stimulus F = ", "min");
+    let call = client.hover((PATH, TEXT), "stimulus F = ", "min");
     assert!(call.contains("min(a, b)"), "{call}");
     assert!(call.contains("unit `N`"), "{call}");
-    let literal = hover(&mut client, "Guide guide(F = ", "1");
+    let literal = client.hover((PATH, TEXT), "Guide guide(F = ", "1");
     assert!(literal.contains("`1 [N]`  \nunit `N`"), "{literal}");
     client.end();
 }
 
 #[test]
 fn hints_show_units_that_are_found_and_values_of_constants() {
-    let mut client = open();
+    let mut client = Client::with(PATH, TEXT);
     let hints = client.of("textDocument/inlayHint", PATH);
     let mut shown: Vec<(u64, String)> = hints
         .as_array()
@@ -126,7 +112,7 @@ fn labels(client: &mut Client, after: &str, new: &str) -> Vec<String> {
 
 #[test]
 fn completion_offers_what_fits() {
-    let mut client = open();
+    let mut client = Client::with(PATH, TEXT);
     let all = labels(&mut client, "equation\n", "  connect(");
     for own in ["push.a", "body.a", "guide.a"] {
         assert!(all.contains(&own.to_owned()), "{own}: {all:?}");
@@ -208,7 +194,7 @@ fn completion_knows_the_columns_of_a_record() {
 
 #[test]
 fn an_open_bracket_says_what_goes_into_it() {
-    let mut client = open();
+    let mut client = Client::with(PATH, TEXT);
     let method = "textDocument/signatureHelp";
     let part = written(&mut client, method, "Guide guide(F = 1 [N]", ", b = ");
     let label = part["signatures"][0]["label"].as_str().unwrap();
