@@ -5,6 +5,7 @@ mod batches;
 mod bench;
 mod cases;
 mod clif_growth;
+mod clock;
 mod compile;
 mod demo;
 mod diagnosis;

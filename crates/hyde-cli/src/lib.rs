@@ -34,7 +34,7 @@ mod watch;
 pub use hyde_study::render;
 
 use args::{Arguments, Command};
-use clap::Parser as _;
+use clap::{CommandFactory as _, Parser as _};
 use exit::Exit;
 use hyde_signal::parquet;
 use mimalloc::MiMalloc;
@@ -44,6 +44,14 @@ use std::process::ExitCode;
 /// A diagnosis makes and drops small matrices by the million, on every thread.
 #[global_allocator]
 static ALLOCATOR: MiMalloc = MiMalloc;
+
+/// Whether a command has this name.
+#[must_use]
+pub fn has(name: &str) -> bool {
+    Arguments::command()
+        .get_subcommands()
+        .any(|command| command.get_name() == name)
+}
 
 /// Runs a command line.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {

@@ -12,15 +12,7 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let mut names: Vec<String> = std::env::args().skip(1).collect();
     // Figures of batches, diagnoses, self-tests, cases and editors run this very program as the command.
-    let commands = [
-        "bode", "budget", "check", "diagnose", "effects", "emit", "excite", "explain", "export",
-        "fit", "fmt", "look", "lsp", "modes", "new", "params", "plot", "run", "selftest", "sweep",
-        "test", "trend",
-    ];
-    if names
-        .first()
-        .is_some_and(|name| commands.contains(&name.as_str()))
-    {
+    if names.first().is_some_and(|name| hyde_cli::has(name)) {
         return hyde_cli::main(std::env::args_os());
     }
     let mut session = Session::new(hyde_tests::data());

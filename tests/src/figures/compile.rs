@@ -1,11 +1,11 @@
 //! `compile_ms_y_axis`, `compile_growth_100k_over_100`, `compile_chain_growth_400_over_100`: from source text to machine code that has run once.
 
+use super::clock::now;
 use super::promise::{Figure, Measured, Promise, Session};
 use super::start::START;
 use crate::Example;
 use hyde_compiler::Backend;
 use hyde_program::{Function, Point, Workspace};
-use std::time::Instant;
 
 pub(super) const Y_AXIS: Figure = Figure {
     name: "compile_ms_y_axis",
@@ -67,11 +67,10 @@ fn chain_of(masses: usize) -> String {
 const REPEATS: usize = 7;
 
 /// The time to compile a model and to have machine code of its residual and its Jacobian, in s.
-#[allow(clippy::disallowed_methods, reason = "time is what is measured")]
 fn shortest(example: &Example) -> Result<f64, String> {
     let mut least = f64::INFINITY;
     for _ in 0..REPEATS {
-        let start = Instant::now();
+        let start = now();
         let compiled = example.compile(Backend::Native)?;
         let compile = start.elapsed().as_secs_f64();
         let program = &compiled.program;
@@ -93,7 +92,7 @@ fn shortest(example: &Example) -> Result<f64, String> {
         let mut partials = vec![0.0; program.partials(Function::Residual).len()];
         // The first call makes the code, the second shows what of the first was running it.
         let mut once = || {
-            let start = Instant::now();
+            let start = now();
             program
                 .kernels
                 .evaluate(Function::Residual, at, &mut work, &mut residual);

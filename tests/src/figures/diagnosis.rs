@@ -6,6 +6,7 @@
 //! thousandths of a count, which no record tells, the error of the *true* model of the play varies threefold. Free runs of
 //! the model found, as it was written, and of the true one are therefore compared over the same few origins.
 
+use super::clock::now;
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::{Example, bench_axis, root};
 use hyde_calibrate::{Model, Observer, Problem, Recording, Varied, free_run};
@@ -15,7 +16,6 @@ use rayon::prelude::*;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::time::Instant;
 
 pub(super) const RIGHT: Figure = Figure {
     name: "bench_sets_right",
@@ -141,11 +141,10 @@ fn of_sets(session: &Session, of: impl Fn(&[SetResult]) -> f64) -> Result<Measur
     Ok(Measured::Value(of(&sets)))
 }
 
-#[allow(clippy::disallowed_methods, reason = "a duration is what is measured")]
 fn set(data: &Path, answer: Option<&Answer>) -> Result<SetResult, String> {
     let axis = root().join("examples/bench_axis/axis.hyde");
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-    let begin = Instant::now();
+    let begin = now();
     let report = command("diagnose", &axis, data, folder.path())?;
     let minutes = begin.elapsed().as_secs_f64() / 60.0;
     let truth = Truth::of(data, answer)?;

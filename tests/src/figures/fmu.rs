@@ -1,12 +1,12 @@
 //! `fmu_deviation`, `fmu_event_time_error_us` and `fmu_export_s`: FMUs in FMPy against the run of their experiment, and how long
 //! an export takes.
 
+use super::clock::now;
 use super::promise::{Figure, Measured, Promise, Session};
 use super::start::START;
 use crate::fmu::{Agreement, Compared, KINDS, compare, python, succeed};
 use crate::root;
 use std::process::Command;
-use std::time::Instant;
 
 /// The models with what an importer that integrates is compared with: a run whose own error does not count.
 const MODELS: [(&str, &str, &[&str], &str); 4] = [
@@ -58,11 +58,6 @@ pub(super) const EXPORT: Figure = Figure {
         Ok(Measured::Value(start.elapsed().as_secs_f64()))
     },
 };
-
-#[allow(clippy::disallowed_methods, reason = "time is what is measured")]
-fn now() -> Instant {
-    Instant::now()
-}
 
 /// The released command.
 fn command() -> Result<std::path::PathBuf, String> {

@@ -1,12 +1,12 @@
 //! `live_slider_ms`: from a slider of the Y axis to the answer with the first curves, over HTTP as the page asks. The rest of a
 //! long run follows.
 
+use super::clock::now;
 use super::promise::{Figure, Measured, Promise};
 use crate::root;
 use std::io::{BufRead as _, BufReader, Read as _, Write as _};
 use std::net::TcpStream;
 use std::process::{Command, Stdio};
-use std::time::Instant;
 
 pub(super) const SLIDER: Figure = Figure {
     name: "live_slider_ms",
@@ -74,9 +74,4 @@ fn run(address: &str, values: &str) -> std::io::Result<String> {
     let mut answer = String::new();
     stream.read_to_string(&mut answer)?;
     Ok(answer)
-}
-
-#[allow(clippy::disallowed_methods, reason = "time is what is measured")]
-fn now() -> Instant {
-    Instant::now()
 }

@@ -1,6 +1,7 @@
 //! `lsp_syntax_ms`, `lsp_full_ms`, `lsp_completion_ms`, `lsp_hover_ms`, `lsp_memory_ratio`: what an editor waits for, on the Y
 //! axis with every package of the library loaded.
 
+use super::clock::now;
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::editor::Editor;
 use crate::root;
@@ -180,11 +181,6 @@ fn memory() -> Result<Measured, String> {
 fn median(mut list: Vec<f64>) -> f64 {
     list.sort_by(f64::total_cmp);
     list[list.len() / 2]
-}
-
-#[allow(clippy::disallowed_methods, reason = "time is what is measured")]
-fn now() -> Instant {
-    Instant::now()
 }
 
 fn milliseconds(start: Instant) -> f64 {

@@ -1,11 +1,11 @@
 //! `realtime_factor_y_axis`: simulated time over the time its solution takes, of the Y axis under sampled control.
 
+use super::clock::now;
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::Example;
 use hyde_compiler::Backend;
 use hyde_experiment::Options;
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 pub(super) const FIGURE: Figure = Figure {
     name: "realtime_factor_y_axis",
@@ -25,7 +25,6 @@ const CELLS: f64 = 4.0;
 /// Runs that are timed; the middle one counts.
 const REPEATS: usize = 3;
 
-#[allow(clippy::disallowed_methods, reason = "time is what is measured")]
 fn measure(_: &Session) -> Result<Measured, String> {
     let example = Example::load(EXAMPLE.0, Some(EXAMPLE.1))?
         .rewritten(AS_WRITTEN, TEN_SECONDS)
@@ -33,7 +32,7 @@ fn measure(_: &Session) -> Result<Measured, String> {
     let program = example.compile(Backend::Native)?.program;
     let mut factors = Vec::new();
     for _ in 0..REPEATS {
-        let start = Instant::now();
+        let start = now();
         let run = hyde_experiment::run(&program, &BTreeMap::new(), &Options::default())
             .map_err(|error| format!("{error:?}"))?;
         let took_s = start.elapsed().as_secs_f64();

@@ -1,5 +1,6 @@
 //! `residual_cell_cost_vs_c`: machine code against C written by hand, compiled here by `cc -O3`.
 
+use super::clock::now;
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::Example;
 use hyde_compiler::Backend;
@@ -7,7 +8,6 @@ use hyde_program::{Function, Point, Program, Workspace};
 use std::io::{BufRead, BufReader, Lines, Write};
 use std::path::Path;
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
-use std::time::Instant;
 
 pub(super) const FIGURE: Figure = Figure {
     name: "residual_cell_cost_vs_c",
@@ -78,7 +78,6 @@ impl State {
     }
 
     /// Nanoseconds of a batch.
-    #[allow(clippy::disallowed_methods, reason = "time is what is measured")]
     fn batch(&mut self, program: &Program) -> f64 {
         let at = Point {
             t: 0.0,
@@ -88,7 +87,7 @@ impl State {
             u: &[],
             p: &self.p,
         };
-        let start = Instant::now();
+        let start = now();
         for _ in 0..TURNS {
             let (workspace, out) = (&mut self.workspace, &mut self.out);
             program
