@@ -1,6 +1,7 @@
-//! The figures of a run: those asked for, then measured over simulated, or a choice of states, with the modes below.
+//! The figures of a run: those asked for; where something was measured, it beside the simulated, each with the residual below;
+//! then what the run is about. The modes stand below.
 
-use crate::asked_figures;
+use crate::{asked_figures, panels};
 use hyde_experiment::{Channel, Run};
 use hyde_program::Program;
 use hyde_report::{
@@ -9,8 +10,8 @@ use hyde_report::{
 use hyde_sim::{EventKind, Results};
 use hyde_units::{NamedUnit, Unit};
 
-/// Panels in one figure.
-const MAX_PANELS: usize = 4;
+/// Measured channels in one figure.
+const MAX_CHANNELS: usize = 4;
 
 /// The figures of a run, the most telling first.
 pub(crate) fn of_run(title: &str, program: &Program, run: &Run) -> Vec<Figure> {
@@ -18,20 +19,24 @@ pub(crate) fn of_run(title: &str, program: &Program, run: &Run) -> Vec<Figure> {
     let mut figures: Vec<Figure> = asked.into_iter().map(|(_, figure)| figure).collect();
     let strip = strip(program, &run.results, run.stop_s);
     if run.channels.is_empty() {
-        figures.push(time_plot(title, states(program, &run.results), strip));
+        figures.push(time_plot(title, panels::of_run(program, run), strip));
         return figures;
     }
-    let both: Vec<Panel> = run
-        .channels
-        .iter()
-        .take(MAX_PANELS)
-        .map(measured_and_simulated)
-        .collect();
-    let errors: Vec<Panel> = run.channels.iter().take(MAX_PANELS).map(error).collect();
-    let figure = time_plot(title, both, strip.clone())
-        .with_caption("Measured and simulated; the modes of the frictions below.");
-    let rest = time_plot(format!("{title}: measured minus simulated"), errors, strip);
-    figures.extend([figure, rest]);
+    let both = run.channels.iter().take(MAX_CHANNELS);
+    let both = both.flat_map(|channel| [measured_and_simulated(channel), residual(channel)]);
+    let more = run.channels.len().saturating_sub(MAX_CHANNELS);
+    let mut caption =
+        "Measured and simulated, below each the residual, measured − simulated.".to_owned();
+    if more > 0 {
+        caption += &format!(" {more} more in the table.");
+    }
+    let compared = time_plot(title, both.collect(), strip.clone()).with_caption(caption);
+    let rest = time_plot(
+        format!("{title}: variables"),
+        panels::of_run(program, run),
+        strip,
+    );
+    figures.extend([compared, rest]);
     figures
 }
 
@@ -136,7 +141,8 @@ pub(crate) fn difference_in(unit: &NamedUnit) -> (String, Unit) {
     }
 }
 
-fn error(channel: &Channel) -> Panel {
+/// Measured − simulated.
+fn residual(channel: &Channel) -> Panel {
     let (unit, of) = difference_in(&channel.unit);
     let difference = channel
         .measured
@@ -145,46 +151,10 @@ fn error(channel: &Channel) -> Panel {
         .map(|(a, b)| of.from_si(a - b))
         .collect();
     time_panel(
-        channel.name.clone(),
+        "residual",
         shown(&unit),
         vec![Line::new("", channel.time.clone(), difference)],
     )
-}
-
-/// The states of the model, those of one unit in one panel.
-fn states(program: &Program, results: &Results) -> Vec<Panel> {
-    let mut groups: Vec<(String, Vec<usize>)> = Vec::new();
-    let is_state = |name: &str| {
-        program
-            .unknowns
-            .iter()
-            .any(|block| block.differential && block.first.is_none() && block.name == name)
-    };
-    for (number, output) in program.outputs.iter().enumerate() {
-        if output.auxiliary || !is_state(&output.name) {
-            continue;
-        }
-        let (unit, _) = drawn_in(&output.unit);
-        match groups.iter_mut().find(|(known, _)| *known == unit) {
-            Some((_, list)) => list.push(number),
-            None => groups.push((unit, vec![number])),
-        }
-    }
-    let line = |number: &usize| {
-        let (_, unit) = drawn_in(&program.outputs[*number].unit);
-        let values = results.column(*number).unwrap_or_default();
-        let values = values.iter().map(|&si| unit.from_si(si)).collect();
-        Line::new(
-            program.outputs[*number].name.clone(),
-            results.time.clone(),
-            values,
-        )
-    };
-    groups
-        .iter()
-        .take(MAX_PANELS)
-        .map(|(unit, list)| time_panel("", shown(unit), list.iter().take(6).map(line).collect()))
-        .collect()
 }
 
 /// A pure number has no unit on its axis.

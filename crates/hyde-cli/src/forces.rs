@@ -2,6 +2,7 @@
 //! report.
 
 use crate::figures::{drawn_in, shown};
+use crate::panels::quantity;
 use hyde_compiler::Compiled;
 use hyde_experiment::{FlowLine, Run, flows};
 use hyde_program::Output;
@@ -115,8 +116,9 @@ fn panels<'o>(
             let values = values.iter().map(|&si| of.from_si(si)).collect();
             Line::new(line.name.clone(), run.results.time.clone(), values)
         };
+        let dimension = own.first().map(|line| output(line).dimension);
         time_panel(
-            "",
+            dimension.map_or("", quantity),
             shown(unit),
             own.iter().take(CURVES).map(curve).collect(),
         )

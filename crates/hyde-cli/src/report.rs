@@ -1,7 +1,7 @@
 //! The report of a run as one HTML page.
 
 use crate::project::Project;
-use crate::{assumptions, figures, forces, start, summary};
+use crate::{assumptions, figures, forces, head, start, summary};
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
 use hyde_program::Method;
@@ -9,7 +9,7 @@ use hyde_report::{
     Block, ChannelError, Event, EventTable, Outcome, Page, Parameter, RunReport, Section, Verdict,
     to_html,
 };
-use hyde_units::{format_value, significant};
+use hyde_units::{engineering_as, format_value, significant};
 
 /// The page as one text.
 pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String {
@@ -46,20 +46,23 @@ pub(crate) fn page(project: &Project, compiled: &Compiled, run: &Run) -> Page {
         .iter()
         .zip(&program.experiment.measures)
         .filter(|(measure, _)| !measure.expectation)
-        .map(|(measure, known)| hyde_report::KeyFigure {
-            name: measure.name.clone(),
-            value: match measure.missing {
-                None => significant(known.unit.unit().from_si(measure.value), 5),
-                Some(_) => "no value".to_owned(),
-            },
-            unit: match measure.missing {
-                None => figures::shown(known.unit.text()).to_owned(),
-                Some(_) => String::new(),
-            },
-            note: measure
-                .missing
-                .as_ref()
-                .map_or(String::new(), hyde_experiment::Missing::text),
+        .map(|(measure, known)| {
+            // As on the console, with the prefix that fits.
+            let text = engineering_as(measure.value, &known.unit);
+            let (value, unit) = text.split_once(' ').unwrap_or((&text, ""));
+            let (value, unit) = match measure.missing {
+                None => (value, unit),
+                Some(_) => ("no value", ""),
+            };
+            hyde_report::KeyFigure {
+                name: measure.name.clone(),
+                value: value.to_owned(),
+                unit: unit.to_owned(),
+                note: measure
+                    .missing
+                    .as_ref()
+                    .map_or(String::new(), hyde_experiment::Missing::text),
+            }
         })
         .collect();
     let channels = run
@@ -148,8 +151,7 @@ pub(crate) fn page(project: &Project, compiled: &Compiled, run: &Run) -> Page {
     let stop = hyde_units::NamedUnit::usual(hyde_units::Dimension::TIME);
     let mut page = RunReport {
         title: title.clone(),
-        model: program.name.clone(),
-        experiment: project.experiment.clone().unwrap_or_default(),
+        facts: head::facts(project),
         verdicts,
         key_figures,
         channels,
@@ -175,6 +177,7 @@ pub(crate) fn page(project: &Project, compiled: &Compiled, run: &Run) -> Page {
     if let Some(section) = assumptions::section(&assumptions::of_run(project, program, run)) {
         page.sections.insert(0, section);
     }
+    page.sections.splice(0..0, head::model(project));
     if let Some(incomplete) = &run.incomplete {
         let text = format!(
             "This run did not reach its end at {} s: {}. Results, events and figures end at {} s. Measures, \

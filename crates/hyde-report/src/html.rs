@@ -86,7 +86,11 @@ fn figures(section: &Section) -> impl Iterator<Item = (usize, &Figure)> {
         .enumerate()
         .filter_map(|(number, block)| match block {
             Block::Figure(figure) => Some((number, figure)),
-            Block::Text(_) | Block::Code(_) | Block::Verdicts(_) | Block::Table(_) => None,
+            Block::Text(_)
+            | Block::Code(_)
+            | Block::Verdicts(_)
+            | Block::Table(_)
+            | Block::Diagram(_) => None,
         })
 }
 
@@ -136,6 +140,13 @@ fn write_block(section: usize, number: usize, block: &Block) -> String {
         }
         Block::Table(table) => write_table(table),
         Block::Figure(figure) => write_figure(&format!("s{section}f{number}"), figure),
+        Block::Diagram(diagram) => {
+            let (svg, width) = diagram.to_svg();
+            format!(
+                "<figure style=\"--width:{width}px\">\n<div class=\"scroll\">\n{svg}</div>\n<figcaption>{}</figcaption>\n</figure>\n",
+                escape(&diagram.caption())
+            )
+        }
     }
 }
 

@@ -26,6 +26,7 @@ mod batch_report;
 mod bode_plot;
 mod circle_plot;
 mod diagnosis_report;
+mod diagram;
 mod draw;
 mod escape;
 mod event_strip;
@@ -52,6 +53,7 @@ pub use diagnosis_report::{
     ChannelChange, DiagnosisReport, ErrorChange, MovedParameter, RecordChange, ResidualMap,
     TriedEffect,
 };
+pub use diagram::{Diagram, DiagramPart};
 pub use escape::escape;
 pub use event_strip::{EventRow, EventStrip, Span};
 pub use figure::{Band, Between, Direction, Figure, Line, LineStyle, Marker, Panel, Reference};

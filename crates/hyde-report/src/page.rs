@@ -1,6 +1,6 @@
 //! A page of sections: texts, verdicts, tables and figures, whatever the report is about.
 
-use crate::Figure;
+use crate::{Diagram, Figure};
 
 /// What one HTML file shows.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -51,6 +51,8 @@ pub enum Block {
     Table(Table),
     /// A figure; figures that follow each other stand side by side where there is room.
     Figure(Figure),
+    /// Components and their connections.
+    Diagram(Diagram),
 }
 
 /// A statement that was checked.

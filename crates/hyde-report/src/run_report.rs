@@ -12,10 +12,8 @@ const EVENTS_SHOWN: usize = 100;
 pub struct RunReport {
     /// Heading of the page.
     pub title: String,
-    /// The model that was run.
-    pub model: String,
-    /// The experiment; empty without one.
-    pub experiment: String,
+    /// Pairs of name and value under the heading: model, experiment, file.
+    pub facts: Vec<(String, String)>,
     /// What was to hold, and whether it did.
     pub verdicts: Vec<Verdict>,
     /// The numbers to look at first.
@@ -109,8 +107,6 @@ impl RunReport {
     /// The report as a page, to add sections to.
     #[must_use]
     pub fn page(&self) -> Page {
-        let facts = [("Model", &self.model), ("Experiment", &self.experiment)];
-        let facts = facts.into_iter().filter(|(_, value)| !value.is_empty());
         let blocks = [
             ("Verdict", self.verdict_block()),
             ("Key figures", table_block(self.key_figure_table())),
@@ -128,9 +124,7 @@ impl RunReport {
         ];
         Page {
             title: self.title.clone(),
-            facts: facts
-                .map(|(name, value)| (name.to_owned(), value.clone()))
-                .collect(),
+            facts: self.facts.clone(),
             sections: Section::all(blocks),
             footer: self.footer.clone(),
         }

@@ -15,8 +15,12 @@ const ROUND: &str = " stroke-linecap=\"round\"";
 /// The figure as an SVG document of its own, on white.
 #[must_use]
 pub fn to_svg(figure: &Figure) -> String {
-    let drawing = draw(figure);
     let label = figure.title.as_deref().unwrap_or("figure");
+    written(&draw(figure), label)
+}
+
+/// A drawing as an SVG document with what it shows as its label.
+pub(crate) fn written(drawing: &Drawing, label: &str) -> String {
     let size = format!(
         "width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\"",
         drawing.width, drawing.height
@@ -41,7 +45,7 @@ pub fn to_svg(figure: &Figure) -> String {
             "<g font-family=\"{FONTS}\" style=\"font-kerning:none\" stroke-linejoin=\"round\">\n"
         ),
     );
-    write_items(&mut svg, &drawing);
+    write_items(&mut svg, drawing);
     svg.push_str("</g>\n</svg>\n");
     svg
 }

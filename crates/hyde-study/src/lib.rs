@@ -42,6 +42,7 @@ pub mod render;
 pub mod run_failure;
 pub mod settings;
 mod tables;
+pub mod topology;
 pub mod unobservable;
 pub mod world;
 

@@ -70,7 +70,11 @@ fn captions(blocks: &[Block]) -> Vec<&str> {
         .iter()
         .filter_map(|block| match block {
             Block::Figure(figure) => figure.caption.as_deref(),
-            Block::Text(_) | Block::Code(_) | Block::Verdicts(_) | Block::Table(_) => None,
+            Block::Text(_)
+            | Block::Code(_)
+            | Block::Verdicts(_)
+            | Block::Table(_)
+            | Block::Diagram(_) => None,
         })
         .collect()
 }

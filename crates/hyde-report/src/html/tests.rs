@@ -19,8 +19,7 @@ fn nasty_report() -> RunReport {
     .with_caption(NASTY);
     RunReport {
         title: nasty(),
-        model: nasty(),
-        experiment: nasty(),
+        facts: vec![(nasty(), nasty()), (nasty(), nasty())],
         verdicts: vec![Verdict {
             outcome: Outcome::Failed,
             text: nasty(),

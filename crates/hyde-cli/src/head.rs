@@ -1,0 +1,83 @@
+//! The head of every page: from what, with what and when it was made; and the model in words and as a picture.
+
+use crate::project::Project;
+use chrono::DateTime;
+use hyde_report::{Block, Diagram, DiagramPart, Section};
+use hyde_study::topology::topology;
+use hyde_syntax::Lookup;
+use hyde_syntax::ast::{Experiment, Item};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+/// Digits of the hash of the file that are shown; all are in `summary.json`.
+const DIGITS: usize = 12;
+/// A picture of more parts than these shows nothing.
+const MOST_PARTS: usize = 60;
+
+/// File, model, experiment, version, hash and date.
+pub(crate) fn facts(project: &Project) -> Vec<(String, String)> {
+    let file = project.sources.iter().next();
+    let file = file.map_or("", |(_, source)| source.name.as_str());
+    let hash = project.hash.get(..DIGITS).unwrap_or(&project.hash);
+    let mut facts = vec![("Model", project.model.clone())];
+    if let Some(name) = &project.experiment {
+        let doc = experiment(project, name).and_then(|own| own.doc.clone());
+        let told = doc.map_or_else(|| name.clone(), |doc| format!("{name}: {doc}"));
+        facts.push(("Experiment", told));
+    }
+    facts.push(("File", format!("{file}, SHA-256 {hash}…")));
+    facts.push((
+        "Made",
+        format!("{} by Hyde {}", now(), env!("CARGO_PKG_VERSION")),
+    ));
+    let owned = |(name, value): (&str, String)| (name.to_owned(), value);
+    facts.into_iter().map(owned).collect()
+}
+
+/// What the model says of itself, and its components with their connections; nothing of a model without either.
+pub(crate) fn model(project: &Project) -> Option<Section> {
+    let (_, own) = project.file.files.first()?;
+    let doc = own.items.iter().find_map(|item| match item {
+        Item::Class(class) if class.name.text == project.model => class.doc.clone(),
+        Item::Class(_) | Item::Type(_) | Item::Experiment(_) | Item::Study(_) => None,
+    });
+    let mut blocks: Vec<Block> = doc.map(Block::Text).into_iter().collect();
+    let lookup = Lookup {
+        files: &project.file.files,
+    };
+    let known = topology(lookup, &project.model);
+    let shown = !known.joints.is_empty() || !known.signals.is_empty();
+    if shown && known.parts.len() <= MOST_PARTS {
+        let part = |part: &hyde_study::topology::Part| DiagramPart {
+            name: part.name.clone(),
+            class: part.class.clone(),
+        };
+        blocks.push(Block::Diagram(Diagram {
+            parts: known.parts.iter().map(part).collect(),
+            joints: known.joints,
+            signals: known.signals,
+        }));
+    }
+    let heading = "Model".to_owned();
+    (!blocks.is_empty()).then_some(Section { heading, blocks })
+}
+
+fn experiment<'p>(project: &'p Project, name: &str) -> Option<&'p Experiment> {
+    let (_, own) = project.file.files.first()?;
+    own.items.iter().find_map(|item| match item {
+        Item::Experiment(experiment) if experiment.name.text == name => Some(experiment),
+        Item::Experiment(_) | Item::Class(_) | Item::Type(_) | Item::Study(_) => None,
+    })
+}
+
+/// The present minute in UTC.
+#[allow(clippy::disallowed_methods, reason = "a page says when it was made")]
+fn now() -> String {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH);
+    let seconds = since
+        .ok()
+        .and_then(|since| i64::try_from(since.as_secs()).ok());
+    let date = seconds.and_then(|seconds| DateTime::from_timestamp(seconds, 0));
+    date.map_or(String::new(), |date| {
+        date.naive_utc().format("%Y-%m-%d %H:%M UTC").to_string()
+    })
+}
