@@ -18,6 +18,7 @@ use crate::assumed;
 use crate::assumptions;
 use crate::commands::run;
 use crate::exit::Exit;
+use crate::head;
 use crate::project::{self, Aim, Records, Told as _, complain, print_output};
 use crate::summary;
 use crate::watch::Watch;
@@ -34,6 +35,8 @@ use std::sync::Arc;
 /// What one experiment asks for.
 struct Asked {
     title: String,
+    /// The head of the page.
+    facts: Vec<(String, String)>,
     /// One list for each `bode`, one response in it for each output.
     bodes: Vec<Vec<Response>>,
     /// One for each loop that is cut.
@@ -195,6 +198,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     let name = project.experiment.clone().unwrap_or_default();
     let mut asked = Asked {
         title: title(&project, &name, &program.name),
+        facts: head::facts(&project),
         bodes: Vec::new(),
         margins: Vec::new(),
         json: Vec::new(),

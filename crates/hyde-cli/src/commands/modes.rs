@@ -12,6 +12,7 @@ use crate::args::{ModelArgs, ModesArgs};
 use crate::assumed;
 use crate::assumptions;
 use crate::exit::Exit;
+use crate::head;
 use crate::project::{complain, print_output};
 use hyde_experiment::{
     About, Linear, LinearizeError, ModeShape, NaturalMode, Pole, Poles, linearize_about,
@@ -39,6 +40,8 @@ pub(crate) fn modes(args: &ModesArgs) -> Exit {
 pub(crate) struct Found {
     /// Its name, else that of the model.
     pub(crate) name: String,
+    /// The head of the page.
+    facts: Vec<(String, String)>,
     pub(crate) modes: Vec<NaturalMode>,
     shapes: Vec<Option<ModeShape>>,
     real: Vec<Pole>,
@@ -149,6 +152,7 @@ pub(crate) fn found(
     };
     Ok(Found {
         name: project.experiment.clone().unwrap_or(program.name.clone()),
+        facts: head::facts(&project),
         units: program.parameters.iter().map(unit).collect(),
         modes,
         shapes,

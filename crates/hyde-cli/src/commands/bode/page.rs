@@ -65,7 +65,7 @@ fn page(title: &str, all: &[Asked]) -> Page {
         .filter(|(_, blocks)| !blocks.is_empty());
     Page {
         title: title.to_owned(),
-        facts: Vec::new(),
+        facts: all.first().map_or(Vec::new(), |asked| asked.facts.clone()),
         sections: sections
             .map(|(heading, blocks)| Section { heading, blocks })
             .collect(),

@@ -17,7 +17,7 @@ pub(super) fn leave(folder: &Path, over: Option<Figure>, all: &[Found]) -> Resul
     });
     let page = Page {
         title: "Natural frequencies".to_owned(),
-        facts: Vec::new(),
+        facts: all.first().map_or(Vec::new(), |found| found.facts.clone()),
         sections: over.into_iter().chain(all.iter().map(section)).collect(),
         footer: format!("Hyde {}", env!("CARGO_PKG_VERSION")),
     };
