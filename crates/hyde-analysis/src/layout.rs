@@ -28,6 +28,7 @@ pub(crate) fn place(system: &mut System, matched: &Matched, order: &Order) -> Da
     dae.parameter_order = system.flat.parameter_order.clone();
     dae.columns = system.flat.columns.clone();
     dae.delays = system.flat.delays.clone();
+    dae.foreign = system.flat.foreign.clone();
     dae.experiment = system.flat.experiment.clone();
     dae.relations = system.relations.clone();
     dae.notes = system.notes.clone();

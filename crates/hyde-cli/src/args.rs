@@ -27,6 +27,9 @@ use std::sync::Arc;
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
+    /// Run each FMU of a model in a process of its own
+    #[arg(long, global = true)]
+    pub(crate) sandbox: bool,
 }
 
 const AFTER: &str = "Exit status: 0 success; 1 error in the model or its data; 2 error in the command line; 3 the \
@@ -90,6 +93,9 @@ pub(crate) enum Command {
     Completions(CompletionsArgs),
     /// Write the manual pages of all commands: `hyde man --out ~/.local/share/man/man1`
     Man(ManArgs),
+    /// Run an FMU for another process, as `--sandbox` asks
+    #[command(hide = true)]
+    FmuHost,
 }
 
 /// A model in a file, with what is set from outside.

@@ -42,7 +42,47 @@ fn all(
         notes.map(move |note| format!("table `{name}`: {note}"))
     });
     let mut all: Vec<String> = own.chain(looked_up).collect();
+    all.extend(of_fmus(project, program));
     all.extend(of_start(program, &tables, start, stop_s));
+    all
+}
+
+/// How the FMUs of a program are run and read.
+fn of_fmus(project: &Project, program: &Program) -> Vec<String> {
+    let mut all = Vec::new();
+    for known in &project.fmus {
+        let parts = program.foreign.iter();
+        let parts: Vec<String> = parts
+            .filter(|part| part.source == known.source)
+            .map(|part| match part.name.as_str() {
+                "" => "the model".to_owned(),
+                name => format!("`{name}`"),
+            })
+            .collect();
+        if parts.is_empty() {
+            continue;
+        }
+        let (file, parts) = (&known.fmu.file, parts.join(", "));
+        all.push(match crate::sandbox::is_asked() {
+            true => format!("{parts} runs machine code of `{file}` in a process of its own"),
+            false => format!(
+                "{parts} runs machine code of `{file}` in this process; `--sandbox` runs it in one of its own"
+            ),
+        });
+        let notes = known.fmu.description.notes.iter();
+        all.extend(notes.map(|note| format!("FMU `{file}`: {note}")));
+        let renamed = known.fmu.interface.renamed.iter().take(6);
+        let renamed: Vec<String> = renamed
+            .map(|(before, after)| format!("`{before}` is `{after}`"))
+            .collect();
+        if !renamed.is_empty() {
+            let more = match known.fmu.interface.renamed.len() {
+                0..=6 => "",
+                _ => ", …",
+            };
+            all.push(format!("FMU `{file}`: {}{more}", renamed.join(", ")));
+        }
+    }
     all
 }
 

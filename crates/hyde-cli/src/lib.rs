@@ -27,6 +27,7 @@ mod pages;
 mod panels;
 mod project;
 mod report;
+mod sandbox;
 mod start;
 mod study;
 mod summary;
@@ -72,6 +73,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     interruption::watch();
+    sandbox::ask(arguments.sandbox);
     let code = match &arguments.command {
         Command::Check(args) => commands::check::check(args),
         Command::Run(args) => commands::run::run(args),
@@ -101,6 +103,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Export(args) => commands::export::export(args),
         Command::Completions(args) => commands::completions::completions(args),
         Command::Man(args) => commands::man::man(args),
+        Command::FmuHost => sandbox::serve(),
     };
     output::ended(code).into()
 }

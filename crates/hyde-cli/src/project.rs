@@ -3,7 +3,7 @@
 use crate::args::ModelArgs;
 use crate::exit::Exit;
 pub(crate) use crate::output::{print_diagnostics, print_error, print_output};
-use crate::render;
+use crate::{render, sandbox};
 use hyde_compiler::{Candidate, Compiled};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_experiment::RunError;
@@ -32,6 +32,7 @@ pub(crate) fn asked(args: &ModelArgs) -> Result<Asked, Exit> {
         data: args.data.clone(),
         whole_library: args.whole_library,
         inputs: args.inputs.clone(),
+        fmu_host: sandbox::host(),
         ..Asked::of_file(&args.file)
     })
 }

@@ -18,7 +18,7 @@ mod written;
 pub use diagnosis::DiagnosisPlan;
 pub use emit::{Stage, emit, kernels_as_c};
 pub use hyde_flatten::{FUNCTIONS, usage};
-pub use hyde_flatten::{Form, FreeInputs, Header, TableFile};
+pub use hyde_flatten::{FmuInterface, Form, FreeInputs, Header, TableFile, fmu_has_no_equations};
 pub use hyde_ir::{Prior, Quantity};
 pub use hyde_jit::Backend;
 pub use ideal::{changed, ideals};

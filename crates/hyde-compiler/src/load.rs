@@ -3,7 +3,7 @@
 use crate::library_trees;
 use crate::named::{packages_named, tables_named, words_named};
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
-use hyde_flatten::TableFile;
+use hyde_flatten::{FmuInterface, TableFile};
 use hyde_library::Package;
 use hyde_syntax::ast::{self, Item};
 use std::collections::BTreeMap;
@@ -17,6 +17,8 @@ pub struct File {
     pub elsewhere: BTreeMap<String, Vec<String>>,
     /// The files of tables by the source file that names them and the name there: put in by who reads files.
     pub tables: BTreeMap<(FileId, String), TableFile>,
+    /// The FMUs by the source file that stands for each: put in by who reads files.
+    pub fmus: BTreeMap<FileId, FmuInterface>,
 }
 
 /// The place or the name of a package, and its text.
@@ -93,6 +95,7 @@ pub fn load(
         files,
         elsewhere: BTreeMap::new(),
         tables: BTreeMap::new(),
+        fmus: BTreeMap::new(),
     };
     file.unknown_imports(packages, diagnostics);
     file.look_elsewhere(packages);

@@ -134,6 +134,7 @@ pub(crate) fn input<'a>(
         files: &request.file.files,
         elsewhere: &request.file.elsewhere,
         tables: &request.file.tables,
+        fmus: &request.file.fmus,
         model: request.model,
         additions,
         experiment: request.experiment,

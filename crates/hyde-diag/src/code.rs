@@ -101,6 +101,9 @@ codes! {
     BadSweep "E0813" "a sweep cannot be planned";
     CannotCut "E0814" "a loop cannot be opened at this signal";
     CannotExport "E0815" "a part of the model cannot be expressed in the exported form";
+    BadFmu "E0816" "an FMU cannot be used";
+    FmuOnlyRuns "E0817" "an FMU has no equations for this analysis";
+    FmuFailed "E0818" "an FMU failed during a run";
     BadStudy "E0901" "a study is incomplete or invalid";
     NoFiles "E0902" "no file matches the pattern of a study";
     CannotVary "E0903" "a parameter cannot be varied";

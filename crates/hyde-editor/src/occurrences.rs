@@ -156,8 +156,11 @@ impl<'a> Walk<'a> {
                     base,
                     changes,
                     effects,
+                    fmu,
                 } => {
-                    walk.class_name(base);
+                    if fmu.is_none() {
+                        walk.class_name(base);
+                    }
                     walk.changes_of_class(base, changes);
                     effects.iter().for_each(|used| walk.effect_use(used));
                 }

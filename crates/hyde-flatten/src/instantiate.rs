@@ -288,6 +288,7 @@ impl<'a> Model<'a, '_> {
                 base,
                 changes,
                 effects,
+                fmu: _,
             } => {
                 self.hook(walk.id, walk.file, effects);
                 self.collect_base(walk, class, base, changes, out);

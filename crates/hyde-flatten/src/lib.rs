@@ -25,6 +25,7 @@ mod event_clock;
 mod experiment;
 mod field;
 mod finish;
+mod foreign;
 mod instance;
 mod instantiate;
 mod ledger;
@@ -42,6 +43,7 @@ mod zero;
 pub use additions::Additions;
 pub use call::{FUNCTIONS, usage};
 pub use candidates::{Candidate, Knob};
+pub use foreign::fmu_has_no_equations;
 pub use meaning::{Meaning, MeaningOf, ValueOf};
 
 use hyde_diag::{Diagnostics, FileId, Sources};
@@ -68,6 +70,19 @@ pub struct TableFile {
     pub columns: Vec<(String, Option<NamedUnit>, Vec<f64>)>,
 }
 
+/// What an FMU is to the model: the file that stands for it has one model, whose clocked part has these variables.
+#[derive(Clone, Debug, Default)]
+pub struct FmuInterface {
+    /// The file of the FMU as the model names it.
+    pub file: String,
+    /// What it is given before its first step.
+    pub parameters: Vec<String>,
+    /// What it reads at a tick.
+    pub inputs: Vec<String>,
+    /// What it gives.
+    pub outputs: Vec<String>,
+}
+
 /// What is to be flattened.
 pub struct Input<'a> {
     /// The source texts, for messages.
@@ -78,6 +93,8 @@ pub struct Input<'a> {
     pub elsewhere: &'a BTreeMap<String, Vec<String>>,
     /// The files of tables by the source file that names them and the name there.
     pub tables: &'a BTreeMap<(FileId, String), TableFile>,
+    /// The FMUs, by the source file that stands for each.
+    pub fmus: &'a BTreeMap<FileId, FmuInterface>,
     /// The model, in the first file.
     pub model: &'a str,
     /// Effects put on it beside those of its text.
@@ -182,5 +199,6 @@ fn build(model: &mut model::Model<'_, '_>) -> Option<()> {
     model.finish();
     model.ports();
     model.check_effect_words();
+    model.check_foreign();
     Some(())
 }

@@ -84,7 +84,7 @@ impl Kept {
                 // Names of packages and tables are words of the model; those of records are places.
                 name: match kind {
                     Kind::Record => short(&name),
-                    Kind::Model | Kind::Package | Kind::Table => name,
+                    Kind::Model | Kind::Package | Kind::Table | Kind::Fmu => name,
                 },
                 place: short(&place),
                 len: content.len(),

@@ -87,6 +87,8 @@ pub struct Dae {
     pub tick_order: Vec<ClockId>,
     /// Held values.
     pub holds: Vec<Hold>,
+    /// What something outside the equations computes.
+    pub foreign: Vec<crate::flat::Foreign>,
     /// Delayed quantities; their values follow those of the columns among the inputs, delay after delay.
     pub delays: IdVec<DelayId, Delay>,
     /// Conditions at the start.

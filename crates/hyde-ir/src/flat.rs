@@ -6,7 +6,7 @@ mod response;
 use crate::id::{AutomatonId, ClockId, ColumnId, DelayId, ExprId, IdVec, ParamId, VarId};
 use crate::{Column, ExprArena, Index, Parameter, Quantity, Range, Variable};
 pub use figure::{Curve, Figure, FigureKind};
-use hyde_diag::{InstancePath, Origin, Span};
+use hyde_diag::{FileId, InstancePath, Origin, Span};
 pub use response::{Bode, Cut, MeasuredResponse, Moment, RecordedResponse, ScaledColumn, Stepped};
 use std::collections::BTreeMap;
 
@@ -117,6 +117,28 @@ pub struct ClockedEquation {
     pub clock: ClockId,
     /// The equation.
     pub equation: Equation,
+}
+
+/// A component that something outside the equations computes, an FMU: stepped behind each tick of its clock. All its
+/// variables are clocked; the equations keep its outputs as they are (`y = pre(y)`) until it is stepped.
+#[derive(Clone, Debug)]
+pub struct Foreign {
+    /// Full name of the component.
+    pub name: String,
+    /// The file that it comes from, as the model names it.
+    pub file: String,
+    /// The source file that stands for it.
+    pub source: FileId,
+    /// Its clock.
+    pub clock: ClockId,
+    /// What it is given before its first step.
+    pub parameters: Vec<VarId>,
+    /// What it reads at a tick.
+    pub inputs: Vec<VarId>,
+    /// What it gives.
+    pub outputs: Vec<VarId>,
+    /// Where the component is declared.
+    pub origin: Origin,
 }
 
 /// `delay(u, T)`. In a run the time is a number: the parameters it is made of are structural, for without a delay the
@@ -400,6 +422,8 @@ pub struct FlatModel {
     pub clocks: IdVec<ClockId, Clock>,
     /// The equations of clocked partitions.
     pub clocked_equations: Vec<ClockedEquation>,
+    /// What something outside the equations computes.
+    pub foreign: Vec<Foreign>,
     /// The delayed quantities.
     pub delays: IdVec<DelayId, Delay>,
     /// Conditions that must hold.

@@ -9,9 +9,9 @@ use crate::{figures, ledger};
 use hyde_ir::dae::{self, Dae};
 use hyde_ir::{Id as _, Interpolation, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Clock, Column, Derivatives, Firmness, Hold, InitialCondition, Output,
-    Parameter, Pin, Prior, Program, Reaction, ReactionKind, RecordValue, RecordValueKind, Relation,
-    RelationUse, Selection, Target, UnknownBlock,
+    Assignment, Automaton, Clock, Column, Derivatives, Firmness, ForeignPart, Hold,
+    InitialCondition, Output, Parameter, Pin, Prior, Program, Reaction, ReactionKind, RecordValue,
+    RecordValueKind, Relation, RelationUse, Selection, Target, UnknownBlock,
 };
 use std::sync::Arc;
 
@@ -89,6 +89,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
             })
             .collect(),
         delays: delays(dae),
+        foreign: dae.foreign.iter().map(|part| foreign(dae, part)).collect(),
         initial: dae
             .initial
             .iter()
@@ -98,6 +99,27 @@ pub(crate) fn program(kernels: Compiled) -> Program {
         experiment: experiment(dae),
         notes: dae.notes.clone(),
         kernels: Arc::new(kernels),
+    }
+}
+
+fn foreign(dae: &Dae, part: &hyde_ir::flat::Foreign) -> ForeignPart {
+    let positions = |list: &[hyde_ir::VarId]| {
+        let places = list.iter().flat_map(|&var| {
+            let base = dae.places[var].map_or(0, |place| place.base);
+            base..base + dae.variables[var].size()
+        });
+        places.collect()
+    };
+    ForeignPart {
+        name: part.name.clone(),
+        file: part.file.clone(),
+        source: part.source,
+        clock: part.clock.index(),
+        parameters: positions(&part.parameters),
+        inputs: positions(&part.inputs),
+        outputs: positions(&part.outputs),
+        origin: part.origin.clone(),
+        computed_by: None,
     }
 }
 

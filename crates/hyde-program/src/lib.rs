@@ -18,6 +18,7 @@
 
 mod event;
 mod experiment;
+mod foreign;
 mod given;
 mod jacobian;
 mod kernels;
@@ -32,6 +33,7 @@ pub use experiment::{
     Bode, Curve, Cut, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse,
     Method, Moment, Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped,
 };
+pub use foreign::{Foreign, ForeignInstance, ForeignPart, ForeignTick, Stopped};
 pub use given::{Given, Misfit};
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Constant, Function, Kernels, Point, SomeRows, TickWrt, Workspace};

@@ -4,6 +4,7 @@ use crate::event::{
     Assignment, Automaton, Clock, Delay, Hold, InitialCondition, Pin, Reaction, Relation, Selection,
 };
 use crate::experiment::Experiment;
+use crate::foreign::ForeignPart;
 use crate::jacobian::{Jacobian, JacobianEntry};
 use crate::kernels::{Function, Kernels};
 use hyde_diag::{Origin, Span};
@@ -222,6 +223,8 @@ pub struct Program {
     pub initial: Vec<InitialCondition>,
     /// What is known of the derivatives, once asked for.
     pub derivatives: Derivatives,
+    /// The parts that are not equations.
+    pub foreign: Vec<ForeignPart>,
     /// What the experiment asks.
     pub experiment: Experiment,
     /// What the compiler decided and a user may want to know.

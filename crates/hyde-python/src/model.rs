@@ -242,7 +242,7 @@ fn loaded(asked: &Asked) -> PyResult<Model> {
     let aim = if project.experiment.is_some() {
         Aim::Run
     } else {
-        Aim::Linearize
+        Aim::Look
     };
     let compiled = match project.compile(aim) {
         Ok(compiled) => compiled,

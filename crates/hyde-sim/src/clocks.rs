@@ -3,6 +3,7 @@
 //! Tick k of a clock is at start + phase + k*period, computed by one multiplication: no drift. A held value changes with the
 //! tick, or after the clock's delay with the value of its tick.
 
+use crate::failure::Failure;
 use crate::sensitivity::{Sensitivities, Slopes};
 use crate::setup::same_instant;
 use crate::state::State;
@@ -141,7 +142,7 @@ impl Schedule {
         yp: &[f64],
         delayed: &[f64],
         mut slopes: Option<(&Sensitivities, &mut Slopes)>,
-    ) -> Ticked {
+    ) -> Result<Ticked, Box<Failure>> {
         let program = state.program;
         let mut ticked = Ticked::default();
         for &clock in &program.clock_order {
@@ -153,6 +154,8 @@ impl Schedule {
                 ticked.written.extend(program.kernels.tick_targets(clock));
             }
             state.tick(clock, t, y, yp, delayed);
+            let times = (t, self.clocks[clock].period);
+            state.foreign.tick(program, clock, times, &mut state.z)?;
             self.clocks[clock].next += 1;
             ticked.ticks += 1;
             let slopes = slopes.as_ref().map(|(_, slopes)| &**slopes);
@@ -178,7 +181,7 @@ impl Schedule {
                 ticked.written.extend(places);
             }
         }
-        ticked
+        Ok(ticked)
     }
 
     fn hold(

@@ -52,6 +52,17 @@ pub enum FailureKind {
     NoGradient(String),
     /// No steady state was reached: a state that still changes, and its rate in SI.
     NotSteady(String, f64),
+    /// A part that is not equations, an FMU, does not go on.
+    Foreign {
+        /// Full name of the component.
+        component: String,
+        /// Its file, as the model names it.
+        file: String,
+        /// What failed.
+        what: String,
+        /// What it logged last.
+        log: Vec<String>,
+    },
     /// It was ended from outside.
     Interrupted,
 }

@@ -23,6 +23,7 @@ mod edges;
 mod events;
 mod failure;
 mod first_step;
+mod foreign;
 mod guards;
 mod history;
 mod hurry;

@@ -93,6 +93,10 @@ impl<'a> Simulation<'a> {
             );
             Failure::new(FailureKind::Solver(message), t).at_origin(&program.clocks[clock].origin)
         })?;
+        if let (Some(_), Some(part)) = (setup.sensitivities, program.foreign.first()) {
+            let what = format!("the FMU `{}`, which has no derivatives", part.file);
+            return Err(Failure::new(FailureKind::NoGradient(what), t).at_origin(&part.origin));
+        }
         let mut sensitivities = match setup.sensitivities {
             Some(chosen) => Some(Sensitivities::new(&state, chosen, t)?),
             None => None,

@@ -2,6 +2,7 @@
 
 use crate::delays::Delays;
 use crate::failure::Failure;
+use crate::foreign::ForeignInstances;
 use crate::inputs::Inputs;
 use crate::released::Released;
 use crate::setup::Setup;
@@ -39,6 +40,8 @@ pub(crate) struct State<'a> {
     /// Switches that are held at their surfaces.
     pub(crate) slides: Vec<Slide>,
     pub(crate) differential: Vec<bool>,
+    /// The instances of the program's foreign parts, made at their first ticks.
+    pub(crate) foreign: ForeignInstances,
 }
 
 impl<'a> State<'a> {
@@ -61,6 +64,7 @@ impl<'a> State<'a> {
             loose: Vec::new(),
             slides: Vec::new(),
             differential: program.differential(&vec![0.0; program.n_memory]),
+            foreign: ForeignInstances::new(program, setup.stop_s),
         };
         state.inputs.read(setup.start_s, &mut state.u);
         state.read_delayed(setup.start_s);

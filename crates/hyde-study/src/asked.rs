@@ -1,5 +1,6 @@
 //! [`Asked`]: which model, with what set from outside, and where its files are.
 
+use crate::fmus::FmuHost;
 use crate::inputs::{Inputs, Kind};
 use crate::settings::Setting;
 use crate::world::{Disk, World};
@@ -28,6 +29,8 @@ pub struct Asked {
     pub world: Arc<dyn World>,
     /// The files of the model where they are kept track of, or are to be those of another time.
     pub inputs: Option<Arc<Inputs>>,
+    /// Who runs FMUs, if not this process.
+    pub fmu_host: Option<Arc<dyn FmuHost>>,
 }
 
 impl Asked {
@@ -44,6 +47,7 @@ impl Asked {
             whole_library: false,
             world: Arc::new(Disk),
             inputs: None,
+            fmu_host: None,
         }
     }
 

@@ -93,7 +93,7 @@ fn compiled(project: &mut Project, stop: &dyn Fn() -> bool) -> Result<Compiled, 
         return Err(Fault::Model);
     }
     let aim = match project.experiment {
-        None => Aim::Linearize,
+        None => Aim::Look,
         Some(_) => Aim::Ledger,
     };
     let compiled = project.compile_unless(aim, stop)?;

@@ -18,6 +18,8 @@ pub enum Kind {
     Package,
     /// A lookup table that a file names.
     Table,
+    /// An FMU that a file names.
+    Fmu,
     /// A record of the experiment, or the table of cases.
     Record,
 }

@@ -8,6 +8,7 @@
 //! package        packages beyond the library, and their manifests        package.rs
 //! settings       a parameter set from outside                            settings.rs
 //! tables         the files of lookup tables                              tables.rs
+//! fmus           FMUs that stand for models                              fmus.rs
 //! record_settings  how a record is to be read                            record_settings.rs
 //! records        the records of an experiment                            records.rs
 //! ports          inputs and outputs of a program for another tool        ports.rs
@@ -30,6 +31,7 @@ mod check;
 mod diagnosis;
 pub mod excitation;
 pub mod first_model;
+mod fmus;
 mod inputs;
 mod package;
 pub mod ports;
@@ -50,6 +52,7 @@ pub use asked::Asked;
 pub use calibration::{Calibration, calibration, chosen};
 pub use check::{Checked, check};
 pub use diagnosis::diagnosis;
+pub use fmus::{FmuHost, NamedFmu};
 pub use inputs::{Content, Inputs, Key, Kind};
 pub use package::{MANIFEST, Manifest, Root, Roots, is_inside, links_out};
 pub use project::{Aim, Loaded, Project, Records, files_of, load};

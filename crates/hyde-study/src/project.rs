@@ -1,6 +1,7 @@
 //! A model on its way to a program: file, experiment, records, settings.
 
 use crate::asked::Asked;
+use crate::fmus::{self, NamedFmu};
 use crate::inputs::Kind;
 use crate::package::{MANIFEST, Roots};
 use crate::records::{self, Record};
@@ -32,6 +33,8 @@ pub struct Project {
     pub records: BTreeMap<String, Record>,
     /// The tables that the file names.
     pub tables: Vec<Table>,
+    /// The FMUs that the file names.
+    pub fmus: Vec<NamedFmu>,
     /// What is set from outside.
     pub settings: Vec<Setting>,
     /// What is wrong so far, and what is only told.
@@ -58,6 +61,8 @@ pub struct Loaded {
     pub hash: String,
     /// The tables it names.
     pub tables: Vec<Table>,
+    /// The FMUs it names.
+    pub fmus: Vec<NamedFmu>,
     /// What is wrong so far.
     pub diagnostics: Diagnostics,
 }
@@ -134,11 +139,13 @@ impl Loaded {
             hyde_compiler::check_name(&sources, *id, tree, &name, &mut diagnostics);
         }
         let tables = tables::read(&mut file, asked, &roots, &sources, &mut diagnostics);
+        let fmus = fmus::read(&mut file, asked, &roots, &mut sources, &mut diagnostics);
         Self {
             sources,
             file,
             hash: format!("{:x}", Sha256::digest(text.as_bytes())),
             tables,
+            fmus,
             diagnostics,
         }
     }
@@ -163,6 +170,7 @@ impl Loaded {
             file,
             hash,
             tables,
+            fmus,
             diagnostics,
         } = self;
         let mut project = Project {
@@ -172,6 +180,7 @@ impl Loaded {
             experiment: None,
             records: BTreeMap::new(),
             tables,
+            fmus,
             settings: asked.settings.clone(),
             diagnostics,
             file,
@@ -238,6 +247,8 @@ pub enum Aim {
     Ledger,
     /// The linearised model, its inputs free, with the energies of its parts.
     Linearize,
+    /// The same to be looked at only: FMUs are allowed, which have no derivatives.
+    Look,
     /// What an observer runs: replays made, measured channels alone reported.
     Observe,
     /// A run whose free inputs another tool sets, but for those that a stimulus drives.
@@ -247,7 +258,7 @@ pub enum Aim {
 impl Aim {
     fn free_inputs(self) -> FreeInputs {
         match self {
-            Self::Linearize => FreeInputs::All,
+            Self::Linearize | Self::Look => FreeInputs::All,
             Self::Export => FreeInputs::Undriven,
             Self::Run | Self::Ledger | Self::Observe => FreeInputs::None,
         }
@@ -299,20 +310,25 @@ impl Project {
             settings: &settings,
             records: &headers,
             free_inputs: aim.free_inputs(),
-            ledger: matches!(aim, Aim::Ledger | Aim::Linearize),
+            ledger: matches!(aim, Aim::Ledger | Aim::Linearize | Aim::Look),
             form: match aim {
                 Aim::Observe => Form::Observed,
-                Aim::Run | Aim::Ledger | Aim::Linearize | Aim::Export => Form::Run,
+                Aim::Run | Aim::Ledger | Aim::Linearize | Aim::Look | Aim::Export => Form::Run,
             },
             backend: Backend::Native,
         };
         let compiled = hyde_compiler::compile_unless(&request, stop, &mut self.diagnostics);
-        let Some(compiled) = compiled else {
+        let Some(mut compiled) = compiled else {
             return Err(match self.diagnostics.has_errors() {
                 true => Fault::Model,
                 false => Fault::Interrupted,
             });
         };
+        if let Some(diagnostic) = fmus::refused(&compiled.program, aim) {
+            self.diagnostics.push(diagnostic);
+            return Err(Fault::Model);
+        }
+        fmus::attach(&mut compiled.program, &self.fmus);
         for setting in &self.settings {
             let checked = match compiled.program.parameter(&setting.path) {
                 Some((parameter, _)) => settings::check(setting, parameter),
@@ -325,6 +341,11 @@ impl Project {
             }
         }
         Ok(compiled)
+    }
+
+    /// Gives the parts of a program that are FMUs what computes them.
+    pub fn attach_fmus(&self, program: &mut hyde_program::Program) {
+        fmus::attach(program, &self.fmus);
     }
 
     /// Takes the stimuli of these inputs out of the experiment: another tool is to set them.

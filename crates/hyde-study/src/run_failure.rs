@@ -1,5 +1,6 @@
 //! A run that could not go on, as a diagnostic: component, equation, source line, time.
 
+use crate::fmus;
 use crate::refused::Fault;
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::RunError;
@@ -195,6 +196,9 @@ pub fn instant(time_s: f64) -> String {
 
 fn failed(failure: &Failure, program: &Program) -> Diagnostic {
     let at = format!("at {} s", hyde_units::significant(failure.t, 7));
+    if let Some(diagnostic) = fmus::failed(failure, &at) {
+        return diagnostic;
+    }
     let (code, message, help) = match &failure.kind {
         FailureKind::Inconsistent { singular, at_start } => {
             let what = if *at_start {
@@ -331,6 +335,8 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             ),
             "use a time of the run as the operating point: `--at '0.3 [s]'`",
         ),
+        // Reported above.
+        FailureKind::Foreign { what, .. } => (Code::FmuFailed, what.clone(), ""),
         FailureKind::Interrupted => (
             Code::SolverFailed,
             format!("the run was interrupted {at}"),
@@ -364,6 +370,7 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
             | FailureKind::Impact(..)
             | FailureKind::Interrupted
             | FailureKind::NotSteady(..)
+            | FailureKind::Foreign { .. }
             | FailureKind::Input(_) => "this equation",
         };
         let text = if instance.is_empty() {

@@ -93,7 +93,7 @@ impl Order {
         let parts = [
             ("model", of(&[Kind::Model, Kind::Package])),
             ("library", digest(&library)),
-            ("data", of(&[Kind::Table, Kind::Record])),
+            ("data", of(&[Kind::Table, Kind::Fmu, Kind::Record])),
             ("plan", digest(&[plan.to_string().as_bytes()])),
             ("versions", digest(&[versions.as_bytes()])),
         ];

@@ -130,10 +130,13 @@ impl Source<'_> {
             backend: Backend::Native,
         };
         match hyde_compiler::compile(&request, &mut diagnostics) {
-            Some(compiled) => Ok(Ready {
-                program: compiled.program,
-                tables: hyde_study::tables(&read),
-            }),
+            Some(mut compiled) => {
+                project.attach_fmus(&mut compiled.program);
+                Ok(Ready {
+                    program: compiled.program,
+                    tables: hyde_study::tables(&read),
+                })
+            }
             None => Err(diagnostics),
         }
     }

@@ -132,6 +132,9 @@ pages! {
     BadSweep "E0813";
     CannotCut "E0814";
     CannotExport "E0815";
+    BadFmu "E0816";
+    FmuOnlyRuns "E0817";
+    FmuFailed "E0818";
     BadStudy "E0901";
     NoFiles "E0902";
     CannotVary "E0903";

@@ -25,7 +25,7 @@ fn listed(args: &ParamsArgs) -> Result<String, Exit> {
     let mut project = project::load(&args.model, Records::IfThere)?;
     let alone = project.experiment.is_none();
     let compiled =
-        project.compile_or_report(&args.model, if alone { Aim::Linearize } else { Aim::Run })?;
+        project.compile_or_report(&args.model, if alone { Aim::Look } else { Aim::Run })?;
     let program = &compiled.program;
     let tables = hyde_study::tables(&project.records);
     let values = parameters(program, &tables, &project.set())

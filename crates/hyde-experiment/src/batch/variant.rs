@@ -47,6 +47,7 @@ pub fn varied(file: &File, draft: &Draft, model: &str, options: &[usize]) -> (Fi
             doc: None,
             body: ClassBody::Short {
                 base,
+                fmu: None,
                 changes: Vec::new(),
                 effects: used,
             },

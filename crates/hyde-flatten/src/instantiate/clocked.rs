@@ -58,5 +58,6 @@ impl<'a> Model<'a, '_> {
             })
             .collect();
         self.members(part, &collected);
+        self.foreign_part(id, part, item.file);
     }
 }

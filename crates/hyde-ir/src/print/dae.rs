@@ -118,6 +118,13 @@ pub fn print_dae(dae: &Dae, sources: &Sources) -> String {
         }
     }
     events(&mut out, dae, &names, sources);
+    for part in &dae.foreign {
+        let _ = writeln!(
+            out,
+            "fmu {} from {}, stepped by {}",
+            part.name, part.file, dae.ticks[part.clock].name
+        );
+    }
     for &clock in &dae.tick_order {
         let tick = &dae.ticks[clock];
         let times = format!(

@@ -193,7 +193,7 @@ impl Simulation<'_> {
             written,
         } = self
             .schedule
-            .run(state, t, &left.y, &left.yp, &left.delayed, along);
+            .run(state, t, &left.y, &left.yp, &left.delayed, along)?;
         for ((now, after), before) in now.iter_mut().zip(&state.z).zip(&left.z) {
             if after.to_bits() != before.to_bits() {
                 *now = *after;

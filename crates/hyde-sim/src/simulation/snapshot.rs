@@ -4,7 +4,7 @@ use super::Simulation;
 use super::step::Work;
 use crate::clocks::Schedule;
 use crate::delays::Delays;
-use crate::failure::Failure;
+use crate::failure::{Failure, FailureKind};
 use crate::sensitivity::Cause;
 use crate::sliding::Slide;
 use serde::{Deserialize, Serialize};
@@ -35,6 +35,11 @@ pub struct Snapshot {
 impl Simulation<'_> {
     /// Where the caller is. A model with delays goes on from there anew: what it reads later is recorded up to there.
     pub(crate) fn snapshot(&mut self) -> Result<Snapshot, Box<Failure>> {
+        if let Some(part) = self.program.foreign.first() {
+            let reason = format!("the state of the FMU `{}` cannot be kept", part.file);
+            return Err(Failure::new(FailureKind::Solver(reason), self.integrator.t)
+                .at_origin(&part.origin));
+        }
         if !self.program.delays.is_empty() {
             self.cut()?;
         }

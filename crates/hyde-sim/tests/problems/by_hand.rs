@@ -107,6 +107,7 @@ pub(crate) fn program(
         clock_order: Vec::new(),
         holds: Vec::new(),
         delays: Vec::new(),
+        foreign: Vec::new(),
         derivatives: Derivatives::default(),
         experiment: Experiment::default(),
         notes: Vec::new(),

@@ -118,6 +118,7 @@ pub fn bench(
         file,
         hash,
         tables,
+        fmus,
         mut diagnostics,
     } = loaded;
     if column.is_none() {
@@ -140,6 +141,7 @@ pub fn bench(
         file,
         hash,
         tables,
+        fmus,
         diagnostics,
         model: experiment.model.dotted(),
         experiment: Some(experiment.name.text.clone()),

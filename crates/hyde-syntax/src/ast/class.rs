@@ -56,10 +56,12 @@ pub enum ClassBody {
         /// Its elements.
         elements: Vec<Element>,
     },
-    /// `model A = B(R = 2) with E(dF = 1) on guide;`
+    /// `model A = B(R = 2) with E(dF = 1) on guide;`, `model C = fmu("controller.fmu", Kp = 2);`
     Short {
-        /// The model it is.
+        /// The model it is; of an FMU `fmu`, until who reads files has put in the model of its interface.
         base: Reference,
+        /// The file of an FMU as written, and where.
+        fmu: Option<(String, Span)>,
         /// With these changes.
         changes: Vec<Change>,
         /// And these effects.

@@ -14,14 +14,19 @@ impl Printer {
         match &class.body {
             ClassBody::Short {
                 base,
+                fmu,
                 changes,
                 effects,
             } => {
-                let mut text = format!(
-                    "{word} {name} = {}{}",
-                    reference(base),
-                    modification(changes)
-                );
+                let changed = modification(changes);
+                let mut text = match fmu {
+                    None => format!("{word} {name} = {}{changed}", reference(base)),
+                    Some((file, _)) => {
+                        let changed = changed.trim_start_matches('(').trim_end_matches(')');
+                        let comma = if changed.is_empty() { "" } else { ", " };
+                        format!("{word} {name} = fmu(\"{file}\"{comma}{changed})")
+                    }
+                };
                 for (index, used) in effects.iter().enumerate() {
                     let lead = if index == 0 { " with " } else { ", " };
                     let _ = write!(text, "{lead}{}", effect_use(used));

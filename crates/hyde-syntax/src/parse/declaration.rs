@@ -121,8 +121,13 @@ impl Builder<'_> {
     /// From a `modification` node.
     pub(super) fn changes(&mut self, node: Node<'_>) -> Vec<Change> {
         parts(node)
-            .filter_map(|change| self.change(parts(change).next()?))
+            .filter_map(|change| self.only_change(change))
             .collect()
+    }
+
+    /// The change of a node that is one.
+    pub(super) fn only_change(&mut self, node: Node<'_>) -> Option<Change> {
+        self.change(parts(node).next()?)
     }
 
     fn change(&mut self, node: Node<'_>) -> Option<Change> {

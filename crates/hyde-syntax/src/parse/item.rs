@@ -113,6 +113,15 @@ impl Parser<'_> {
         }
         if self.looking_at("model")
             && self.nth_word(2) == Some("=")
+            && self.nth_word(3) == Some("fmu")
+            && self.nth_word(5).is_some_and(|word| word.starts_with('"'))
+        {
+            let pairs = self.expect(Rule::fmu_item)?;
+            let node = significant(pairs).next()?;
+            return self.build(start).fmu_class(node).map(Item::Class);
+        }
+        if self.looking_at("model")
+            && self.nth_word(2) == Some("=")
             && let Some(pairs) = self.accept(Rule::short_item)
         {
             let node = significant(pairs).next()?;
@@ -357,8 +366,49 @@ impl Builder<'_> {
         }
         let body = ClassBody::Short {
             base,
+            fmu: None,
             changes,
             effects,
+        };
+        Some(Class {
+            kind: ClassKind::Model,
+            name,
+            doc,
+            body,
+            span,
+        })
+    }
+
+    /// `model Controller = fmu("controller.fmu", Kp = 2);`
+    fn fmu_class(&mut self, node: Node<'_>) -> Option<Class> {
+        let span = self.span(&node);
+        let words = [Rule::kw_model, Rule::kw_fmu];
+        let mut inner = parts(node).filter(|part| !words.contains(&part.as_rule()));
+        let name = self.name(&inner.next()?);
+        let file = inner.next()?;
+        let place = self.span(&file);
+        let (mut changes, mut doc) = (Vec::new(), None);
+        for part in inner {
+            match part.as_rule() {
+                Rule::change => changes.extend(self.only_change(part)),
+                _ => doc = Some(Self::text(part)),
+            }
+        }
+        let word = crate::ast::Name {
+            text: "fmu".to_owned(),
+            span: place,
+        };
+        let body = ClassBody::Short {
+            base: crate::ast::Reference {
+                parts: vec![crate::ast::Part {
+                    name: word,
+                    subscripts: Vec::new(),
+                }],
+                span: place,
+            },
+            fmu: Some((Self::string(&file), place)),
+            changes,
+            effects: Vec::new(),
         };
         Some(Class {
             kind: ClassKind::Model,

@@ -1,0 +1,202 @@
+//! The FMUs that a file names: `model Controller = fmu("controller.fmu");`. Each becomes a model of its own source file.
+
+use crate::asked::Asked;
+use crate::inputs::Kind;
+use crate::package::Roots;
+use crate::project::Aim;
+use hyde_compiler::{File, FmuInterface, fmu_has_no_equations};
+use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
+use hyde_fmu_import::{Fmu, InProcess};
+use hyde_program::{Foreign, Program};
+use hyde_sim::{Failure, FailureKind};
+use hyde_syntax::ast::{ClassBody, Item, Name, Part, Reference};
+use sha2::{Digest, Sha256};
+use std::fmt::Debug;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Who runs the instances of FMUs, if not this process.
+pub trait FmuHost: Debug + Send + Sync {
+    /// What makes the instances of an FMU.
+    fn host(&self, fmu: &Arc<Fmu>) -> Arc<dyn Foreign>;
+}
+
+/// An FMU that was read.
+#[derive(Clone, Debug)]
+pub struct NamedFmu {
+    /// Where it is.
+    pub path: PathBuf,
+    /// SHA-256 of its content.
+    pub hash: String,
+    /// What it is.
+    pub fmu: Arc<Fmu>,
+    /// The source file that stands for it.
+    pub source: FileId,
+    /// What makes its instances.
+    pub computed_by: Arc<dyn Foreign>,
+}
+
+/// Reads every FMU that the files name, and puts a model for it beside them. What is missing or wrong is reported.
+pub(crate) fn read(
+    file: &mut File,
+    asked: &Asked,
+    roots: &Roots,
+    sources: &mut Sources,
+    diagnostics: &mut Diagnostics,
+) -> Vec<NamedFmu> {
+    let mut found = Vec::new();
+    let mut models = Vec::new();
+    for (id, tree) in &mut file.files {
+        for item in &mut tree.items {
+            let Item::Class(class) = item else { continue };
+            let ClassBody::Short {
+                base,
+                fmu: Some((name, span)),
+                ..
+            } = &mut class.body
+            else {
+                continue;
+            };
+            let model = class.name.text.as_str();
+            // Beside packages of the user, which have other names: no one begins like this and ends in a number.
+            let package = format!("fmu_{model}_{}", found.len() + 1);
+            let importer = sources.get(*id).name.clone();
+            match of_file(asked, roots, (&importer, name, *span), &package, model) {
+                Ok((path, hash, fmu)) => {
+                    *base = dotted(&package, model, *span);
+                    let fmu = Arc::new(fmu);
+                    let computed_by: Arc<dyn Foreign> = match &asked.fmu_host {
+                        Some(host) => host.host(&fmu),
+                        None => Arc::new(InProcess::new(fmu.clone())),
+                    };
+                    let source = sources.add(name.as_str(), fmu.interface.text.as_str());
+                    let tree = hyde_syntax::parse(sources, source, diagnostics);
+                    models.push((
+                        source,
+                        tree,
+                        FmuInterface {
+                            file: name.clone(),
+                            parameters: fmu.interface.parameters.clone(),
+                            inputs: fmu.interface.inputs.clone(),
+                            outputs: fmu.interface.outputs.clone(),
+                        },
+                    ));
+                    found.push(NamedFmu {
+                        path,
+                        hash,
+                        fmu,
+                        source,
+                        computed_by,
+                    });
+                }
+                Err(diagnostic) => diagnostics.push(*diagnostic),
+            }
+        }
+    }
+    for (source, tree, interface) in models {
+        file.files.push((source, tree));
+        file.fmus.insert(source, interface);
+    }
+    found
+}
+
+fn dotted(package: &str, model: &str, span: Span) -> Reference {
+    let part = |text: &str| Part {
+        name: Name {
+            text: text.to_owned(),
+            span,
+        },
+        subscripts: Vec::new(),
+    };
+    Reference {
+        parts: vec![part(package), part(model)],
+        span,
+    }
+}
+
+fn of_file(
+    asked: &Asked,
+    roots: &Roots,
+    (importer, name, span): (&str, &str, Span),
+    package: &str,
+    model: &str,
+) -> Result<(PathBuf, String, Fmu), Box<Diagnostic>> {
+    let path = match &asked.inputs {
+        Some(inputs) if inputs.is_replayed() => PathBuf::from(name),
+        Some(_) | None => roots
+            .data(importer, name)
+            .map_err(|diagnostic| Box::new(diagnostic.label(span, "named here")))?,
+    };
+    let content = asked
+        .read(Kind::Fmu, importer, name, &path)
+        .map_err(|reason| {
+            let diagnostic = Diagnostic::error(
+                Code::NotDeclared,
+                format!("an FMU has no file: {reason}"),
+            );
+            Box::new(diagnostic.label(span, "named here").help(
+                "the path is relative to the folder of the manifest, or, without a manifest, to that of the model",
+            ))
+        })?;
+    let hash = format!("{:x}", Sha256::digest(&content));
+    match Fmu::read(name, content, package, model) {
+        Ok(fmu) => Ok((path, hash, fmu)),
+        Err(unusable) => Err(Box::new(
+            Diagnostic::error(Code::BadFmu, unusable.what)
+                .label(span, "named here")
+                .help(unusable.help),
+        )),
+    }
+}
+
+/// Gives the parts of a program what computes them.
+pub(crate) fn attach(program: &mut Program, fmus: &[NamedFmu]) {
+    for part in &mut program.foreign {
+        let fmu = fmus.iter().find(|fmu| fmu.source == part.source);
+        part.computed_by = fmu.map(|fmu| fmu.computed_by.clone());
+    }
+}
+
+/// Refuses a program with an FMU to what needs the equations of the whole model.
+pub(crate) fn refused(program: &Program, aim: Aim) -> Option<Diagnostic> {
+    let needs = match aim {
+        Aim::Run | Aim::Ledger | Aim::Look => return None,
+        Aim::Linearize => "a linearised model",
+        Aim::Observe => "an observer",
+        Aim::Export => "an exported model",
+    };
+    let part = program.foreign.first()?;
+    let place = (part.name.as_str(), part.file.as_str(), part.origin.span);
+    Some(fmu_has_no_equations(place, needs))
+}
+
+/// The diagnostic of an FMU that did not go on, if that is what failed.
+pub(crate) fn failed(failure: &Failure, at: &str) -> Option<Diagnostic> {
+    let FailureKind::Foreign {
+        component,
+        file,
+        what,
+        log,
+    } = &failure.kind
+    else {
+        return None;
+    };
+    let of = match component.as_str() {
+        "" => format!("the FMU `{file}`"),
+        component => format!("the FMU `{file}` of `{component}`"),
+    };
+    let message = format!("{of} failed {at}: {what}");
+    let mut diagnostic = Diagnostic::error(Code::FmuFailed, message);
+    for origin in &failure.origins {
+        diagnostic = diagnostic.label(origin.span, "this component");
+    }
+    diagnostic = match log.is_empty() {
+        true => diagnostic.note("it logged no warning or error"),
+        false => log.iter().fold(diagnostic, |diagnostic, line| {
+            diagnostic.note(format!("it logged {line}"))
+        }),
+    };
+    Some(diagnostic.help(
+        "check its parameters, its inputs just before (`hyde run … --out`), and the communication step `step`",
+    ))
+}
