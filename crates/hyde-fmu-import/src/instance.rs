@@ -88,7 +88,6 @@ impl Running {
         match self.stepped_to {
             None => {
                 self.set(&fmu, parameters, tick.parameters, true)?;
-                self.set(&fmu, inputs, tick.inputs, false)?;
                 let stop = Some(tick.stop).filter(|stop| stop.is_finite());
                 self.slave.enter_initialization(tick.t, stop)?;
                 self.set(&fmu, inputs, tick.inputs, false)?;

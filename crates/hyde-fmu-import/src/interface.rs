@@ -24,11 +24,19 @@ pub struct Interface {
     pub outputs: Vec<String>,
     /// The variables of the FMU in the same order: parameters, inputs, outputs, by their number in the description.
     pub variables: [Vec<usize>; 3],
+    /// The name of each variable in the model, in the order of the description.
+    pub names: Vec<String>,
     /// Names that are written otherwise in the model: in the FMU, in the model.
     pub renamed: Vec<(String, String)>,
 }
 
 impl Interface {
+    /// The names of its parameters in the model.
+    pub fn parameter_names(&self) -> impl Iterator<Item = &str> {
+        let [parameters, ..] = &self.variables;
+        parameters.iter().map(|&number| self.names[number].as_str())
+    }
+
     /// The interface of a description.
     #[must_use]
     pub fn of(description: &Description, package: &str, model: &str) -> Self {
@@ -69,17 +77,30 @@ impl Interface {
             };
             let _ = writeln!(declared, "  {word} {type_name} {name}{dims}{bound} {doc};");
             let first = match (variable.role, start) {
-                (Role::Output, Some(value)) => format!("(start = {value})"),
+                (Role::Output, Some(value)) => {
+                    let value = value.replace("true", "1").replace("false", "0");
+                    format!("(start = {value})")
+                }
                 (Role::Output | Role::Parameter | Role::Input, _) => String::new(),
             };
-            let _ = writeln!(clocked, "    {type_name} {inside}{dims}{first};");
+            let kept = match (variable.role, variable.numbers) {
+                (Role::Output, Numbers::Boolean) => "Integer",
+                _ => type_name.as_str(),
+            };
+            let _ = writeln!(clocked, "    {kept} {inside}{dims}{first};");
             let _ = match variable.role {
                 Role::Parameter => writeln!(ticked, "    {inside} = {name};"),
                 Role::Input => writeln!(ticked, "    {inside} = sample({name});"),
                 Role::Output => writeln!(ticked, "    {inside} = pre({inside});"),
             };
             if variable.role == Role::Output {
-                let _ = writeln!(held, "  {name} = hold(fmu.{inside});");
+                // Held are numbers; that of a truth is 0 or 1.
+                let truth = if variable.numbers == Numbers::Boolean {
+                    " > 0.5"
+                } else {
+                    ""
+                };
+                let _ = writeln!(held, "  {name} = hold(fmu.{inside}){truth};");
             }
             found.variables[list].push(number);
             let lists = [&mut found.parameters, &mut found.inputs, &mut found.outputs];
@@ -99,6 +120,7 @@ impl Interface {
             "\nmodel {model} {title}\n  parameter TStep step{step} \"communication step\";\n{declared}  clocked fmu(step)\n{clocked}{ticked}  end fmu;\nequation\n{held}end {model};\n"
         );
         found.text = text;
+        found.names = all.into_iter().map(|(_, name)| name).collect();
         found
     }
 }

@@ -83,12 +83,17 @@ impl Fmu {
             .map_err(|_| not_an_fmu("it has no `modelDescription.xml`".to_owned()))?
             .read_to_string(&mut text)
             .map_err(|error| not_an_fmu(format!("`modelDescription.xml`: {error}")))?;
-        let description = Description::parse(file, &text)?;
+        let mut description = Description::parse(file, &text)?;
         let names: Vec<String> = archive
             .file_names()
             .filter_map(|name| Some(name.ok()?.into_owned()))
             .collect();
         let library = description.library(file, names.iter().map(String::as_str))?;
+        if needs_python(&mut archive, &library) {
+            description.notes.push(
+                "its library needs Python: that of the system is loaded before it, or that of `LD_PRELOAD`".to_owned(),
+            );
+        }
         let interface = Interface::of(&description, package, model);
         Ok(Self {
             file: file.to_owned(),
@@ -98,4 +103,16 @@ impl Fmu {
             content,
         })
     }
+}
+
+/// Whether the library calls Python without bringing it along. Those that do are small; large ones are not looked into.
+fn needs_python(archive: &mut zip::ZipArchive<std::io::Cursor<&[u8]>>, library: &str) -> bool {
+    const LARGEST: u64 = 16 << 20;
+    let mut content = Vec::new();
+    let Ok(entry) = archive.by_name(library) else {
+        return false;
+    };
+    let read = entry.take(LARGEST).read_to_end(&mut content);
+    let word = b"\0PyObject_";
+    read.is_ok() && content.windows(word.len()).any(|found| found == word)
 }

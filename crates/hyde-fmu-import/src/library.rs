@@ -5,7 +5,11 @@ use crate::description::{FmuVariable, Version};
 use crate::log::Log;
 use crate::unpacked::Unpacked;
 use crate::{Fmu, fmi_2_0, fmi_3_0};
+use fmi_sys::fmi2::Fmi2Binding;
+use fmi_sys::fmi3::Fmi3Binding;
+use libloading::os::unix::{Library as UnixLibrary, RTLD_GLOBAL, RTLD_LOCAL, RTLD_NOW};
 use std::mem::ManuallyDrop;
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -29,8 +33,8 @@ pub(crate) trait Slave: Send {
 /// The functions of a library. It is never unloaded: libraries that hold an interpreter or have started threads do not
 /// survive that.
 pub(crate) enum Functions {
-    Two(ManuallyDrop<fmi_sys::fmi2::Fmi2Binding>),
-    Three(ManuallyDrop<fmi_sys::fmi3::Fmi3Binding>),
+    Two(ManuallyDrop<Fmi2Binding>),
+    Three(ManuallyDrop<Fmi3Binding>),
 }
 
 /// An FMU that is loaded in this process.
@@ -45,24 +49,20 @@ impl Library {
     pub(crate) fn load(fmu: &Fmu) -> Result<Self, String> {
         let folder = Unpacked::of(fmu)?;
         let path = folder.file(&fmu.library);
-        let failed = |error: &dyn std::fmt::Display| {
-            let shown = error
-                .to_string()
-                .replace(&format!("{}/", folder.path().display()), "");
+        let library = open(&path).map_err(|error| {
+            let shown = error.replace(&format!("{}/", folder.path().display()), "");
             format!("its library cannot be loaded: {shown}")
-        };
-        // SAFETY: loading runs the initialisers of the library, which is what the user asked for by running the model; its
-        // functions have the types of the standard, which its model description declares.
+        })?;
+        // SAFETY: the functions have the types of the standard, which the model description declares.
         let functions = unsafe {
             match fmu.description.version {
-                Version::Two => Functions::Two(ManuallyDrop::new(
-                    fmi_sys::fmi2::Fmi2Binding::new(&path).map_err(|error| failed(&error))?,
-                )),
-                Version::Three => Functions::Three(ManuallyDrop::new(
-                    fmi_sys::fmi3::Fmi3Binding::new(&path).map_err(|error| failed(&error))?,
-                )),
+                Version::Two => Fmi2Binding::from_library(library)
+                    .map(|own| Functions::Two(ManuallyDrop::new(own))),
+                Version::Three => Fmi3Binding::from_library(library)
+                    .map(|own| Functions::Three(ManuallyDrop::new(own))),
             }
         };
+        let functions = functions.map_err(|error| error.to_string())?;
         Ok(Self {
             functions,
             folder,
@@ -90,6 +90,42 @@ impl Library {
             Functions::Three(_) => Box::new(fmi_3_0::Instance::new(self, fmu, name, log)?),
         })
     }
+}
+
+/// Loads a library, and Python before it if it needs that.
+fn open(path: &Path) -> Result<libloading::Library, String> {
+    let error = match opened(path, RTLD_NOW | RTLD_LOCAL) {
+        Ok(library) => return Ok(library.into()),
+        Err(error) => error.to_string(),
+    };
+    if !error.contains("undefined symbol: Py") && !error.contains("undefined symbol: _Py") {
+        return Err(error);
+    }
+    let names = PYTHON.map(|minor| format!("libpython3.{minor}.so.1.0"));
+    for name in &names {
+        let Ok(python) = opened(Path::new(name), RTLD_NOW | RTLD_GLOBAL) else {
+            continue;
+        };
+        // An interpreter that has begun does not end before its process.
+        std::mem::forget(python);
+        return match opened(path, RTLD_NOW | RTLD_LOCAL) {
+            Ok(library) => Ok(library.into()),
+            Err(error) => Err(error.to_string()),
+        };
+    }
+    Err(format!(
+        "{error}: it needs Python, and the system has none of {}; set LD_PRELOAD to that of yours",
+        names.join(", ")
+    ))
+}
+
+/// The minor versions of Python that are looked for, the first that there is being taken.
+const PYTHON: [u32; 6] = [13, 12, 11, 10, 9, 8];
+
+fn opened(path: &Path, flags: i32) -> Result<UnixLibrary, libloading::Error> {
+    // SAFETY: loading runs the initialisers of the library, which is what the user asks for by running the model. All its
+    // symbols are looked up at once: one that is missing is an error here, not the end of the process later.
+    unsafe { UnixLibrary::open(Some(path), flags) }
 }
 
 /// What a function returned. `dead` is set where the standard forbids further calls (2) or allows freeing alone (1).

@@ -9,7 +9,7 @@ use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use hyde_fmu_import::{Fmu, InProcess};
 use hyde_program::{Foreign, Program};
 use hyde_sim::{Failure, FailureKind};
-use hyde_syntax::ast::{ClassBody, Item, Name, Part, Reference};
+use hyde_syntax::ast::{Change, ClassBody, Item, Name, Part, Reference};
 use sha2::{Digest, Sha256};
 use std::fmt::Debug;
 use std::path::PathBuf;
@@ -52,6 +52,7 @@ pub(crate) fn read(
             let ClassBody::Short {
                 base,
                 fmu: Some((name, span)),
+                changes,
                 ..
             } = &mut class.body
             else {
@@ -63,6 +64,9 @@ pub(crate) fn read(
             let importer = sources.get(*id).name.clone();
             match of_file(asked, roots, (&importer, name, *span), &package, model) {
                 Ok((path, hash, fmu)) => {
+                    for diagnostic in mistaken(&fmu, changes, *span) {
+                        diagnostics.push(diagnostic);
+                    }
                     *base = dotted(&package, model, *span);
                     let fmu = Arc::new(fmu);
                     let computed_by: Arc<dyn Foreign> = match &asked.fmu_host {
@@ -98,6 +102,59 @@ pub(crate) fn read(
         file.fmus.insert(source, interface);
     }
     found
+}
+
+/// What an FMU is given that it does not have, and a communication step that it is not given.
+fn mistaken(fmu: &Fmu, changes: &[Change], span: Span) -> Vec<Diagnostic> {
+    let mut found = Vec::new();
+    let file = &fmu.file;
+    let parameters: Vec<&str> = fmu.interface.parameter_names().collect();
+    for change in changes {
+        let Some(word) = change.target.as_word().filter(|word| *word != "step") else {
+            continue;
+        };
+        if parameters.contains(&word) {
+            continue;
+        }
+        let message = format!("the FMU `{file}` has no parameter `{word}`");
+        let diagnostic = Diagnostic::error(Code::UnknownModification, message)
+            .label(change.target.span, "changes nothing");
+        let other = fmu.interface.names.iter().any(|name| name == word);
+        found.push(match nearest(word, &parameters) {
+            _ if other => diagnostic.help(format!(
+                "`{word}` is an input or an output: write an equation for it where the component is declared"
+            )),
+            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+            None if parameters.is_empty() => diagnostic.help("it has no parameters but `step`"),
+            None => {
+                let shown = parameters.iter().take(8).copied().collect::<Vec<_>>();
+                let more = if parameters.len() > 8 { ", …" } else { "" };
+                diagnostic.help(format!("it has `step`, `{}`{more}", shown.join("`, `")))
+            }
+        });
+    }
+    let given = changes
+        .iter()
+        .any(|own| own.target.as_word() == Some("step"));
+    if !given && fmu.description.step.is_none() {
+        found.push(
+            Diagnostic::error(
+                Code::NoValue,
+                format!("the FMU `{file}` proposes no communication step"),
+            )
+            .label(span, "how often is it called?")
+            .help(format!("write `fmu(\"{file}\", step = 1 [ms])`")),
+        );
+    }
+    found
+}
+
+/// The name that is most like a word, if one is.
+fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
+    let like = |name: &str| strsim::jaro_winkler(&word.to_lowercase(), &name.to_lowercase());
+    let all = names.iter().map(|name| (like(name), *name));
+    let best = all.max_by(|a, b| a.0.total_cmp(&b.0))?;
+    (best.0 > 0.8).then_some(best.1)
 }
 
 fn dotted(package: &str, model: &str, span: Span) -> Reference {
