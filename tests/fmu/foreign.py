@@ -35,6 +35,7 @@ MODELS = {
                 self.register_variable(Boolean("odd", causality=C.output))
 
             def do_step(self, current_time, step_size):
+                print("a library may print")
                 if self.u >= 5:
                     ctypes.string_at(0)
                 self.n += 1

@@ -18,6 +18,7 @@ fn every_model_compiles() {
     let mut found = 0;
     for (page, text) in pages() {
         write_data(&text, scratch.path());
+        keep_fmu(scratch.path());
         for block in blocks(&text, "```hyde\n") {
             found += 1;
             let output = check(&block.code, scratch.path());
@@ -31,6 +32,12 @@ fn every_model_compiles() {
         }
     }
     assert!(found > 10, "only {found} models were found");
+}
+
+/// The FMU that the book uses: one to be checked, whose library cannot be loaded.
+fn keep_fmu(here: &Path) {
+    let fmu = root().join("tests/fixtures/errors/controller.fmu");
+    std::fs::copy(fmu, here.join("controller.fmu")).unwrap();
 }
 
 #[test]

@@ -8,7 +8,10 @@ use hyde_fmu_import::{Fmu, host};
 use hyde_program::{Foreign, ForeignInstance, Stopped};
 use hyde_study::FmuHost;
 use std::io::{BufRead as _, BufReader, Write as _};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::net::Shutdown;
+use std::os::fd::{AsFd as _, OwnedFd};
+use std::os::unix::net::UnixStream;
+use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -30,9 +33,17 @@ pub(crate) fn host() -> Option<Arc<dyn FmuHost>> {
     is_asked().then(|| Arc::new(Sandbox) as Arc<dyn FmuHost>)
 }
 
-/// `hyde fmu-host`: the process itself.
+/// `hyde fmu-host`: the process itself. Standard input is a socket to the process that started it; standard output is left to
+/// what the library prints.
 pub(crate) fn serve() -> Exit {
-    match host::serve(std::io::stdin().lock(), std::io::stdout()) {
+    let served = std::io::stdin()
+        .as_fd()
+        .try_clone_to_owned()
+        .map(UnixStream::from)
+        .and_then(|answers| Ok((answers.try_clone()?, answers)))
+        .map_err(|error| files::reason(&error))
+        .and_then(|(asked, answers)| host::serve(BufReader::new(asked), answers));
+    match served {
         Ok(()) => Exit::Done,
         Err(reason) => {
             print_error(&format!("error: {reason}"));
@@ -72,62 +83,57 @@ impl Foreign for Hosted {
     }
 }
 
-/// A process with its pipes.
+/// A process with the socket to it.
 struct Process {
     child: Child,
-    /// Taken to end the process.
-    input: Option<ChildStdin>,
-    output: BufReader<ChildStdout>,
+    answers: BufReader<UnixStream>,
 }
 
 impl Process {
     fn new() -> Result<Self, String> {
-        let failed = |error: std::io::Error| {
-            format!("its process cannot be started: {}", files::reason(&error))
-        };
-        let own = std::env::current_exe().map_err(failed)?;
-        let mut child = Command::new(own)
+        Self::started()
+            .map_err(|error| format!("its process cannot be started: {}", files::reason(&error)))
+    }
+
+    fn started() -> std::io::Result<Self> {
+        let (own, other) = UnixStream::pair()?;
+        let printed = std::io::stderr().as_fd().try_clone_to_owned()?;
+        let child = Command::new(std::env::current_exe()?)
             .arg("fmu-host")
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .map_err(failed)?;
-        match (child.stdin.take(), child.stdout.take()) {
-            (Some(input), Some(output)) => Ok(Self {
-                child,
-                input: Some(input),
-                output: BufReader::new(output),
-            }),
-            _ => Err("its process has no pipes".to_owned()),
-        }
+            .stdin(Stdio::from(OwnedFd::from(other)))
+            .stdout(Stdio::from(printed))
+            .spawn()?;
+        let answers = BufReader::new(own);
+        Ok(Self { child, answers })
     }
 
     /// How the process ended.
     fn ended(&mut self) -> String {
-        self.input = None;
+        self.close();
         match self.child.wait() {
             Ok(status) => format!("its process ended: {status}"),
             Err(error) => format!("its process ended: {}", files::reason(&error)),
         }
     }
+
+    /// Without more to read it ends by itself, after it has ended the instance.
+    fn close(&self) {
+        drop(self.answers.get_ref().shutdown(Shutdown::Both));
+    }
 }
 
 impl host::Process for Process {
     fn tell(&mut self, bytes: &[u8]) -> Result<(), String> {
-        let written = match &mut self.input {
-            Some(input) => input.write_all(bytes).and_then(|()| input.flush()).is_ok(),
-            None => false,
-        };
-        match written {
-            true => Ok(()),
-            false => Err(self.ended()),
+        match self.answers.get_mut().write_all(bytes) {
+            Ok(()) => Ok(()),
+            Err(_) => Err(self.ended()),
         }
     }
 
     fn ask(&mut self, line: &str) -> Result<String, String> {
         self.tell(format!("{line}\n").as_bytes())?;
         let mut answer = String::new();
-        match self.output.read_line(&mut answer) {
+        match self.answers.read_line(&mut answer) {
             Ok(length) if length > 0 => Ok(answer),
             Ok(_) | Err(_) => Err(self.ended()),
         }
@@ -136,8 +142,7 @@ impl host::Process for Process {
 
 impl Drop for Process {
     fn drop(&mut self) {
-        // Without input it ends by itself, after it has ended the instance.
-        self.input = None;
+        self.close();
         drop(self.child.wait());
     }
 }

@@ -60,11 +60,33 @@ impl Numbers {
         })
     }
 
-    /// Whether they are real numbers.
+    /// What they are to a model.
     #[must_use]
-    pub fn are_real(self) -> bool {
-        matches!(self, Self::Float64 | Self::Float32)
+    pub fn kind(self) -> NumberKind {
+        match self {
+            Self::Float64 | Self::Float32 => NumberKind::Real,
+            Self::Boolean => NumberKind::Truth,
+            Self::Int32
+            | Self::Int8
+            | Self::UInt8
+            | Self::Int16
+            | Self::UInt16
+            | Self::UInt32
+            | Self::Int64
+            | Self::UInt64 => NumberKind::Whole,
+        }
     }
+}
+
+/// What numbers are to a model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum NumberKind {
+    /// `Real`.
+    Real,
+    /// `Integer`.
+    Whole,
+    /// `Boolean`.
+    Truth,
 }
 
 /// What a variable is for.

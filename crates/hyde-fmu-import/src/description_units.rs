@@ -89,6 +89,9 @@ impl Units {
             };
             return Some((in_si, Some(note)));
         };
+        if base.factor == 0.0 || !base.factor.is_finite() || !base.offset.is_finite() {
+            return None;
+        }
         let offset = if relative { 0.0 } else { base.offset };
         let si = parse_unit(&base.text).ok()?;
         // The name, if it means the same: so that the model shows values in it.
@@ -109,5 +112,46 @@ impl Units {
             offset,
         };
         Some((in_si, None))
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "tests unwrap what must be there")]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn products_of_base_units_are_units_of_hyde() {
+        let volt = product(&[1, 2, -3, -1, 0, 0, 0, 0]);
+        assert_eq!(volt, "kg.m^2/(s^3.A)");
+        let same = |text: &str, other: &str| {
+            let (a, b) = (parse_unit(text).unwrap(), parse_unit(other).unwrap());
+            assert_eq!(a.dimension, b.dimension, "{text}");
+        };
+        same(&volt, "V");
+        same(&product(&[0, 0, -1, 0, 0, 0, 0, 1]), "rad/s");
+        same(&product(&[0, 0, -1, 0, 0, 0, 0, 0]), "1/s");
+        same(&product(&[0; 8]), "1");
+    }
+
+    #[test]
+    fn a_unit_is_converted_as_its_definition_says() {
+        let text = r#"<r><UnitDefinitions>
+            <Unit name="rpm"><BaseUnit s="-1" rad="1" factor="0.10471975511965977"/></Unit>
+            <Unit name="degC"><BaseUnit K="1" offset="273.15"/></Unit>
+            <Unit name="nought"><BaseUnit m="1" factor="0"/></Unit>
+            </UnitDefinitions></r>"#;
+        let document = roxmltree::Document::parse(text).unwrap();
+        let units = units(document.root_element());
+        let (rpm, note) = units.in_si("rpm", false).unwrap();
+        assert!((rpm.factor - std::f64::consts::PI / 30.0).abs() < 1e-15 && note.is_none());
+        let (warm, _) = units.in_si("degC", false).unwrap();
+        assert!((warm.factor * 20.0 + warm.offset - 293.15).abs() < 1e-12);
+        let (warmer, _) = units.in_si("degC", true).unwrap();
+        assert!((warmer.factor * 20.0 + warmer.offset - 20.0).abs() < 1e-12);
+        assert!(units.in_si("nought", false).is_none());
+        let (known, note) = units.in_si("mm", false).unwrap();
+        assert!((known.factor - 1e-3).abs() < 1e-18 && note.is_some());
+        assert!(units.in_si("furlong/fortnight", false).is_none());
     }
 }

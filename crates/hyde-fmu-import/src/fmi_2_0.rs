@@ -2,13 +2,10 @@
 #![allow(unsafe_code, reason = "the functions are those of a foreign library")]
 
 use crate::Fmu;
-use crate::description::{FmuVariable, Numbers};
+use crate::description::{FmuVariable, NumberKind};
 use crate::library::{Called, Functions, Library, Slave, checked, whole};
 use crate::log::{Log, hyde_fmu_logger};
-use fmi_sys::fmi2::{
-    Fmi2Binding, fmi2CallbackFunctions, fmi2CallbackLogger, fmi2Component,
-    fmi2Type_fmi2CoSimulation,
-};
+use fmi_sys::fmi2::{Fmi2Binding, fmi2CallbackFunctions, fmi2Component, fmi2Type_fmi2CoSimulation};
 use std::ffi::{CString, c_void};
 use std::sync::Arc;
 
@@ -74,11 +71,8 @@ impl Instance {
             text(&fmu.description.token)?,
             text(&resources)?,
         );
-        let logger: unsafe extern "C" fn(_, _, _, _, _, ...) = hyde_fmu_logger;
-        // SAFETY: the two types differ in the sign of the status alone, a number of the same size.
-        let logger: fmi2CallbackLogger = Some(unsafe { std::mem::transmute(logger) });
         let callbacks = Box::new(fmi2CallbackFunctions {
-            logger,
+            logger: Some(hyde_fmu_logger),
             allocateMemory: Some(allocate),
             freeMemory: Some(release),
             stepFinished: None,
@@ -127,16 +121,16 @@ impl Slave for Instance {
         let Some(&value) = values.first() else {
             return Ok(());
         };
-        match variable.numbers {
-            Numbers::Float64 => call!(self, fmi2SetReal(reference.as_ptr(), 1, &raw const value)),
-            Numbers::Boolean => {
+        match variable.numbers.kind() {
+            NumberKind::Real => call!(self, fmi2SetReal(reference.as_ptr(), 1, &raw const value)),
+            NumberKind::Truth => {
                 let value = i32::from(value != 0.0);
                 call!(
                     self,
                     fmi2SetBoolean(reference.as_ptr(), 1, &raw const value)
                 )
             }
-            _ => {
+            NumberKind::Whole => {
                 let value: i32 = whole(variable, value)?;
                 call!(
                     self,
@@ -152,15 +146,17 @@ impl Slave for Instance {
             return Ok(());
         };
         let mut whole = 0_i32;
-        match variable.numbers {
-            Numbers::Float64 => {
+        match variable.numbers.kind() {
+            NumberKind::Real => {
                 return call!(self, fmi2GetReal(reference.as_ptr(), 1, &raw mut *place));
             }
-            Numbers::Boolean => {
+            NumberKind::Truth => {
                 call!(self, fmi2GetBoolean(reference.as_ptr(), 1, &raw mut whole))?;
                 whole = i32::from(whole != 0);
             }
-            _ => call!(self, fmi2GetInteger(reference.as_ptr(), 1, &raw mut whole))?,
+            NumberKind::Whole => {
+                call!(self, fmi2GetInteger(reference.as_ptr(), 1, &raw mut whole))?
+            }
         }
         *place = f64::from(whole);
         Ok(())

@@ -8,7 +8,7 @@
 //!
 //! The FMU is stepped behind the tick: the run puts its outputs into `y_k`.
 
-use crate::description::{Description, FmuVariable, Numbers, Role};
+use crate::description::{Description, FmuVariable, NumberKind, Role};
 use std::fmt::Write as _;
 
 /// What an FMU is to a model.
@@ -83,8 +83,8 @@ impl Interface {
                 }
                 (Role::Output | Role::Parameter | Role::Input, _) => String::new(),
             };
-            let kept = match (variable.role, variable.numbers) {
-                (Role::Output, Numbers::Boolean) => "Integer",
+            let kept = match (variable.role, variable.numbers.kind()) {
+                (Role::Output, NumberKind::Truth) => "Integer",
                 _ => type_name.as_str(),
             };
             let _ = writeln!(clocked, "    {kept} {inside}{dims}{first};");
@@ -95,7 +95,7 @@ impl Interface {
             };
             if variable.role == Role::Output {
                 // Held are numbers; that of a truth is 0 or 1.
-                let truth = if variable.numbers == Numbers::Boolean {
+                let truth = if variable.numbers.kind() == NumberKind::Truth {
                     " > 0.5"
                 } else {
                     ""
@@ -127,9 +127,10 @@ impl Interface {
 
 /// The number of the type of a variable; a new one if its unit is new.
 fn type_of(variable: &FmuVariable, types: &mut Vec<String>) -> String {
-    match variable.numbers {
-        Numbers::Boolean => "Boolean".to_owned(),
-        numbers if numbers.are_real() => {
+    match variable.numbers.kind() {
+        NumberKind::Truth => "Boolean".to_owned(),
+        NumberKind::Whole => "Integer".to_owned(),
+        NumberKind::Real => {
             let unit = &variable.in_si.unit;
             let known = types.iter().position(|known| known == unit);
             let number = known.unwrap_or_else(|| {
@@ -138,16 +139,15 @@ fn type_of(variable: &FmuVariable, types: &mut Vec<String>) -> String {
             });
             format!("T{number}")
         }
-        _ => "Integer".to_owned(),
     }
 }
 
 /// The start value in the text of the model.
 fn start(variable: &FmuVariable) -> Option<String> {
     let one = |value: f64| -> String {
-        match variable.numbers {
-            Numbers::Boolean => if value == 0.0 { "false" } else { "true" }.to_owned(),
-            numbers if numbers.are_real() => {
+        match variable.numbers.kind() {
+            NumberKind::Truth => if value == 0.0 { "false" } else { "true" }.to_owned(),
+            NumberKind::Real => {
                 let in_si = &variable.in_si;
                 let si = in_si.factor * value + in_si.offset;
                 match hyde_units::parse_unit(&in_si.unit) {
@@ -157,7 +157,7 @@ fn start(variable: &FmuVariable) -> Option<String> {
                     Ok(_) | Err(_) => format!("{si:?}"),
                 }
             }
-            _ => format!("{value}"),
+            NumberKind::Whole => format!("{value}"),
         }
     };
     match (variable.len, variable.start.as_slice()) {
@@ -224,5 +224,29 @@ impl Names {
         }
         self.taken.push(free.clone());
         free
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_become_words_of_the_language_each_once() {
+        let mut names = Names::default();
+        let all = [
+            ("Kp", "Kp"),
+            ("PI.Kp", "PI_Kp"),
+            ("PI_Kp", "PI_Kp_2"),
+            ("y[1]", "y_1"),
+            ("der(x)", "der_x"),
+            ("model", "model_"),
+            ("1st", "v1st"),
+            ("step", "step_2"),
+            ("\u{3b1}", "v"),
+        ];
+        for (name, word) in all {
+            assert_eq!(names.of(name), word, "{name}");
+        }
     }
 }

@@ -33,8 +33,8 @@ pub(crate) trait Slave: Send {
 /// The functions of a library. It is never unloaded: libraries that hold an interpreter or have started threads do not
 /// survive that.
 pub(crate) enum Functions {
-    Two(ManuallyDrop<Fmi2Binding>),
-    Three(ManuallyDrop<Fmi3Binding>),
+    Two(Box<ManuallyDrop<Fmi2Binding>>),
+    Three(Box<ManuallyDrop<Fmi3Binding>>),
 }
 
 /// An FMU that is loaded in this process.
@@ -57,9 +57,9 @@ impl Library {
         let functions = unsafe {
             match fmu.description.version {
                 Version::Two => Fmi2Binding::from_library(library)
-                    .map(|own| Functions::Two(ManuallyDrop::new(own))),
+                    .map(|own| Functions::Two(Box::new(ManuallyDrop::new(own)))),
                 Version::Three => Fmi3Binding::from_library(library)
-                    .map(|own| Functions::Three(ManuallyDrop::new(own))),
+                    .map(|own| Functions::Three(Box::new(ManuallyDrop::new(own)))),
             }
         };
         let functions = functions.map_err(|error| error.to_string())?;

@@ -2,7 +2,7 @@
 #![allow(unsafe_code, reason = "a logger is called by a foreign library")]
 
 use std::collections::VecDeque;
-use std::ffi::{CStr, c_char, c_int, c_void};
+use std::ffi::{CStr, c_char, c_uint, c_void};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// How many messages are kept: the newest.
@@ -11,7 +11,7 @@ const KEPT: usize = 8;
 /// The environment that the library hands back with every message; `logger.c` reads its first field.
 #[repr(C)]
 pub(crate) struct Log {
-    logged: unsafe extern "C" fn(*mut c_void, c_int, *const c_char),
+    logged: unsafe extern "C" fn(*mut c_void, c_uint, *const c_char),
     messages: Mutex<VecDeque<String>>,
 }
 
@@ -20,7 +20,7 @@ unsafe extern "C" {
     pub(crate) fn hyde_fmu_logger(
         environment: *mut c_void,
         instance: *const c_char,
-        status: c_int,
+        status: c_uint,
         category: *const c_char,
         format: *const c_char,
         ...
@@ -46,7 +46,7 @@ impl Log {
         messages.iter().cloned().collect()
     }
 
-    fn keep(&self, status: c_int, text: &str) {
+    fn keep(&self, status: c_uint, text: &str) {
         let Some(word) = word(status) else {
             return;
         };
@@ -59,7 +59,7 @@ impl Log {
 }
 
 /// The status as a word, if the message is worth keeping.
-fn word(status: c_int) -> Option<&'static str> {
+fn word(status: c_uint) -> Option<&'static str> {
     match status {
         1 => Some("Warning"),
         2 => Some("Discard"),
@@ -70,7 +70,7 @@ fn word(status: c_int) -> Option<&'static str> {
 }
 
 /// Called by `logger.c`.
-unsafe extern "C" fn logged(environment: *mut c_void, status: c_int, message: *const c_char) {
+unsafe extern "C" fn logged(environment: *mut c_void, status: c_uint, message: *const c_char) {
     if environment.is_null() || message.is_null() {
         return;
     }
@@ -88,5 +88,5 @@ pub(crate) unsafe extern "C" fn logged_in_fmi_3(
     message: *const c_char,
 ) {
     // SAFETY: the arguments are those of `logged`.
-    unsafe { logged(environment, c_int::try_from(status).unwrap_or(3), message) }
+    unsafe { logged(environment, status, message) }
 }

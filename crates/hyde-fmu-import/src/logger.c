@@ -4,10 +4,10 @@
 #include <stdio.h>
 
 struct environment {
-    void (*logged)(void *environment, int status, const char *message);
+    void (*logged)(void *environment, unsigned status, const char *message);
 };
 
-void hyde_fmu_logger(void *environment, const char *instance, int status, const char *category,
+void hyde_fmu_logger(void *environment, const char *instance, unsigned status, const char *category,
                      const char *format, ...) {
     char text[2048];
     va_list arguments;

@@ -248,6 +248,7 @@ pub(crate) fn failed(failure: &Failure, at: &str) -> Option<Diagnostic> {
         diagnostic = diagnostic.label(origin.span, "this component");
     }
     diagnostic = match log.is_empty() {
+        true if !what.starts_with("`fmi") => diagnostic,
         true => diagnostic.note("it logged no warning or error"),
         false => log.iter().fold(diagnostic, |diagnostic, line| {
             diagnostic.note(format!("it logged {line}"))

@@ -83,11 +83,15 @@ impl Array<'_> {
         let hyde = std::env::current_exe().map_err(|error| error.to_string())?;
         let folder = files::real(self.folder).unwrap_or_else(|| self.folder.to_path_buf());
         let task = format!(
-            "exec {} sweep {} --shard auto/{} --jobs {} --quiet",
+            "exec {} sweep {} --shard auto/{} --jobs {} --quiet{}",
             shell(&hyde.to_string_lossy()),
             shell(&folder.to_string_lossy()),
             self.shards,
-            self.jobs
+            self.jobs,
+            match crate::sandbox::is_asked() {
+                true => " --sandbox",
+                false => "",
+            }
         );
         let mut command = Command::new("sbatch");
         command
