@@ -1,7 +1,7 @@
 //! What a run was, in a few lines for people and as JSON for programs.
 
 use crate::project::Project;
-use crate::{assumptions, ledger, start};
+use crate::{assumptions, ledger, sandbox, start};
 use hyde_compiler::Compiled;
 use hyde_experiment::{MeasureValue, Run};
 use hyde_program::Method;
@@ -172,6 +172,10 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         .iter()
         .map(|table| json!({ "path": table.path.to_string_lossy(), "sha256": table.hash, "rows": table.rows, "assumptions": table.notes }))
         .collect();
+    let fmus = project.fmus.iter();
+    let fmus: Vec<Value> = fmus
+        .map(|fmu| json!({ "path": fmu.path.to_string_lossy(), "sha256": fmu.hash, "sandbox": sandbox::is_asked() }))
+        .collect();
     let channels: Vec<Value> = run
         .channels
         .iter()
@@ -246,6 +250,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         "source_sha256": project.hash,
         "records": records,
         "tables": tables,
+        "fmus": fmus,
         "start_s": run.start.0,
         "stop_s": run.stop_s,
         "rtol": run.tolerances.0,
