@@ -2,7 +2,7 @@
 //!
 //! [`Fmu`] reads the archive: its description ([`description`]) becomes the interface of a model ([`interface`]) whose clock
 //! is the communication step. A run makes instances ([`InProcess`]): the archive is unpacked to a temporary folder
-//! ([`unpacked`]), its library loaded, and the functions of FMI 2.0 or 3.0 called at each tick ([`instance`]). [`host`] does
+//! (`unpacked.rs`), its library loaded, and the functions of FMI 2.0 or 3.0 called at each tick (`instance.rs`). [`host`] does
 //! the same in another process, which a library that crashes ends alone.
 
 pub mod description;
