@@ -9,7 +9,7 @@
 //! track          where an observer takes the plant along a record                 track.rs, track/
 //! tangent        how innovations change with parameters, along one track              tangent.rs
 //! plan           what a `calibrate` block asks for                                 plan.rs
-//! calibration    bounded least squares on innovations and priors                  least_squares.rs, solution.rs, blocks.rs, varied.rs
+//! calibration    bounded least squares on innovations and priors                  descent.rs, least_squares.rs, solution.rs, blocks.rs, varied.rs
 //! its worth      errors before and after, intervals, groups                       fit.rs
 //!                what records would tell beforehand                               information.rs
 //!                why it taught nothing, where it did not                           standstill.rs
@@ -24,6 +24,7 @@ mod begins_again;
 mod blocks;
 mod configuration;
 mod dense;
+mod descent;
 mod diagnosis;
 mod even_rows;
 mod events;

@@ -9,8 +9,8 @@
 use super::inquiry::Inquiry;
 use super::search::Diagnosis;
 use super::stage::{Ground, Stage};
+use crate::descent::{MAX_STEPS, sum_of_squares};
 use crate::gain::Observer;
-use crate::least_squares::{MAX_STEPS, sum_of_squares};
 use crate::linearised::Slopes;
 use crate::plant::Unsupported;
 use crate::solution::Solution;

@@ -7,8 +7,8 @@
 use super::hypothesis::{Build, Built};
 use super::search::Gates;
 use super::stage::{Ground, Stage, below};
+use crate::descent::MAX_STEPS;
 use crate::fit::inflation_of;
-use crate::least_squares::MAX_STEPS;
 use crate::linearised::Slopes;
 use crate::varied::Varied;
 use nalgebra::DVector;

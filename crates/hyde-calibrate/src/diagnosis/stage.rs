@@ -3,8 +3,9 @@
 use super::hypothesis::Hypothesis;
 use super::profile::profiled;
 use crate::blocks::Fold;
+use crate::descent::MAX_STEPS;
 use crate::gain::Observer;
-use crate::least_squares::{MAX_STEPS, Problem};
+use crate::least_squares::Problem;
 use crate::linearised::{Linearised, Slopes};
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
