@@ -1,10 +1,10 @@
-//! [`Fit`]: a calibration with what it is worth: errors before and after, intervals, what the data cannot tell apart.
+//! [`Fit`]: a calibration with what it is worth: intervals, correlations, what the data cannot tell apart.
 
 use crate::gain::Observer;
+use crate::joint::Joint;
 use crate::least_squares::Problem;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
-use crate::recording::Recording;
 use crate::solution::Solution;
 use crate::standstill::{Cause, audible, standstill};
 use crate::varied::Varied;
@@ -55,19 +55,6 @@ pub struct ChannelError {
     pub correlation: f64,
 }
 
-/// Errors of a record, before and after.
-#[derive(Clone, Debug)]
-pub struct RecordErrors {
-    /// The record.
-    pub record: String,
-    /// Only the report has read it.
-    pub holdout: bool,
-    /// With declared values: all channels together, then each.
-    pub before: (f64, Vec<ChannelError>),
-    /// With calibrated ones.
-    pub after: (f64, Vec<ChannelError>),
-}
-
 /// A calibration.
 #[derive(Clone, Debug)]
 pub struct Fit {
@@ -75,10 +62,10 @@ pub struct Fit {
     pub parameters: Vec<FittedParameter>,
     /// Numbers of parameters whose errors go together.
     pub groups: Vec<Vec<usize>>,
-    /// The records: those fitted first.
-    pub records: Vec<RecordErrors>,
-    /// Names of the channels.
-    pub channels: Vec<String>,
+    /// Correlation of the errors of each two parameters.
+    pub correlation: Vec<Vec<f64>>,
+    /// Mean square of the innovations of each part, and of how many.
+    pub parts: Vec<(f64, usize)>,
     /// By how much innovations tell less than as many independent ones: mean square times correlation.
     pub inflation: f64,
     /// Steps of the least squares, of the best start.
@@ -87,8 +74,8 @@ pub struct Fit {
     pub converged: bool,
     /// How many of the starts ended within a unit of the lowest sum of squares, and how many there were.
     pub agreeing_starts: (usize, usize),
-    /// Why there is nothing in it, or little, as far as its runs show it.
-    pub causes: Vec<Cause>,
+    /// Why there is nothing in it, or little, as far as its runs show it: each with the number of its part.
+    pub causes: Vec<(usize, Cause)>,
     /// Where it ended.
     pub solution: Solution,
 }
@@ -101,27 +88,15 @@ impl Fit {
     }
 }
 
-/// Calibrates a program on the records of a problem, and looks at others.
+/// Calibrates programs on the records of their parts.
 ///
 /// # Errors
-/// The program has no fixed-step form.
-pub fn fit(
-    problem: &Problem<'_>,
-    holdout: &[Recording],
-    starts: usize,
-) -> Result<Fit, Unsupported> {
-    let Problem {
-        program,
-        recordings: fitted,
-        observer,
-        varied,
-        set,
-        ..
-    } = *problem;
-    let nominal: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
+/// A program has no fixed-step form.
+pub fn fit(joint: &Joint<'_>, starts: usize) -> Result<Fit, Unsupported> {
+    let varied = joint.varied;
     let mut solutions = Vec::new();
     for start in 0..starts.max(1) {
-        solutions.push(problem.solve(&start_values(varied, start))?);
+        solutions.push(joint.solve(&start_values(varied, start))?);
     }
     let lowest = solutions
         .iter()
@@ -133,46 +108,36 @@ pub fn fit(
         .position(|s| s.cost() <= lowest)
         .unwrap_or(0);
     let solution = solutions.swap_remove(best);
-    let after = Problem {
-        recordings: holdout,
-        ..*problem
-    }
-    .innovations(&solution.values)?;
-    let after: Vec<&Innovations> = solution.innovations.iter().chain(&after).collect();
-    let before = [
-        problem.innovations(&nominal)?,
-        Problem {
-            recordings: holdout,
-            ..*problem
-        }
-        .innovations(&nominal)?,
-    ]
-    .concat();
-    let records = fitted
-        .iter()
-        .chain(holdout)
-        .zip(before.iter().zip(after))
-        .enumerate()
-        .map(|(number, (recording, (before, after)))| RecordErrors {
-            record: recording.name.clone(),
-            holdout: number >= fitted.len(),
-            before: (before.chi(), channel_errors(before, observer)),
-            after: (after.chi(), channel_errors(after, observer)),
-        })
-        .collect();
     let inflation = inflation(&solution.innovations);
     let covariance = covariance(&solution, inflation);
-    let causes = standstill(program, fitted, observer, varied, set, &solution)?;
+    let (mut causes, mut parts, mut first) = (Vec::new(), Vec::new(), 0);
+    for (number, part) in joint.parts.iter().enumerate() {
+        let Problem {
+            program,
+            recordings,
+            observer,
+            varied,
+            set,
+            ..
+        } = part.problem;
+        let own = solution.innovations[first..first + recordings.len()].to_vec();
+        first += recordings.len();
+        let count = own.iter().flat_map(|own| &own.channels).map(Vec::len).sum();
+        let sum: f64 = own.iter().map(Innovations::sum_of_squares).sum();
+        parts.push((sum / (count as f64).max(1.0), count));
+        let own = Solution {
+            values: part.values(&solution.values),
+            innovations: own,
+            ..solution.clone()
+        };
+        let found = standstill(program, recordings, observer, varied, set, &own)?;
+        causes.extend(found.into_iter().map(|cause| (number, cause)));
+    }
     Ok(Fit {
         parameters: parameters(varied, &solution, &covariance),
         groups: groups(&covariance),
-        records,
-        channels: program
-            .experiment
-            .measured
-            .iter()
-            .map(|m| m.name.clone())
-            .collect(),
+        correlation: correlations(&covariance),
+        parts,
         inflation,
         steps: solution.steps,
         converged: solution.converged,
@@ -360,6 +325,20 @@ fn parameters(
         }
     })
     .collect()
+}
+
+/// Correlations of a covariance; 0 where a parameter has none.
+fn correlations(covariance: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    let n = covariance.nrows();
+    let of = |i: usize, j: usize| {
+        let own = covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
+        match (i == j, own.is_finite()) {
+            (true, _) => 1.0,
+            (false, true) => own.clamp(-1.0, 1.0),
+            (false, false) => 0.0,
+        }
+    };
+    (0..n).map(|i| (0..n).map(|j| of(i, j)).collect()).collect()
 }
 
 /// Parameters whose errors go together: chains of correlated pairs.

@@ -10,7 +10,10 @@
 //! tangent        how innovations change with parameters, along one track              tangent.rs
 //! plan           what a `calibrate` block asks for                                 plan.rs
 //! calibration    bounded least squares on innovations and priors                  descent.rs, least_squares.rs, solution.rs, blocks.rs, varied.rs
-//! its worth      errors before and after, intervals, groups                       fit.rs
+//!                of several experiments at once                                    joint.rs
+//! its worth      intervals, correlations, groups                                   fit.rs
+//!                the interval of one parameter, others fitted again                profile_likelihood.rs
+//!                what records determine beforehand                                 identifiability.rs
 //!                what records would tell beforehand                               information.rs
 //!                why it taught nothing, where it did not                           standstill.rs
 //! measures       the error in three measures, before and after, over its floor                  measures.rs, windows.rs, free_run.rs
@@ -34,9 +37,12 @@ mod free_run;
 mod frozen;
 mod gain;
 mod held;
+mod identifiability;
 mod information;
 mod input_noise;
 mod inputs;
+mod joint;
+mod label;
 mod lateness;
 mod least_squares;
 mod leg;
@@ -47,6 +53,7 @@ mod observer;
 mod past;
 mod plan;
 mod plant;
+mod profile_likelihood;
 mod recording;
 mod residual_map;
 mod selftest;
@@ -67,16 +74,20 @@ pub use diagnosis::{
     diagnose,
 };
 pub use even_rows::Resampled;
-pub use fit::{ChannelError, Fit, FittedParameter, RecordErrors, fit, fitted_parameters};
+pub use fit::{ChannelError, Fit, FittedParameter, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};
 pub use frozen::{Frozen, frozen};
 pub use gain::{Observer, Taken};
+pub use identifiability::{Identifiability, Together};
 pub use information::{Information, UNKNOWN};
+pub use joint::{Joint, Part};
+pub use label::{Label, LabelValue};
 pub use least_squares::Problem;
 pub use measures::{FreeMeasure, Measures, Model};
 pub use observer::Innovations;
-pub use plan::{CalibrationPlan, Source, Vary};
+pub use plan::{CalibrationPlan, Per, Source, Vary};
 pub use plant::Unsupported;
+pub use profile_likelihood::{LIMIT, Profile};
 pub use recording::{RecordError, Recording};
 pub use residual_map::{ResidualMap, residual_maps};
 pub use selftest::{

@@ -1,8 +1,9 @@
 //! [`CalibrationPlan`]: what a `calibrate` block asks for, its words checked.
 
+use crate::label::Label;
 use hyde_diag::{Code, Diagnostic, Diagnostics, Span};
 use hyde_syntax::ast::{
-    Expr, ExprKind, Name, Range, SettingValue, Study, StudyItem, Unary, Varied,
+    self, Expr, ExprKind, Name, Range, Reference, SettingValue, Study, StudyItem, Unary, Varied,
 };
 use hyde_units::NamedUnit;
 
@@ -13,6 +14,17 @@ pub struct Source {
     pub experiment: String,
     /// Patterns of files, each with the record it is for where that is said; none stands for the experiment's own.
     pub patterns: Vec<(Option<String>, Name)>,
+    /// Facts about these records: `at load = 200 [kg]`.
+    pub labels: Vec<Label>,
+    /// Where it is written.
+    pub span: Span,
+}
+
+/// Of what a parameter has a value each.
+#[derive(Clone, Debug)]
+pub struct Per {
+    /// `experiment`, `record`, or a label.
+    pub label: String,
     /// Where it is written.
     pub span: Span,
 }
@@ -28,6 +40,8 @@ pub enum Vary {
         name: String,
         /// Least and largest value, and the unit they are written in.
         bounds: Option<(f64, f64, NamedUnit)>,
+        /// Of what it has a value each; one for all records where nothing is said.
+        per: Option<Per>,
         /// Where it is written.
         span: Span,
     },
@@ -40,6 +54,8 @@ pub struct CalibrationPlan {
     pub name: String,
     /// The model.
     pub model: String,
+    /// All models, that one first.
+    pub models: Vec<String>,
     /// Records to calibrate on.
     pub fit: Vec<Source>,
     /// Records that only the report reads.
@@ -59,6 +75,10 @@ impl CalibrationPlan {
         let mut plan = Self {
             name: study.name.text.clone(),
             model: study.of.dotted(),
+            models: std::iter::once(&study.of)
+                .chain(&study.also)
+                .map(Reference::dotted)
+                .collect(),
             fit: Vec::new(),
             holdout: Vec::new(),
             vary: Vec::new(),
@@ -84,6 +104,20 @@ impl CalibrationPlan {
                             ));
                         }
                         let name = variation.target.dotted();
+                        let per = variation.per.as_ref().map(|per| Per {
+                            label: per.text.clone(),
+                            span: per.span,
+                        });
+                        if let Some(per) = per.as_ref().filter(|_| name == "uncertain") {
+                            diagnostics.push(wrong(
+                                per.span,
+                                "`uncertain` stands for many parameters",
+                                &format!(
+                                    "name those that differ per {0}: `vary uncertain; vary saddle.M per {0};`",
+                                    per.label
+                                ),
+                            ));
+                        }
                         plan.vary.push(match (&variation.within, name.as_str()) {
                             (None, "uncertain") => Vary::Uncertain(variation.target.span),
                             (within, _) => Vary::Parameter {
@@ -91,6 +125,7 @@ impl CalibrationPlan {
                                     .as_ref()
                                     .and_then(|range| bounds(range, diagnostics)),
                                 span: variation.target.span,
+                                per,
                                 name,
                             },
                         });
@@ -101,9 +136,21 @@ impl CalibrationPlan {
                     "a calibration puts no effects on the model",
                     "calibrate a model that has them: `model B = A with E on site;`",
                 )),
-                StudyItem::Setting(name, values) => match name.text.as_str() {
-                    "fit" => plan.fit.extend(sources(name, values, diagnostics)),
-                    "holdout" => plan.holdout.extend(sources(name, values, diagnostics)),
+                StudyItem::Setting(name, _, labels)
+                    if !labels.is_empty() && !["fit", "holdout"].contains(&name.text.as_str()) =>
+                {
+                    diagnostics.push(wrong(
+                        name.span,
+                        &format!("`{}` has no labels", name.text),
+                        "write `at` behind the records: `fit bench(\"full-*.csv\") at load = 200 [kg];`",
+                    ));
+                }
+                StudyItem::Setting(name, values, labels) => match name.text.as_str() {
+                    "fit" => plan.fit.extend(sources(name, values, labels, diagnostics)),
+                    "holdout" => {
+                        plan.holdout
+                            .extend(sources(name, values, labels, diagnostics));
+                    }
                     "starts" => match whole(values) {
                         Some(count @ 1..=100) => plan.starts = count,
                         Some(_) | None => diagnostics.push(wrong(
@@ -134,19 +181,88 @@ impl CalibrationPlan {
                 "write `vary uncertain;`, or name parameters: `vary guide.F, guide.b;`",
             ));
         }
+        plan.check_labels(diagnostics);
         (diagnostics.error_count() == before).then_some(plan)
+    }
+
+    /// The labels by which parameters have a value each.
+    pub fn labels(&self) -> impl Iterator<Item = &Per> {
+        self.vary.iter().filter_map(|vary| match vary {
+            Vary::Parameter { per, .. } => per.as_ref(),
+            Vary::Uncertain(_) => None,
+        })
+    }
+
+    /// Values of one label are of one kind, and no label is without use by mistake: the record of an experiment has its
+    /// pattern in the brackets.
+    fn check_labels(&self, diagnostics: &mut Diagnostics) {
+        let mut first: Vec<&Label> = Vec::new();
+        for source in self.fit.iter().chain(&self.holdout) {
+            let mut own: Vec<&str> = Vec::new();
+            for label in &source.labels {
+                if own.contains(&label.name.as_str()) {
+                    diagnostics.push(wrong(
+                        label.span,
+                        &format!("the label `{}` has two values", label.name),
+                        "write a `fit` for each value",
+                    ));
+                }
+                own.push(&label.name);
+                match first.iter().find(|known| known.name == label.name) {
+                    Some(known) if !known.value.comparable(&label.value) => diagnostics.push(
+                        wrong(
+                            label.span,
+                            &format!(
+                                "the label `{}` is `{}` here and `{}` elsewhere, which cannot be compared",
+                                label.name, label.shown, known.shown
+                            ),
+                            "write all values of a label with units of one kind, or all as texts",
+                        )
+                        .label(known.span, "the other value"),
+                    ),
+                    Some(_) => {}
+                    None => first.push(label),
+                }
+            }
+        }
+        for per in self.labels() {
+            let of_all = ["record", "experiment"].contains(&per.label.as_str());
+            if of_all || first.iter().any(|own| own.name == per.label) {
+                continue;
+            }
+            let known = first.iter().map(|own| format!("`per {}`", own.name));
+            let known = known.chain(["`per record`".to_owned(), "`per experiment`".to_owned()]);
+            diagnostics.push(wrong(
+                per.span,
+                &format!("no records have a label `{0}`", per.label),
+                &format!(
+                    "write it behind the records, `fit bench(\"full-*.csv\") at {} = 200 [kg];`; this calibration has {}",
+                    per.label,
+                    known.collect::<Vec<_>>().join(", ")
+                ),
+            ));
+        }
     }
 }
 
-fn wrong(span: Span, message: &str, help: &str) -> Diagnostic {
+pub(crate) fn wrong(span: Span, message: &str, help: &str) -> Diagnostic {
     Diagnostic::error(Code::BadStudy, message)
         .label(span, "in this study")
         .help(help)
 }
 
 /// `bench("fit-*.csv")`, `bench(file = "a.csv", other = "b.csv")`, `bench`.
-fn sources(setting: &Name, values: &[SettingValue], diagnostics: &mut Diagnostics) -> Vec<Source> {
+fn sources(
+    setting: &Name,
+    values: &[SettingValue],
+    labels: &[ast::Label],
+    diagnostics: &mut Diagnostics,
+) -> Vec<Source> {
     let mut found = Vec::new();
+    let labels = labels
+        .iter()
+        .filter_map(|own| Label::read(own, diagnostics));
+    let labels: Vec<Label> = labels.collect();
     for value in values {
         let SettingValue::Expr(expr) = value else {
             diagnostics.push(not_a_source(setting.span, &setting.text));
@@ -156,6 +272,7 @@ fn sources(setting: &Name, values: &[SettingValue], diagnostics: &mut Diagnostic
             ExprKind::Reference(experiment) => found.push(Source {
                 experiment: experiment.dotted(),
                 patterns: Vec::new(),
+                labels: labels.clone(),
                 span: expr.span,
             }),
             ExprKind::Call(experiment, arguments) => {
@@ -175,6 +292,7 @@ fn sources(setting: &Name, values: &[SettingValue], diagnostics: &mut Diagnostic
                 found.push(Source {
                     experiment: experiment.dotted(),
                     patterns,
+                    labels: labels.clone(),
                     span: expr.span,
                 });
             }
@@ -238,7 +356,7 @@ fn bounds(range: &Range, diagnostics: &mut Diagnostics) -> Option<(f64, f64, Nam
 }
 
 /// A number as written, with its unit.
-fn number(expr: &Expr) -> Option<(f64, Option<String>)> {
+pub(crate) fn number(expr: &Expr) -> Option<(f64, Option<String>)> {
     match &expr.kind {
         ExprKind::Number(value, unit) => {
             Some((*value, unit.as_ref().map(|unit| unit.text.clone())))

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 
 /// A parameter has no effect that changes the sum of squares by less than this over its prior's standard deviation: a unit
 /// over ten of them.
-const SILENT: f64 = 1e-2;
+pub(crate) const SILENT: f64 = 1e-2;
 /// A mode that holds a state in this part of the rows, or more, never let it go.
 const ALWAYS: f64 = 0.98;
 /// Innovations of this part of what the signal itself does, and so many times the noise, are of a model that does not follow.

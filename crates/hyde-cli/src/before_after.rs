@@ -116,20 +116,32 @@ pub(crate) fn errors(
 ) -> Result<Vec<RecordErrors>, Unsupported> {
     let mut found = Vec::new();
     for (holdout, recordings) in [(false, &calibration.fitted), (true, &calibration.holdout)] {
-        let (new, old) = rayon::join(
-            || after.measures(recordings, observer),
-            || before.map(|before| before.measures(recordings, observer)),
-        );
-        let new = new?;
-        let old = old.transpose()?.unwrap_or_else(|| new.clone());
-        let pairs = old.into_iter().zip(new);
-        found.extend(pairs.map(|(before, after)| RecordErrors {
-            holdout,
-            before,
-            after,
-        }));
+        found.extend(errors_on(recordings, holdout, observer, before, after)?);
     }
     Ok(found)
+}
+
+/// The same on some records, held out or not.
+pub(crate) fn errors_on(
+    recordings: &[Recording],
+    holdout: bool,
+    observer: &Observer,
+    before: Option<Model<'_>>,
+    after: Model<'_>,
+) -> Result<Vec<RecordErrors>, Unsupported> {
+    let (new, old) = rayon::join(
+        || after.measures(recordings, observer),
+        || before.map(|before| before.measures(recordings, observer)),
+    );
+    let new = new?;
+    let old = old.transpose()?.unwrap_or_else(|| new.clone());
+    let pairs = old.into_iter().zip(new);
+    let found = pairs.map(|(before, after)| RecordErrors {
+        holdout,
+        before,
+        after,
+    });
+    Ok(found.collect())
 }
 
 /// The mean square of innovations over all channels of several records: before and after.

@@ -15,6 +15,7 @@ mod diagnosis;
 mod exit;
 mod figures;
 mod files;
+mod fitted;
 mod forces;
 mod head;
 mod interruption;

@@ -5,16 +5,22 @@ use crate::exit::Exit;
 use crate::project::{self, Asked, Loaded, Told as _, complain};
 use hyde_compiler::DiagnosisPlan;
 use hyde_study::excitation::Bench;
-use hyde_study::{Calibration, Refused};
+use hyde_study::{Calibration, JointCalibration, Refused};
 use hyde_units::NamedUnit;
 
 /// Loads the calibration that the arguments name.
-pub(crate) fn calibration(args: &StudyArgs) -> Result<Calibration, Exit> {
+pub(crate) fn calibration(args: &StudyArgs) -> Result<JointCalibration, Exit> {
     let model_args = args.model_args();
     let calibration = loaded(&model_args, |loaded, asked| {
-        hyde_study::calibration(loaded, asked, args.study.as_deref())
+        hyde_study::joint_calibration(loaded, asked, args.study.as_deref())
     })?;
-    calibration.project.print_warnings(&model_args);
+    for (number, own) in calibration.experiments.iter().enumerate() {
+        let model = &own.project.model;
+        let before = &calibration.experiments[..number];
+        if !before.iter().any(|known| known.project.model == *model) {
+            own.project.print_warnings(&model_args);
+        }
+    }
     Ok(calibration)
 }
 

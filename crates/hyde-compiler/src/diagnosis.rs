@@ -51,14 +51,26 @@ impl DiagnosisPlan {
             span: study.name.span,
         };
         check_calibration(file, study, diagnostics);
+        if let Some(other) = study.also.first() {
+            diagnostics.push(
+                wrong(other.span, "a diagnosis is of one calibration")
+                    .help("write a diagnosis for each calibration"),
+            );
+        }
         for item in &study.items {
-            let StudyItem::Setting(setting, values) = item else {
+            let StudyItem::Setting(setting, values, labels) = item else {
                 diagnostics.push(
                     wrong(study.name.span, "a diagnosis has no `vary`")
                         .help("write `vary` in its calibration"),
                 );
                 continue;
             };
+            if let Some(label) = labels.first() {
+                diagnostics.push(
+                    wrong(label.name.span, "a diagnosis has no labels")
+                        .help("write `at` behind the records of its calibration"),
+                );
+            }
             match setting.text.as_str() {
                 "candidates" => {
                     for value in values {

@@ -71,7 +71,7 @@ const IN_EXPERIMENT: &[&str] = &[
     "stimulus", "measured", "replay", "expect", "measure", "figure", "budget", "solve", "start",
     "stop", "every", "skip", "bode", "margins", "end",
 ];
-const IN_STUDY: &[&str] = &["vary", "end"];
+const IN_STUDY: &[&str] = &["vary", "per", "end"];
 
 /// What may be written at a byte.
 pub(crate) fn complete(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> {

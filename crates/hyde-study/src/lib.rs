@@ -14,7 +14,7 @@
 //! ports          inputs and outputs of a program for another tool        ports.rs
 //! project        a file parsed once; its model, experiment, program      project.rs
 //! check          everything in a file compiled, and nothing run         check.rs
-//! calibration    a calibration with its records and its observer         calibration.rs
+//! calibration    a calibration with its records and its observers        calibration.rs
 //! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
 //! excitation     what to record next for a calibration                excitation.rs
 //! first_model    a first model of an axis, from a trace                  first_model.rs
@@ -49,7 +49,9 @@ pub mod unobservable;
 pub mod world;
 
 pub use asked::Asked;
-pub use calibration::{Calibration, calibration, chosen};
+pub use calibration::{
+    Calibration, JointCalibration, JointPart, Local, Number, calibration, chosen, joint_calibration,
+};
 pub use check::{Checked, check};
 pub use diagnosis::diagnosis;
 pub use fmus::{FmuHost, NamedFmu};

@@ -2,7 +2,7 @@
 
 use crate::calibration::Calibration;
 use crate::run_failure;
-use hyde_calibrate::{Cause, RecordError, Unsupported};
+use hyde_calibrate::{CalibrationPlan, Cause, RecordError, Unsupported};
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_units::{Dimension, engineering, engineering_difference, significant};
 
@@ -96,28 +96,28 @@ pub fn unsupported(error: &Unsupported, span: Span) -> Diagnostic {
     .help(help)
 }
 
-/// Why a calibration learned nothing.
-pub fn unlearned(calibration: &Calibration, causes: &[Cause]) -> Diagnostic {
-    let names: Vec<String> = calibration
-        .varied
-        .iter()
-        .map(|varied| format!("`{}`", varied.name))
-        .collect();
+/// Why a calibration learned nothing of what it varied, by name; each cause with the experiment that it is of.
+pub fn unlearned(
+    plan: &CalibrationPlan,
+    names: &[String],
+    causes: &[(&Calibration, &Cause)],
+) -> Diagnostic {
+    let names: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     let mut diagnostic = Diagnostic::error(
         Code::NothingLearned,
         format!(
             "the calibration `{}` cannot determine any parameter: no innovation depends on {}",
-            calibration.plan.name,
+            plan.name,
             names.join(", ")
         ),
     )
-    .label(calibration.plan.span, "asked for here");
-    for cause in causes {
+    .label(plan.span, "asked for here");
+    for (calibration, cause) in causes {
         diagnostic = diagnostic.note(reason(calibration, cause));
     }
     let held = causes
         .iter()
-        .any(|cause| matches!(cause, Cause::Held { .. }));
+        .any(|(_, cause)| matches!(cause, Cause::Held { .. }));
     diagnostic.help(match held {
         true => "drive the model with the recorded input that moved the axis, `stimulus F = file.force;`, and declare a channel that moves as `measured`",
         false => "record a motion that these parameters influence, or `vary` others",

@@ -30,4 +30,4 @@ pub use expression::{Argument, Binary, Comprehension, Expr, ExprKind, Range, Una
 pub use file::{File, Import, Item, TypeItem};
 pub use modes::{Exit, Mode, Modes};
 pub use name::{Name, Part, Reference, UnitText};
-pub use study::{SettingValue, Study, StudyItem, StudyKind, Variation, Varied};
+pub use study::{Label, SettingValue, Study, StudyItem, StudyKind, Variation, Varied};

@@ -9,7 +9,7 @@
 use super::clock::now;
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::{Example, bench_axis, root};
-use hyde_calibrate::{Model, Observer, Problem, Recording, Varied, free_run};
+use hyde_calibrate::{Joint, Model, Observer, Problem, Recording, Varied, free_run};
 use hyde_compiler::Backend;
 use hyde_program::Program;
 use rayon::prelude::*;
@@ -195,7 +195,7 @@ impl Truth {
             fold: None,
             reached: None,
         };
-        let found = hyde_calibrate::fit(&problem, &[], 1);
+        let found = hyde_calibrate::fit(&Joint::of(&problem), 1);
         let found = found.map_err(unsupported)?.parameters.into_iter();
         let set: Vec<(String, f64)> = found.map(|own| (own.name, own.value)).collect();
         let model = Model {

@@ -57,7 +57,13 @@ impl StudyArgs {
 pub(crate) struct FitArgs {
     #[command(flatten)]
     pub(crate) study: StudyArgs,
-    /// Write fit.json and the calibrated model to this folder
+    /// Profile likelihood of a parameter: fit all others again at values around the calibrated one (repeatable)
+    #[arg(long = "profile", value_name = "NAME")]
+    pub(crate) profiles: Vec<String>,
+    /// Print the correlations of the parameters as a table
+    #[arg(long)]
+    pub(crate) correlation: bool,
+    /// Write fit.json, fit.html, plots and the calibrated model to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }

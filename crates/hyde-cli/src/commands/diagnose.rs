@@ -67,7 +67,15 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
         let causes = causes(&calibration, &found.before)?;
         let learned = fitted_parameters(&calibration.varied, &found.before);
         if !causes.is_empty() && learned.iter().all(|parameter| parameter.silent) {
-            return Ok(Err(unobservable::unlearned(&calibration, &causes)));
+            let names = calibration.varied.iter().map(|own| own.name.clone());
+            let names: Vec<String> = names.collect();
+            let each = causes.iter().map(|cause| (&calibration, cause));
+            let causes: Vec<_> = each.collect();
+            return Ok(Err(unobservable::unlearned(
+                &calibration.plan,
+                &names,
+                &causes,
+            )));
         }
         // A finding may be of the effect that was written.
         hypotheses.extend(found.law().map(|own| own.hypothesis.clone()));

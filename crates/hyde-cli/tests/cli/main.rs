@@ -13,6 +13,7 @@ mod effects;
 mod excite;
 mod excite_model;
 mod files;
+mod fit;
 mod fmt;
 mod live;
 mod long_runs;

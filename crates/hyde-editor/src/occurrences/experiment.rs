@@ -141,6 +141,7 @@ impl<'a> Walk<'a> {
         match study.kind {
             StudyKind::Calibrate => {
                 self.class_name(&study.of);
+                study.also.iter().for_each(|other| self.class_name(other));
                 self.in_model(&study.of, |walk| walk.study_items(study));
             }
             StudyKind::Sweep => {
@@ -184,7 +185,7 @@ impl<'a> Walk<'a> {
                 StudyItem::VaryEffects(effects) => {
                     effects.iter().for_each(|used| self.effect_use(used));
                 }
-                StudyItem::Setting(_, values) => {
+                StudyItem::Setting(_, values, _) => {
                     for value in values {
                         match value {
                             SettingValue::Everything(path) => {

@@ -86,6 +86,11 @@ impl Draft {
             fill: None,
             span: study.name.span,
         };
+        if let Some(other) = study.also.first() {
+            let here = "a second experiment";
+            return Err(mistake(other.span, "a sweep is of one experiment", here)
+                .help("write a sweep for each experiment"));
+        }
         for item in &study.items {
             match item {
                 StudyItem::Vary(list) => {
@@ -98,7 +103,14 @@ impl Draft {
                         .varying
                         .extend(list.iter().map(|used| Varying::Choice(effect(used))));
                 }
-                StudyItem::Setting(name, values) => draft.setting(&name.text, name.span, values)?,
+                StudyItem::Setting(name, values, labels) => {
+                    if let Some(label) = labels.first() {
+                        let here = "only the records of a calibration have labels";
+                        return Err(mistake(label.name.span, "a sweep has no labels", here)
+                            .help("leave out `at`"));
+                    }
+                    draft.setting(&name.text, name.span, values)?;
+                }
             }
         }
         if draft.varying.is_empty() {

@@ -9,6 +9,11 @@ use hyde_units::NamedUnit;
 pub(super) fn varying(variation: &Variation) -> Result<Varying, Diagnostic> {
     let target = &variation.target;
     let span = target.span;
+    if let Some(per) = &variation.per {
+        let here = "a sweep sets one value for a whole run";
+        return Err(mistake(per.span, "a sweep has no `per`", here)
+            .help("only a calibration has values per label: `vary saddle.M per load;`"));
+    }
     let list = || match &variation.values {
         Some(Expr {
             kind: ExprKind::Array(items, unit),

@@ -2,7 +2,7 @@
 
 use super::columns::{self, Source};
 use crate::asked::Asked;
-use crate::calibration::{Prepared, chosen, plan, prepared};
+use crate::calibration::{Prepared, chosen, prepared, single_plan};
 use crate::project::{Loaded, Project};
 use crate::records::{Record, headers};
 use crate::refused::{Fault, Refused};
@@ -87,7 +87,7 @@ pub fn bench(
         return Err(loaded.refused());
     }
     let name = calibration_of(&loaded, name).map_err(Refused::Asked)?;
-    let found = plan(&mut loaded, Some(&name)).map_err(Refused::Asked)?;
+    let found = single_plan(&mut loaded, Some(&name)).map_err(Refused::Asked)?;
     let Some((plan, experiment)) = found else {
         return Err(loaded.refused());
     };
@@ -151,13 +151,14 @@ pub fn bench(
     let Some(column) = column.filter(|_| !project.diagnostics.has_errors()) else {
         return Err(project.refused(Fault::Model));
     };
+    let prepared = prepared(project)?;
+    let (varied, wrong) = prepared.varied(&plan);
     let Prepared {
         mut project,
         compiled,
         set,
-        varied,
-        wrong,
-    } = prepared(project, &plan)?;
+        ..
+    } = prepared;
     let recorded = {
         let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
         let headers = headers(&project.records);

@@ -35,6 +35,8 @@ pub struct Study {
     pub name: Name,
     /// The model, experiment or calibration it is of.
     pub of: Reference,
+    /// Further models of a calibration: `calibrate both of Slide, Bench`.
+    pub also: Vec<Reference>,
     /// Its documentation.
     pub doc: Option<String>,
     /// What is in it.
@@ -50,8 +52,17 @@ pub enum StudyItem {
     Vary(Vec<Variation>),
     /// `vary effect Stribeck(dF = 150 [N]) on guide;`: without each and with it.
     VaryEffects(Vec<EffectUse>),
-    /// `max_effects 3;`, `fit bench("fit-*.csv");`
-    Setting(Name, Vec<SettingValue>),
+    /// `max_effects 3;`, `fit bench("fit-*.csv") at load = 200 [kg];`
+    Setting(Name, Vec<SettingValue>, Vec<Label>),
+}
+
+/// `load = 200 [kg]`: a fact about records.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Label {
+    /// What the fact is about.
+    pub name: Name,
+    /// A number, a text or a name.
+    pub value: Expr,
 }
 
 /// What is varied, and how.
@@ -65,6 +76,8 @@ pub struct Variation {
     pub within: Option<Range>,
     /// `= {…}`
     pub values: Option<Expr>,
+    /// `per load`: a value of its own for each value of a label.
+    pub per: Option<Name>,
 }
 
 /// What a variation is of.

@@ -14,9 +14,11 @@ impl Printer {
         };
         let word = study.kind.word();
         let name = &study.name.text;
+        let models = std::iter::once(&study.of).chain(&study.also);
+        let models: Vec<String> = models.map(reference).collect();
         self.line(&format!(
             "{word} {name} {of} {}{}",
-            reference(&study.of),
+            models.join(", "),
             doc(study.doc.as_deref())
         ));
         self.indented(|out| {
@@ -39,7 +41,12 @@ impl Printer {
                                     Varied::Record => "record ",
                                     Varied::Part | Varied::Model => "",
                                 };
-                                format!("{what}{}{within}{values}", reference(&variation.target))
+                                let per = variation
+                                    .per
+                                    .as_ref()
+                                    .map_or_else(String::new, |per| format!(" per {}", per.text));
+                                let target = reference(&variation.target);
+                                format!("{what}{target}{within}{values}{per}")
                             })
                             .collect();
                         format!("vary {};", texts.join(", "))
@@ -48,7 +55,7 @@ impl Printer {
                         let texts: Vec<String> = list.iter().map(effect_use).collect();
                         format!("vary effect {};", texts.join(", "))
                     }
-                    StudyItem::Setting(name, values) => {
+                    StudyItem::Setting(name, values, labels) => {
                         let texts: Vec<String> = values
                             .iter()
                             .map(|value| match value {
@@ -56,7 +63,15 @@ impl Printer {
                                 SettingValue::Expr(expr) => expression(expr),
                             })
                             .collect();
-                        format!("{} {};", name.text, texts.join(", "))
+                        let own = labels
+                            .iter()
+                            .map(|own| format!("{} = {}", own.name.text, expression(&own.value)));
+                        let own: Vec<String> = own.collect();
+                        let at = match own.as_slice() {
+                            [] => String::new(),
+                            own => format!(" at {}", own.join(", ")),
+                        };
+                        format!("{} {}{at};", name.text, texts.join(", "))
                     }
                 };
                 out.line(&line);

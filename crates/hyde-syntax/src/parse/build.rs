@@ -167,6 +167,7 @@ fn is_keyword(rule: Rule) -> bool {
             | R::kw_figure
             | R::kw_budget
             | R::kw_vary
+            | R::kw_per
             | R::kw_skip
             | R::kw_at
     )

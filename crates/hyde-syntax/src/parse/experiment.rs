@@ -3,9 +3,9 @@
 use super::Parser;
 use super::build::{Builder, Node, has, parts, significant};
 use crate::ast::{
-    Bode, Channel, Drive, Experiment, ExperimentItem, Expr, Figure, Ideal, LayoutSetting, Margins,
-    Name, Part, RecordItem, Reference, SettingValue, Study, StudyItem, StudyKind, Variation,
-    Varied,
+    Bode, Channel, Drive, Experiment, ExperimentItem, Expr, Figure, Ideal, Label, LayoutSetting,
+    Margins, Name, Part, RecordItem, Reference, SettingValue, Study, StudyItem, StudyKind,
+    Variation, Varied,
 };
 use crate::grammar::Rule;
 use crate::recover;
@@ -53,18 +53,21 @@ impl Parser<'_> {
         let pairs = self.expect(Rule::study_header)?;
         let node = significant(pairs).next()?;
         let mut build = self.build(start);
-        let (mut kind, mut name, mut of, mut doc) = (StudyKind::Sweep, None, None, None);
+        let (mut kind, mut name, mut doc) = (StudyKind::Sweep, None, None);
+        let mut models = Vec::new();
         // `of calibrate bench` names a calibration: the keyword is a child of the header, not of its kind.
         for part in parts(node) {
             match part.as_rule() {
                 Rule::study_kind => kind = study_kind(&part),
                 Rule::ident => name = Some(build.name(&part)),
-                Rule::path => of = Some(build.reference(part)),
+                Rule::path => models.push(build.reference(part)),
                 Rule::doc => doc = Some(Builder::text(part)),
                 _ => {}
             }
         }
-        let (name, of) = (name?, of?);
+        let name = name?;
+        let mut models = models.into_iter();
+        let of = models.next()?;
         let mut items = Vec::new();
         self.body(&name, Rule::study_item, |build, node| {
             build.study_item(node, &mut items)
@@ -73,6 +76,7 @@ impl Parser<'_> {
             kind,
             name,
             of,
+            also: models.collect(),
             doc,
             items,
             span: Span::new(self.file, start, self.at),
@@ -374,8 +378,12 @@ impl Builder<'_> {
         let mut inner = parts(node);
         let Some(name) = inner.next() else { return };
         let name = self.name(&name);
-        let mut values = Vec::new();
+        let (mut values, mut labels) = (Vec::new(), Vec::new());
         for value in inner {
+            if value.as_rule() == Rule::at_labels {
+                labels.extend(parts(value).filter_map(|part| self.label(part)));
+                continue;
+            }
             for part in parts(value) {
                 if part.as_rule() == Rule::wildcard {
                     values.extend(
@@ -388,7 +396,15 @@ impl Builder<'_> {
                 }
             }
         }
-        items.push(StudyItem::Setting(name, values));
+        items.push(StudyItem::Setting(name, values, labels));
+    }
+
+    fn label(&mut self, node: Node<'_>) -> Option<Label> {
+        let mut inner = parts(node);
+        Some(Label {
+            name: self.name(&inner.next()?),
+            value: self.expression(inner.next()?),
+        })
     }
 
     fn variation(&mut self, node: Node<'_>) -> Option<Variation> {
@@ -420,9 +436,12 @@ impl Builder<'_> {
             },
             within: None,
             values: None,
+            per: None,
         };
         for part in inner {
-            if part.as_rule() == Rule::within {
+            if part.as_rule() == Rule::per {
+                variation.per = parts(part).next().map(|word| self.name(&word));
+            } else if part.as_rule() == Rule::within {
                 variation.within = parts(part).next().and_then(|range| self.range(range));
             } else {
                 variation.values = self.first_expression(part);

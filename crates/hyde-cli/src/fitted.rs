@@ -1,0 +1,156 @@
+//! A calibration told: which parameters its records determine, values with intervals, errors before and after, profiles.
+
+pub(crate) mod identified;
+pub(crate) mod json;
+pub(crate) mod model;
+pub(crate) mod page;
+pub(crate) mod plots;
+pub(crate) mod text;
+
+use crate::before_after::RecordErrors;
+use hyde_calibrate::{Fit, Identifiability, Profile};
+use hyde_program::Program;
+use hyde_study::{Calibration, JointCalibration, unobservable};
+use hyde_units::{NamedUnit, engineering_as, engineering_difference, significant};
+
+/// A calibration with everything that is told of it.
+pub(crate) struct Told<'a> {
+    pub(crate) calibration: &'a JointCalibration,
+    pub(crate) before: &'a Identifiability,
+    pub(crate) fit: &'a Fit,
+    /// Of each experiment, in the order of its records.
+    pub(crate) errors: &'a [Vec<RecordErrors>],
+    pub(crate) profiles: &'a [Profile],
+}
+
+/// What an experiment adds to the sum of squares.
+pub(crate) struct Weight {
+    /// Mean square of its innovations, and how many there are.
+    pub(crate) mean_square: f64,
+    pub(crate) count: usize,
+}
+
+impl Told<'_> {
+    /// The weights of the experiments; nothing of one whose records are all held out.
+    pub(crate) fn weights(&self) -> Vec<Weight> {
+        let each = 0..self.calibration.experiments.len();
+        let of = |number: usize| {
+            let parts = self.calibration.fitted_parts().zip(&self.fit.parts);
+            let own = parts.filter(|(part, _)| self.calibration.parts[*part].experiment == number);
+            let (sum, count) = own.fold((0.0, 0), |(sum, count), (_, (mean, own))| {
+                (sum + mean * *own as f64, count + own)
+            });
+            Weight {
+                mean_square: sum / (count as f64).max(1.0),
+                count,
+            }
+        };
+        each.map(of).collect()
+    }
+
+    /// Why the model does not follow the records, if it does not.
+    pub(crate) fn reasons(&self) -> Vec<String> {
+        let each = self.fit.causes.iter();
+        each.map(|(part, cause)| unobservable::reason(experiment(self.calibration, *part), cause))
+            .collect()
+    }
+
+    /// Sentences about the weights, where an experiment weighs otherwise than its noise says.
+    pub(crate) fn doubtful_weights(&self) -> Vec<String> {
+        let weights = self.weights();
+        let least = weights.iter().filter(|own| own.count > 0);
+        let least = least
+            .map(|own| own.mean_square)
+            .fold(f64::INFINITY, f64::min);
+        let mut found = Vec::new();
+        if self.calibration.experiments.len() < 2 {
+            return found;
+        }
+        for (own, weight) in self.calibration.experiments.iter().zip(&weights) {
+            let name = experiment_name(own);
+            let times = weight.mean_square.sqrt();
+            if weight.count > 0 && times > 1.5 && weight.mean_square > 2.0 * least {
+                found.push(format!(
+                    "the innovations of `{name}` are {} times as large as its declared noise explains, so it weighs more than it should: \
+                     declare its noise, `measured … ~ 20 [mA];`, or search for the missing effect with `hyde diagnose`",
+                    significant(times, 2)
+                ));
+            }
+            if weight.count > 0 && times < 0.5 {
+                found.push(format!(
+                    "the innovations of `{name}` are {} times as large as its declared noise explains, so it weighs less than it could: declare \
+                     a smaller noise",
+                    significant(times, 2)
+                ));
+            }
+            let measured = own.compiled.program.experiment.measured.iter();
+            for (channel, noise) in measured.zip(&own.observer.noise) {
+                if noise.to_bits() == 1e-4_f64.to_bits() {
+                    found.push(format!(
+                        "`{}` of `{name}` declares no noise and counts as exact to 1e-4 (SI), which decides its weight: declare it, `measured … ~ 20 [mA];`",
+                        channel.name
+                    ));
+                }
+            }
+        }
+        found
+    }
+}
+
+/// The experiment of a fitted part.
+pub(crate) fn experiment(calibration: &JointCalibration, part: usize) -> &Calibration {
+    let part = calibration.fitted_parts().nth(part);
+    let number = part.map_or(0, |part| calibration.parts[part].experiment);
+    &calibration.experiments[number]
+}
+
+/// The name of an experiment.
+pub(crate) fn experiment_name(calibration: &Calibration) -> &str {
+    calibration.project.experiment.as_deref().unwrap_or("")
+}
+
+/// The program that has a number's parameter.
+fn program_of(calibration: &JointCalibration, number: usize) -> Option<&Program> {
+    let part = calibration
+        .parts
+        .iter()
+        .find(|part| part.of.contains(&number))?;
+    Some(&calibration.experiments[part.experiment].compiled.program)
+}
+
+/// The unit of a number.
+pub(crate) fn unit(calibration: &JointCalibration, number: usize) -> Option<&NamedUnit> {
+    let name = &calibration.numbers[number].varied.name;
+    let (parameter, _) = program_of(calibration, number)?.parameter(name)?;
+    Some(&parameter.unit)
+}
+
+/// The SI unit of a number, as files have it.
+pub(crate) fn si_unit(calibration: &JointCalibration, number: usize) -> Option<String> {
+    let name = &calibration.numbers[number].varied.name;
+    let (parameter, _) = program_of(calibration, number)?.parameter(name)?;
+    Some(parameter.dimension.usual_unit())
+}
+
+/// A value of a number, in its unit.
+pub(crate) fn shown(calibration: &JointCalibration, number: usize, value: f64) -> String {
+    match unit(calibration, number) {
+        Some(unit) => engineering_as(value, unit),
+        None => significant(value, 5),
+    }
+}
+
+/// A difference of two values of a number, in its unit.
+pub(crate) fn shown_difference(calibration: &JointCalibration, number: usize, by: f64) -> String {
+    match unit(calibration, number) {
+        Some(unit) => engineering_difference(by, unit),
+        None => significant(by, 5),
+    }
+}
+
+/// Names as a sentence has them.
+pub(crate) fn named(calibration: &JointCalibration, numbers: &[usize]) -> String {
+    let each = numbers.iter();
+    let each = each.map(|&number| format!("`{}`", calibration.numbers[number].name()));
+    each.collect::<Vec<_>>().join(", ")
+}

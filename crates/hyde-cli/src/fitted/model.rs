@@ -1,0 +1,140 @@
+//! The calibrated models as text: shared values in one, and one on top of it for each set of values that some records have.
+
+use super::si_unit;
+use hyde_calibrate::Fit;
+use hyde_study::JointCalibration;
+use std::fmt::Write as _;
+
+/// The name of the file's first model, and of the file.
+pub(crate) fn name(calibration: &JointCalibration) -> String {
+    of_model(&calibration.plan.model)
+}
+
+fn of_model(model: &str) -> String {
+    format!("{}_fitted", model.replace('.', "_"))
+}
+
+/// The models.
+pub(crate) fn text(calibration: &JointCalibration, fit: &Fit) -> String {
+    let mut out = Vec::new();
+    let mut used: Vec<String> = Vec::new();
+    for model in &calibration.plan.models {
+        let experiments = &calibration.experiments;
+        let parts = calibration.parts.iter();
+        let own = parts.filter(|part| experiments[part.experiment].project.model == *model);
+        let (mut shared, mut sets): (Vec<usize>, Vec<Vec<usize>>) = (Vec::new(), Vec::new());
+        for part in own {
+            let local = |number: &usize| calibration.numbers[*number].local.is_some();
+            let (own, all): (Vec<usize>, Vec<usize>) = part.of.iter().copied().partition(local);
+            for number in all {
+                if !shared.contains(&number) {
+                    shared.push(number);
+                }
+            }
+            if !own.is_empty() && !sets.contains(&own) {
+                sets.push(own);
+            }
+        }
+        let base = of_model(model);
+        let doc = format!("calibrated by `{}`", calibration.plan.name);
+        out.push(one(calibration, fit, &base, model, &shared, &doc));
+        used.push(base.clone());
+        for set in sets {
+            let (name, at) = called(calibration, &set, &base, &used);
+            let doc = format!("{doc} at {at}");
+            out.push(one(calibration, fit, &name, &base, &set, &doc));
+            used.push(name);
+        }
+    }
+    out.join("\n")
+}
+
+/// The name of a model with these values, and the values of labels that they are for.
+fn called(
+    calibration: &JointCalibration,
+    set: &[usize],
+    base: &str,
+    used: &[String],
+) -> (String, String) {
+    let mut at: Vec<(String, String)> = Vec::new();
+    for &number in set {
+        if let Some(local) = &calibration.numbers[number].local {
+            let own = (local.label.clone(), local.value.clone());
+            if !at.contains(&own) {
+                at.push(own);
+            }
+        }
+    }
+    let mut name = base.to_owned();
+    for (label, value) in &at {
+        name = format!("{name}_{}_{}", word(label), word(value));
+    }
+    let mut free = name.clone();
+    let mut number = 2;
+    while used.contains(&free) {
+        free = format!("{name}_{number}");
+        number += 1;
+    }
+    let at = at.iter().map(|(label, value)| format!("{label} = {value}"));
+    (free, at.collect::<Vec<_>>().join(", "))
+}
+
+/// A text as a part of a name.
+pub(crate) fn word(text: &str) -> String {
+    let letters = match text.strip_prefix('-') {
+        Some(rest) => format!("minus_{rest}"),
+        None => text.to_owned(),
+    };
+    let letters = letters
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
+    let joined: String = letters.collect();
+    let parts = joined.split('_').filter(|part| !part.is_empty());
+    parts.collect::<Vec<_>>().join("_")
+}
+
+/// A model with some values. Elements of an array are told beside it: no modification sets one.
+fn one(
+    calibration: &JointCalibration,
+    fit: &Fit,
+    name: &str,
+    of: &str,
+    numbers: &[usize],
+    doc: &str,
+) -> String {
+    let mut out = String::new();
+    let mut values: Vec<String> = Vec::new();
+    for &number in numbers {
+        let parameter = &fit.parameters[number];
+        let unit = si_unit(calibration, number).filter(|unit| unit != "1");
+        let unit = unit.map_or_else(String::new, |unit| format!(" [{unit}]"));
+        let value = format!("{} = {:?}{unit}", parameter.name, parameter.value);
+        if parameter.name.contains('[') {
+            let _ = writeln!(out, "// {value}");
+        } else {
+            values.push(format!("  {value}"));
+        }
+    }
+    let values = match values.is_empty() {
+        true => String::new(),
+        false => format!("(\n{}\n)", values.join(",\n")),
+    };
+    let _ = writeln!(
+        out,
+        "model {name} = {of}{values} \"{}\";",
+        doc.replace('"', "'")
+    );
+    out
+}
+
+#[cfg(test)]
+mod tests {
+    use super::word;
+
+    #[test]
+    fn values_become_parts_of_names() {
+        assert_eq!(word("200.5 kg"), "200_5_kg");
+        assert_eq!(word("-5 degC"), "minus_5_degC");
+        assert_eq!(word("fit-empty.csv"), "fit_empty_csv");
+    }
+}

@@ -1,0 +1,189 @@
+//! The records of a calibration: the files that its patterns name, and what an observer reads of them.
+
+use crate::asked::Asked;
+use crate::package::links_out;
+use crate::record_files;
+use crate::unobservable::unreadable;
+use crate::world::{World, matching};
+use hyde_calibrate::{Recording, Source};
+use hyde_compiler::Compiled;
+use hyde_diag::{Code, Diagnostic, Diagnostics, Span};
+use hyde_syntax::ast::Experiment;
+use hyde_units::counted;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// The files of a source: for each record set, the files of its records.
+pub(super) fn files_of(
+    source: &Source,
+    experiment: &Experiment,
+    asked: &Asked,
+    diagnostics: &mut Diagnostics,
+) -> Vec<Vec<(String, PathBuf)>> {
+    let folder = asked
+        .data
+        .clone()
+        .or_else(|| asked.file.parent().map(Path::to_path_buf))
+        .unwrap_or_default();
+    let mut patterns: Vec<(String, String, Span, bool)> = Vec::new();
+    for (number, (record, pattern)) in source.patterns.iter().enumerate() {
+        let own = experiment
+            .records
+            .get(number)
+            .map(|item| item.name.text.clone());
+        let Some(record) = record.clone().or(own) else {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::BadStudy,
+                    format!(
+                        "`{}` has {}",
+                        source.experiment,
+                        counted(experiment.records.len(), "record")
+                    ),
+                )
+                .label(pattern.span, "no record is assigned to this pattern")
+                .help("name the record of the pattern: `fit bench(file = \"fit-*.csv\");`"),
+            );
+            return Vec::new();
+        };
+        let whole = record_files::is_sum(&pattern.text);
+        patterns.push((record, pattern.text.clone(), pattern.span, whole));
+    }
+    for item in &experiment.records {
+        if let Some(default) = &item.default
+            && !patterns
+                .iter()
+                .any(|(record, ..)| *record == item.name.text)
+        {
+            // What the experiment itself reads is one record.
+            let name = item.name.text.clone();
+            patterns.push((name, default.text.clone(), source.span, true));
+        }
+    }
+    let mut sets: Vec<Vec<(String, PathBuf)>> = Vec::new();
+    for (record, pattern, span, whole) in &patterns {
+        let (matching, files) = match whole {
+            true => record_files::Files::named(asked.world.as_ref(), &folder, pattern)
+                .one_record(asked.world.as_ref()),
+            false => {
+                let found = matching(asked.world.as_ref(), &folder, pattern);
+                (found.clone(), found)
+            }
+        };
+        if matching.is_empty() {
+            let help = match asked.data {
+                None => "name the folder of the records: `--data DIR`",
+                Some(_) => "put such files there, or write another pattern",
+            };
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::NoFiles,
+                    format!("no file is called `{pattern}` in `{}`", shown(&folder)),
+                )
+                .label(*span, "asked for here")
+                .help(help),
+            );
+            return Vec::new();
+        }
+        if let Some(path) = files
+            .iter()
+            .find(|path| links_out(asked.world.as_ref(), &folder, path))
+        {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::NoRecord,
+                    format!(
+                        "`{}` is a link to a file outside its folder",
+                        path.display()
+                    ),
+                )
+                .label(
+                    *span,
+                    "only files below the model's folder or `--data` are read",
+                )
+                .help("move the file into the folder, or name its folder: `--data DIR`"),
+            );
+            return Vec::new();
+        }
+        let several = sets.len() > 1;
+        if several && matching.len() != 1 && matching.len() != sets.len() {
+            diagnostics.push(
+                Diagnostic::error(
+                    Code::NoFiles,
+                    format!(
+                        "{} for one record and {} for another",
+                        counted(sets.len(), "file"),
+                        matching.len()
+                    ),
+                )
+                .label(*span, "asked for here")
+                .help("give every record the same number of files, or one file"),
+            );
+            return Vec::new();
+        }
+        let old = if sets.is_empty() {
+            vec![Vec::new()]
+        } else {
+            std::mem::take(&mut sets)
+        };
+        let count = old.len().max(matching.len());
+        for number in 0..count {
+            let mut set = old[number.min(old.len() - 1)].clone();
+            set.push((
+                record.clone(),
+                matching[number.min(matching.len() - 1)].clone(),
+            ));
+            sets.push(set);
+        }
+    }
+    sets
+}
+
+fn shown(folder: &Path) -> String {
+    match folder.as_os_str().is_empty() {
+        true => ".".to_owned(),
+        false => folder.display().to_string(),
+    }
+}
+
+/// Reads the files of a record set.
+pub(super) fn recording(
+    world: &dyn World,
+    set: &[(String, PathBuf)],
+    experiment: &Experiment,
+    compiled: &Compiled,
+    span: Span,
+) -> Result<Recording, Box<Diagnostic>> {
+    let mut tables: BTreeMap<String, hyde_signal::Table> = BTreeMap::new();
+    let mut name = String::new();
+    for (record, path) in set {
+        let item = experiment
+            .records
+            .iter()
+            .find(|item| item.name.text == *record);
+        let Some(item) = item else {
+            let message = format!("`{}` has no record `{record}`", experiment.name.text);
+            return Err(Box::new(
+                Diagnostic::error(Code::BadStudy, message).label(span, "in this study"),
+            ));
+        };
+        let files = record_files::Files::named(world, Path::new(""), &path.to_string_lossy());
+        if name.is_empty() {
+            name = files.names();
+        }
+        let open = |file: &Path| world.read(file);
+        let missing = |reason: &str| {
+            Diagnostic::error(Code::NoFiles, reason.to_owned()).label(span, "in this study")
+        };
+        let read = record_files::joined(item, None, files, &open, &missing);
+        let table = read.map_err(Box::new)?.table;
+        tables.insert(record.clone(), table);
+    }
+    let mut all: Vec<(&str, &mut hyde_signal::Table)> = tables
+        .iter_mut()
+        .map(|(name, table)| (name.as_str(), table))
+        .collect();
+    hyde_signal::align(&mut all);
+    Recording::new(&name, &compiled.program, tables)
+        .map_err(|error| Box::new(unreadable(&name, &error, span)))
+}

@@ -1,0 +1,84 @@
+//! What a calibration may vary of a model, by name.
+
+use hyde_calibrate::{CalibrationPlan, Per, Varied, Vary};
+use hyde_diag::{Code, Diagnostic};
+use hyde_program::{Given, Program};
+
+/// A parameter of a model that a calibration varies, and of what it has a value each.
+pub(super) type Own = (Varied, Option<Per>);
+
+/// What may be varied of a model, by name; `elsewhere` says what another model of the calibration has.
+pub(super) fn varied(
+    plan: &CalibrationPlan,
+    program: &Program,
+    p: &[f64],
+    elsewhere: &dyn Fn(Option<&str>) -> bool,
+    wrong: &mut Vec<Diagnostic>,
+) -> Vec<Own> {
+    let mut found: Vec<Own> = Vec::new();
+    for vary in &plan.vary {
+        match vary {
+            Vary::Uncertain(span) => {
+                let uncertain = Varied::uncertain(program, p);
+                if uncertain.is_empty() && !elsewhere(None) {
+                    wrong.push(
+                        Diagnostic::error(
+                            Code::CannotVary,
+                            "no parameter of the model is uncertain",
+                        )
+                        .label(*span, "asked for here")
+                        .help("declare the uncertainty of a parameter: `parameter Mass M = 310 [kg] ~ ±8%;`"),
+                    );
+                }
+                found.extend(uncertain.into_iter().map(|own| (own, None)));
+            }
+            Vary::Parameter {
+                name,
+                bounds,
+                per,
+                span,
+            } => {
+                let mut own = Varied::of(program, name, p);
+                let problem = match program.parameter(name) {
+                    None if elsewhere(Some(name)) => None,
+                    None => Some("no such parameter".to_owned()),
+                    Some((parameter, _)) if parameter.structural => Some(
+                        "it changes the structure of the equations: each value is a separate model"
+                            .to_owned(),
+                    ),
+                    Some((parameter, _)) if parameter.is_final => Some("it is final".to_owned()),
+                    Some((parameter, _)) => bounds.as_ref().and_then(|(from, to, unit)| {
+                        let misfit = |value| {
+                            let (unit, truth) = (Some(unit), false);
+                            parameter.misfit(&Given { value, unit, truth })
+                        };
+                        let misfit = misfit(*from).or_else(|| misfit(*to))?;
+                        let help = misfit
+                            .help()
+                            .map_or(String::new(), |help| format!("; {help}"));
+                        Some(format!("it {}{help}", misfit.reason))
+                    }),
+                };
+                if let Some(problem) = problem {
+                    wrong.push(
+                        Diagnostic::error(Code::CannotVary, format!("`{name}` cannot be varied"))
+                            .label(*span, problem)
+                            .help("`hyde params FILE` lists the parameters"),
+                    );
+                }
+                if let Some((from, to, _)) = bounds {
+                    own.iter_mut()
+                        .for_each(|varied| varied.bounds = (*from, *to));
+                }
+                found.extend(own.into_iter().map(|own| (own, per.clone())));
+            }
+        }
+    }
+    // Named after `uncertain`, a parameter has the bounds given to it.
+    let mut last: Vec<Own> = Vec::new();
+    for own in found {
+        last.retain(|(other, _)| other.place != own.0.place);
+        last.push(own);
+    }
+    last
+}
