@@ -46,7 +46,7 @@ fn an_algebraic_variable_does_not_drift_off_unseen() {
         let pattern = Pattern::dense(2).unwrap();
         let (start, slopes) = ([0.0, 0.0], [1.25, 1.25 / 2.0]);
         let mut solver = Ida::new(Saturating, pattern, options, 0.0, &start, &slopes).unwrap();
-        while solver.step(6.2832).unwrap() != Stopped::Stop {
+        while solver.step(std::f64::consts::TAU).unwrap() != Stopped::Stop {
             let off = (flux(solver.y()[1]) - 1.25 * solver.t().sin()).abs();
             // Some hundred steps at the tolerance.
             assert!(off < 100.0 * rtol, "{off} at {} s with {rtol}", solver.t());
