@@ -2,7 +2,7 @@
 //! exact run has made.
 
 use crate::points::{Random, parameters};
-use hyde_calibrate::{Innovations, Observer, Problem, Recording, Varied, fit};
+use hyde_calibrate::{Innovations, Joint, Observer, Problem, Recording, Varied, fit};
 use hyde_compiler::{Backend, Compiled};
 use hyde_experiment::Options;
 use hyde_signal::{Column, Table};
@@ -290,7 +290,7 @@ fn calibration_finds_the_parameters_that_a_record_was_made_with() {
         fold: None,
         reached: None,
     };
-    let found = fit(&problem, &[], 1).unwrap();
+    let found = fit(&Joint::of(&problem), 1).unwrap();
     assert!(found.converged);
     for parameter in &found.parameters {
         let (_, value) = truth
@@ -312,9 +312,10 @@ fn calibration_finds_the_parameters_that_a_record_was_made_with() {
         );
     }
     // Four channels of 10 000 rows: 1 within four times sqrt(2/40000), and what a gain of roundness costs.
-    let after = found.records[0].after.0;
+    let (after, _) = found.parts[0];
     assert!((0.97..1.03).contains(&after), "{after}");
-    assert!(found.records[0].before.0 > 1.1);
+    let before = Innovations::of(program, &recordings[0], &observer, &[]).unwrap();
+    assert!(before.chi() > 1.1);
     // The same from any number of threads, to the last bit.
     let problem = Problem {
         varied: &varied[..2],
