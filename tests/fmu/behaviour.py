@@ -13,6 +13,8 @@ from fmpy.fmi2 import FMU2Slave
 from fmpy.fmi3 import FMU3Model, FMU3Slave
 
 folder = sys.argv[1]
+# While FMPy loads a library it changes the working directory, which all threads share.
+loading = threading.Lock()
 
 
 class Fmu:
@@ -29,12 +31,13 @@ class Fmu:
         fmi3 = self.description.fmiVersion.startswith("3")
         kind = kind or (FMU3Slave if fmi3 else FMU2Slave)
         identifier = self.description.coSimulation.modelIdentifier
-        fmu = kind(
-            guid=self.description.guid or self.description.instantiationToken,
-            unzipDirectory=self.folder,
-            modelIdentifier=identifier,
-            instanceName="one",
-        )
+        with loading:
+            fmu = kind(
+                guid=self.description.guid or self.description.instantiationToken,
+                unzipDirectory=self.folder,
+                modelIdentifier=identifier,
+                instanceName="one",
+            )
         fmu.instantiate(loggingOn=False, **options)
         return fmu
 

@@ -16,18 +16,17 @@ impl<'a> Model<'a, '_> {
     pub(super) fn stimulus(&mut self, drive: &'a Drive, root: InstanceId) {
         let word = drive.target.as_word().unwrap_or("");
         let member = self.instances[root].members.get(word).cloned();
-        let free = match member {
-            Some(Member::Variable(var)) => {
-                let variable = &self.flat.variables[var];
-                (variable.input && self.notes(var).binding.is_none()).then_some(var)
-            }
+        let is_input = |var: VarId| self.flat.variables[var].input;
+        let is_bound = |var: VarId| self.notes(var).binding.is_some();
+        let input = match member {
+            Some(Member::Variable(var)) => is_input(var).then_some(var),
             _ => None,
         };
-        let Some(var) = free else {
+        let Some(var) = input.filter(|&var| !is_bound(var)) else {
             let inputs: Vec<&str> = self.instances[root]
                 .members
                 .iter()
-                .filter(|(_, member)| matches!(member, Member::Variable(var) if self.flat.variables[*var].input))
+                .filter(|(_, member)| matches!(member, Member::Variable(var) if is_input(*var) && !is_bound(*var)))
                 .map(|(name, _)| *name)
                 .collect();
             let diagnostic = Diagnostic::error(
@@ -38,7 +37,9 @@ impl<'a> Model<'a, '_> {
                 ),
             )
             .label(drive.target.span, "cannot be driven");
-            self.report(if inputs.is_empty() {
+            self.report(if input.is_some() {
+                diagnostic.help("it has a value in the model: take that away, and it can be driven")
+            } else if inputs.is_empty() {
                 diagnostic.help("declare it in the model: `input Length r;`")
             } else {
                 diagnostic.help(format!("its inputs are {}", listed(&inputs)))
