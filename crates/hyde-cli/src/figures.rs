@@ -157,6 +157,14 @@ fn residual(channel: &Channel) -> Panel {
     )
 }
 
+/// An output over time, in the unit that it is drawn in.
+pub(crate) fn curve(name: &str, output: usize, program: &Program, run: &Run) -> Line {
+    let (_, unit) = drawn_in(&program.outputs[output].unit);
+    let values = run.results.column(output).unwrap_or_default();
+    let values = values.iter().map(|&si| unit.from_si(si)).collect();
+    Line::new(name, run.results.time.clone(), values)
+}
+
 /// A pure number has no unit on its axis.
 pub(crate) fn shown(unit: &str) -> &str {
     if unit == "1" { "" } else { unit }

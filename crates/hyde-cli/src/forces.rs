@@ -1,12 +1,12 @@
 //! The forces, torques and currents between components: as a table for people, as JSON for programs, as a section of the
 //! report.
 
-use crate::figures::{drawn_in, shown};
+use crate::figures::{curve, drawn_in, shown};
 use crate::panels::quantity;
 use hyde_compiler::Compiled;
 use hyde_experiment::{FlowLine, Run, flows};
-use hyde_program::Output;
-use hyde_report::{Block, Line, Panel, Section, Table, time_panel, time_plot};
+use hyde_program::Program;
+use hyde_report::{Block, Panel, Section, Table, time_panel, time_plot};
 use hyde_units::{engineering_as, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -79,7 +79,7 @@ pub(crate) fn section(compiled: &Compiled, run: &Run) -> Option<Section> {
             ]
         })
         .collect();
-    let panels = panels(&lines, output, run);
+    let panels = panels(&lines, &compiled.program, run);
     let figure = time_plot("", panels, None);
     let figure = hyde_report::Figure {
         title: None,
@@ -93,11 +93,8 @@ pub(crate) fn section(compiled: &Compiled, run: &Run) -> Option<Section> {
 }
 
 /// A panel a unit.
-fn panels<'o>(
-    lines: &[FlowLine],
-    output: impl Fn(&FlowLine) -> &'o Output,
-    run: &Run,
-) -> Vec<Panel> {
+fn panels(lines: &[FlowLine], program: &Program, run: &Run) -> Vec<Panel> {
+    let output = |line: &FlowLine| &program.outputs[line.output];
     let mut units: Vec<String> = Vec::new();
     for (unit, _) in lines.iter().map(|line| drawn_in(&output(line).unit)) {
         if !units.contains(&unit) {
@@ -110,17 +107,12 @@ fn panels<'o>(
             .filter(|line| drawn_in(&output(line).unit).0 == *unit)
             .collect();
         own.sort_by(|a, b| b.rms.total_cmp(&a.rms));
-        let curve = |line: &&FlowLine| {
-            let (_, of) = drawn_in(&output(line).unit);
-            let values = run.results.column(line.output).unwrap_or_default();
-            let values = values.iter().map(|&si| of.from_si(si)).collect();
-            Line::new(line.name.clone(), run.results.time.clone(), values)
-        };
+        let line = |line: &&FlowLine| curve(&line.name, line.output, program, run);
         let dimension = own.first().map(|line| output(line).dimension);
         time_panel(
             dimension.map_or("", quantity),
             shown(unit),
-            own.iter().take(CURVES).map(curve).collect(),
+            own.iter().take(CURVES).map(line).collect(),
         )
     };
     units.iter().map(panel).collect()

@@ -4,10 +4,10 @@
 //! positions before speeds, currents and forces; of the forces between components those of the largest rms. What is only a
 //! number inside a controller comes where nothing else is left.
 
-use crate::figures::{drawn_in, shown};
+use crate::figures::{self, drawn_in, shown};
 use hyde_experiment::{Run, flows};
 use hyde_program::{Output, Program};
-use hyde_report::{Line, Panel, time_panel};
+use hyde_report::{Panel, time_panel};
 use hyde_units::Dimension;
 
 /// Panels in a figure, and curves in a panel.
@@ -92,7 +92,11 @@ pub(crate) fn of_run(program: &Program, run: &Run) -> Vec<Panel> {
         }
     }
     let panel = |(unit, list): &(String, Vec<Curve>)| {
-        let lines = list.iter().map(|curve| line(program, run, curve)).collect();
+        let line = |own: &Curve| {
+            let name = &program.outputs[own.output].name;
+            figures::curve(name, own.output, program, run)
+        };
+        let lines = list.iter().map(line).collect();
         let dimension = program.outputs[list[0].output].dimension;
         time_panel(quantity(dimension), shown(unit), lines)
     };
@@ -171,14 +175,6 @@ fn place(program: &Program, curve: &Curve) -> usize {
     let known = QUANTITIES.iter().position(|(own, _)| *own == unit);
     let unread = usize::from(curve.reason < Reason::OfTheModel);
     known.unwrap_or(QUANTITIES.len() + unread)
-}
-
-fn line(program: &Program, run: &Run, curve: &Curve) -> Line {
-    let output = &program.outputs[curve.output];
-    let (_, unit) = drawn_in(&output.unit);
-    let values = run.results.column(curve.output).unwrap_or_default();
-    let values = values.iter().map(|&si| unit.from_si(si)).collect();
-    Line::new(output.name.clone(), run.results.time.clone(), values)
 }
 
 /// From the least to the largest value.
