@@ -39,6 +39,33 @@ pub(crate) trait Objective {
         values: &[f64],
         slopes: Slopes,
     ) -> Result<(Vec<Innovations>, Normal), Unsupported>;
+
+    /// Minimises from given values: by tangents until they gain nothing more, then by differences of runs.
+    ///
+    /// # Errors
+    /// A program has no fixed-step form.
+    fn solve(&self, start: &[f64]) -> Result<Solution, Unsupported>
+    where
+        Self: Sized,
+    {
+        let near = self.solve_in(start, MAX_STEPS, Slopes::Tangents)?;
+        let end = self.solve_in(&near.values, LAST_STEPS, Slopes::Differences)?;
+        Ok(Solution {
+            steps: near.steps + end.steps,
+            ..end
+        })
+    }
+
+    /// Minimises in a few steps.
+    ///
+    /// # Errors
+    /// A program has no fixed-step form.
+    fn solve_in(&self, start: &[f64], most: usize, slopes: Slopes) -> Result<Solution, Unsupported>
+    where
+        Self: Sized,
+    {
+        descend(self, start, most, slopes)
+    }
 }
 
 /// The normal equations of the data: half the second derivatives, half the gradient, and how much the gradients of blocks
@@ -60,24 +87,8 @@ impl Normal {
     }
 }
 
-/// Minimises from given values: by tangents until they gain nothing more, then by differences of runs.
-///
-/// # Errors
-/// The program has no fixed-step form.
-pub(crate) fn descend(objective: &impl Objective, start: &[f64]) -> Result<Solution, Unsupported> {
-    let near = descend_in(objective, start, MAX_STEPS, Slopes::Tangents)?;
-    let end = descend_in(objective, &near.values, LAST_STEPS, Slopes::Differences)?;
-    Ok(Solution {
-        steps: near.steps + end.steps,
-        ..end
-    })
-}
-
 /// Minimises in a few steps.
-///
-/// # Errors
-/// The program has no fixed-step form.
-pub(crate) fn descend_in(
+fn descend(
     objective: &impl Objective,
     start: &[f64],
     most: usize,

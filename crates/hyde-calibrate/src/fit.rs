@@ -1,5 +1,6 @@
 //! [`Fit`]: a calibration with what it is worth: intervals, correlations, what the data cannot tell apart.
 
+use crate::descent::Objective;
 use crate::gain::Observer;
 use crate::joint::Joint;
 use crate::least_squares::Problem;

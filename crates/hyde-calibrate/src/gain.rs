@@ -238,7 +238,10 @@ pub(crate) fn state_names(plant: &Plant<'_>) -> Vec<String> {
         .collect()
 }
 
-/// Standard deviation of a channel: declared noise and rounding; without either a ten-thousandth of a unit.
+/// The standard deviation, SI, of a channel whose noise and rounding are not declared.
+pub const UNDECLARED_NOISE: f64 = 1e-4;
+
+/// Standard deviation of a channel: declared noise and rounding, or [`UNDECLARED_NOISE`].
 pub(crate) fn deviation(program: &Program, channel: usize, p: &[f64]) -> f64 {
     let noise = program.kernels.constant(Constant::Noise(channel), p);
     let (noise, width) = (noise.unwrap_or(0.0), rounding(program, channel, p));
@@ -246,7 +249,7 @@ pub(crate) fn deviation(program: &Program, channel: usize, p: &[f64]) -> f64 {
     if variance > 0.0 {
         variance.sqrt()
     } else {
-        1e-4
+        UNDECLARED_NOISE
     }
 }
 

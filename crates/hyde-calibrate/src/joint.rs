@@ -4,7 +4,7 @@
 //! weighs by its noise. A [`Part`] is records of one experiment that share all values: each of its own parameters is a number
 //! of the whole, and what is shared is the same number in several parts.
 
-use crate::descent::{Normal, Objective, descend, descend_in, sum_of_squares};
+use crate::descent::{Normal, Objective, sum_of_squares};
 use crate::least_squares::Problem;
 use crate::linearised::Slopes;
 use crate::observer::Innovations;
@@ -58,24 +58,6 @@ impl<'a> Joint<'a> {
             varied,
             reached: None,
         }
-    }
-
-    /// Minimises from given values: by tangents until they gain nothing more, then by differences of runs.
-    ///
-    /// # Errors
-    /// A program has no fixed-step form.
-    pub(crate) fn solve(&self, start: &[f64]) -> Result<Solution, Unsupported> {
-        descend(self, start)
-    }
-
-    /// Minimises in a few steps.
-    pub(crate) fn solve_in(
-        &self,
-        start: &[f64],
-        most: usize,
-        slopes: Slopes,
-    ) -> Result<Solution, Unsupported> {
-        descend_in(self, start, most, slopes)
     }
 }
 

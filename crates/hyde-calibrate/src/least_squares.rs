@@ -1,7 +1,7 @@
 //! [`Problem`]: least squares on the innovations of one program's records.
 
 use crate::blocks::{Fold, gradients};
-use crate::descent::{self, Normal, Objective, descend, descend_in, sum_of_squares};
+use crate::descent::{self, Normal, Objective, sum_of_squares};
 use crate::gain::Observer;
 use crate::linearised::{Linearised, Slopes};
 use crate::observer::Innovations;
@@ -90,20 +90,7 @@ impl Problem<'_> {
     /// # Errors
     /// The program has no fixed-step form.
     pub fn solve(&self, start: &[f64]) -> Result<Solution, Unsupported> {
-        descend(self, start)
-    }
-
-    /// Minimises in a few steps.
-    ///
-    /// # Errors
-    /// The program has no fixed-step form.
-    pub(crate) fn solve_in(
-        &self,
-        start: &[f64],
-        most: usize,
-        slopes: Slopes,
-    ) -> Result<Solution, Unsupported> {
-        descend_in(self, start, most, slopes)
+        Objective::solve(self, start)
     }
 
     /// Innovations of every record.

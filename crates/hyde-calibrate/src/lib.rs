@@ -77,7 +77,7 @@ pub use even_rows::Resampled;
 pub use fit::{ChannelError, Fit, FittedParameter, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};
 pub use frozen::{Frozen, frozen};
-pub use gain::{Observer, Taken};
+pub use gain::{Observer, Taken, UNDECLARED_NOISE};
 pub use identifiability::{Identifiability, Together};
 pub use information::{Information, UNKNOWN};
 pub use joint::{Joint, Part};

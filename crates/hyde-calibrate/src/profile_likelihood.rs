@@ -4,7 +4,7 @@
 //! of what innovations vary by (Venzon and Moolgavkar, Appl. Stat. 37, 1988, 87). Unlike the interval of the curvature it need
 //! not be symmetric, and may be open: where no value makes the records unlikely.
 
-use crate::descent::MAX_STEPS;
+use crate::descent::{MAX_STEPS, Objective};
 use crate::fit::Fit;
 use crate::joint::Joint;
 use crate::linearised::Slopes;

@@ -8,7 +8,7 @@ pub(crate) mod plots;
 pub(crate) mod text;
 
 use crate::before_after::RecordErrors;
-use hyde_calibrate::{Fit, Identifiability, Profile};
+use hyde_calibrate::{Fit, Identifiability, Profile, UNDECLARED_NOISE};
 use hyde_program::Program;
 use hyde_study::{Calibration, JointCalibration, unobservable};
 use hyde_units::{NamedUnit, engineering_as, engineering_difference, significant};
@@ -85,9 +85,9 @@ impl Told<'_> {
             }
             let measured = own.compiled.program.experiment.measured.iter();
             for (channel, noise) in measured.zip(&own.observer.noise) {
-                if noise.to_bits() == 1e-4_f64.to_bits() {
+                if noise.to_bits() == UNDECLARED_NOISE.to_bits() {
                     found.push(format!(
-                        "`{}` of `{name}` declares no noise and counts as exact to 1e-4 (SI), which decides its weight: declare it, `measured … ~ 20 [mA];`",
+                        "`{}` of `{name}` declares no noise and counts as exact to {UNDECLARED_NOISE:e} (SI), which decides its weight: declare it, `measured … ~ 20 [mA];`",
                         channel.name
                     ));
                 }

@@ -11,6 +11,8 @@ use hyde_report::{
 };
 use hyde_units::{engineering_as, format_value, significant};
 
+const ESDIRK: &str = "ESDIRK5(4)7L[2]SA2, a Runge-Kutta method";
+
 /// The page as one text.
 pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String {
     to_html(&page(project, compiled, run))
@@ -121,14 +123,17 @@ pub(crate) fn page(project: &Project, compiled: &Compiled, run: &Run) -> Page {
         })
         .collect();
     let counted = |name: &str, value: u64| (name.to_owned(), value.to_string());
+    let ida = format!("IDA, SUNDIALS {}", hyde_ida::sundials_version());
     let solver = vec![
         (
             "method".to_owned(),
-            match statistics.method {
-                Method::Ida | Method::Auto => {
-                    format!("IDA, SUNDIALS {}", hyde_ida::sundials_version())
+            match (statistics.method, statistics.left_ida_s) {
+                (Method::Ida | Method::Auto, None) => ida,
+                (Method::Ida | Method::Auto, Some(t)) => {
+                    let t = significant(t, 4);
+                    format!("{ida}; from {t} s {ESDIRK}: half of the steps failed the error test")
                 }
-                Method::Esdirk => "ESDIRK5(4)7L[2]SA2, a Runge-Kutta method".to_owned(),
+                (Method::Esdirk, _) => ESDIRK.to_owned(),
             },
         ),
         (

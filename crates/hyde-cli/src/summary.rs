@@ -42,6 +42,13 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
         counted(statistics.ticks, "tick"),
         counted(statistics.restarts, "restart")
     );
+    if let Some(t) = statistics.left_ida_s {
+        let _ = writeln!(
+            out,
+            "  esdirk from {} s on: half of the steps of ida failed the error test",
+            significant(t, 4)
+        );
+    }
     let found = |name: &&String| run.results.yielded.iter().any(|y| y.name == **name);
     let filled = compiled.states.filled.iter().filter(|name| !found(name));
     let filled: Vec<&str> = filled.map(String::as_str).collect();
@@ -260,6 +267,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
             Method::Ida | Method::Auto => "ida",
             Method::Esdirk => "esdirk",
         },
+        "esdirk_from_s": statistics.left_ida_s,
         "statistics": {
             "steps": statistics.steps,
             "residual_evaluations": statistics.residual_evaluations,

@@ -5,6 +5,7 @@
 
 use std::any::Any;
 use std::ffi::{c_int, c_void};
+use std::mem::ManuallyDrop;
 use std::panic::{self, AssertUnwindSafe};
 use std::ptr::NonNull;
 
@@ -104,6 +105,13 @@ impl<S> BridgeBox<S> {
     pub(crate) fn get_mut(&mut self) -> &mut Bridge<S> {
         // SAFETY: as above.
         unsafe { self.0.as_mut() }
+    }
+
+    /// The system; IDA must be freed before.
+    pub(crate) fn into_system(self) -> S {
+        let own = ManuallyDrop::new(self);
+        // SAFETY: the pointer came from a box, and is not dropped a second time.
+        unsafe { Box::from_raw(own.0.as_ptr()) }.system
     }
 
     /// Lets a parked panic go on.

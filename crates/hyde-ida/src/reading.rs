@@ -129,6 +129,15 @@ impl<S: System> Ida<S> {
         &mut self.bridge.get_mut().system
     }
 
+    /// The system, without the solver.
+    #[must_use]
+    pub fn into_system(self) -> S {
+        let Self { memory, bridge, .. } = self;
+        // IDA knows the bridge: it goes first.
+        drop(memory);
+        bridge.into_system()
+    }
+
     /// What was counted since the solver was made.
     #[must_use]
     pub fn statistics(&self) -> Statistics {

@@ -23,6 +23,8 @@ pub(crate) struct Integrator<'a> {
     /// The largest value of each unknown so far, and those that the tolerances were made with.
     largest: Vec<f64>,
     allowed: Vec<f64>,
+    /// When the one-step method took over from IDA, in s.
+    left_ida_s: Option<f64>,
 }
 
 /// The solver bounds the error of a step; over a long smooth stretch the errors of many steps add up, an oscillation
@@ -61,6 +63,7 @@ impl<'a> Integrator<'a> {
             part: 1,
             largest: vec![0.0; n],
             allowed: vec![0.0; n],
+            left_ida_s: None,
         })
     }
 
@@ -80,6 +83,11 @@ impl<'a> Integrator<'a> {
     /// One step, never past `stop`. Returns where the step began.
     pub(crate) fn step(&mut self, stop: f64) -> Result<f64, Box<Failure>> {
         let before = self.t;
+        match self.solver.leaves_ida(before, &self.y, &self.yp) {
+            Ok(true) => self.left_ida_s = Some(before),
+            Ok(false) => {}
+            Err(error) => return Err(self.failure(&error)),
+        }
         self.steps = self.steps.saturating_add(1);
         let part = self.steps / SMOOTH_AFTER;
         if self.conserve
@@ -169,6 +177,11 @@ impl<'a> Integrator<'a> {
     /// The largest value of each unknown so far; none where there is nothing to solve.
     pub(crate) fn largest(&self) -> &[f64] {
         &self.largest
+    }
+
+    /// When the one-step method took over from IDA, in s.
+    pub(crate) fn left_ida_s(&self) -> Option<f64> {
+        self.left_ida_s
     }
 
     pub(crate) fn statistics(&self) -> hyde_ida::Statistics {

@@ -18,6 +18,7 @@
 
 mod clocks;
 mod consistent;
+mod creeping;
 mod delays;
 mod edges;
 mod events;

@@ -44,10 +44,12 @@ pub struct Event {
 }
 
 /// What the solver did.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Statistics {
     /// The method that was taken.
     pub method: Method,
+    /// When `esdirk` took over, in s, because half of the steps of `ida` failed the error test.
+    pub left_ida_s: Option<f64>,
     /// Accepted steps.
     pub steps: u64,
     /// Evaluations of the residual by the solver.

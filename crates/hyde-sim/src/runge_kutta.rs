@@ -12,9 +12,7 @@ mod passes;
 mod stages;
 mod tableau;
 
-use hyde_ida::{
-    Error, Failure, FailureKind, LinearMethod, Pattern, SparseSolver, Statistics, System,
-};
+use hyde_ida::{Error, Failure, FailureKind, LinearMethod, SparseSolver, Statistics, System};
 use passes::{correct, sum_of_squares};
 use stages::Obstacle;
 use tableau::{BUBBLE, GAMMA, STAGES};
@@ -84,20 +82,20 @@ impl<S: System> RungeKutta<S> {
     /// where they are `watched`.
     pub(crate) fn new(
         system: S,
-        pattern: Pattern,
+        linear: SparseSolver,
         differential: Vec<bool>,
         watched: bool,
         max_step_s: f64,
         (t, y, yp): (f64, &[f64], &[f64]),
-    ) -> Result<Self, Error> {
-        let (n, entries) = (pattern.n(), pattern.n_entries());
+    ) -> Self {
+        let (n, entries) = (linear.pattern().n(), linear.pattern().n_entries());
         let mut slopes = vec![vec![0.0; n]; STAGES];
         slopes[LAST].copy_from_slice(yp);
         let counts: Vec<bool> = differential.iter().map(|is| *is || watched).collect();
         let count = counts.iter().filter(|counts| **counts).count();
-        Ok(Self {
+        Self {
             system,
-            linear: SparseSolver::new(pattern, LinearMethod::Auto)?,
+            linear,
             for_rows: None,
             matrix: vec![0.0; entries],
             factored_s: None,
@@ -124,7 +122,12 @@ impl<S: System> RungeKutta<S> {
             base: vec![0.0; n],
             correction: vec![0.0; n],
             statistics: Statistics::default(),
-        })
+        }
+    }
+
+    /// What another method counted before counts too.
+    pub(crate) fn count_on(&mut self, before: Statistics) {
+        self.statistics = before;
     }
 
     pub(crate) fn system(&self) -> &S {

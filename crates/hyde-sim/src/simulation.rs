@@ -384,6 +384,7 @@ impl<'a> Simulation<'a> {
         let solver = self.integrator.statistics();
         let statistics = &mut self.results.statistics;
         statistics.method = method(self.program, self.setup.method);
+        statistics.left_ida_s = self.integrator.left_ida_s();
         statistics.steps = solver.steps;
         statistics.residual_evaluations = solver.residual_evaluations;
         statistics.jacobian_evaluations = solver.jacobian_evaluations;

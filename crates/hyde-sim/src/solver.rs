@@ -1,11 +1,12 @@
 //! [`Solver`]: what advances the state, chosen by the run's setup.
 
+use crate::creeping::Creeping;
 use crate::failure::{Failure, FailureKind};
 use crate::first_step::FirstStep;
 use crate::runge_kutta::RungeKutta;
 use crate::setup::Setup;
 use crate::state::State;
-use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern, Statistics};
+use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern, SparseSolver, Statistics};
 use hyde_program::{Method, Program, Relation, RelationUse};
 
 /// A solver that owns the state.
@@ -15,12 +16,23 @@ pub(crate) enum Solver<'a> {
         state: Box<State<'a>>,
         stride_s: f64,
     },
-    Ida {
-        ida: Box<Ida<State<'a>>>,
-        /// Factor of the tolerances that it gets.
-        share: f64,
-    },
+    Ida(Box<Multistep<'a>>),
     RungeKutta(Box<RungeKutta<State<'a>>>),
+}
+
+/// IDA, and what the change to the one-step method takes.
+pub(crate) struct Multistep<'a> {
+    ida: Ida<State<'a>>,
+    /// Factor of the tolerances that it gets.
+    share: f64,
+    /// The tolerances before that factor.
+    rtol: f64,
+    atol: Vec<f64>,
+    creeping: Creeping,
+    pattern: Pattern,
+    /// Whether the errors of algebraic variables count.
+    watched: bool,
+    max_step_s: f64,
 }
 
 /// Of the step that is right for order 1, how many times it a Runge-Kutta method may begin with (measured on axes with a
@@ -96,12 +108,13 @@ impl<'a> Solver<'a> {
         let max_step_s = setup.max_step_s.min(state.inputs.max_step_s()).min(stride);
         let atol = vec![setup.atol; program.n_unknowns];
         if method(program, setup.method) == Method::Esdirk {
-            let (states, watched) = (state.differential.clone(), !states_alone);
+            let linear = SparseSolver::new(pattern, LinearMethod::Auto).map_err(failed)?;
+            let states = state.differential.clone();
             let start = (t, y, yp);
-            let solver = RungeKutta::new(state, pattern, states, watched, max_step_s, start);
-            let mut solver = Self::RungeKutta(Box::new(solver.map_err(failed)?));
-            solver.set_tolerances(setup.rtol, &atol).map_err(failed)?;
-            return Ok(solver);
+            let mut solver =
+                RungeKutta::new(state, linear, states, !states_alone, max_step_s, start);
+            solver.set_tolerances(setup.rtol, &atol);
+            return Ok(Self::RungeKutta(Box::new(solver)));
         }
         let share = SHARE_OF_A_STEP
             * match states_alone {
@@ -114,15 +127,23 @@ impl<'a> Solver<'a> {
         options.suppress_algebraic = states_alone;
         options.first_step_s = Some(first_step_s);
         options.linear_method = LinearMethod::Auto;
-        let ida = Ida::new(state, pattern, options, t, y, yp).map_err(failed)?;
-        let ida = Box::new(ida);
-        Ok(Self::Ida { ida, share })
+        let ida = Ida::new(state, pattern.clone(), options, t, y, yp).map_err(failed)?;
+        Ok(Self::Ida(Box::new(Multistep {
+            ida,
+            share,
+            rtol: setup.rtol,
+            atol,
+            creeping: Creeping::default(),
+            pattern,
+            watched: !states_alone,
+            max_step_s,
+        })))
     }
 
     pub(crate) fn state(&self) -> &State<'a> {
         match self {
             Self::Nothing { state, .. } => state,
-            Self::Ida { ida, .. } => ida.system(),
+            Self::Ida(multistep) => multistep.ida.system(),
             Self::RungeKutta(solver) => solver.system(),
         }
     }
@@ -130,14 +151,34 @@ impl<'a> Solver<'a> {
     pub(crate) fn state_mut(&mut self) -> &mut State<'a> {
         match self {
             Self::Nothing { state, .. } => state,
-            Self::Ida { ida, .. } => ida.system_mut(),
+            Self::Ida(multistep) => multistep.ida.system_mut(),
             Self::RungeKutta(solver) => solver.system_mut(),
         }
     }
 
     /// Whether its polynomials go through values of earlier steps.
     pub(crate) fn has_a_past(&self) -> bool {
-        matches!(self, Self::Ida { .. })
+        matches!(self, Self::Ida(_))
+    }
+
+    /// Goes over to the one-step method where IDA creeps; whether it did. `y` and `yp` are the values at `t`, where IDA
+    /// stands.
+    pub(crate) fn leaves_ida(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<bool, Error> {
+        let Self::Ida(multistep) = self else {
+            return Ok(false);
+        };
+        let selected = !multistep.ida.system().program.selections.is_empty();
+        if selected || !multistep.creeping.seen(&multistep.ida) {
+            return Ok(false);
+        }
+        let linear = SparseSolver::new(multistep.pattern.clone(), LinearMethod::Auto)?;
+        replace_with::replace_with_or_abort(self, |solver| match solver {
+            Self::Ida(multistep) => {
+                Self::RungeKutta(Box::new(multistep.one_step(linear, t, y, yp)))
+            }
+            other @ (Self::Nothing { .. } | Self::RungeKutta(_)) => other,
+        });
+        Ok(true)
     }
 
     /// One step from `t`, never past `stop`; writes its end to `y` and `yp`, and returns its time.
@@ -150,8 +191,8 @@ impl<'a> Solver<'a> {
     ) -> Result<f64, Error> {
         match self {
             Self::Nothing { stride_s, .. } => return Ok(stop.min(t + *stride_s)),
-            Self::Ida { ida, .. } => {
-                ida.step(stop)?;
+            Self::Ida(multistep) => {
+                multistep.ida.step(stop)?;
             }
             Self::RungeKutta(solver) => solver.step(stop)?,
         }
@@ -175,7 +216,10 @@ impl<'a> Solver<'a> {
     fn end(&self, t: f64, y: &mut [f64], yp: &mut [f64]) -> f64 {
         let (t, end, rates) = match self {
             Self::Nothing { .. } => return t,
-            Self::Ida { ida, .. } => (ida.t(), ida.y(), ida.yp()),
+            Self::Ida(multistep) => {
+                let ida = &multistep.ida;
+                (ida.t(), ida.y(), ida.yp())
+            }
             Self::RungeKutta(solver) => solver.end(),
         };
         y.copy_from_slice(end);
@@ -186,7 +230,7 @@ impl<'a> Solver<'a> {
     /// Writes the solution at a time inside the last step; returns false if there is none.
     pub(crate) fn solution(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
         match self {
-            Self::Nothing { .. } | Self::Ida { .. } => self.interpolate(t, y, yp),
+            Self::Nothing { .. } | Self::Ida(_) => self.interpolate(t, y, yp),
             Self::RungeKutta(solver) => {
                 solver.solution(t, y, yp);
                 true
@@ -198,7 +242,8 @@ impl<'a> Solver<'a> {
     pub(crate) fn interpolate(&self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
         match self {
             Self::Nothing { .. } => false,
-            Self::Ida { ida, .. } => {
+            Self::Ida(multistep) => {
+                let ida = &multistep.ida;
                 let values = ida.interpolate(t, 0, y);
                 values.and_then(|()| ida.interpolate(t, 1, yp)).is_ok()
             }
@@ -219,7 +264,8 @@ impl<'a> Solver<'a> {
     ) -> Result<(), Error> {
         match self {
             Self::Nothing { .. } => Ok(()),
-            Self::Ida { ida, .. } => {
+            Self::Ida(multistep) => {
+                let ida = &mut multistep.ida;
                 // States chosen anew are the ones whose errors count from here.
                 let differential = ida.system().differential.clone();
                 ida.set_differential(&differential)?;
@@ -238,9 +284,12 @@ impl<'a> Solver<'a> {
     pub(crate) fn set_tolerances(&mut self, rtol: f64, atol: &[f64]) -> Result<(), Error> {
         match self {
             Self::Nothing { .. } => Ok(()),
-            Self::Ida { ida, share } => {
-                let atol: Vec<f64> = atol.iter().map(|atol| *share * atol).collect();
-                ida.set_tolerances(*share * rtol, &atol)
+            Self::Ida(multistep) => {
+                multistep.rtol = rtol;
+                multistep.atol.copy_from_slice(atol);
+                let share = multistep.share;
+                let atol: Vec<f64> = atol.iter().map(|atol| share * atol).collect();
+                multistep.ida.set_tolerances(share * rtol, &atol)
             }
             Self::RungeKutta(solver) => {
                 solver.set_tolerances(rtol, atol);
@@ -252,9 +301,30 @@ impl<'a> Solver<'a> {
     pub(crate) fn statistics(&self) -> Statistics {
         match self {
             Self::Nothing { .. } => Statistics::default(),
-            Self::Ida { ida, .. } => ida.statistics(),
+            Self::Ida(multistep) => multistep.ida.statistics(),
             Self::RungeKutta(solver) => solver.statistics(),
         }
+    }
+}
+
+impl<'a> Multistep<'a> {
+    /// The one-step method, at the point where IDA stands, with its counts.
+    fn one_step(
+        self,
+        linear: SparseSolver,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+    ) -> RungeKutta<State<'a>> {
+        let (counts, step_s) = (self.ida.statistics(), self.ida.last_step_s());
+        let state = self.ida.into_system();
+        let (states, start) = (state.differential.clone(), (t, y, yp));
+        let longest_s = self.max_step_s;
+        let mut solver = RungeKutta::new(state, linear, states, self.watched, longest_s, start);
+        solver.set_tolerances(self.rtol, &self.atol);
+        solver.restart(t, y, yp, LONGER_FIRST_STEP * step_s);
+        solver.count_on(counts);
+        solver
     }
 }
 

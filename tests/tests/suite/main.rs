@@ -13,6 +13,7 @@ mod clocks;
 mod closed_form;
 mod clutch;
 mod command;
+mod creeping;
 mod dead_time;
 mod delays;
 mod derivatives;

@@ -9,7 +9,7 @@
 use super::inquiry::Inquiry;
 use super::search::Diagnosis;
 use super::stage::{Ground, Stage};
-use crate::descent::{MAX_STEPS, sum_of_squares};
+use crate::descent::{MAX_STEPS, Objective, sum_of_squares};
 use crate::gain::Observer;
 use crate::linearised::Slopes;
 use crate::plant::Unsupported;

@@ -7,7 +7,7 @@
 use super::hypothesis::{Build, Built};
 use super::search::Gates;
 use super::stage::{Ground, Stage, below};
-use crate::descent::MAX_STEPS;
+use crate::descent::{MAX_STEPS, Objective};
 use crate::fit::inflation_of;
 use crate::linearised::Slopes;
 use crate::varied::Varied;

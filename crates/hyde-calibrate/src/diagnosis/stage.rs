@@ -3,7 +3,7 @@
 use super::hypothesis::Hypothesis;
 use super::profile::profiled;
 use crate::blocks::Fold;
-use crate::descent::MAX_STEPS;
+use crate::descent::{MAX_STEPS, Objective};
 use crate::gain::Observer;
 use crate::least_squares::Problem;
 use crate::linearised::{Linearised, Slopes};

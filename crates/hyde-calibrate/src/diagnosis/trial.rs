@@ -7,7 +7,7 @@ use super::search::{Gates, chi_squared};
 use super::stage::{Ground, Stage};
 use super::undetermined;
 use crate::blocks::Fold;
-use crate::descent::{LAST_STEPS, MAX_STEPS};
+use crate::descent::{LAST_STEPS, MAX_STEPS, Objective};
 use crate::fit::{covariance, covariance_of_first, inflation_of};
 use crate::linearised::Slopes;
 use crate::observer::Innovations;

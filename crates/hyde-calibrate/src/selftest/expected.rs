@@ -6,6 +6,7 @@
 //! Continuous Univariate Distributions 2, 1995, ch. 29). An effect is said to show where that passes the gate in 39 of 40
 //! sets of noise: `G - 4*sqrt(G) >= gate`.
 
+use crate::descent::Objective;
 use crate::diagnosis::{Author, Built, Gates, Ground, Hypothesis, Projection, Stage, flat};
 use crate::gain::Observer;
 use crate::linearised::Slopes;

@@ -1,7 +1,7 @@
 //! Order, stiffness, algebraic variables, ends inside a step, and failures, on systems with a closed form.
 
 use super::*;
-use hyde_ida::Recoverable;
+use hyde_ida::{Pattern, Recoverable};
 
 /// `x'' = -x`.
 struct Oscillator;
@@ -144,15 +144,9 @@ fn solver<S: System + States>(
     max_step_s: f64,
 ) -> RungeKutta<S> {
     let (n, pattern) = (y.len(), Pattern::dense(y.len()).expect("of some unknowns"));
-    let mut solver = RungeKutta::new(
-        system,
-        pattern,
-        S::STATES.to_vec(),
-        true,
-        max_step_s,
-        (0.0, y, yp),
-    )
-    .expect("a small system");
+    let linear = SparseSolver::new(pattern, LinearMethod::Auto).expect("a small system");
+    let (states, start) = (S::STATES.to_vec(), (0.0, y, yp));
+    let mut solver = RungeKutta::new(system, linear, states, true, max_step_s, start);
     solver.set_tolerances(rtol, &vec![1e-2 * rtol; n]);
     solver.restart(0.0, y, yp, 1e-3f64.min(max_step_s));
     solver
