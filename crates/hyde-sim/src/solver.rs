@@ -7,7 +7,7 @@ use crate::runge_kutta::RungeKutta;
 use crate::setup::Setup;
 use crate::state::State;
 use hyde_ida::{Error, Ida, LinearMethod, Options, Pattern, SparseSolver, Statistics};
-use hyde_program::{Method, Program, Relation, RelationUse};
+use hyde_program::{Method, Program, Relation, RelationUse, Target};
 
 /// A solver that owns the state.
 pub(crate) enum Solver<'a> {
@@ -51,14 +51,16 @@ const LEAST_STRIDES: f64 = 1000.0;
 const SMALL: usize = 16;
 
 /// The method for a program: where something may happen at any moment, a one-step method, which starts anew at no cost;
-/// where all is smooth, IDA. So it is where something is struck: a bounce may be lower than the tolerance, and the steps
-/// that IDA begins with are as short. States that are chosen anew need slopes of them all, which a Runge-Kutta method has not.
+/// where all is smooth, IDA. So it is where something is struck, a `when` sets a state: a bounce may be lower than the
+/// tolerance, and the steps that IDA begins with are as short. States that are chosen anew need slopes of them all, which a Runge-Kutta method has not.
 pub(crate) fn method(program: &Program, asked: Method) -> Method {
     let one_step = match asked {
         Method::Ida => false,
         Method::Esdirk => true,
         Method::Auto => {
-            let strikes = searched(program).any(|relation| relation.used == RelationUse::When);
+            let mut targets = program.assignments.iter().map(|own| own.target);
+            let strikes = searched(program).any(|relation| relation.used == RelationUse::When)
+                && targets.any(|target| matches!(target, Target::State(_)));
             let changes = searched(program).next().is_some();
             !program.clocks.is_empty() || !strikes && (changes || program.n_unknowns <= SMALL)
         }

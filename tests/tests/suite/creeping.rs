@@ -20,7 +20,7 @@ equation
   0.01 [kg]*der(v) = 150 [N]*sin(2*pi*0.01 [Hz]*time) - 200 [N] - 1e6 [N/m]*s - 2750 [N.s/m]*v;
 end Light;
 experiment run of Light
-  measure end = last(s);
+  measure Length reached = last(s);
   solve ida(rtol = {rtol:e}) stop 90 [s];
 end run;
 "
@@ -39,12 +39,22 @@ fn closed_form() -> f64 {
 fn a_light_damped_mass_under_a_slow_force_takes_hundreds_of_steps_at_every_tolerance() {
     let folder = tempfile::tempdir().unwrap();
     let mut left = 0;
-    for rtol in [1e-4, 1e-5, 3e-6, 1e-6, 3e-7, 1e-7, 1e-8, 1e-9] {
+    // A method of order 5 takes 542 steps at 1e-8 and 1342 at 1e-9 from the start.
+    for (rtol, most) in [
+        (1e-4, 400),
+        (1e-5, 400),
+        (3e-6, 400),
+        (1e-6, 400),
+        (3e-7, 600),
+        (1e-7, 600),
+        (1e-8, 1200),
+        (1e-9, 2500),
+    ] {
         write(&folder.path().join("slow.hyde"), &model(rtol));
         let run = report(folder.path(), &["run", "slow.hyde", "--out", "out"]);
         let steps = run["statistics"]["steps"].as_u64().unwrap();
-        assert!(steps < 800, "{steps} steps at {rtol:e}");
-        let end = run["measures"]["end"]["value"].as_f64().unwrap();
+        assert!(steps < most, "{steps} steps at {rtol:e}");
+        let end = run["measures"][0]["value"].as_f64().unwrap();
         let error = (end - closed_form()).abs() / 3.5e-4;
         assert!(error < 3.0 * rtol, "{error:e} at {rtol:e}");
         left += usize::from(run["esdirk_from_s"].is_f64());
