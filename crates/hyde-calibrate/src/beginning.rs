@@ -160,7 +160,11 @@ fn shares(plant: &Plant<'_>, noise: &[f64]) -> DMatrix<f64> {
     }
     let mut all = DMatrix::zeros(ROWS * noise.len(), places.states.len());
     for row in 0..ROWS {
-        all.rows_mut(row * noise.len(), noise.len()).copy_from(&c);
+        let readings = plant.recording.readings(row).iter();
+        for (channel, _) in readings.enumerate().filter(|(_, there)| **there) {
+            let into = row * noise.len() + channel;
+            all.row_mut(into).copy_from(&c.row(channel));
+        }
         c = &c * &configuration.steps[0].exp;
     }
     all

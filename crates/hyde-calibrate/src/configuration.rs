@@ -8,6 +8,7 @@
 
 use crate::dense::set_product;
 use crate::exponential::{Step, steps};
+use crate::gains::Gains;
 use crate::leg::Instant;
 use hyde_program::{Function, Kernels, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::DMatrix;
@@ -43,7 +44,7 @@ pub(crate) struct Configuration<'p> {
     /// The point at which it is linear.
     pub(crate) made: Instant,
     /// What an observer corrects it by ([`crate::gain::Observer::gain_in`]); empty until one has met it.
-    pub(crate) gain: DMatrix<f64>,
+    pub(crate) gains: Gains,
 }
 
 /// The equations that are not linear, or read what is outside ([`Kernels::bending_rows`]): in a step, only these are evaluated.
@@ -135,7 +136,7 @@ impl<'p> Configuration<'p> {
             by_states,
             bending,
             made: Instant::of(at),
-            gain: DMatrix::zeros(0, 0),
+            gains: Gains::none(0, 0),
         })
     }
 

@@ -1,8 +1,9 @@
 //! Even rows for a record whose own are not: an observer's steps are all of one length.
 //!
-//! A drive polled over a bus stamps its rows as they come. Measured columns are then read on straight lines between the rows
-//! about the instants of an even grid as fine as the rows usually are; columns that drive the model are read there as they
-//! always are. [`Resampled`] tells of it. A gap is no straight line: such a record is refused.
+//! A drive polled over a bus stamps its rows as they come. The rows of an observer are then those of an even grid as fine as
+//! the rows usually are, and readings go to the nearest of these ([`crate::readings`]); columns that drive the model are read
+//! there as they always are. [`Uneven`] tells of it. Over a long gap nothing is known of what drives the model: such a record
+//! is refused.
 
 use crate::fit::median;
 use crate::recording::RecordError;
@@ -13,9 +14,9 @@ const EVEN: f64 = 0.01;
 /// So many usual spacings without a row are a gap.
 const GAP: f64 = 10.0;
 
-/// That a record was read at other instants than those of its rows.
+/// That the rows of a record are not evenly spaced, where those of an observer are.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Resampled {
+pub struct Uneven {
     /// The record, as the experiment calls it.
     pub record: String,
     /// The closest and the widest spacing of its rows, s.
@@ -26,18 +27,17 @@ pub struct Resampled {
     pub step_s: f64,
 }
 
-/// A record at even rows, if its own are not even.
+/// Even rows for the times of a record; its own if these are even.
 pub(crate) fn evenly(
     record: &str,
-    table: &Table,
-) -> Result<Option<(Vec<f64>, Resampled)>, RecordError> {
-    let time = table.time();
+    time: &[f64],
+) -> Result<(Vec<f64>, Option<Uneven>), RecordError> {
     let (first, last) = (time[0], time[time.len() - 1]);
     let mean = (last - first) / (time.len() - 1) as f64;
     let spacings: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut uneven = spacings.iter().map(|spacing| (spacing - mean).abs());
     if uneven.all(|off| off <= EVEN * mean) {
-        return Ok(None);
+        return Ok((time.to_vec(), None));
     }
     let apart: Vec<f64> = spacings.iter().copied().filter(|s| *s > 0.0).collect();
     let step_s = median(&apart).unwrap_or(mean);
@@ -52,17 +52,17 @@ pub(crate) fn evenly(
         });
     }
     let rows = ((last - first) / step_s * (1.0 + 1e-12)).floor() as usize;
-    let time = (0..=rows).map(|row| first + step_s * row as f64).collect();
-    let resampled = Resampled {
+    let even = (0..=rows).map(|row| first + step_s * row as f64);
+    let uneven = Uneven {
         record: record.to_owned(),
         spacing_s: (
             spacings.iter().copied().fold(f64::INFINITY, f64::min),
             spacings.iter().copied().fold(0.0, f64::max),
         ),
-        from_s: table.time()[place],
+        from_s: time[place],
         step_s,
     };
-    Ok(Some((time, resampled)))
+    Ok((even.collect(), Some(uneven)))
 }
 
 /// Values of a table's rows at other instants, and a table of the instants.
@@ -90,7 +90,8 @@ mod tests {
             .map(|row| 0.01 * f64::from(row) + 0.002 * f64::from(row % 3))
             .collect();
         let table = table(&time);
-        let (even, told) = evenly("log", &table).unwrap().unwrap();
+        let (even, told) = evenly("log", table.time()).unwrap();
+        let told = told.unwrap();
         assert!((told.spacing_s.0 - 0.006).abs() < 1e-9, "{told:?}");
         assert!((told.spacing_s.1 - 0.012).abs() < 1e-9, "{told:?}");
         let pairs = even.windows(2);
@@ -108,9 +109,9 @@ mod tests {
     #[test]
     fn even_rows_stay_and_a_gap_is_told_with_its_place() {
         let mut time: Vec<f64> = (0..200).map(|row| 0.01 * f64::from(row)).collect();
-        assert_eq!(evenly("log", &table(&time)), Ok(None));
+        assert_eq!(evenly("log", &time), Ok((time.clone(), None)));
         time[120..].iter_mut().for_each(|t| *t += 0.3);
-        let gap = evenly("log", &table(&time)).unwrap_err();
+        let gap = evenly("log", &time).unwrap_err();
         let RecordError::Gap { from_s, to_s, .. } = gap else {
             panic!("{gap:?}");
         };

@@ -10,6 +10,7 @@ use crate::solution::Solution;
 use crate::standstill::{Cause, audible, standstill};
 use crate::varied::Varied;
 use nalgebra::{DMatrix, DVector};
+use std::borrow::Cow;
 
 /// Parameters are of one group if some pair of their errors is correlated more than this.
 const CORRELATED: f64 = 0.9;
@@ -123,7 +124,7 @@ pub fn fit(joint: &Joint<'_>, starts: usize) -> Result<Fit, Unsupported> {
         } = part.problem;
         let own = solution.innovations[first..first + recordings.len()].to_vec();
         first += recordings.len();
-        let count = own.iter().flat_map(|own| &own.channels).map(Vec::len).sum();
+        let count = own.iter().map(Innovations::count).sum();
         let sum: f64 = own.iter().map(Innovations::sum_of_squares).sum();
         parts.push((sum / (count as f64).max(1.0), count));
         let own = Solution {
@@ -175,13 +176,13 @@ fn start_values(varied: &[Varied], number: usize) -> Vec<f64> {
 }
 
 pub(crate) fn channel_errors(innovations: &Innovations, observer: &Observer) -> Vec<ChannelError> {
-    let each = innovations.channels.iter().zip(&observer.deviations);
+    let each = innovations.each_of_readings().zip(&observer.deviations);
     each.map(|(list, deviation)| {
-        let chi = mean_square(list);
+        let chi = mean_square(&list);
         ChannelError {
             chi,
             rms: chi.sqrt() * deviation,
-            correlation: correlation(list),
+            correlation: correlation(&list),
         }
     })
     .collect()
@@ -209,26 +210,25 @@ pub(crate) fn correlation(list: &[f64]) -> f64 {
 /// By how much a sum of squares overstates what is known: the mean square where it is above one, and (1 + rho)/(1 - rho)
 /// for correlated errors (Bartlett, J. R. Stat. Soc. Suppl. 8, 1946, 27), over all channels.
 pub(crate) fn inflation(innovations: &[Innovations]) -> f64 {
-    inflation_over(innovations.iter().flat_map(|own| &own.channels))
+    inflation_over(innovations.iter().flat_map(Innovations::each_of_readings))
 }
 
 /// The same of the channel where it is largest.
 fn largest_inflation(innovations: &[Innovations]) -> f64 {
     let channels = innovations.iter().map(|own| own.channels.len()).max();
     let each = (0..channels.unwrap_or(0)).map(|channel| {
-        inflation_over(
-            innovations
-                .iter()
-                .filter_map(move |own| own.channels.get(channel)),
-        )
+        let with_it = innovations
+            .iter()
+            .filter(|own| channel < own.channels.len());
+        inflation_over(with_it.map(|own| own.of_readings(channel)))
     });
     each.fold(1.0, f64::max)
 }
 
-fn inflation_over<'a>(lists: impl Iterator<Item = &'a Vec<f64>>) -> f64 {
+fn inflation_over<'a>(lists: impl Iterator<Item = Cow<'a, [f64]>>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for list in lists {
-        let rho = correlation(list).clamp(0.0, 0.99);
+        let rho = correlation(&list).clamp(0.0, 0.99);
         let squares: f64 = list.iter().map(|r| r * r).sum();
         sum += squares * (1.0 + rho) / (1.0 - rho);
         count += list.len() as f64;

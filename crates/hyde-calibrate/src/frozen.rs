@@ -30,8 +30,12 @@ pub fn frozen(recordings: &[Recording]) -> Vec<Frozen> {
     let each = recordings.iter().flat_map(|recording| {
         let channels = recording.channels.iter().enumerate();
         channels.flat_map(move |(channel, values)| {
-            let time = |row: usize| recording.start_s + row as f64 * recording.step_s;
-            let spells = spells(values).into_iter();
+            let rows = (0..values.len()).filter(|&row| !values[row].is_nan());
+            let rows: Vec<usize> = rows.collect();
+            let known: Vec<f64> = rows.iter().map(|&row| values[row]).collect();
+            let time =
+                move |reading: usize| recording.start_s + rows[reading] as f64 * recording.step_s;
+            let spells = spells(&known).into_iter();
             spells.map(move |(first, last)| Frozen {
                 record: recording.name.clone(),
                 channel,
@@ -42,7 +46,7 @@ pub fn frozen(recordings: &[Recording]) -> Vec<Frozen> {
     each.collect()
 }
 
-/// First and last rows of the spells of a channel.
+/// First and last readings of the spells of a channel.
 fn spells(values: &[f64]) -> Vec<(usize, usize)> {
     let pairs = values.windows(2);
     let steps: Vec<f64> = pairs.map(|pair| (pair[1] - pair[0]).abs()).collect();

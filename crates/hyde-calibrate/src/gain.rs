@@ -9,11 +9,15 @@
 //! not known to ([`crate::input_noise`]). P solves the discrete Riccati equation, by structured
 //! doubling (Chu, Fan, Lin and Wang, Int. J. Control 77, 2004, 767).
 //!
+//! A channel that is read in some rows only has a gain in these ([`Gains`]).
+//!
 //! The gain is made once from the nominal model and never again within a study: innovations stay comparable.
 
 use crate::configuration::{Configuration, Places};
+use crate::gains::Gains;
 use crate::input_noise;
 use crate::plant::{Plant, Unsupported};
+use crate::readings::Rates;
 use crate::recording::Recording;
 use hyde_program::{Constant, Function, Point, Program, Workspace, Wrt};
 use nalgebra::{DMatrix, DVector};
@@ -27,8 +31,10 @@ const STEP_ERROR: f64 = 0.02;
 /// A fixed observer round a model.
 #[derive(Clone, Debug)]
 pub struct Observer {
-    /// What an innovation of a unit changes each state by.
-    pub(crate) gain: DMatrix<f64>,
+    /// What an innovation of a unit changes each state by, for each kind of row.
+    pub(crate) gains: Gains,
+    /// How often channels are read in the records that it was made for.
+    pub(crate) rates: Rates,
     /// Standard deviation of each channel's innovation, SI.
     pub deviations: Vec<f64>,
     /// Standard deviation of each channel's noise and rounding, SI.
@@ -115,7 +121,8 @@ impl Observer {
         let balances = balances(configuration);
         // Rates by the model alone first, then by the model held to the records.
         let mut observer = Self {
-            gain: DMatrix::zeros(c.ncols(), c.nrows()),
+            gains: Gains::none(c.ncols(), c.nrows()),
+            rates: Rates::of(recordings),
             deviations: vec![1.0; c.nrows()],
             noise: noise.clone(),
             rounding,
@@ -148,8 +155,8 @@ impl Observer {
             );
             let driven = input_noise::covariance(&moved, &observer.inputs);
             let process = DMatrix::from_diagonal(&balances_off) + driven;
-            let found = stationary(&exp, &c, &process, &noise);
-            observer.gain = found.gain;
+            let found = stationary(&exp, &c, &process, &noise, &observer.rates);
+            observer.gains = found.gains;
             observer.deviations = found.deviations;
             observer.spread = found.spread;
             // While rates are not known yet, no other gain is made of them.
@@ -166,7 +173,6 @@ impl Observer {
         if names == self.states {
             return self.clone();
         }
-        let mut gain = DMatrix::zeros(names.len(), self.gain.ncols());
         let mut spread = vec![f64::INFINITY; names.len()];
         let own = |name: &String| self.states.iter().position(|state| state == name);
         let known: Vec<Option<usize>> = names.iter().map(own).collect();
@@ -178,12 +184,20 @@ impl Observer {
         });
         for (row, own) in known.iter().enumerate() {
             if let Some(own) = *own {
-                gain.set_row(row, &self.gain.row(own));
                 spread[row] = self.spread[own];
             }
         }
+        let gains = self.gains.map(|before| {
+            let mut gain = DMatrix::zeros(names.len(), before.ncols());
+            for (row, own) in known.iter().enumerate() {
+                if let Some(own) = *own {
+                    gain.set_row(row, &before.row(own));
+                }
+            }
+            gain
+        });
         Self {
-            gain,
+            gains,
             spread,
             process,
             states: names,
@@ -318,29 +332,30 @@ fn balances(configuration: &Configuration<'_>) -> Vec<bool> {
     (0..configuration.by_states.ncols()).map(row).collect()
 }
 
-/// A stationary gain with what it leaves: standard deviations of innovations and of predicted states.
+/// Stationary gains with what they leave: standard deviations of innovations and of predicted states.
 pub(crate) struct Stationary {
-    pub(crate) gain: DMatrix<f64>,
+    pub(crate) gains: Gains,
     deviations: Vec<f64>,
     spread: Vec<f64>,
 }
 
-/// The stationary gain of a step exp(A T) with outputs C, the variance of the model's noise and the deviation of each channel's.
+/// The stationary gains of a step exp(A T) with outputs C, the variance of the model's noise and the deviation of each channel's.
 pub(crate) fn stationary(
     exp: &DMatrix<f64>,
     c: &DMatrix<f64>,
     process: &DMatrix<f64>,
     noise: &[f64],
+    rates: &Rates,
 ) -> Stationary {
-    let p = riccati(exp, c, process, noise);
+    let in_the_mean = noise.iter().zip(&rates.parts);
+    let in_the_mean: Vec<f64> = in_the_mean.map(|(sd, part)| sd / part.sqrt()).collect();
+    let p = riccati(exp, c, process, &in_the_mean);
     let mut s = c * &p * c.transpose();
     for (channel, sd) in noise.iter().enumerate() {
         s[(channel, channel)] += sd * sd;
     }
-    let inverse = s.clone().try_inverse();
-    let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(s.nrows(), s.ncols()));
     Stationary {
-        gain: &p * c.transpose() * inverse,
+        gains: Gains::of(&p, c, noise, &rates.kinds),
         deviations: s.diagonal().iter().map(|v| v.sqrt()).collect(),
         spread: p.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect(),
     }

@@ -10,6 +10,7 @@
 //! section 11.6.2).
 
 use crate::gain::{Observer, stationary};
+use crate::gains::Gains;
 use crate::plant::Plant;
 use nalgebra::{DMatrix, Schur};
 
@@ -22,17 +23,18 @@ const STEPS: usize = 10_000;
 impl Observer {
     /// What an error is corrected by in the combination of modes that a plant is in; kept there.
     pub(crate) fn gain_in<'g>(&self, plant: &'g mut Plant<'_>) -> &'g DMatrix<f64> {
-        if plant.configuration().gain.is_empty() {
-            let gain = self.holding(plant);
-            plant.configurations[plant.current].1.gain = gain;
+        if plant.configuration().gains.is_empty() {
+            let gains = self.holding(plant);
+            plant.configurations[plant.current].1.gains = gains;
         }
-        &plant.configuration().gain
+        let readings = plant.recording.readings(plant.row);
+        plant.configuration().gains.in_row(readings)
     }
 
-    /// The observer's own gain if it holds the combination of modes, else the stationary one there.
-    fn holding(&self, plant: &mut Plant<'_>) -> DMatrix<f64> {
+    /// The observer's own gains if they hold the combination of modes, else the stationary ones there.
+    fn holding(&self, plant: &mut Plant<'_>) -> Gains {
         if self.process.is_empty() {
-            return self.gain.clone();
+            return self.gains.clone();
         }
         let pinned = |position: &usize| plant.pinned.iter().any(|(own, _)| own == position);
         let states = plant.places.states.iter().enumerate();
@@ -45,19 +47,22 @@ impl Observer {
             (exp, outputs.select_columns(states))
         };
         let (step, seen) = among(&free);
-        if growth(&step, &seen, &self.gain.select_rows(&free)) <= 1.0 + GROWTH {
-            return self.gain.clone();
+        if growth(&step, &seen, &self.gains.all.select_rows(&free)) <= 1.0 + GROWTH {
+            return self.gains.clone();
         }
         let mut known = free;
         known.retain(|&state| self.knows(state));
         let (step, seen) = among(&known);
         let noise = self.process.select_rows(&known).select_columns(&known);
-        let own = stationary(&step, &seen, &noise, &self.noise).gain;
-        let mut gain = DMatrix::zeros(self.gain.nrows(), self.gain.ncols());
-        for (row, &state) in known.iter().enumerate() {
-            gain.set_row(state, &own.row(row));
-        }
-        gain
+        let own = stationary(&step, &seen, &noise, &self.noise, &self.rates).gains;
+        let states = self.gains.all.nrows();
+        own.map(|own| {
+            let mut gain = DMatrix::zeros(states, own.ncols());
+            for (row, &state) in known.iter().enumerate() {
+                gain.set_row(state, &own.row(row));
+            }
+            gain
+        })
     }
 }
 

@@ -9,7 +9,6 @@ use crate::least_squares::Problem;
 use crate::linearised::Slopes;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
-use crate::solution::Solution;
 use crate::varied::Varied;
 use hyde_sim::Reached;
 use rayon::prelude::*;

@@ -33,7 +33,7 @@ pub(crate) fn changes(
     let (channels, columns) = (recording.channels.len(), program.columns.len());
     let counted = recording.rows() - recording.first_row;
     let mut found = DMatrix::zeros(counted * channels, columns);
-    let mut known = Known::new(track, program, p, &[]);
+    let mut known = Known::new(track, program, recording, p, &[]);
     let mut by_column: Vec<Option<[DMatrix<f64>; 2]>> = vec![None; route.configurations.len()];
     let (mut workspace, mut room) = (Workspace::new(program.n_work), Vectors::default());
     let mut errors = DMatrix::<f64>::zeros(states, columns);
@@ -41,7 +41,7 @@ pub(crate) fn changes(
         let [before, after] = passed.modes;
         let seen = known.modes(row, When::Before, before)?;
         let change = -(&known.modes[seen].outputs * &errors);
-        errors += &observer.gain * &change;
+        errors += &known.modes[seen].gain * &change;
         passed
             .fixed
             .iter()

@@ -36,6 +36,7 @@ mod fit;
 mod free_run;
 mod frozen;
 mod gain;
+mod gains;
 mod held;
 mod identifiability;
 mod information;
@@ -54,6 +55,8 @@ mod past;
 mod plan;
 mod plant;
 mod profile_likelihood;
+mod read;
+mod readings;
 mod recording;
 mod residual_map;
 mod selftest;
@@ -73,7 +76,7 @@ pub use diagnosis::{
     Round, Scales, Score, Seen, Site, Summand, Trial, Unknown, Variable, Verdict, Written,
     diagnose,
 };
-pub use even_rows::Resampled;
+pub use even_rows::Uneven;
 pub use fit::{ChannelError, Fit, FittedParameter, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};
 pub use frozen::{Frozen, frozen};

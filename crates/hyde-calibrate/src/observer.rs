@@ -5,7 +5,9 @@ use crate::gain::Observer;
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
 use hyde_program::{Function, Program, SomeRows};
+use std::borrow::Cow;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 
 /// Whitened innovations of a record: each channel's, row by row, in standard deviations.
 #[derive(Clone, Debug, Default)]
@@ -14,6 +16,8 @@ pub struct Innovations {
     pub channels: Vec<Vec<f64>>,
     /// The step of each channel's quantiser, in the same units; 0 without one.
     pub(crate) counts: Vec<f64>,
+    /// The rows of each channel that have no reading, ascending; their innovations are 0.
+    pub(crate) absent: Vec<Arc<[usize]>>,
 }
 
 impl Innovations {
@@ -48,7 +52,7 @@ impl Innovations {
         let mut sum = 0.0;
         let end = run_while(&mut plant, &observer, |_, row, when, error| {
             if matches!(when, When::Before) && row >= recording.first_row {
-                sum += found.add(error, &observer);
+                sum += found.add(error, recording.readings(row), &observer);
             }
             if sum <= limit {
                 ControlFlow::Continue(())
@@ -66,28 +70,62 @@ impl Innovations {
         Self {
             channels: vec![Vec::with_capacity(rows); recording.channels.len()],
             counts: counts.map(|(step, deviation)| step / deviation).collect(),
+            absent: recording.absent.clone(),
         }
     }
 
     /// Adds those of a row, given in SI; the sum of their squares.
-    pub(crate) fn add(&mut self, error: &[f64], observer: &Observer) -> f64 {
+    pub(crate) fn add(&mut self, error: &[f64], readings: &[bool], observer: &Observer) -> f64 {
         let mut sum = 0.0;
-        let deviations = &observer.deviations;
-        for ((list, error), deviation) in self.channels.iter_mut().zip(error).zip(deviations) {
-            let value = whitened(*error, *deviation);
+        let known = error.iter().zip(&observer.deviations).zip(readings);
+        for (list, ((error, deviation), there)) in self.channels.iter_mut().zip(known) {
+            let value = match there {
+                true => whitened(*error, *deviation),
+                false => 0.0,
+            };
             sum += value * value;
             list.push(value);
         }
         sum
     }
 
-    /// Each channel, with its mean square as it would be if what is measured lay evenly between the counts of a quantiser.
+    /// Those of a channel's readings: without the rows that have none.
+    #[must_use]
+    pub fn of_readings(&self, channel: usize) -> Cow<'_, [f64]> {
+        self.of_rows(channel, &self.channels[channel])
+    }
+
+    /// Values of rows, in those that have a reading of a channel.
+    pub(crate) fn of_rows<'v>(&self, channel: usize, list: &'v [f64]) -> Cow<'v, [f64]> {
+        let absent = self.absent.get(channel).filter(|absent| !absent.is_empty());
+        let Some(absent) = absent else {
+            return Cow::Borrowed(list);
+        };
+        let mut absent = absent.iter().peekable();
+        let there = |(row, _): &(usize, &f64)| absent.next_if(|own| **own == *row).is_none();
+        let known = list.iter().enumerate().filter(there);
+        Cow::Owned(known.map(|(_, value)| *value).collect())
+    }
+
+    /// The same of each channel.
+    pub(crate) fn each_of_readings(&self) -> impl Iterator<Item = Cow<'_, [f64]>> {
+        (0..self.channels.len()).map(|channel| self.of_readings(channel))
+    }
+
+    /// How many readings there are.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        let rows: usize = self.channels.iter().map(Vec::len).sum();
+        rows - self.absent.iter().map(|absent| absent.len()).sum::<usize>()
+    }
+
+    /// Each channel's readings, with their mean square as it would be if what is measured lay evenly between the counts of a quantiser.
     ///
     /// It does not where an axis stands, or moves by a whole number of counts a row: rounding is the same there over and
     /// over, of a model that is right too. How much the prediction is rounded by is the innovation but for whole counts, and
     /// its mean square over `q^2/12` is what has to be taken out.
-    pub(crate) fn sizes(&self) -> impl Iterator<Item = (&[f64], f64)> {
-        let each = self.channels.iter().zip(&self.counts);
+    pub(crate) fn sizes(&self) -> impl Iterator<Item = (Cow<'_, [f64]>, f64)> {
+        let each = self.each_of_readings().zip(&self.counts);
         each.map(|(list, &count)| {
             let uneven = match count > 0.0 {
                 true => {
@@ -97,15 +135,15 @@ impl Innovations {
                 }
                 false => 0.0,
             };
-            (list.as_slice(), mean_square(list) - uneven)
+            let size = mean_square(&list) - uneven;
+            (list, size)
         })
     }
 
     /// Their mean square, over all channels.
     #[must_use]
     pub fn chi(&self) -> f64 {
-        let count: usize = self.channels.iter().map(Vec::len).sum();
-        self.sum_of_squares() / (count as f64).max(1.0)
+        self.sum_of_squares() / (self.count() as f64).max(1.0)
     }
 
     /// The sum of their squares.
@@ -202,6 +240,7 @@ mod tests {
         Innovations {
             channels: vec![innovations.map(|error| error / deviation).collect()],
             counts: vec![1.0 / deviation],
+            absent: Vec::new(),
         }
     }
 

@@ -1,11 +1,13 @@
 //! [`Recording`]: a record as an observer reads it: evenly sampled, what drives the model beside what was measured.
 
-use crate::begins_again::begins_again;
-use crate::even_rows::{self, Resampled};
+use crate::even_rows::{self, Uneven};
+use crate::read::{Read, fastest};
+use crate::readings::{self, Readings};
 use hyde_experiment::{RowFault, check_columns};
-use hyde_program::{Constant, Program, RecordValueKind};
+use hyde_program::{Column, Constant, Program, RecordValueKind};
 use hyde_signal::{Cursor, Table, wrap};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Why a record cannot be observed.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,8 +33,6 @@ pub enum RecordError {
     BeginsAgain(String, usize, f64),
     /// It has fewer rows than an observer needs to settle: record and rows.
     Short(String, usize),
-    /// A channel has fewer readings than the record has rows: channel, time between its readings and between rows, s.
-    Slow(String, f64, f64),
     /// A channel cannot be prepared as the experiment says: channel and cause.
     Preparation(String, String),
 }
@@ -40,7 +40,7 @@ pub enum RecordError {
 /// Record and column, none for the time, which number of it, and the number.
 type RecordedValue = ((String, Option<String>), RecordValueKind, f64);
 
-/// A record, at the rows of the first measured channel's table.
+/// A record at even rows, as close as the readings of its fastest channel.
 #[derive(Clone, Debug)]
 pub struct Recording {
     /// As messages call it.
@@ -51,12 +51,19 @@ pub struct Recording {
     pub start_s: f64,
     /// The tables by the name the experiment gives them.
     pub tables: BTreeMap<String, Table>,
-    /// Measured channels at the rows, SI.
+    /// Measured channels at the rows, SI; NaN in rows without a reading.
     pub channels: Vec<Vec<f64>>,
+    /// The kinds of rows by which channels have a reading, that with all of them first; and that of each row.
+    pub(crate) kinds: Vec<Readings>,
+    of_rows: Vec<usize>,
+    /// The rows without a reading of each channel, counted from the first that counts.
+    pub(crate) absent: Vec<Arc<[usize]>>,
+    /// The mean time between the readings of each, s.
+    pub spacings_s: Vec<f64>,
     /// The period with which each begins again, SI; infinite of most. Channels go on there.
     pub(crate) periods: Vec<f64>,
     /// That its own rows are not evenly spaced.
-    pub resampled: Option<Resampled>,
+    pub uneven: Option<Uneven>,
     /// First values of columns, by record and column.
     record_values: Vec<RecordedValue>,
     /// Driving columns at the rows.
@@ -69,9 +76,8 @@ pub struct Recording {
 
 /// The rows after which an observer has settled: its start is that of the model, not of the axis.
 const SETTLING_ROWS: usize = 150;
-
-/// A channel is slow whose readings are so many rows apart.
-const SLOW: f64 = 1.5;
+/// The readings of a slow channel after which it has.
+const SETTLING_READINGS: usize = 20;
 
 impl Recording {
     /// A record for a program in the observed form.
@@ -85,84 +91,54 @@ impl Recording {
     ) -> Result<Self, RecordError> {
         check_columns(program, &tables).map_err(RecordError::Row)?;
         let experiment = &program.experiment;
-        let base = experiment.measured.first().ok_or(RecordError::NoChannel)?;
-        let missing = |(record, column): &(String, String)| {
-            RecordError::NoColumn(record.clone(), column.clone())
-        };
-        let table = tables
-            .get(&base.source.0)
-            .ok_or_else(|| missing(&base.source))?
-            .holding(&base.source.1);
-        if table.time().len() < 2 * SETTLING_ROWS {
-            return Err(RecordError::Short(name.to_owned(), table.time().len()));
+        if experiment.measured.is_empty() {
+            return Err(RecordError::NoChannel);
         }
-        let (time, resampled) = match even_rows::evenly(&base.source.0, table)? {
-            Some((time, resampled)) => (time, Some(resampled)),
-            None => (table.time().to_vec(), None),
-        };
-        let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
         let record_values = record_values(program, &tables)?;
         let p = parameters(program, &record_values, &[]);
-        let (mut channels, mut periods) = (Vec::new(), Vec::new());
-        for (number, measured) in experiment.measured.iter().enumerate() {
-            let table = tables
-                .get(&measured.source.0)
-                .ok_or_else(|| missing(&measured.source))?
-                .holding(&measured.source.1);
-            let column = table
-                .column(&measured.source.1)
-                .ok_or_else(|| missing(&measured.source))?;
-            // A reading that is held until the next one would count as a new one in every row.
-            let slow = table.usual_step().filter(|own| *own > SLOW * step_s);
-            if let Some(own) = slow {
-                return Err(RecordError::Slow(measured.name.clone(), own, step_s));
-            }
+        let read = experiment.measured.iter().enumerate();
+        let read = read.map(|(number, measured)| {
             let period = program.kernels.constant(Constant::Wrap(number), &p);
-            let again = period.is_none().then(|| begins_again(column.values()));
-            if let Some((times, by)) = again.flatten() {
-                let channel = measured.name.clone();
-                return Err(RecordError::BeginsAgain(channel, times, by));
-            }
-            let values = hyde_experiment::unwrapped(measured, column.values(), period);
-            let same = |base: &Table| base.time() == table.time();
-            let own = resampled.is_some()
-                && measured.source.0 == base.source.0
-                && tables
-                    .get(&base.source.0)
-                    .is_some_and(|all| same(all.holding(&base.source.1)));
-            let even = own.then(|| even_rows::resample(table, &values, &time));
-            let even = even.flatten();
-            let (table, values) = even
-                .as_ref()
-                .map_or((table, &values), |(table, values)| (table, values));
-            let prepared = hyde_experiment::prepared(measured, table, values)
-                .map_err(|cause| RecordError::Preparation(measured.name.clone(), cause))?;
-            channels.push(at_rows(table, &prepared, &time, false));
-            periods.push(period.unwrap_or(f64::INFINITY));
+            Read::of(measured, &tables, period)
+        });
+        let read: Vec<Read> = read.collect::<Result<_, RecordError>>()?;
+        let base = fastest(&read);
+        if base.time.len() < 2 * SETTLING_ROWS {
+            return Err(RecordError::Short(name.to_owned(), base.time.len()));
         }
+        let (time, uneven) = even_rows::evenly(&base.record, &base.time)?;
+        let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
+        let channels = read.iter().map(|own| own.at_rows(&time));
+        let channels: Vec<Vec<f64>> = channels.collect();
+        let periods = read.iter().map(|own| own.period.unwrap_or(f64::INFINITY));
+        let periods = periods.collect();
         let mut columns = Vec::new();
         for column in &program.columns {
             let source = (column.record.clone(), column.column.clone());
-            let table = tables.get(&column.record).ok_or_else(|| missing(&source))?;
+            let missing = || RecordError::NoColumn(source.0.clone(), source.1.clone());
+            let table = tables.get(&column.record).ok_or_else(missing)?;
             let table = table.holding(&column.column);
-            let values = table
-                .column(&column.column)
-                .ok_or_else(|| missing(&source))?
-                .values();
-            columns.push(at_rows(table, values, &time, column.next));
+            let values = table.column(&column.column).ok_or_else(missing)?.values();
+            columns.push(driving(table, values, &time, column));
         }
         let skip_s = program.kernels.constant(Constant::Skip, &p).unwrap_or(0.0);
         let first_row = time
             .partition_point(|&t| t < time[0] + skip_s - 1e-12)
-            .max(SETTLING_ROWS);
+            .max(SETTLING_ROWS)
+            .max(settled(&channels));
+        let (kinds, of_rows) = readings::kinds(&channels);
         let mut found = Self {
             name: name.to_owned(),
             step_s,
             start_s: time[0],
             tables,
+            absent: readings::absent(&channels, first_row),
             channels,
+            spacings_s: read.iter().map(Read::step_s).collect(),
+            kinds,
+            of_rows,
             periods,
-            resampled,
+            uneven,
             record_values,
             columns,
             first_row,
@@ -176,6 +152,23 @@ impl Recording {
     #[must_use]
     pub fn rows(&self) -> usize {
         self.channels.first().map_or(0, Vec::len)
+    }
+
+    /// How many readings of a channel there are.
+    #[must_use]
+    pub fn readings_of(&self, channel: usize) -> usize {
+        let list = self.channels[channel].iter();
+        list.filter(|value| !value.is_nan()).count()
+    }
+
+    /// Which channels have a reading in a row.
+    pub(crate) fn readings(&self, row: usize) -> &Readings {
+        &self.kinds[self.kind_of(row)]
+    }
+
+    /// The number of the kind of a row, by which channels have a reading.
+    pub(crate) fn kind_of(&self, row: usize) -> usize {
+        self.of_rows.get(row).copied().unwrap_or(0)
     }
 
     /// What a channel shows in a row beyond what a model has for it, but for whole periods.
@@ -192,6 +185,16 @@ impl Recording {
     pub(crate) fn parameters(&self, program: &Program, set: &[(usize, f64)]) -> Vec<f64> {
         parameters(program, &self.record_values, set)
     }
+}
+
+/// The row before which every channel has settled an observer, within the first quarter of a record.
+fn settled(channels: &[Vec<f64>]) -> usize {
+    let of = |list: &Vec<f64>| {
+        let mut readings = (0..list.len()).filter(|&row| !list[row].is_nan());
+        let last = readings.nth(SETTLING_READINGS);
+        last.unwrap_or(0).min(list.len() / 4)
+    };
+    channels.iter().map(of).max().unwrap_or(0)
 }
 
 /// The values of columns that a program reads once.
@@ -231,18 +234,23 @@ fn parameters(
     p
 }
 
-/// A column at other instants: held, or one row ahead.
-fn at_rows(table: &Table, values: &[f64], time: &[f64], next: bool) -> Vec<f64> {
-    let Some(signal) = hyde_signal::Signal::new(table.time(), values) else {
-        return vec![f64::NAN; time.len()];
+/// What drives the model at the rows of an observer: as a run reads it there, held or on straight lines.
+fn driving(table: &Table, values: &[f64], rows: &[f64], column: &Column) -> Vec<f64> {
+    let own = table.time();
+    let Some(signal) = hyde_signal::Signal::new(own, values) else {
+        return vec![f64::NAN; rows.len()];
     };
+    let linear = column.continuous && !column.stepped;
     let mut cursor = Cursor::default();
     let read = |&t: &f64| {
         let now = t + 1e-12 + 1e-13 * t.abs();
-        match next {
-            true => signal.next(now, &mut cursor),
-            false => signal.held(now, &mut cursor),
+        let before = own.partition_point(|own| *own <= now).checked_sub(1);
+        let between = before.is_some_and(|row| now - own[row] > 2.0 * (now - t));
+        match (column.next, linear && between) {
+            (true, _) => signal.next(now, &mut cursor),
+            (false, true) => signal.linear(t, &mut cursor),
+            (false, false) => signal.held(now, &mut cursor),
         }
     };
-    time.iter().map(read).collect()
+    rows.iter().map(read).collect()
 }

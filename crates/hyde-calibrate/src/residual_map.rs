@@ -63,21 +63,26 @@ pub fn residual_maps(
         tasks.push((channel, None));
     }
     let rate_hz = recordings.first().map_or(1.0, |r| 1.0 / r.step_s);
-    let block = ((BLOCK_S * rate_hz).round() as usize).max(1);
     let hertz = NamedUnit::parse("Hz");
     let hertz = hertz.unwrap_or_else(|_| NamedUnit::usual(Dimension::FREQUENCY));
     let mut maps: Vec<ResidualMap> = tasks
         .par_iter()
         .filter_map(|&(channel, variable)| {
             let of = |all: &[&Innovations]| -> Vec<Vec<f64>> {
-                all.iter()
-                    .map(|own| own.channels[channel].clone())
-                    .collect()
+                let each = all.iter().map(|own| own.of_readings(channel).into_owned());
+                each.collect()
             };
             let (old, new) = (of(before), of(after));
+            // A channel that is read in some rows only has fewer readings a second.
+            let rows: usize = after.iter().map(|own| own.channels[channel].len()).sum();
+            let readings: usize = new.iter().map(Vec::len).sum();
+            let rate_hz = rate_hz * readings.max(1) as f64 / rows.max(1) as f64;
+            let block = ((BLOCK_S * rate_hz).round() as usize).max(1);
             let (over, unit, sorted) = match variable {
                 Some(variable) => {
-                    let bins = Bins::of(&variable.values)?;
+                    let values = variable.values.iter().zip(after);
+                    let values = values.map(|(values, own)| own.of_rows(channel, values));
+                    let bins = Bins::of(&values.collect::<Vec<_>>())?;
                     let tested = |lists: &[Vec<f64>]| bins.tested(lists, block);
                     (variable.name.clone(), variable.unit.clone(), {
                         let (old, new) = (tested(&old), tested(&new));
@@ -131,8 +136,9 @@ impl Tested {
 
 impl Bins {
     /// Bins with equal numbers of rows; `None` where the variable has too few values to tell apart.
-    fn of(values: &[Vec<f64>]) -> Option<Self> {
-        let mut all: Vec<f64> = values.iter().flatten().copied().collect();
+    fn of(values: &[impl AsRef<[f64]>]) -> Option<Self> {
+        let each = || values.iter().flat_map(|list| list.as_ref().iter());
+        let mut all: Vec<f64> = each().copied().collect();
         all.retain(|value| value.is_finite());
         all.sort_unstable_by(f64::total_cmp);
         let mut edges: Vec<f64> = (1..BINS)
@@ -149,10 +155,10 @@ impl Bins {
         };
         let of_rows: Vec<Vec<usize>> = values
             .iter()
-            .map(|list| list.iter().map(bin).collect())
+            .map(|list| list.as_ref().iter().map(bin).collect())
             .collect();
         let (mut sums, mut counts) = (vec![0.0; count], vec![0.0; count]);
-        for (value, &bin) in values.iter().flatten().zip(of_rows.iter().flatten()) {
+        for (value, &bin) in each().zip(of_rows.iter().flatten()) {
             if bin < count {
                 sums[bin] += value;
                 counts[bin] += 1.0;

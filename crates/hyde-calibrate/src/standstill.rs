@@ -65,13 +65,13 @@ pub fn standstill(
     let set: Vec<(usize, f64)> = set.iter().copied().chain(calibrated).collect();
     let mut causes = Vec::new();
     for (recording, innovations) in recordings.iter().zip(&solution.innovations) {
-        for (channel, list) in innovations.channels.iter().enumerate() {
+        for (channel, list) in innovations.each_of_readings().enumerate() {
             let rows = &recording.channels[channel][recording.first_row..];
             let known: Vec<f64> = rows.iter().copied().filter(|v| v.is_finite()).collect();
             let mean = hyde_signal::statistics::mean(&known);
             let signal: Vec<f64> = known.iter().map(|value| value - mean).collect();
             let signal = mean_square(&signal).sqrt();
-            let rms = mean_square(list).sqrt() * observer.deviations[channel];
+            let rms = mean_square(&list).sqrt() * observer.deviations[channel];
             if rms > ASTRAY.0 * signal && rms > ASTRAY.1 * observer.noise[channel] {
                 causes.push(Cause::Astray {
                     channel,

@@ -77,7 +77,7 @@ pub(crate) fn along(
     let (states, channels) = (track.places.states.len(), recording.channels.len());
     let count = directions.len();
     let mut own = Own::new(program, p, directions);
-    let mut known = Known::new(track, program, p, &own.touched);
+    let mut known = Known::new(track, program, recording, p, &own.touched);
     let touched = own.touched.len();
     // A column a direction: errors of the states, forces at the start of a row and at its end, what channels show of it.
     let mut before = DMatrix::<f64>::zeros(states + 2 * touched + channels, count);
@@ -267,7 +267,12 @@ impl Corrected {
 /// them: corrected errors, and below them the whitened change of innovations.
 fn correct(
     errors: &DMatrix<f64>,
-    Modes { outputs, gain, .. }: &Modes,
+    Modes {
+        outputs,
+        gain,
+        readings,
+        ..
+    }: &Modes,
     observer: &Observer,
     matrix: &mut DMatrix<f64>,
 ) {
@@ -296,7 +301,9 @@ fn correct(
         let gain = gain.column(channel);
         let each = column.iter_mut().zip(gain.iter());
         each.for_each(|(kept, gain)| *kept = -gain);
-        column[states + channel] = -1.0 / observer.deviations[channel];
+        if readings[channel] {
+            column[states + channel] = -1.0 / observer.deviations[channel];
+        }
     }
 }
 

@@ -81,7 +81,7 @@ impl<'p> Track<'p> {
                 When::Before => {
                     before = here;
                     if row >= recording.first_row {
-                        innovations.add(error, &observer);
+                        innovations.add(error, recording.readings(row), &observer);
                     }
                 }
                 When::After => {

@@ -36,11 +36,9 @@ pub fn whiteness(
         .map(|measured| measured.name.as_str())
         .collect();
     let mean = |all: &[&Innovations], channel: usize| {
-        let rows: usize = all.iter().map(|own| own.channels[channel].len()).sum();
-        let each = all.iter().map(|own| {
-            let list = &own.channels[channel];
-            correlation(list) * list.len() as f64
-        });
+        let lists = all.iter().map(|own| own.of_readings(channel));
+        let rows: usize = lists.clone().map(|list| list.len()).sum();
+        let each = lists.map(|list| correlation(&list) * list.len() as f64);
         each.sum::<f64>() / (rows as f64).max(1.0)
     };
     let cross = |channel: usize| {
@@ -61,7 +59,8 @@ pub fn whiteness(
     (0..names.len())
         .into_par_iter()
         .map(|channel| {
-            let rows: usize = after.iter().map(|own| own.channels[channel].len()).sum();
+            let lists = after.iter().map(|own| own.of_readings(channel));
+            let rows: usize = lists.map(|list| list.len()).sum();
             Whiteness {
                 channel: names[channel].to_owned(),
                 correlation: (mean(before, channel), mean(after, channel)),
@@ -111,6 +110,7 @@ mod tests {
         let innovations = Innovations {
             channels: vec![first, second],
             counts: vec![0.0; 2],
+            absent: Vec::new(),
         };
         let at = |lag| crossed(&[&innovations], 0, 1, lag);
         assert!(at(3) > 0.99, "{}", at(3));

@@ -148,10 +148,10 @@ pub(crate) fn errors_on(
 pub(crate) fn chi(records: &[RecordErrors], holdout: bool) -> Option<(f64, f64)> {
     let (mut sums, mut count) = ((0.0, 0.0), 0.0);
     for record in records.iter().filter(|record| record.holdout == holdout) {
-        let rows: usize = record.before.whitened.channels.iter().map(Vec::len).sum();
-        sums.0 += record.before.chi * rows as f64;
-        sums.1 += record.after.chi * rows as f64;
-        count += rows as f64;
+        let readings = record.before.whitened.count() as f64;
+        sums.0 += record.before.chi * readings;
+        sums.1 += record.after.chi * readings;
+        count += readings;
     }
     (count > 0.0).then(|| (sums.0 / count, sums.1 / count))
 }
@@ -228,17 +228,33 @@ fn told(calibration: &Calibration, recording: &Recording) -> Vec<String> {
              them"
         ));
     }
-    if let Some(own) = &recording.resampled {
-        let time = |seconds: f64| engineering(seconds, Dimension::TIME);
+    let time = |seconds: f64| engineering(seconds, Dimension::TIME);
+    if let Some(own) = &recording.uneven {
         found.push(format!(
-            "the samples of `{}` are {} to {} apart, unevenly spaced from {} on: the observer resamples the measured columns every {} by linear \
-             interpolation",
+            "the samples of `{}` are {} to {} apart, unevenly spaced from {} on: the observer steps every {} and uses each reading at the \
+             nearest step, interpolated between neighbours",
             own.record,
             time(own.spacing_s.0),
             time(own.spacing_s.1),
             time(own.from_s),
             time(own.step_s)
         ));
+    }
+    for (channel, measured) in program.experiment.measured.iter().enumerate() {
+        let (readings, steps) = (recording.readings_of(channel), recording.rows());
+        let name = &measured.name;
+        if 2 * readings < steps {
+            found.push(format!(
+                "`{name}` has a reading every {}, the observer steps every {}: it corrects by `{name}` only where there is a reading",
+                time(recording.spacings_s[channel]),
+                time(recording.step_s)
+            ));
+        } else if readings < steps {
+            found.push(format!(
+                "`{name}` has no reading at {} of {steps} steps: the observer corrects nothing by it there",
+                steps - readings
+            ));
+        }
     }
     found.extend(inputs(calibration));
     found.extend(linearised(&calibration.observer));
@@ -324,7 +340,7 @@ pub(crate) fn json(records: &[RecordErrors], calibration: &Calibration) -> Value
             "no_free_run": record.no_free_run(),
             "assumptions": told(calibration, recording),
             "begins": recording.beginning.iter().cloned().collect::<BTreeMap<String, f64>>(),
-            "resampled": recording.resampled.as_ref().map(|own| json!({
+            "resampled": recording.uneven.as_ref().map(|own| json!({
                 "record": own.record,
                 "closest_s": own.spacing_s.0,
                 "widest_s": own.spacing_s.1,

@@ -11,7 +11,12 @@ use crate::before_after::RecordErrors;
 use hyde_calibrate::{Fit, Identifiability, Profile, UNDECLARED_NOISE};
 use hyde_program::Program;
 use hyde_study::{Calibration, JointCalibration, unobservable};
-use hyde_units::{NamedUnit, engineering_as, engineering_difference, significant};
+use hyde_units::{
+    Dimension, NamedUnit, engineering, engineering_as, engineering_difference, significant,
+};
+
+/// A delay that moves by more than this part of a step of the observer is to be declared anew.
+const MOVED: f64 = 0.1;
 
 /// A calibration with everything that is told of it.
 pub(crate) struct Told<'a> {
@@ -51,8 +56,33 @@ impl Told<'_> {
     /// Why the model does not follow the records, if it does not.
     pub(crate) fn reasons(&self) -> Vec<String> {
         let each = self.fit.causes.iter();
-        each.map(|(part, cause)| unobservable::reason(experiment(self.calibration, *part), cause))
-            .collect()
+        let causes = each
+            .map(|(part, cause)| unobservable::reason(experiment(self.calibration, *part), cause));
+        causes.chain(self.moved_delays()).collect()
+    }
+
+    /// The delays of channels that moved so far that the first term of a Taylor series does not describe them.
+    fn moved_delays(&self) -> Vec<String> {
+        let mut found = Vec::new();
+        for own in &self.calibration.experiments {
+            let step_s = own.fitted.first().map_or(f64::INFINITY, |own| own.step_s);
+            let channels = own.compiled.program.experiment.measured.iter();
+            let late = channels.filter_map(|own| Some((&own.name, &own.late.as_ref()?.1)));
+            for (channel, parameters) in late {
+                let numbers = self.calibration.numbers.iter();
+                for (number, value) in numbers.zip(&self.fit.solution.values) {
+                    let (name, nominal) = (&number.varied.name, number.varied.nominal);
+                    if parameters.contains(name) && (value - nominal).abs() > MOVED * step_s {
+                        let value = engineering(*value, Dimension::TIME);
+                        found.push(format!(
+                            "`{name}` delays `{channel}`, and the observer uses the first term of a Taylor series for its change: calibrate again \
+                             with the value that was found, `--set {name}='{value}'`"
+                        ));
+                    }
+                }
+            }
+        }
+        found
     }
 
     /// Sentences about the weights, where an experiment weighs otherwise than its noise says.

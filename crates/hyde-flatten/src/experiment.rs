@@ -3,6 +3,7 @@
 mod bode;
 mod cut;
 mod figure;
+mod late;
 mod measure;
 mod measured;
 mod observed;

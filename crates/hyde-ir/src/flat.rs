@@ -200,6 +200,8 @@ pub struct Measured {
     pub rounding: Option<ExprId>,
     /// The period with which it begins again, as an angle after a turn, SI, of parameters alone: compared modulo that.
     pub period: Option<ExprId>,
+    /// In the observed form, how much later than the value the column shows it, s, and the parameters that decide that.
+    pub late: Option<(f64, Vec<String>)>,
     /// Dimension and printed unit.
     pub quantity: Quantity,
     /// Where it is written.

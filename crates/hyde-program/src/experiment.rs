@@ -28,6 +28,8 @@ pub struct Measured {
     pub output: usize,
     /// Compared after the tick rather than before.
     pub clocked: bool,
+    /// In the observed form, how much later than the output the column shows it, s, and the parameters that decide that.
+    pub late: Option<(f64, Vec<String>)>,
     /// Unit for printing.
     pub unit: NamedUnit,
     /// Where it is written.

@@ -46,15 +46,6 @@ pub fn unreadable(name: &str, error: &RecordError, span: Span) -> Diagnostic {
             ),
             "record for longer, or at a higher rate",
         ),
-        RecordError::Slow(channel, own, rows) => (
-            format!(
-                "`{channel}` has a reading every {}, the first measured channel every {}; an observer would take the readings \
-                 between for new ones",
-                time(*own),
-                time(*rows)
-            ),
-            "compare only channels of one rate: leave this channel out of the `measured` declarations of a second experiment, and name that one in the study",
-        ),
         RecordError::Preparation(channel, cause) => (
             format!("the channel `{channel}`: {cause}"),
             "change the preparation of the column in the `measured` declaration",
@@ -77,7 +68,8 @@ pub fn unsupported(error: &Unsupported, span: Span) -> Diagnostic {
         ),
         Unsupported::Delay => (
             "a `delay` depends on states".to_owned(),
-            "an observer can delay only recorded inputs: replace the delayed variable by its record, `replay x = file.x;`",
+            "an observer can delay only recorded inputs and what is measured: replace the delayed variable by its record, `replay x = file.x;`, \
+             or delay the whole value of a channel, `measured file.y = delay(a + b, T);`",
         ),
         Unsupported::ChosenStates => (
             "its states are chosen during the run".to_owned(),

@@ -28,6 +28,7 @@ mod first_order;
 mod frequency_responses;
 mod gradients;
 mod held_parts;
+mod late_sensor;
 mod ledger;
 mod limit_cycle;
 mod loops;

@@ -35,6 +35,6 @@ pub(super) fn holding(
 fn is_held(track: &Track<'_>) -> bool {
     let route = &track.route;
     let free = route.rows.iter().filter(|row| row.fixed.is_empty());
-    let mut gains = free.map(|row| &route.configurations[row.modes[0]].gain);
-    gains.all(|gain| gain.is_empty() || *gain == route.observer.gain)
+    let mut gains = free.map(|row| &route.configurations[row.modes[0]].gains);
+    gains.all(|gains| gains.is_empty() || *gains == route.observer.gains)
 }

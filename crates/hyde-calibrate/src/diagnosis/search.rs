@@ -193,7 +193,7 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
     let build = |numbers: &[usize]| (inquiry.author)(numbers, &[]);
     let declared = calibrated(inquiry, &ground)?;
     let innovations = declared.solution.innovations.iter();
-    let innovations = innovations.flat_map(|i| &i.channels).map(Vec::len).sum();
+    let innovations = innovations.map(Innovations::count).sum();
     let mut search = Forward {
         ground: &ground,
         hypotheses: inquiry.hypotheses,
@@ -333,7 +333,7 @@ pub(super) fn explained(solution: &Solution) -> bool {
         let rows = list.len().max(1) as f64;
         let (largest, likeness) = EXPLAINED;
         size <= largest + chance * (2.0 / rows).sqrt()
-            && correlation(list) * size.clamp(0.0, 1.0) <= likeness + chance / rows.sqrt()
+            && correlation(&list) * size.clamp(0.0, 1.0) <= likeness + chance / rows.sqrt()
     })
 }
 

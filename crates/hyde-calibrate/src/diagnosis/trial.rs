@@ -314,8 +314,8 @@ pub(crate) fn finish(
             own.is_some_and(|shape| shape.is_at_bound(solution.values[number]))
         });
     let gain = solution.gain_over(&stage.solution);
-    let innovations = solution.innovations.iter().flat_map(|i| &i.channels);
-    let remainder = REMAINDER * innovations.map(Vec::len).sum::<usize>() as f64;
+    let innovations = solution.innovations.iter().map(Innovations::count);
+    let remainder = REMAINDER * innovations.sum::<usize>() as f64;
     let rejected = if !worth {
         Some(Rejection::Behind)
     } else if at_bound {

@@ -1,5 +1,6 @@
 //! What innovations may depend on: time, what was measured, speeds, reversals, places in a turn.
 
+use crate::readings::filled;
 use crate::recording::Recording;
 use hyde_program::Program;
 use hyde_units::{Dimension, NamedUnit};
@@ -40,13 +41,16 @@ pub(super) fn variables(program: &Program, recordings: &[Recording]) -> Vec<Vari
         found.push(Variable {
             name: name.clone(),
             unit: measured.unit.clone(),
-            values: each(&|recording| recording.channels[number].clone()),
+            values: each(&|recording| filled(&recording.channels[number])),
         });
         let place = dimension == Dimension::LENGTH || dimension == Dimension::ANGLE;
         if !place {
             continue;
         }
-        let speed = |recording: &Recording| speed(&recording.channels[number], recording.step_s);
+        let speed = |recording: &Recording| {
+            let places = filled(&recording.channels[number]);
+            speed(&places, recording.step_s)
+        };
         found.push(Variable {
             name: format!("speed of {name}"),
             unit: NamedUnit::usual(dimension.divide(Dimension::TIME)),
@@ -57,7 +61,7 @@ pub(super) fn variables(program: &Program, recordings: &[Recording]) -> Vec<Vari
                 name: format!("{name} in its revolution"),
                 unit: measured.unit.clone(),
                 values: each(&|recording| {
-                    let angles = recording.channels[number].iter();
+                    let angles = filled(&recording.channels[number]).into_iter();
                     angles.map(|angle| angle.rem_euclid(TAU)).collect()
                 }),
             });

@@ -5,6 +5,8 @@ use crate::configuration::partials;
 use crate::gain::output_matrix;
 use crate::observer::When;
 use crate::plant::{Unsupported, shortest_steps};
+use crate::readings::Readings;
+use crate::recording::Recording;
 use crate::track::{Track, Vectors};
 use hyde_program::{Point, Program, Workspace};
 use nalgebra::DMatrix;
@@ -21,8 +23,10 @@ pub(crate) struct Modes {
     pub(crate) first: DMatrix<f64>,
     pub(crate) second: DMatrix<f64>,
     pub(crate) outputs: DMatrix<f64>,
-    /// What an observer corrects there.
+    /// What an observer corrects there, in the kind of row; 0 of a channel without a reading, as its outputs are.
     pub(crate) gain: DMatrix<f64>,
+    /// Which channels have a reading.
+    pub(crate) readings: Readings,
 }
 
 /// What combinations of modes, and steps in them, make of errors and forces: made where they are new.
@@ -33,8 +37,9 @@ pub(crate) struct Known<'t> {
     touched: Vec<usize>,
     workspace: Workspace,
     pub(crate) modes: Vec<Modes>,
-    /// By the numbers of the track.
-    number_of: Vec<Option<usize>>,
+    recording: &'t Recording,
+    /// By the kind of row, and the numbers of the track.
+    number_of: Vec<Vec<Option<usize>>>,
     rates: Vec<Option<DMatrix<f64>>>,
     /// Those of the ones met so far, where equations bend.
     splittings: BTreeMap<usize, Option<Rc<Splitting>>>,
@@ -45,6 +50,7 @@ impl<'t> Known<'t> {
     pub(crate) fn new(
         track: &'t Track<'t>,
         program: &'t Program,
+        recording: &'t Recording,
         p: &'t [f64],
         touched: &[usize],
     ) -> Self {
@@ -56,28 +62,34 @@ impl<'t> Known<'t> {
             touched: touched.to_vec(),
             workspace: Workspace::new(program.n_work),
             modes: Vec::new(),
-            number_of: vec![None; count],
+            recording,
+            number_of: vec![vec![None; count]; recording.kinds.len()],
             rates: vec![None; count],
             splittings: BTreeMap::new(),
             legs: BTreeMap::new(),
         }
     }
 
-    /// The number of the matrices of a combination of modes, in which a row is.
+    /// The number of the matrices of a combination of modes and a kind of row, in which a row is.
     pub(crate) fn modes(
         &mut self,
         row: usize,
         when: When,
         configuration: usize,
     ) -> Result<usize, Unsupported> {
-        if let Some(number) = self.number_of[configuration] {
+        let kind = self.recording.kind_of(row);
+        if let Some(number) = self.number_of[kind][configuration] {
             return Ok(number);
         }
         let track = self.track;
+        let readings = self.recording.readings(row);
         let own = &track.route.configurations[configuration];
         let mut room = Vectors::default();
         let at = track.point(row, when, self.p, &mut room);
-        let outputs = output_matrix(self.program, &track.places, own, at, &mut self.workspace);
+        let mut outputs = output_matrix(self.program, &track.places, own, at, &mut self.workspace);
+        for (channel, _) in readings.iter().enumerate().filter(|(_, there)| !**there) {
+            outputs.row_mut(channel).fill(0.0);
+        }
         let step = &own.steps[0];
         let rates = self.rates(configuration)?;
         let made = Modes {
@@ -86,10 +98,11 @@ impl<'t> Known<'t> {
             // phi2 is that of a growth over the whole step.
             second: &step.second * rates,
             outputs,
-            gain: own.gain.clone(),
+            gain: own.gains.in_row(readings).clone(),
+            readings: readings.clone(),
         };
         self.modes.push(made);
-        self.number_of[configuration] = Some(self.modes.len() - 1);
+        self.number_of[kind][configuration] = Some(self.modes.len() - 1);
         Ok(self.modes.len() - 1)
     }
 

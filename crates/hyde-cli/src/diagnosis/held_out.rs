@@ -176,11 +176,11 @@ fn worse(calibration: &Calibration, errors: &[RecordErrors]) -> Vec<Worse> {
                 }
             };
             let (before, after) = (&record.before, &record.after);
-            let innovations = [before, after].map(|own| own.whitened.channels[number].as_slice());
+            let [old, new] = [before, after].map(|own| own.whitened.of_readings(number));
             look(
                 "innovations",
                 Some(record.innovations(number, deviations)),
-                grew(innovations),
+                grew([&old, &new]),
             );
             let windows = [before, after].map(|own| own.windows.rms[number].as_slice());
             look(

@@ -22,6 +22,7 @@ impl<'a> Model<'a, '_> {
             records: true,
             ..Scope::new(root, Setting::Report)
         };
+        let first_delay = self.flat.delays.len();
         let value = self.value(&channel.value, &scope);
         let left = self.typed(value.id, dim.clone(), channel.signal.span);
         self.agree(&left, &value, "the record and the model are", root);
@@ -52,6 +53,14 @@ impl<'a> Model<'a, '_> {
             Form::Recorded if !self.clocks_of(value.id).is_empty() => (value.id, None),
             Form::Recorded => self.observed(value.id),
         };
+        let late = match self.input.form {
+            Form::Observed => self.undelayed(id, first_delay, channel.value.span),
+            Form::Run | Form::Recorded => None,
+        };
+        let (id, late) = match late {
+            Some(late) => (late.value, Some((late.by_s, late.by))),
+            None => (id, None),
+        };
         let clocked = !self.clocks_of(id).is_empty();
         let signal = hyde_syntax::format_expression(&channel.signal);
         let name = match (&channel.doc, signal.split_once('.')) {
@@ -71,6 +80,7 @@ impl<'a> Model<'a, '_> {
             noise,
             rounding,
             period,
+            late,
             quantity,
             origin,
         });

@@ -194,6 +194,7 @@ impl<'a> Model<'a, '_> {
                 clocked,
                 noise: None,
                 rounding: None,
+                late: None,
                 period: None,
                 quantity: self.flat.variables[var].quantity.clone(),
                 origin: origin.made_by(MadeBy::Experiment),

@@ -49,6 +49,7 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
                     .collect(),
                 output,
                 clocked: measured.clocked,
+                late: measured.late.clone(),
                 unit: measured.quantity.unit.clone(),
                 origin: measured.origin.clone(),
             })

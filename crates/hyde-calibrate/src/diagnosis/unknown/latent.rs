@@ -111,7 +111,7 @@ impl Carrier {
         };
         let p = recording.parameters(program, set);
         let mut own = Own::new(program, &p, &directions);
-        let mut known = Known::new(&track, program, &p, &own.touched);
+        let mut known = Known::new(&track, program, recording, &p, &own.touched);
         let mut forces = DMatrix::zeros(own.touched.len(), directions.len());
         let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
         let (mut passages, mut room) = (BTreeMap::new(), Vectors::default());
@@ -135,7 +135,10 @@ impl Carrier {
             found.course.acts.push(at.is_some());
             let [corrected_by, stepped_by] = [&known.modes[corrected], &known.modes[stepped]];
             let unit = forces.column(0);
-            let shown: Vec<f64> = by_output.column(0).iter().map(|value| -value).collect();
+            let read = by_output.column(0);
+            let read = read.iter().zip(&corrected_by.readings);
+            let shown = read.map(|(value, there)| if *there { -value } else { 0.0 });
+            let shown: Vec<f64> = shown.collect();
             for matrix in [&stepped_by.first, &stepped_by.second] {
                 let start = found.entries.len();
                 found.entries.resize(start + states, 0.0);
