@@ -317,6 +317,7 @@ impl Loaded {
                 columns: columns.collect(),
                 step_s: table.usual_step(),
                 unusable: Vec::new(),
+                sparse: Vec::new(),
             }
         };
         self.tables

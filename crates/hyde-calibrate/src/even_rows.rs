@@ -27,10 +27,12 @@ pub struct Uneven {
     pub step_s: f64,
 }
 
-/// Even rows for the times of a record; its own if these are even.
+/// Even rows for the times of a record; its own if these are even. A gap is refused unless what drives the model is `known`
+/// from its begin to its end.
 pub(crate) fn evenly(
     record: &str,
     time: &[f64],
+    known: impl Fn(f64, f64) -> bool,
 ) -> Result<(Vec<f64>, Option<Uneven>), RecordError> {
     let (first, last) = (time[0], time[time.len() - 1]);
     let mean = (last - first) / (time.len() - 1) as f64;
@@ -43,7 +45,8 @@ pub(crate) fn evenly(
     let step_s = median(&apart).unwrap_or(mean);
     let usual = |spacing: &f64| (spacing - step_s).abs() <= EVEN * step_s;
     let place = spacings.iter().position(|s| !usual(s)).unwrap_or(0);
-    if let Some(row) = spacings.iter().position(|s| *s > GAP * step_s) {
+    let is_gap = |row: &usize| spacings[*row] > GAP * step_s && !known(time[*row], time[*row + 1]);
+    if let Some(row) = (0..spacings.len()).find(is_gap) {
         return Err(RecordError::Gap {
             record: record.to_owned(),
             from_s: time[row],
@@ -90,7 +93,7 @@ mod tests {
             .map(|row| 0.01 * f64::from(row) + 0.002 * f64::from(row % 3))
             .collect();
         let table = table(&time);
-        let (even, told) = evenly("log", table.time()).unwrap();
+        let (even, told) = evenly("log", table.time(), |_, _| false).unwrap();
         let told = told.unwrap();
         assert!((told.spacing_s.0 - 0.006).abs() < 1e-9, "{told:?}");
         assert!((told.spacing_s.1 - 0.012).abs() < 1e-9, "{told:?}");
@@ -109,12 +112,15 @@ mod tests {
     #[test]
     fn even_rows_stay_and_a_gap_is_told_with_its_place() {
         let mut time: Vec<f64> = (0..200).map(|row| 0.01 * f64::from(row)).collect();
-        assert_eq!(evenly("log", &time), Ok((time.clone(), None)));
+        let never = |_, _| false;
+        assert_eq!(evenly("log", &time, never), Ok((time.clone(), None)));
         time[120..].iter_mut().for_each(|t| *t += 0.3);
-        let gap = evenly("log", &time).unwrap_err();
+        let gap = evenly("log", &time, never).unwrap_err();
         let RecordError::Gap { from_s, to_s, .. } = gap else {
             panic!("{gap:?}");
         };
         assert!((from_s - 1.19).abs() < 1e-9 && (to_s - 1.5).abs() < 1e-9);
+        let (even, _) = evenly("log", &time, |_, _| true).unwrap();
+        assert_eq!(even.len(), 230);
     }
 }

@@ -32,7 +32,7 @@ impl Read {
     ) -> Result<Self, RecordError> {
         let (record, column) = &measured.source;
         let missing = || RecordError::NoColumn(record.clone(), column.clone());
-        let table = tables.get(record).ok_or_else(missing)?.holding(column);
+        let table = tables.get(record).ok_or_else(missing)?.reading(column);
         let values = table.column(column).ok_or_else(missing)?.values();
         if table.time().len() < 2 {
             return Err(RecordError::Short(record.clone(), table.time().len()));
@@ -55,7 +55,7 @@ impl Read {
         };
         let mut steps = measured.preparation.iter();
         let filtered = steps.any(|step| !matches!(step, Preparation::Scale(_)));
-        if filtered && let (rows, Some(_)) = evenly(record, table.time())? {
+        if filtered && let (rows, Some(_)) = evenly(record, table.time(), |_, _| false)? {
             let even = resample(table, &values, &rows);
             if let Some((even, values)) = even {
                 return Ok(own(even.time(), prepare(&even, &values)?));

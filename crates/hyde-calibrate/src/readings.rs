@@ -111,7 +111,7 @@ pub(crate) fn kinds(channels: &[Vec<f64>]) -> (Vec<Readings>, Vec<usize>) {
         let is = |readings: &Readings| {
             let each = readings.iter().zip(channels);
             each.into_iter()
-                .all(|(has, list)| *has == !list[row].is_nan())
+                .all(|(has, list)| *has != list[row].is_nan())
         };
         if !is(&found[last]) {
             last = found.iter().position(is).unwrap_or_else(|| {

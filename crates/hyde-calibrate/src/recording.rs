@@ -106,7 +106,9 @@ impl Recording {
         if base.time.len() < 2 * SETTLING_ROWS {
             return Err(RecordError::Short(name.to_owned(), base.time.len()));
         }
-        let (time, uneven) = even_rows::evenly(&base.record, &base.time)?;
+        let (time, uneven) = even_rows::evenly(&base.record, &base.time, |from_s, to_s| {
+            is_driven(program, &tables, from_s, to_s)
+        })?;
         let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
         let channels = read.iter().map(|own| own.at_rows(&time));
         let channels: Vec<Vec<f64>> = channels.collect();
@@ -117,7 +119,7 @@ impl Recording {
             let source = (column.record.clone(), column.column.clone());
             let missing = || RecordError::NoColumn(source.0.clone(), source.1.clone());
             let table = tables.get(&column.record).ok_or_else(missing)?;
-            let table = table.holding(&column.column);
+            let table = table.reading(&column.column);
             let values = table.column(&column.column).ok_or_else(missing)?.values();
             columns.push(driving(table, values, &time, column));
         }
@@ -185,6 +187,19 @@ impl Recording {
     pub(crate) fn parameters(&self, program: &Program, set: &[(usize, f64)]) -> Vec<f64> {
         parameters(program, &self.record_values, set)
     }
+}
+
+/// Whether every column that drives a model has rows in a stretch of time in which a channel has no reading.
+fn is_driven(program: &Program, tables: &BTreeMap<String, Table>, from_s: f64, to_s: f64) -> bool {
+    let mut driving = program.columns.iter().filter(|column| column.continuous);
+    driving.all(|column| {
+        let time = tables
+            .get(&column.record)
+            .map(|table| table.reading(&column.column).time());
+        let time = time.unwrap_or_default();
+        let rows = time.partition_point(|t| *t <= from_s)..time.partition_point(|t| *t < to_s);
+        !rows.is_empty()
+    })
 }
 
 /// The row before which every channel has settled an observer, within the first quarter of a record.

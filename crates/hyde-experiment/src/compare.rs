@@ -60,7 +60,7 @@ pub(crate) fn channels(
         let table = records
             .get(record)
             .ok_or_else(|| error("its record is missing"))?
-            .holding(column);
+            .reading(column);
         let column = table
             .column(column)
             .ok_or_else(|| error("its record has no such column"))?;

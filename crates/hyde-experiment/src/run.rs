@@ -470,7 +470,7 @@ fn rows(
         if let Some(table) = records.get(record) {
             rows.extend(
                 table
-                    .holding(column)
+                    .reading(column)
                     .time()
                     .iter()
                     .copied()

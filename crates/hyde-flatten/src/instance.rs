@@ -205,6 +205,8 @@ pub(crate) struct Scope<'a> {
     pub(crate) elementwise: Option<Elementwise>,
     /// The records of the experiment can be read.
     pub(crate) records: bool,
+    /// Whether it is the recorded side of a measured channel: readings may be missing there.
+    pub(crate) measured: bool,
 }
 
 impl Scope<'_> {
@@ -218,6 +220,7 @@ impl Scope<'_> {
             place: FieldPlace::Nowhere,
             elementwise: None,
             records: false,
+            measured: false,
         }
     }
 

@@ -61,6 +61,8 @@ pub struct Header {
     pub step_s: Option<f64>,
     /// What else the file has and cannot be used: name, what is wrong, and what to change.
     pub unusable: Vec<(String, String, String)>,
+    /// Those of these that lack readings only, with their units: they can be compared, and drive nothing.
+    pub sparse: Vec<(String, Option<NamedUnit>)>,
 }
 
 /// The columns of a table's file.

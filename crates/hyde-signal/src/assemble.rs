@@ -20,6 +20,8 @@ pub(crate) struct Raw {
 pub(crate) enum Cells {
     /// Numbers, with what makes them unusable.
     Numbers(Vec<f64>, Option<Fault>),
+    /// Numbers of which some are missing, NaN, with that told; the others are readings.
+    Sparse(Vec<f64>, Fault),
     /// Whole numbers.
     Integers(Vec<i64>),
     /// Texts.
@@ -47,13 +49,16 @@ pub struct Fault {
     pub repair: String,
 }
 
-/// A column that a file has and nobody can use.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// A column that a file has and nobody can use as a whole.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Unusable {
     /// Its name.
     pub name: String,
     /// What is wrong with it.
     pub fault: Fault,
+    /// Its readings at their own times, where nothing is wrong but that some are missing: they can be compared with a model,
+    /// and cannot drive one.
+    pub readings: Option<Box<Table>>,
 }
 
 impl fmt::Display for Fault {
@@ -92,6 +97,7 @@ pub(crate) fn assemble(
     let mut origin: Option<Origin> = None;
     let mut columns: Vec<(bool, Column)> = Vec::new();
     let mut unusable: Vec<Unusable> = Vec::new();
+    let mut sparse: Vec<(Column, Fault)> = Vec::new();
     let names: Vec<String> = raw
         .iter()
         .map(|column| column.heading.name.clone())
@@ -113,15 +119,22 @@ pub(crate) fn assemble(
             None => usable(column, at + 1),
         };
         match read {
-            Ok(column) => columns.push((false, column)),
-            Err(fault) => unusable.push(Unusable { name, fault }),
+            Ok((column, None)) => columns.push((false, column)),
+            Ok((column, Some(missing))) => sparse.push((column, missing)),
+            Err(fault) => unusable.push(Unusable {
+                name,
+                fault,
+                readings: None,
+            }),
         }
     }
     // A name that two columns have means neither of them; the time is known by its place.
     let doubled = |column: &Column| unusable.iter().any(|other| other.name == column.name());
     columns.retain(|(is_time, column)| *is_time || !doubled(column));
-    if let (true, Some(first)) = (columns.is_empty(), unusable.first()) {
-        let error = TableError::NoneUsable(first.fault.message.clone());
+    let faults = unusable.iter().map(|own| &own.fault);
+    let faults = faults.chain(sparse.iter().map(|(_, fault)| fault)).next();
+    if let (true, Some(first)) = (columns.is_empty(), faults) {
+        let error = TableError::NoneUsable(first.message.clone());
         return Err(AssembleError::Table(error));
     }
     let time_at = columns.iter().position(|(is_time, _)| *is_time);
@@ -131,10 +144,16 @@ pub(crate) fn assemble(
         None => Table::with_time(columns, time_at.unwrap_or(0)),
     };
     let table = table.map_err(AssembleError::Table)?;
+    unusable.extend(sparse.into_iter().map(|(column, fault)| Unusable {
+        name: column.name().to_owned(),
+        readings: table.readings_of(&column).map(Box::new),
+        fault,
+    }));
     Ok(table.with_findings(notes, unusable, origin))
 }
 
-fn usable(column: Raw, number: usize) -> Result<Column, Fault> {
+/// A column, with what is told of readings that it lacks.
+fn usable(column: Raw, number: usize) -> Result<(Column, Option<Fault>), Fault> {
     let Heading {
         name,
         unit,
@@ -147,8 +166,13 @@ fn usable(column: Raw, number: usize) -> Result<Column, Fault> {
             repair: "give the column a name in the header".to_owned(),
         });
     }
+    let mut missing = None;
     let values = match column.cells {
         Cells::Numbers(values, None) => values,
+        Cells::Sparse(values, fault) => {
+            missing = Some(fault);
+            values
+        }
         #[allow(clippy::cast_precision_loss, reason = "a record is of doubles")]
         Cells::Integers(values) => values.into_iter().map(|value| value as f64).collect(),
         Cells::Numbers(_, Some(fault)) => return Err(fault),
@@ -161,8 +185,8 @@ fn usable(column: Raw, number: usize) -> Result<Column, Fault> {
     };
     let raw = Column::raw(name.clone(), values).showing(meaning);
     match unit {
-        None => Ok(raw),
-        Some(Ok(unit)) => Ok(raw.converted(unit)),
+        None => Ok((raw, missing)),
+        Some(Ok(unit)) => Ok((raw.converted(unit), missing)),
         Some(Err(error)) => Err(Fault {
             message: format!("column {number} (`{name}`): {error}"),
             repair: format!(

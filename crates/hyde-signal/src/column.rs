@@ -133,6 +133,16 @@ impl Column {
         })
     }
 
+    /// The same with some of its rows.
+    pub(crate) fn rows_with(&self, kept: &[bool]) -> Self {
+        let values = self.values.iter().zip(kept);
+        let values = values.filter(|(_, kept)| **kept).map(|(value, _)| *value);
+        Self {
+            values: values.collect(),
+            ..self.clone()
+        }
+    }
+
     /// The column with all values so much higher, SI.
     pub(crate) fn raised(mut self, by: f64) -> Self {
         self.values.iter_mut().for_each(|value| *value += by);

@@ -89,7 +89,7 @@ fn numbers(column: &mut Raw, change: impl FnOnce(&mut Vec<f64>)) {
     if let Cells::Integers(values) = &column.cells {
         column.cells = Cells::Numbers(values.iter().map(|value| *value as f64).collect(), None);
     }
-    if let Cells::Numbers(values, _) = &mut column.cells {
+    if let Cells::Numbers(values, _) | Cells::Sparse(values, _) = &mut column.cells {
         change(values);
     }
 }

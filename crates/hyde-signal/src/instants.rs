@@ -97,7 +97,7 @@ pub(crate) fn read(
                 far.then(|| calendar::of_integers(values, factor)).flatten(),
             )
         }
-        Cells::Numbers(values, _) => {
+        Cells::Numbers(values, _) | Cells::Sparse(values, _) => {
             if let Some(row) = values.iter().position(|value| !value.is_finite()) {
                 return Err(no_time(row, ""));
             }
@@ -123,7 +123,9 @@ pub(crate) fn read(
         let whole = match &raw[at].cells {
             Cells::Texts(texts) => texts.iter().all(|text| text.trim().parse::<i64>().is_ok()),
             Cells::Integers(_) => true,
-            Cells::Numbers(values, _) => values.iter().all(|value| value.fract() == 0.0),
+            Cells::Numbers(values, _) | Cells::Sparse(values, _) => {
+                values.iter().all(|value| value.fract() == 0.0)
+            }
         };
         if whole && seconds.len() > 2 {
             let step = (seconds[seconds.len() - 1] - seconds[0]) / (seconds.len() - 1) as f64;
@@ -273,7 +275,7 @@ fn unix_unit(cells: &Cells) -> Option<NamedUnit> {
     let first = match cells {
         Cells::Texts(texts) => texts.first()?.trim().parse().ok()?,
         Cells::Integers(values) => *values.first()?,
-        Cells::Numbers(..) => return None,
+        Cells::Numbers(..) | Cells::Sparse(..) => return None,
     };
     let units = [
         ("s", 1),
@@ -297,7 +299,7 @@ fn is_dates(cells: &Cells) -> bool {
         Cells::Texts(texts) => texts
             .get(..1)
             .is_some_and(|first| numbers(first).is_err() && calendar::of_texts(first).is_ok()),
-        Cells::Numbers(..) | Cells::Integers(_) => false,
+        Cells::Numbers(..) | Cells::Sparse(..) | Cells::Integers(_) => false,
     }
 }
 

@@ -188,7 +188,9 @@ impl Table {
                 crate::gaps::seconds(later_s)
             )));
         }
-        for part in &mut self.others {
+        let sparse = self.unusable.iter_mut();
+        let sparse = sparse.filter_map(|own| own.readings.as_deref_mut());
+        for part in self.others.iter_mut().chain(sparse) {
             if let Time::Column(at) = part.time {
                 let column = part.columns.remove(at).raised(later_s);
                 part.columns.insert(at, column);

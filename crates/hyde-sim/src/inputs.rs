@@ -42,7 +42,9 @@ impl<'a> Inputs<'a> {
         let mut columns = Vec::new();
         for column in &program.columns {
             let table = setup.records.get(&column.record);
-            let Some(signal) = table.and_then(|table| table.signal(&column.column)) else {
+            let Some(signal) =
+                table.and_then(|table| table.reading(&column.column).signal(&column.column))
+            else {
                 let message = format!(
                     "the record `{}` has no column `{}`",
                     column.record, column.column

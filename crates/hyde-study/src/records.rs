@@ -72,7 +72,14 @@ pub fn headers(records: &BTreeMap<String, Record>) -> BTreeMap<String, Header> {
                     (column.name.clone(), fault.message, fault.repair)
                 })
                 .collect();
+            let sparse = record.table.unusable().iter().filter_map(|own| {
+                let readings = own.readings.as_ref()?;
+                let unit = readings.column(&own.name)?.unit().cloned();
+                Some((own.name.clone(), unit))
+            });
+            let sparse = sparse.collect();
             let header = Header {
+                sparse,
                 columns,
                 step_s: record.table.usual_step(),
                 unusable,

@@ -63,7 +63,7 @@ pub fn simulated(
         let Some(table) = tables.get(&channel.source.0) else {
             continue;
         };
-        let table = table.holding(&channel.source.1);
+        let table = table.reading(&channel.source.1);
         let (Some(factor), false) = (factor(channel), made.contains_key(&channel.source)) else {
             continue;
         };

@@ -24,9 +24,11 @@ impl Model<'_, '_> {
     /// `None` of any other.
     pub(super) fn undelayed(&mut self, value: ExprId, first: usize, span: Span) -> Option<Late> {
         let read = self.variables_read_by(value);
-        let number = |var: &VarId| match self.flat.variables[*var].kind {
-            VariableKind::Delayed(delay) => Some(delay.index()),
-            _ => None,
+        let number = |var: &VarId| {
+            let VariableKind::Delayed(delay) = self.flat.variables[*var].kind else {
+                return None;
+            };
+            Some(delay.index())
         };
         let numbers: Vec<usize> = read.iter().map(number).collect::<Option<_>>()?;
         let made = self.flat.delays.len().checked_sub(first)?;

@@ -15,7 +15,8 @@ impl<'a> Model<'a, '_> {
     /// `measured column = e ~ noise`.
     pub(super) fn measured(&mut self, channel: &'a Channel, root: InstanceId) {
         let mut preparation = Vec::new();
-        let Some((column, mut dim)) = self.recorded(&channel.signal, root, &mut preparation) else {
+        let Some((column, mut dim)) = self.recorded(&channel.signal, root, true, &mut preparation)
+        else {
             return;
         };
         let scope = Scope {
@@ -86,15 +87,18 @@ impl<'a> Model<'a, '_> {
         });
     }
 
-    /// The recorded signal of a measured channel: a column, low-passed, differentiated or scaled.
+    /// The recorded signal of a channel: a column, low-passed, differentiated or scaled; where it is compared only, readings of
+    /// it may be missing.
     pub(super) fn recorded(
         &mut self,
         expr: &'a Expr,
         root: InstanceId,
+        compared: bool,
         steps: &mut Vec<Preparation>,
     ) -> Option<(ColumnId, Dim)> {
         let scope = Scope {
             records: true,
+            measured: compared,
             ..Scope::new(root, Setting::Report)
         };
         match &expr.kind {
@@ -120,7 +124,7 @@ impl<'a> Model<'a, '_> {
             ExprKind::Call(function, arguments) => {
                 match (function.as_word(), arguments.as_slice()) {
                     (Some("lowpass"), [inner, corner]) => {
-                        let found = self.recorded(&inner.value, root, steps)?;
+                        let found = self.recorded(&inner.value, root, compared, steps)?;
                         let parameter = scope.with(Setting::Parameter);
                         let corner_typed = self.value(&corner.value, &parameter);
                         let rate = Typed {
@@ -138,7 +142,7 @@ impl<'a> Model<'a, '_> {
                         Some(found)
                     }
                     (Some("slope"), [inner]) => {
-                        let (column, dim) = self.recorded(&inner.value, root, steps)?;
+                        let (column, dim) = self.recorded(&inner.value, root, compared, steps)?;
                         steps.push(Preparation::Slope);
                         Some((column, dim.divide(&Dim::known(Dimension::TIME))))
                     }
@@ -152,7 +156,7 @@ impl<'a> Model<'a, '_> {
                 }
             }
             ExprKind::Unary(ast::Unary::Negative, inner) => {
-                let found = self.recorded(inner, root, steps)?;
+                let found = self.recorded(inner, root, compared, steps)?;
                 steps.push(Preparation::Scale(-1.0));
                 Some(found)
             }
@@ -160,7 +164,7 @@ impl<'a> Model<'a, '_> {
                 let parameter = scope.with(Setting::Parameter);
                 let typed = self.value(factor, &parameter);
                 let number = self.structural_number(&parameter, factor)?;
-                let (column, dim) = self.recorded(inner, root, steps)?;
+                let (column, dim) = self.recorded(inner, root, compared, steps)?;
                 steps.push(Preparation::Scale(number));
                 Some((column, typed.dim.multiply(&dim)))
             }

@@ -32,8 +32,14 @@ impl<'a> Model<'a, '_> {
             }
         };
         let header = self.input.records.get(&record);
-        let known =
-            header.and_then(|header| header.columns.iter().find(|(name, _)| name == column));
+        let among = |columns: &'_ [(String, Option<NamedUnit>)]| {
+            let own = columns.iter().find(|(name, _)| name == column);
+            own.map(|(_, unit)| unit.clone())
+        };
+        let sparse = header.filter(|_| scope.measured);
+        let sparse = sparse.and_then(|header| among(&header.sparse));
+        let known = header.and_then(|header| among(&header.columns));
+        let known = known.or_else(|| sparse.clone());
         if known.is_none()
             && header.is_some()
             && suffix.is_none()
@@ -44,7 +50,7 @@ impl<'a> Model<'a, '_> {
         }
         let unusable =
             header.and_then(|header| header.unusable.iter().find(|(name, ..)| name == column));
-        if let Some((_, message, repair)) = unusable {
+        if let Some((_, message, repair)) = unusable.filter(|_| sparse.is_none()) {
             let message = format!("the record `{record}`: {message}");
             let diagnostic = Diagnostic::error(Code::BadRecord, message)
                 .label(reference.span, "read here")
@@ -52,7 +58,7 @@ impl<'a> Model<'a, '_> {
             self.report(diagnostic);
             return None;
         }
-        let Some((_, unit)) = known else {
+        let Some(unit) = known else {
             let names: Vec<&str> = header
                 .map(|header| {
                     header
@@ -99,7 +105,6 @@ impl<'a> Model<'a, '_> {
             self.report(diagnostic);
             return None;
         };
-        let unit = unit.clone();
         match suffix {
             None | Some("next") => {
                 if scope.setting == Setting::Parameter {

@@ -180,7 +180,7 @@ impl<'a> Model<'a, '_> {
                 ..
             } = self.replays[number];
             let mut preparation = Vec::new();
-            let column = self.recorded(&drive.value, root, &mut preparation);
+            let column = self.recorded(&drive.value, root, false, &mut preparation);
             let (Some((column, _)), Some(value)) = (column, value) else {
                 continue;
             };

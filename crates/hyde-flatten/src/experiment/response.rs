@@ -198,7 +198,7 @@ impl<'a> Model<'a, '_> {
     /// A column, perhaps times a factor.
     fn scaled_column(&mut self, expr: &'a Expr, root: InstanceId) -> Option<(ScaledColumn, Dim)> {
         let mut steps = Vec::new();
-        let (column, dim) = self.recorded(expr, root, &mut steps)?;
+        let (column, dim) = self.recorded(expr, root, false, &mut steps)?;
         let mut scale = 1.0;
         for step in steps {
             match step {

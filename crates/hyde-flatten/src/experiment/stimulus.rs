@@ -96,7 +96,7 @@ impl<'a> Model<'a, '_> {
         self.agree(&sd, driven, "the noise and what is driven are", root);
         let mut steps = Vec::new();
         let column = match self.reads_a_column(value) {
-            true => self.recorded(&drive.value, root, &mut steps),
+            true => self.recorded(&drive.value, root, false, &mut steps),
             false => None,
         };
         let factor = |step: &Preparation| match step {

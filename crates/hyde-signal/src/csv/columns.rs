@@ -29,6 +29,8 @@ struct Column {
     /// How many readings are missing, and the lines of the first of them.
     missing: usize,
     lines: Vec<u64>,
+    /// Whether something else than that is wrong with a cell.
+    spoilt: bool,
     /// Whether it has `TRUE` or `FALSE`.
     truth: bool,
     thousands: Thousands,
@@ -103,6 +105,8 @@ impl Columns {
                     if column.lines.len() < MISSING_TOLD {
                         column.lines.push(rows.line());
                     }
+                } else {
+                    column.spoilt |= value.is_none();
                 }
                 if value.is_none() && column.fault.is_none() {
                     let fault = not_a_number(rows.line(), at + 1, &headings[at].name, cell);
@@ -168,7 +172,7 @@ impl Columns {
             let also: Vec<usize> = (at + 1..groups.len()).filter(same).collect();
             let mut columns: Vec<Raw> = taken(&mut raw, group).collect();
             if let Some(time) = group.time.map(|time| &mut columns[time - group.first]) {
-                if let Cells::Numbers(_, Some(fault)) = &time.cells {
+                if let Cells::Numbers(_, Some(fault)) | Cells::Sparse(_, fault) = &time.cells {
                     return Err(TimeError::Doubtful(fault.clone()).into());
                 }
                 time.cells = Cells::Texts(instants[at].clone());
@@ -207,14 +211,19 @@ fn taken<'r>(raw: &'r mut [Option<Raw>], group: &Group) -> impl Iterator<Item = 
 impl Column {
     fn raw(self, at: usize, heading: Heading, declared: bool, both_signs: bool) -> Raw {
         let thousands = self.thousands.fault(at + 1, &heading.name, both_signs);
+        let thousands = thousands.filter(|_| !declared);
+        let doubtful = thousands.is_some();
         let fault = self
             .fault
             .map(|fault| with_missing(fault, self.missing, &self.lines))
-            .or(thousands.filter(|_| !declared));
-        Raw {
-            heading,
-            cells: Cells::Numbers(self.values, fault),
-        }
+            .or(thousands);
+        let cells = match fault {
+            Some(missing) if !self.spoilt && self.missing > 0 && !doubtful => {
+                Cells::Sparse(self.values, missing)
+            }
+            fault => Cells::Numbers(self.values, fault),
+        };
+        Raw { heading, cells }
     }
 }
 

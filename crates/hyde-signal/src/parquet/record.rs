@@ -27,10 +27,10 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
         .zip(frame.values)
         .map(|(field, values)| Raw {
             cells: match values {
-                Values::Numbers(values) => {
-                    let fault = not_finite(&field.name, &values);
-                    Cells::Numbers(values, fault)
-                }
+                Values::Numbers(values) => match not_finite(&field.name, &values) {
+                    Some(missing) => Cells::Sparse(values, missing),
+                    None => Cells::Numbers(values, None),
+                },
                 Values::Integers(values) => Cells::Integers(values),
                 Values::Texts(values) => Cells::Texts(values),
             },

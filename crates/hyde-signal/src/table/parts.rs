@@ -66,6 +66,7 @@ impl Table {
                     message: format!("{times} columns over different times are named `{name}`"),
                     repair: "give every column a name of its own".to_owned(),
                 },
+                readings: None,
                 name,
             });
         }
@@ -107,6 +108,31 @@ impl Table {
         self.parts().find(has).unwrap_or(self)
     }
 
+    /// The part with the readings of a column, some of which may be missing; the record itself where there is no such column.
+    #[must_use]
+    pub fn reading(&self, column: &str) -> &Self {
+        let mut sparse = self.unusable.iter();
+        let own = sparse.find(|own| own.name == column);
+        match own.and_then(|own| own.readings.as_deref()) {
+            Some(readings) => readings,
+            None => self.holding(column),
+        }
+    }
+
+    /// The readings of a column over the time of the table, NaN where one is missing, as a record of their own; none of less
+    /// than two.
+    pub(crate) fn readings_of(&self, column: &Column) -> Option<Self> {
+        let there: Vec<bool> = column.values().iter().map(|v| v.is_finite()).collect();
+        if there.iter().filter(|there| **there).count() < 2 {
+            return None;
+        }
+        let time = match self.time {
+            Time::Column(at) => self.columns[at].rows_with(&there),
+            Time::Every(..) => Column::raw("time", self.time().to_vec()).rows_with(&there),
+        };
+        Self::with_time(vec![time, column.rows_with(&there)], 0).ok()
+    }
+
     /// The columns that are not the time.
     pub fn channels(&self) -> impl Iterator<Item = &Column> {
         let time = match self.time {
@@ -145,6 +171,11 @@ impl Table {
             .cloned()
             .collect();
         first.unusable.extend(faults);
+        // What one file lacks of a column the others may have, or lack too.
+        first
+            .unusable
+            .iter_mut()
+            .for_each(|own| own.readings = None);
         Ok(first)
     }
 
@@ -181,7 +212,18 @@ impl Table {
             part.with_columns(columns)
         };
         let mut found = part(self)?;
-        found.others = self.others.iter().map(part).collect::<Result<_, _>>()?;
+        found.others = self
+            .others
+            .iter()
+            .map(&mut part)
+            .collect::<Result<_, _>>()?;
+        for own in &self.unusable {
+            let readings = own.readings.as_ref().map(|readings| part(readings));
+            found.unusable.push(Unusable {
+                readings: readings.transpose()?.map(Box::new),
+                ..own.clone()
+            });
+        }
         Ok(found)
     }
 }

@@ -1,6 +1,6 @@
 //! The page of `hyde look`: a section a file, with a picture of every channel.
 
-use super::text::{delayed, of_channel, of_clock, samples};
+use super::text::{delayed, limit, of_channel, of_clock, samples};
 use super::{Seen, layout_of};
 use crate::files;
 use hyde_report::{Axis, Block, Figure, Line, Page, Panel, Section, Table, to_html};
@@ -70,7 +70,10 @@ fn section(seen: &Seen) -> Section {
             .map(|delay| Block::Text(format!("{}.", delayed(delay)))),
     );
     let unusable = look.unusable.iter();
-    blocks.extend(unusable.map(|u| Block::Text(format!("Cannot be used: {}.", u.fault.message))));
+    blocks.extend(unusable.map(|u| {
+        let message = &u.fault.message;
+        Block::Text(format!("`{}` {}: {message}.", u.name, limit(u)))
+    }));
     blocks.extend(
         look.notes
             .iter()

@@ -2,9 +2,18 @@
 
 use super::{Seen, layout_of};
 use crate::commands::effects::wrapped;
+use hyde_signal::Unusable;
 use hyde_signal::look::{Channel, Clock};
 use hyde_units::{counted, significant};
 use std::fmt::Write as _;
+
+/// What a column with a fault cannot do.
+pub(super) fn limit(column: &Unusable) -> &'static str {
+    match column.readings {
+        Some(_) => "can be compared with a model, but not drive it",
+        None => "cannot be used",
+    }
+}
 
 /// One file.
 pub(super) fn screen(seen: &Seen) -> String {
@@ -74,7 +83,7 @@ pub(super) fn screen(seen: &Seen) -> String {
     for unusable in &look.unusable {
         paragraph(
             &mut out,
-            &format!("cannot be used: {}", unusable.fault.message),
+            &format!("{}: {}", limit(unusable), unusable.fault.message),
         );
     }
     for note in &look.notes {
