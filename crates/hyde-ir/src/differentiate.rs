@@ -10,6 +10,7 @@
 use crate::expr::{Expr, ExprArena};
 use crate::id::ExprId;
 use crate::{BinaryOp, UnaryOp};
+use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 
 /// How far from the end of its domain a function has the slope that stands for the infinite one at the end.
@@ -22,6 +23,74 @@ enum Ends {
     Exact,
     /// Finite.
     Finite,
+}
+
+/// What is known of the nodes of one gradient.
+#[derive(Default)]
+struct Branches {
+    /// Whether a branch below is zero.
+    zero: HashMap<ExprId, bool>,
+    /// Whether an operation below may give infinity, or no number.
+    infinite: HashMap<ExprId, bool>,
+}
+
+impl Branches {
+    fn end_in_zero(&mut self, arena: &ExprArena, root: ExprId) -> bool {
+        below(arena, root, &mut self.zero, |expr| {
+            let zero = |id| arena.as_constant(id) == Some(0.0);
+            matches!(expr, Expr::If(_, a, b) if zero(a) || zero(b))
+        })
+    }
+
+    fn may_be_infinite(&mut self, arena: &ExprArena, root: ExprId) -> bool {
+        below(arena, root, &mut self.infinite, |expr| {
+            if let Expr::Binary(BinaryOp::Div, _, b) = expr {
+                return !arena.is_parametric(b);
+            }
+            matches!(
+                expr,
+                Expr::Binary(BinaryOp::Pow, ..)
+                    | Expr::Unary(
+                        UnaryOp::Sqrt
+                            | UnaryOp::Exp
+                            | UnaryOp::Log
+                            | UnaryOp::Log10
+                            | UnaryOp::Tan
+                            | UnaryOp::Asin
+                            | UnaryOp::Acos
+                            | UnaryOp::Sinh
+                            | UnaryOp::Cosh,
+                        _
+                    )
+            )
+        })
+    }
+}
+
+/// Whether a node below `root` is of a kind, with the answers for all nodes on the way remembered.
+fn below(
+    arena: &ExprArena,
+    root: ExprId,
+    known: &mut HashMap<ExprId, bool>,
+    kind: impl Fn(Expr) -> bool,
+) -> bool {
+    let mut stack = vec![root];
+    let mut new = Vec::new();
+    while let Some(id) = stack.pop() {
+        if let Entry::Vacant(place) = known.entry(id) {
+            place.insert(false);
+            new.push(id);
+            arena[id].for_each_child(|child| stack.push(child));
+        }
+    }
+    // Children are older than their parents.
+    new.sort_unstable();
+    for id in new {
+        let mut is_found = kind(arena[id]);
+        arena[id].for_each_child(|child| is_found |= known[&child]);
+        known.insert(id, is_found);
+    }
+    known[&root]
 }
 
 impl ExprArena {
@@ -79,6 +148,7 @@ impl ExprArena {
         let one = self.constant(1.0);
         adjoints.insert(root, one);
         let mut found = Vec::new();
+        let mut branches = Branches::default();
         for &id in nodes.iter().rev() {
             let Some(&adjoint) = adjoints.get(&id) else {
                 continue;
@@ -107,7 +177,7 @@ impl ExprArena {
                     let Some(factor) = self.factor(id, position, Ends::Finite) else {
                         continue;
                     };
-                    self.times_in_branch(adjoint, factor)
+                    self.times_in_branch(adjoint, factor, &mut branches)
                 };
                 let sum = match adjoints.get(&child) {
                     Some(&old) => self.plus(old, term),
@@ -122,20 +192,33 @@ impl ExprArena {
 
     /// A product whose first factor may be the zero of a branch that is not taken: there the second one may be infinite, as
     /// the derivative of an exponential beyond the range it is for, and zero times infinity is no number.
-    fn times_in_branch(&mut self, adjoint: ExprId, factor: ExprId) -> ExprId {
+    fn times_in_branch(
+        &mut self,
+        adjoint: ExprId,
+        factor: ExprId,
+        branches: &mut Branches,
+    ) -> ExprId {
         if let Expr::If(c, a, b) = self[adjoint]
             && !self.is_parametric(factor)
         {
             if self.is_constant(b, 0.0) {
-                let product = self.times_in_branch(a, factor);
+                let product = self.times_in_branch(a, factor, branches);
                 return self.if_else(c, product, b);
             }
             if self.is_constant(a, 0.0) {
-                let product = self.times_in_branch(b, factor);
+                let product = self.times_in_branch(b, factor, branches);
                 return self.if_else(c, a, product);
             }
         }
-        self.times(adjoint, factor)
+        let product = self.times(adjoint, factor);
+        if !branches.end_in_zero(self, adjoint) || !branches.may_be_infinite(self, factor) {
+            return product;
+        }
+        // A sum over branches: the value is read in more than one of them.
+        let zero = self.constant(0.0);
+        let unread = self.binary(BinaryOp::Eq, adjoint, zero);
+        let chosen = self.if_else(unread, zero, product);
+        self.no_event(chosen)
     }
 
     /// The partial derivative of node `id` by its child at `position`; `None` for zero.
