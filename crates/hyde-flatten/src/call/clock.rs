@@ -1,7 +1,8 @@
 //! `pre`, `sample`, `hold`, `held` and `interval`: values across the borders of clocked parts.
 
+use crate::call::delay::moves_with_counter;
 use crate::dimension::Dim;
-use crate::instance::{Elementwise, Scope, Setting, Typed};
+use crate::instance::{Counter, Elementwise, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::turns::Turns;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
@@ -116,6 +117,11 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         };
         let clock = *clock;
+        if self.flat.exprs.any(inner.id, moves_with_counter) {
+            // Each turn of the loop holds another value.
+            self.needs_unrolling = true;
+            return self.poison(span);
+        }
         let source = if let Ir::Var(var, Index::SCALAR) = self.flat.exprs[inner.id]
             && self.flat.variables[var].len.is_none()
         {
@@ -153,10 +159,15 @@ impl<'a> Model<'a, '_> {
         scope: &Scope<'a>,
         span: Span,
     ) -> VarId {
-        let element = match scope.elementwise {
+        let mut element = match scope.elementwise {
             Some(Elementwise::One(position)) => format!("[{}]", position.at + 1),
             Some(Elementwise::Range(_)) | None => String::new(),
         };
+        for (_, counter) in &scope.counters {
+            if let Counter::Fixed(turn) = counter {
+                element.push_str(&format!("[{turn}]"));
+            }
+        }
         let name = format!(
             "{}.({}){element}",
             self.flat.clocks[clock].name,

@@ -220,7 +220,7 @@ impl<'a> Model<'a, '_> {
 }
 
 /// A leaf that is another one at every value of a counter.
-fn moves_with_counter(expr: Ir) -> bool {
+pub(super) fn moves_with_counter(expr: Ir) -> bool {
     match expr {
         Ir::Counter => true,
         Ir::Param(_, index) | Ir::Var(_, index) | Ir::Der(_, index) | Ir::Pre(_, index) => {
