@@ -68,9 +68,11 @@ pub(crate) fn place(system: &mut System, matched: &Matched, order: &Order) -> Da
         .filter(|&n| order.in_vector[n])
         .zip(dae.unknowns.ids())
     {
-        let base = dae.places[matched.unknowns[number].var].map_or(0, |place| place.base);
-        let (range, index) =
-            access(system, matched, number).unwrap_or((Range::SCALAR, Index::SCALAR));
+        let own = matched.unknowns[number];
+        let base = dae.places[own.var].map_or(0, |place| place.base);
+        // A constraint takes the row of a variable that it need not read, which may be an element of an array.
+        let element = Index::fixed(i32::try_from(own.first).unwrap_or(0));
+        let (range, index) = access(system, matched, number).unwrap_or((Range::SCALAR, element));
         let row = Index {
             offset: index.offset + i32::try_from(base).unwrap_or(0),
             ..index
