@@ -90,7 +90,8 @@ impl Instant<'_, '_> {
         for round in 0..MAX_ROUNDS {
             changed |= self.leave_slides(&mut located)?;
             let mut known = self.truths(scheduled, &located)?;
-            if seen.is_empty() {
+            // At the start nothing led here: a guard that is true was not crossed.
+            if seen.is_empty() && !at_start {
                 let short = self.short_of_zero(&known);
                 if !short.is_empty() {
                     located.extend(short);
