@@ -15,6 +15,7 @@ pub mod fmu;
 mod folder;
 pub mod gradient;
 pub mod ivp;
+mod last_bit;
 pub mod library;
 pub mod linear;
 pub mod msl;
