@@ -5,6 +5,7 @@ use hyde_compiler::{
 };
 use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources};
 use hyde_experiment::{Options, Run, RunError};
+use hyde_ir::Dae;
 use hyde_signal::Table;
 use hyde_syntax::ast::Experiment;
 use std::collections::BTreeMap;
@@ -213,6 +214,19 @@ impl Example {
     /// Every diagnostic, one a line.
     pub fn compile(&self, backend: Backend) -> Result<Compiled, String> {
         self.parse()?.compile(self, backend)
+    }
+
+    /// Its equations, ready to be solved.
+    ///
+    /// # Errors
+    /// Every diagnostic, one a line.
+    pub fn analyze(&self) -> Result<Dae, String> {
+        let mut loaded = self.parse()?;
+        let mut diagnostics = std::mem::take(&mut loaded.diagnostics);
+        let headers = loaded.headers();
+        let request = loaded.request(self, &headers, Backend::Interpreter);
+        hyde_compiler::analyze(&request, &mut diagnostics)
+            .ok_or_else(|| lines(&diagnostics, &loaded.sources))
     }
 
     /// The result of a stage as text.

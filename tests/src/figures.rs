@@ -9,6 +9,7 @@ mod clock;
 mod compile;
 mod demo;
 mod diagnosis;
+mod differential;
 mod emps;
 mod emps_diagnosis;
 mod energy;
@@ -59,6 +60,7 @@ pub const FIGURES: &[Figure] = &[
     two_mass::LOAD_WITHOUT_DELAY,
     energy::FIGURE,
     backends::FIGURE,
+    differential::FIGURE,
     msl::FIGURE,
     paper_rows::FIGURE,
     mode_error::FIGURE,

@@ -183,11 +183,11 @@ pub fn compare_bench(parameters: &[&str]) -> Result<Vec<Compared>, String> {
 }
 
 /// A model to be compared with differences.
-struct Compare<'a> {
-    program: &'a Program,
-    tables: &'a BTreeMap<String, Table>,
-    options: Options,
-    steps: &'a [f64],
+pub(crate) struct Compare<'a> {
+    pub(crate) program: &'a Program,
+    pub(crate) tables: &'a BTreeMap<String, Table>,
+    pub(crate) options: Options,
+    pub(crate) steps: &'a [f64],
 }
 
 impl Compare<'_> {
@@ -203,7 +203,11 @@ impl Compare<'_> {
     }
 
     /// Every output by every parameter.
-    fn outputs(&self, parameters: &[&str], outputs: &[&str]) -> Result<Vec<Compared>, String> {
+    pub(crate) fn outputs(
+        &self,
+        parameters: &[&str],
+        outputs: &[&str],
+    ) -> Result<Vec<Compared>, String> {
         let exact = self.solve(&Options {
             gradient: parameters.iter().map(|name| (*name).to_owned()).collect(),
             ..self.options.clone()

@@ -6,6 +6,7 @@ pub mod cases;
 mod closed_form;
 mod cluster;
 mod data;
+pub mod differential;
 pub mod editor;
 pub mod events;
 mod example;

@@ -9,7 +9,7 @@ mod models;
 
 pub use loops::wrong_poles;
 
-use self::models::random;
+pub(crate) use self::models::random;
 use crate::Example;
 use hyde_compiler::Backend;
 use hyde_experiment::{About, linearize_about, parameters};
@@ -58,7 +58,8 @@ pub fn compare(seed: u64) -> Result<Verdict, String> {
     }
 }
 
-fn compared(example: &Example, at_s: f64, starts: &[String]) -> Result<Verdict, String> {
+/// The same for a model with its operating point and the parameters that are start values.
+pub(crate) fn compared(example: &Example, at_s: f64, starts: &[String]) -> Result<Verdict, String> {
     let program = example
         .clone()
         .free_inputs()

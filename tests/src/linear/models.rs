@@ -4,17 +4,17 @@ use crate::numbers::Numbers;
 use std::fmt::Write as _;
 
 /// A model with its operating point.
-pub(super) struct Model {
+pub(crate) struct Model {
     /// The file.
-    pub(super) text: String,
+    pub(crate) text: String,
     /// The point, 0 at the start.
-    pub(super) at_s: f64,
+    pub(crate) at_s: f64,
     /// The parameters that are start values.
-    pub(super) starts: Vec<String>,
+    pub(crate) starts: Vec<String>,
 }
 
 /// The model of a seed.
-pub(super) fn random(seed: u64) -> Model {
+pub(crate) fn random(seed: u64) -> Model {
     let mut numbers = Numbers::of(seed);
     let at_s = match numbers.one_of(2) {
         0 => 0.0,
