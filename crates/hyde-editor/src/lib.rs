@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! server        messages in and out, and the pause before a full check     server.rs
+//! capabilities  what both agree on at the beginning                        capabilities.rs
 //! check         a full check, on a thread of its own                       check.rs
 //! answer        each request with its answer                               answer.rs
 //! documents     the texts that are open, over the files of the disk        documents.rs
@@ -19,6 +20,7 @@
 mod analysis;
 mod answer;
 mod before;
+mod capabilities;
 mod check;
 mod complete;
 mod describe;
