@@ -13,7 +13,8 @@ pub struct Enveloped {
 
 /// The quantiles over `cases`, each the instants in s, never running back, and the values at them, at `count` instants
 /// from the first to the last of all. A case is read linearly between its rows and counts where it has any; at an instant
-/// with an event its value before it counts.
+/// with an event its value before it counts. The least and the largest are those of all rows nearer to this instant than to
+/// any other, too: a peak between two instants is not lost.
 #[must_use]
 pub fn envelope(cases: &[(&[f64], &[f64])], count: usize) -> Enveloped {
     let firsts = cases.iter().filter_map(|(time, _)| time.first());
@@ -33,11 +34,37 @@ pub fn envelope(cases: &[(&[f64], &[f64])], count: usize) -> Enveloped {
         let mut sorted: Vec<f64> = values.filter(|value| value.is_finite()).collect();
         sorted.sort_unstable_by(f64::total_cmp);
         found.time.push(t);
+        let half = 0.5 * (last - first) / (count - 1) as f64;
+        let near = cases
+            .iter()
+            .flat_map(|own| rows_between(own, t - half, t + half));
+        let near = near.filter(|value| value.is_finite());
+        let (least, largest) = near.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), own| {
+            (low.min(own), high.max(own))
+        });
         for (column, p) in found.quantiles.iter_mut().zip(QUANTILES) {
-            column.push(quantile(&sorted, p));
+            let own = quantile(&sorted, p);
+            column.push(if p <= 0.0 {
+                own.min(least)
+            } else if p >= 1.0 {
+                own.max(largest)
+            } else {
+                own
+            });
         }
     }
     found
+}
+
+/// The values of a case in the rows of a span of time.
+fn rows_between<'c>(
+    (time, values): &(&'c [f64], &'c [f64]),
+    from: f64,
+    to: f64,
+) -> impl Iterator<Item = f64> + use<'c> {
+    let first = time.partition_point(|row| *row < from);
+    let last = time.partition_point(|row| *row <= to).min(values.len());
+    values[first.min(last)..last].iter().copied()
 }
 
 /// The value at an instant, none before the first row and after the last.
@@ -78,5 +105,17 @@ mod tests {
         assert_eq!(found.quantiles[0], [0.0, 0.0, 0.0, 4.0, 4.0]);
         assert_eq!(found.quantiles[6], [8.0, 8.0, 8.0, 4.0, 4.0]);
         assert!(envelope(&[], 5).time.is_empty());
+    }
+
+    #[test]
+    fn a_peak_between_two_instants_is_the_largest() {
+        let time: Vec<f64> = (0..=100).map(|k| 0.01 * f64::from(k)).collect();
+        let mut values = vec![0.0; 101];
+        (values[33], values[61]) = (7.0, -3.0);
+        // Instants 0.25 apart: 0.33 is nearest to 0.25, 0.61 to 0.5.
+        let found = envelope(&[(&time, &values)], 5);
+        assert_eq!(found.quantiles[6], [0.0, 7.0, 0.0, 0.0, 0.0]);
+        assert_eq!(found.quantiles[0], [0.0, 0.0, -3.0, 0.0, 0.0]);
+        assert_eq!(found.quantiles[3], [0.0; 5]);
     }
 }
