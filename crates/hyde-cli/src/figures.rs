@@ -13,6 +13,9 @@ use hyde_units::{NamedUnit, Unit};
 /// Measured channels in one figure.
 const MAX_CHANNELS: usize = 4;
 
+/// Numbers that are read easily.
+const READABLE: std::ops::Range<f64> = 1e-3..1e5;
+
 /// The figures of a run, the most telling first.
 pub(crate) fn of_run(title: &str, program: &Program, run: &Run) -> Vec<Figure> {
     let asked = asked_figures::of_run(program, run);
@@ -138,6 +141,16 @@ pub(crate) fn difference_in(unit: &NamedUnit) -> (String, Unit) {
     match unit.unit().is_absolute() {
         true => drawn_in(&NamedUnit::usual(unit.unit().dimension)),
         false => drawn_in(unit),
+    }
+}
+
+/// The unit that an error of this size is shown in, as on the console: that of the channel where it is read easily in it, else
+/// that of SI.
+pub(crate) fn error_in(unit: &NamedUnit, si: f64) -> (String, Unit) {
+    let (_, own) = difference_in(unit);
+    match READABLE.contains(&own.scale.remove(si).abs()) {
+        true => difference_in(unit),
+        false => drawn_in(&NamedUnit::usual(unit.unit().dimension)),
     }
 }
 

@@ -8,21 +8,34 @@ use hyde_syntax::Lookup;
 use hyde_syntax::ast::{Experiment, Item};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Digits of the hash of the file that are shown; all are in `summary.json`.
+/// Digits of the hash of the file that are shown; all are in the JSON file beside the page.
 const DIGITS: usize = 12;
 /// A picture of more parts than these shows nothing.
 const MOST_PARTS: usize = 60;
 
 /// File, model, experiment, version, hash and date.
 pub(crate) fn facts(project: &Project) -> Vec<(String, String)> {
-    let file = project.sources.iter().next();
+    facts_of_all(&[project])
+}
+
+/// The same of several experiments of one file.
+pub(crate) fn facts_of_all(projects: &[&Project]) -> Vec<(String, String)> {
+    let Some(first) = projects.first() else {
+        return Vec::new();
+    };
+    let file = first.sources.iter().next();
     let file = file.map_or("", |(_, source)| source.name.as_str());
-    let hash = project.hash.get(..DIGITS).unwrap_or(&project.hash);
-    let mut facts = vec![("Model", project.model.clone())];
-    if let Some(name) = &project.experiment {
+    let hash = first.hash.get(..DIGITS).unwrap_or(&first.hash);
+    let models = projects.iter().map(|project| project.model.clone());
+    let mut facts = vec![("Model", each_once(models).join(", "))];
+    let experiments = projects.iter().filter_map(|project| {
+        let name = project.experiment.as_ref()?;
         let doc = experiment(project, name).and_then(|own| own.doc.clone());
-        let told = doc.map_or_else(|| name.clone(), |doc| format!("{name}: {doc}"));
-        facts.push(("Experiment", told));
+        Some(doc.map_or_else(|| name.clone(), |doc| format!("{name}: {doc}")))
+    });
+    let experiments = each_once(experiments);
+    if !experiments.is_empty() {
+        facts.push(("Experiment", experiments.join("; ")));
     }
     facts.push(("File", format!("{file}, SHA-256 {hash}…")));
     facts.push((
@@ -31,6 +44,37 @@ pub(crate) fn facts(project: &Project) -> Vec<(String, String)> {
     ));
     let owned = |(name, value): (&str, String)| (name.to_owned(), value);
     facts.into_iter().map(owned).collect()
+}
+
+/// Texts in their order, none twice.
+fn each_once(texts: impl Iterator<Item = String>) -> Vec<String> {
+    let mut found = Vec::new();
+    for text in texts {
+        if !found.contains(&text) {
+            found.push(text);
+        }
+    }
+    found
+}
+
+/// The models of several experiments, each once.
+pub(crate) fn models(projects: &[&Project]) -> Vec<Section> {
+    let mut sections: Vec<Section> = Vec::new();
+    let several = projects
+        .iter()
+        .any(|own| projects.first().is_some_and(|one| one.model != own.model));
+    for project in projects {
+        let Some(mut section) = model(project) else {
+            continue;
+        };
+        if several {
+            section.heading = format!("Model {}", project.model);
+        }
+        if !sections.contains(&section) {
+            sections.push(section);
+        }
+    }
+    sections
 }
 
 /// What the model says of itself, and its components with their connections; nothing of a model without either.

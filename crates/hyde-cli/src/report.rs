@@ -71,7 +71,7 @@ pub(crate) fn page(project: &Project, compiled: &Compiled, run: &Run) -> Page {
         .channels
         .iter()
         .map(|channel| {
-            let (unit, of) = figures::difference_in(&channel.unit);
+            let (unit, of) = figures::error_in(&channel.unit, channel.rms);
             ChannelError {
                 channel: channel.name.clone(),
                 unit: figures::shown(&unit).to_owned(),

@@ -23,6 +23,8 @@ pub struct BatchReport {
     pub title: String,
     /// Pairs of name and value under the heading.
     pub facts: Vec<(String, String)>,
+    /// What the model is, in words and as a picture.
+    pub about: Vec<Section>,
     /// What was to hold in all cases, and whether it did.
     pub verdicts: Vec<Verdict>,
     /// What varies, as numbers.
@@ -152,7 +154,7 @@ impl BatchReport {
         Page {
             title: self.title.clone(),
             facts: self.facts.clone(),
-            sections: Section::all(blocks),
+            sections: [self.about.clone(), Section::all(blocks)].concat(),
             footer: self.footer.clone(),
         }
     }

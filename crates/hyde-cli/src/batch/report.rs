@@ -3,14 +3,17 @@
 use super::order::Order;
 use super::over_time::{OverTime, drawn, in_si, whole_numbers};
 use crate::commands::sweep::word;
-use crate::files;
+use crate::{files, head};
 use hyde_report::{
-    BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, FailedCase, Outcome, Verdict, WorstCase,
+    BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, FailedCase, Outcome, Section, Verdict,
+    WorstCase,
 };
 use hyde_signal::{Field, Frame, Values};
+use hyde_study::{Asked, Records};
 use hyde_units::{NamedUnit, Unit, counted, engineering_as, significant};
 use serde_json::Value;
 use std::path::Path;
+use std::sync::Arc;
 
 /// The columns of a case behind its inputs and measures: status, code, reason, equation, source, failed_at, steps, events.
 const BEHIND: usize = 8;
@@ -47,16 +50,17 @@ pub(crate) fn of_folder(folder: &Path) -> Result<BatchReport, String> {
     })?;
     let text = |key: &str| summary[key].as_str().unwrap_or_default().to_owned();
     let count = |key: &str| summary[key].as_u64().unwrap_or_default();
-    let facts = [
+    let (mut facts, about) = head(folder, &text("experiment"));
+    let own = [
         ("Sweep", text("sweep")),
-        ("Experiment", text("experiment")),
-        ("Model", text("model")),
         (
             "Cases",
             format!("{}, {} failed", count("cases"), count("failed")),
         ),
         ("Batch", text("batch")),
     ];
+    let own = own.map(|(name, value)| (name.to_owned(), value));
+    facts.splice(0..0, own);
     let (inputs, choices) = cases.inputs();
     Ok(BatchReport {
         title: format!(
@@ -65,7 +69,8 @@ pub(crate) fn of_folder(folder: &Path) -> Result<BatchReport, String> {
             text("experiment"),
             text("model")
         ),
-        facts: facts.map(|(name, value)| (name.to_owned(), value)).into(),
+        facts,
+        about,
         verdicts: verdicts(&summary),
         inputs,
         choices,
@@ -79,6 +84,29 @@ pub(crate) fn of_folder(folder: &Path) -> Result<BatchReport, String> {
         failures: cases.failures(&again),
         footer: format!("Hyde {}, {again}", env!("CARGO_PKG_VERSION")),
     })
+}
+
+/// File, model and experiment of a batch, from the copies of the model's files that its folder has.
+fn head(folder: &Path, experiment: &str) -> (Vec<(String, String)>, Vec<Section>) {
+    let loaded = Order::read(folder).ok().and_then(|(order, inputs)| {
+        let asked = Asked {
+            experiment: Some(experiment.to_owned()),
+            data: order.data.clone(),
+            inputs: Some(Arc::new(inputs)),
+            ..Asked::of_file(&order.file)
+        };
+        hyde_study::load(&asked, Records::IfThere).ok()
+    });
+    match loaded {
+        Some(project) => (
+            head::facts(&project),
+            head::model(&project).into_iter().collect(),
+        ),
+        None => (
+            vec![("Experiment".to_owned(), experiment.to_owned())],
+            Vec::new(),
+        ),
+    }
 }
 
 /// A table of the folder in whichever form it has.

@@ -2,8 +2,11 @@
 
 use super::text::{interval, noise};
 use super::{Told, experiment_name, identified, plots, shown, shown_difference};
+use crate::assumptions;
 use crate::before_after;
 use crate::diagnosis::suspicion;
+use crate::head;
+use crate::project::Project;
 use hyde_report::{Block, Page, Section, Table};
 use hyde_units::significant;
 
@@ -12,17 +15,15 @@ pub(crate) fn html(told: &Told<'_>) -> String {
     let calibration = told.calibration;
     let plan = &calibration.plan;
     let fact = |name: &str, value: String| (name.to_owned(), value);
-    let mut facts = vec![
-        fact("calibration", plan.name.clone()),
-        fact("models", plan.models.join(", ")),
-    ];
-    if let Some(first) = calibration.experiments.first() {
-        facts.push(fact("SHA-256 of the file", first.project.hash.clone()));
-    }
-    for own in &calibration.experiments {
-        let each = before_after::assumptions(own).into_iter();
-        facts.extend(each.map(|text| fact("assumed of the records", text)));
-    }
+    let projects: Vec<&Project> = calibration
+        .experiments
+        .iter()
+        .map(|own| &own.project)
+        .collect();
+    let mut facts = vec![fact("Calibration", plan.name.clone())];
+    facts.extend(head::facts_of_all(&projects));
+    let each = calibration.experiments.iter();
+    let assumed: Vec<String> = each.flat_map(before_after::assumptions).collect();
     let sections = [
         ("Before the fit", before(told)),
         ("Parameters", parameters(told)),
@@ -37,13 +38,15 @@ pub(crate) fn html(told: &Told<'_>) -> String {
     let page = Page {
         title: format!("{} of {}", plan.name, plan.models.join(", ")),
         facts,
-        sections: sections
-            .map(|(heading, blocks)| Section {
+        sections: head::models(&projects)
+            .into_iter()
+            .chain(assumptions::section(&assumed))
+            .chain(sections.map(|(heading, blocks)| Section {
                 heading: heading.to_owned(),
                 blocks,
-            })
+            }))
             .collect(),
-        footer: format!("hyde {}", env!("CARGO_PKG_VERSION")),
+        footer: format!("Hyde {}", env!("CARGO_PKG_VERSION")),
     };
     hyde_report::to_html(&page)
 }

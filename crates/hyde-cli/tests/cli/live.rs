@@ -1,7 +1,7 @@
 //! `hyde live`: its page in a browser without a screen; a slider, the file saved, values written back. Without a browser the
 //! test says so and drives the server alone.
 
-mod browser;
+pub(crate) mod browser;
 mod http;
 
 use crate::command::{Folder, LAG, command, errors, hyde, status};

@@ -18,6 +18,7 @@ mod fmt;
 mod live;
 mod long_runs;
 mod lsp;
+mod paper_and_phone;
 mod parquet;
 mod plot;
 mod printed;

@@ -52,6 +52,16 @@ impl Browser {
         browser
     }
 
+    /// Shows the page so many px wide, as on a `screen` or for `print`, with light or dark colours.
+    pub(crate) fn show(&mut self, width: u32, media: &str, colours: &str) {
+        let size =
+            json!({ "width": width, "height": 844, "deviceScaleFactor": 1, "mobile": width < 500 });
+        self.call("Emulation.setDeviceMetricsOverride", size);
+        let feature = json!({ "name": "prefers-color-scheme", "value": colours });
+        let media = json!({ "media": media, "features": [feature] });
+        self.call("Emulation.setEmulatedMedia", media);
+    }
+
     /// The value of an expression in the page.
     pub(crate) fn value(&mut self, expression: &str) -> Value {
         let params = json!({ "expression": expression, "returnByValue": true });
