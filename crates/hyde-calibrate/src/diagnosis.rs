@@ -23,6 +23,7 @@
 //! edges          what an effect with modes may leave of what it explains                  diagnosis/edges.rs
 //! claims         the last gate: what is claimed is told from its neutral value            diagnosis/claims.rs
 //! calibrated     a model with states of its own calibrated with a gain for them           diagnosis/calibrated.rs
+//! curve          an effect that was found over its variable, with what the records say    diagnosis/curve.rs
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
@@ -30,6 +31,7 @@ mod apart;
 mod calibrated;
 mod claims;
 mod contest;
+mod curve;
 mod edges;
 mod exchange;
 mod finding;
@@ -58,6 +60,7 @@ pub(crate) use stage::{Ground, Stage, flat};
 
 pub use apart::{Alternative, Experiment};
 pub use claims::FoundModel;
+pub use curve::{CurvePoint, FoundCurve, Over};
 pub use finding::{Finding, Quantity};
 pub use hypothesis::{Built, Hypothesis, Knob};
 pub use inquiry::{Author, Inquiry};

@@ -71,10 +71,10 @@ mod windows;
 
 pub use blocks::Fold;
 pub use diagnosis::{
-    Alternative, Author, Built, Diagnosis, Experiment, Factor, Finding, FoundLaw, FoundModel,
-    Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, Map, Panel, Quantity, Rejection,
-    Round, Scales, Score, Seen, Site, Summand, Trial, Unknown, Variable, Verdict, Written,
-    diagnose,
+    Alternative, Author, Built, CurvePoint, Diagnosis, Experiment, Factor, Finding, FoundCurve,
+    FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, Map, Over,
+    Panel, Quantity, Rejection, Round, Scales, Score, Seen, Site, Summand, Trial, Unknown,
+    Variable, Verdict, Written, diagnose,
 };
 pub use even_rows::Uneven;
 pub use fit::{ChannelError, Fit, FittedParameter, fit, fitted_parameters};

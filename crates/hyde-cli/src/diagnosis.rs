@@ -5,14 +5,17 @@
 //! verdict      one sentence, and what is doubtful about it        diagnosis/verdict.rs
 //! terminal     80 columns                                         diagnosis/text.rs
 //! JSON         `report.json`: book/src/report.schema.json         diagnosis/json.rs
-//! page         `report.html`                                      diagnosis/page.rs
+//! page         `report.html`                                      diagnosis/page.rs, diagnosis/found.rs
+//! plain words  its paragraph                                      diagnosis/plain.rs
 //! model        the old text with a new model behind               diagnosis/model.rs
 //! ```
 
+mod found;
 mod held_out;
 mod json;
 mod model;
 mod page;
+mod plain;
 mod text;
 mod verdict;
 
@@ -26,8 +29,8 @@ use crate::before_after::RecordErrors;
 use crate::project::Project;
 use crate::unknown;
 use hyde_calibrate::{
-    Cause, Diagnosis, FittedParameter, Hypothesis, Innovations, Rejection, ResidualMap, Score,
-    Trial, Whiteness, fitted_parameters, residual_maps, whiteness,
+    Cause, Diagnosis, FittedParameter, FoundCurve, Hypothesis, Innovations, Rejection, ResidualMap,
+    Score, Trial, Whiteness, fitted_parameters, residual_maps, whiteness,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Written};
 use hyde_study::Calibration;
@@ -38,6 +41,8 @@ pub(crate) struct Told<'a> {
     pub(crate) plan: &'a DiagnosisPlan,
     pub(crate) calibration: &'a Calibration,
     pub(crate) hypotheses: &'a [Hypothesis],
+    /// What the hypotheses are made of; a law has none.
+    pub(crate) candidates: &'a [Candidate],
     pub(crate) found: &'a Diagnosis,
     /// Errors of the calibrated model without effects and with them.
     pub(crate) errors: Vec<RecordErrors>,
@@ -48,6 +53,8 @@ pub(crate) struct Told<'a> {
     /// What innovations depend on in the records fitted, and whether they are white.
     pub(crate) maps: Vec<ResidualMap>,
     pub(crate) whiteness: Vec<Whiteness>,
+    /// Each finding as a curve, where it is one; nothing where only a terminal is told.
+    pub(crate) curves: Vec<Option<FoundCurve>>,
     /// Why the calibrated model does not follow the records, if it does not.
     pub(crate) causes: Vec<Cause>,
     /// Hypotheses that could not be put on the model, each with the reason.
@@ -70,7 +77,7 @@ impl<'a> Told<'a> {
     pub(crate) fn new(
         plan: &'a DiagnosisPlan,
         calibration: &'a Calibration,
-        candidates: &[Candidate],
+        candidates: &'a [Candidate],
         hypotheses: &'a [Hypothesis],
         found: &'a Diagnosis,
         (errors, refused): (Vec<RecordErrors>, Vec<Refused>),
@@ -99,12 +106,14 @@ impl<'a> Told<'a> {
             plan,
             calibration,
             hypotheses,
+            candidates,
             found,
             errors,
             refused,
             parameters,
             maps,
             whiteness,
+            curves: Vec::new(),
             causes: Vec::new(),
             hindered: hindered(project, candidates, found),
             written: Written {

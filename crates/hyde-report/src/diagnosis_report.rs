@@ -1,11 +1,14 @@
 //! The report of a diagnosis: what is missing, what that bought, what is left, and what else was tried.
 
 mod figures;
+mod found;
+
+pub use self::found::{FoundCurve, Response};
 
 use self::figures::{errors_figure, map_figure, over_time, parameters_figure};
 use crate::number::significant;
 use crate::page::{Block, Outcome, Page, Section, Table, Verdict};
-use crate::{prefix, to_html};
+use crate::{Figure, prefix, to_html};
 
 /// Everything the report of a diagnosis shows. Parts that are empty are left out.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,8 +17,16 @@ pub struct DiagnosisReport {
     pub title: String,
     /// Pairs of name and value under the heading.
     pub facts: Vec<(String, String)>,
+    /// What the model is, in words and as a picture.
+    pub about: Vec<Section>,
     /// The verdict in one sentence.
     pub sentence: String,
+    /// The same in plain words: what, where, how large, how sure, what else it may be, what to record next.
+    pub plain: String,
+    /// What was found, as curves.
+    pub curves: Vec<FoundCurve>,
+    /// What a channel does over frequency, measured and by both models.
+    pub responses: Vec<Response>,
     /// What is doubtful about it.
     pub doubts: Vec<String>,
     /// The effects found: effect, site, quantity with interval, what cannot be told from it.
@@ -150,9 +161,13 @@ impl DiagnosisReport {
     /// The report as a page.
     #[must_use]
     pub fn page(&self) -> Page {
-        let blocks: [(&str, Vec<Block>); 7] = [
+        let figures = |list: Vec<Figure>| list.into_iter().map(Block::Figure).collect();
+        let responses = self.responses.iter().map(Response::figure);
+        let blocks: [(&str, Vec<Block>); 9] = [
             ("Verdict", self.verdict_blocks()),
+            ("What was found", self.found_blocks()),
             ("Error before and after", self.error_blocks()),
+            ("Response over frequency", figures(responses.collect())),
             ("Error over time", self.time_blocks()),
             ("Residual maps", self.map_blocks()),
             ("Parameters", self.parameter_blocks()),
@@ -162,13 +177,21 @@ impl DiagnosisReport {
         Page {
             title: self.title.clone(),
             facts: self.facts.clone(),
-            sections: Section::all(blocks),
+            sections: [self.about.clone(), Section::all(blocks)].concat(),
             footer: self.footer.clone(),
         }
     }
 
+    fn found_blocks(&self) -> Vec<Block> {
+        let figures = self.curves.iter().map(FoundCurve::figure);
+        figures.map(Block::Figure).collect()
+    }
+
     fn verdict_blocks(&self) -> Vec<Block> {
         let mut blocks = vec![Block::Text(format!("{}.", capital(&self.sentence)))];
+        if !self.plain.is_empty() {
+            blocks.push(Block::Text(self.plain.clone()));
+        }
         if !self.effects.is_empty() {
             blocks.push(Block::Table(Table {
                 rows: self.effects.iter().map(|row| row.to_vec()).collect(),

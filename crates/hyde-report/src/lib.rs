@@ -50,8 +50,8 @@ pub use batch_report::{
 pub use bode_plot::{BodeCurve, bode_plot};
 pub use circle_plot::circle_plot;
 pub use diagnosis_report::{
-    ChannelChange, DiagnosisReport, ErrorChange, MovedParameter, RecordChange, ResidualMap,
-    TriedEffect,
+    ChannelChange, DiagnosisReport, ErrorChange, FoundCurve, MovedParameter, RecordChange,
+    ResidualMap, Response, TriedEffect,
 };
 pub use diagram::{Diagram, DiagramPart};
 pub use escape::escape;

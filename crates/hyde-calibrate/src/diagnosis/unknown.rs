@@ -29,11 +29,14 @@ mod seen;
 mod site;
 
 pub use factor::Factor;
+pub(crate) use felt::{Felt, PROBE as CURVE_PROBE};
 pub use latent::LatentForce;
+pub(crate) use latent::{PROBE as PROBE_SIZES, strongest};
 pub use law::{Law, Summand};
 pub use map::{Map, Panel, Variable};
 pub(crate) use places::{Answer, Places};
 pub use seen::{Scales, Seen};
+pub(crate) use site::probe;
 pub use site::{Kind, Site, Written};
 
 use super::edges::settled;

@@ -57,10 +57,17 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
         };
         hyde_calibrate::diagnose(&inquiry).and_then(|mut found| {
             let agreed = diagnosis::agreed(&calibration, &candidates, &inquiry, &mut found)?;
-            Ok((found, agreed))
+            // A terminal does not show them.
+            let count = match args.out.is_some() || args.study.json {
+                true => found.findings.len(),
+                false => 0,
+            };
+            let curves = (0..count).map(|number| found.curve(&inquiry, number));
+            let curves: Vec<_> = curves.collect();
+            Ok((found, agreed, curves))
         })
     };
-    let told = found.and_then(|(found, agreed)| {
+    let told = found.and_then(|(found, agreed, curves)| {
         if let Some(own) = &found.observer {
             calibration.observer = own.clone();
         }
@@ -88,7 +95,11 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
             &found,
             agreed,
         );
-        let told = Told { causes, ..told };
+        let told = Told {
+            causes,
+            curves,
+            ..told
+        };
         Ok(Ok(tell(args, &told)))
     });
     let diagnostic = match told {

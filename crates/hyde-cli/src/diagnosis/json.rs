@@ -3,7 +3,7 @@
 use super::{Told, suspicion, verdict};
 use crate::before_after;
 use crate::unknown;
-use hyde_calibrate::{FittedParameter, Quantity, Verdict};
+use hyde_calibrate::{CurvePoint, FittedParameter, FoundCurve, Quantity, Verdict};
 use serde_json::{Map, Value, json};
 
 /// The whole report.
@@ -80,8 +80,30 @@ fn frozen(told: &Told<'_>) -> Value {
     each.collect()
 }
 
+/// An effect over its variable.
+fn curve(own: &FoundCurve) -> Value {
+    let kind = own.site.kind;
+    let data = |of: fn(&CurvePoint) -> f64| own.data.iter().map(of).collect::<Vec<f64>>();
+    json!({
+        "over": own.over.name(kind),
+        "over_unit": own.over.unit(kind),
+        "unit": kind.force_unit(),
+        "share": own.share,
+        "at": own.law.0,
+        "force": own.law.1,
+        "records": {
+            "at": data(|own| own.at),
+            "force": data(|own| own.force),
+            "half": data(|own| own.half),
+        },
+    })
+}
+
 fn effects(told: &Told<'_>) -> Value {
-    let findings = told.found.findings.iter().map(|finding| {
+    let curves = told.curves.iter().map(Option::as_ref);
+    let curves = curves.chain(std::iter::repeat(None));
+    let findings = told.found.findings.iter().zip(curves);
+    let findings = findings.map(|(finding, own)| {
         let hypothesis = &told.hypotheses[finding.hypothesis];
         let all = |list: &[Quantity]| -> Map<String, Value> {
             list.iter()
@@ -112,6 +134,7 @@ fn effects(told: &Told<'_>) -> Value {
             "interval": [finding.size.interval.0, finding.size.interval.1],
             "sizes": all(&finding.sizes),
             "shape": all(&finding.shapes),
+            "curve": own.map(curve),
             "one_of": one_of,
         })
     });

@@ -1,11 +1,13 @@
 //! The page of a diagnosis.
 
-use super::{Told, named, suspicion, verdict};
+use super::{Told, found, named, plain, suspicion, verdict};
+use crate::assumptions;
 use crate::before_after::{self, Change, RecordErrors};
-use crate::figures::{difference_in, drawn_in, shown};
+use crate::figures::{drawn_in, error_in, shown};
+use crate::head;
 use hyde_calibrate::{FittedParameter, ResidualMap, Whiteness};
 use hyde_report::{
-    ChannelChange, DiagnosisReport, ErrorChange, MovedParameter, RecordChange, TriedEffect,
+    ChannelChange, DiagnosisReport, ErrorChange, MovedParameter, RecordChange, Section, TriedEffect,
 };
 use hyde_units::{Unit, significant};
 
@@ -14,23 +16,12 @@ pub(crate) fn html(told: &Told<'_>) -> String {
     let calibration = told.calibration;
     let report = DiagnosisReport {
         title: format!("{} of {}", told.plan.name, calibration.plan.model),
-        facts: [
-            vec![
-                ("model".to_owned(), calibration.plan.model.clone()),
-                ("calibration".to_owned(), calibration.plan.name.clone()),
-                ("new model".to_owned(), told.written.model.clone()),
-                (
-                    "SHA-256 of the file".to_owned(),
-                    calibration.project.hash.clone(),
-                ),
-            ],
-            before_after::assumptions(calibration)
-                .into_iter()
-                .map(|text| ("assumed of the records".to_owned(), text))
-                .collect(),
-        ]
-        .concat(),
+        facts: facts(told),
+        about: about(told),
         sentence: verdict::sentence(told),
+        plain: plain::paragraph(told),
+        curves: found::curves(told),
+        responses: found::responses(told),
         doubts: [verdict::grounds(told), verdict::doubts(told)].concat(),
         effects: effects(told),
         unknown: unknown(told),
@@ -48,9 +39,30 @@ pub(crate) fn html(told: &Told<'_>) -> String {
         maps: maps(told),
         whiteness: told.whiteness.iter().map(white).collect(),
         model: told.new_text().to_owned(),
-        footer: format!("hyde {}", env!("CARGO_PKG_VERSION")),
+        footer: format!("Hyde {}", env!("CARGO_PKG_VERSION")),
     };
     report.to_html()
+}
+
+/// File, model, experiment, date, and what was asked.
+fn facts(told: &Told<'_>) -> Vec<(String, String)> {
+    let calibration = told.calibration;
+    let mut facts = head::facts(&calibration.project);
+    let own = |name: &str, value: &str| (name.to_owned(), value.to_owned());
+    let asked = format!("{} of calibrate {}", told.plan.name, calibration.plan.name);
+    facts.insert(0, own("Diagnosis", &asked));
+    facts.push(own("New model", &told.written.model));
+    facts
+}
+
+/// The model in words and as a picture, and what was taken for granted of the records.
+fn about(told: &Told<'_>) -> Vec<Section> {
+    let assumed = before_after::assumptions(told.calibration);
+    let model = head::model(&told.calibration.project);
+    model
+        .into_iter()
+        .chain(assumptions::section(&assumed))
+        .collect()
 }
 
 fn effects(told: &Told<'_>) -> Vec<[String; 4]> {
@@ -98,7 +110,7 @@ fn errors(told: &Told<'_>, record: &RecordErrors) -> RecordChange {
     let deviations = &told.calibration.observer.deviations;
     let measured = &told.calibration.compiled.program.experiment.measured;
     let channel = |(number, measured): (usize, &hyde_program::Measured)| {
-        let (unit, of) = difference_in(&measured.unit);
+        let (unit, of) = error_in(&measured.unit, record.windows(number).after);
         let change = |change: Change| ErrorChange {
             before: of.from_si(change.before),
             after: of.from_si(change.after),

@@ -235,7 +235,7 @@ fn beyond_the_fitted(errors: &[RecordErrors]) -> Option<String> {
 const NEARLY_ALL: f64 = 99.0;
 
 /// Of the round that took in the last effect, the hypothesis that came nearest to it.
-fn next_best(told: &Told<'_>) -> Option<String> {
+pub(super) fn next_best(told: &Told<'_>) -> Option<String> {
     let finding = told.found.findings.last()?;
     let round = told.found.rounds.get(finding.round)?;
     let mut trials = round.trials.iter();

@@ -21,7 +21,7 @@ pub(crate) struct Felt {
 }
 
 /// What the probe is called: no effect of a user is likely to be.
-const PROBE: &str = "ProbeOfUnknown";
+pub(crate) const PROBE: &str = "ProbeOfUnknown";
 
 impl Felt {
     /// Runs the probe; `None` where it cannot be put on, or the site never moves.

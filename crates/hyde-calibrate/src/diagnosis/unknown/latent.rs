@@ -262,10 +262,23 @@ impl Carrier {
 
 /// Where a site is and how fast, from what its probe adds to some equations: by force, by place, by speed.
 fn place_and_speed(added: &DMatrix<f64>) -> Option<(f64, f64)> {
+    match strongest(added)?.as_slice() {
+        [place, speed, ..] => Some((*place, *speed)),
+        _ => None,
+    }
+}
+
+/// What each direction behind a unit of force adds to the equation that the force changes most, in units of the force.
+pub(crate) fn strongest(added: &DMatrix<f64>) -> Option<Vec<f64>> {
     let unit = added.column(0);
     let largest = (0..unit.len()).max_by(|&a, &b| unit[a].abs().total_cmp(&unit[b].abs()));
     let at = largest.filter(|&at| unit[at] != 0.0)?;
-    Some((added[(at, 1)] / unit[at], added[(at, 2)] / unit[at]))
+    let others = 1..added.ncols();
+    Some(
+        others
+            .map(|number| added[(at, number)] / unit[at])
+            .collect(),
+    )
 }
 
 /// Knots of a smoothed force in a record at most.

@@ -120,6 +120,24 @@ impl Kind {
         }
     }
 
+    /// The SI unit of a force there.
+    #[must_use]
+    pub fn force_unit(self) -> &'static str {
+        si(self.words().value.1)
+    }
+
+    /// The SI unit of its place.
+    #[must_use]
+    pub fn place_unit(self) -> &'static str {
+        si(self.words().place.1.0)
+    }
+
+    /// The SI unit of its speed.
+    #[must_use]
+    pub fn speed_unit(self) -> &'static str {
+        si(self.words().speed.1.0)
+    }
+
     /// The mark that a law of the place leaves.
     pub(crate) fn mark_of_place(self) -> &'static str {
         match self {

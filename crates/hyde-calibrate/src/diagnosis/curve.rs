@@ -1,0 +1,456 @@
+//! [`FoundCurve`]: an effect that was found, as a curve over the variable of which it is a function, and beside it what the
+//! records say at each place without its formula.
+//!
+//! ```text
+//! law       what the equations have by the effect, in units of a force at its site, where the observer takes the model
+//! data      the law, and the force there that the innovations still ask for: any piecewise linear function of the variable
+//! ```
+//! The force is that of the probe ([`super::unknown`]): both change the same equations, and their ratio is the force, whatever the
+//! effect is made of. The data are a partial residual (Larsen and McCleary, Technometrics 14, 1972, 781) in the space of innovations,
+//! with all parameters where the diagnosis left them: to first order they do not depend on the formula that was found.
+
+use super::finding::Finding;
+use super::hypothesis::Hypothesis;
+use super::inquiry::Inquiry;
+use super::projection::dot;
+use super::search::Diagnosis;
+use super::stage::{Ground, flat};
+use super::unknown::{CURVE_PROBE, Felt, Kind, PROBE_SIZES, Site, Variable, probe, strongest};
+use crate::fit::inflation;
+use crate::observer::{Innovations, When};
+use crate::recording::Recording;
+use crate::tangent::{Direction, Own};
+use crate::track::{Track, Vectors};
+use hyde_program::Program;
+use nalgebra::{Cholesky, DMatrix, DVector};
+use std::f64::consts::TAU;
+
+/// Knots of the data.
+const KNOTS: usize = 25;
+/// Points of the law between each two knots.
+const FINE: usize = 8;
+/// Groups of rows by which it is judged of which variable the effect is a function.
+const GROUPS: usize = 64;
+/// An effect that is less a function of every variable than this has no curve.
+const A_FUNCTION: f64 = 0.5;
+/// A variable that says less than this of the effect beyond a better known one is not preferred to it.
+const ALIKE: f64 = 0.02;
+/// A knot counts that the records show this part of what they show of the best one.
+const SHOWN: f64 = 1e-4;
+
+/// Of what an effect is a function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Over {
+    /// A variable of its site.
+    Variable(Variable),
+    /// The place within one of its periods of this length, SI.
+    Period(f64),
+}
+
+impl Over {
+    /// Its name, at a kind of site.
+    #[must_use]
+    pub fn name(self, kind: Kind) -> String {
+        match self {
+            Self::Variable(Variable::Speed) if kind.is_grip() => {
+                "magnitude of the speed".to_owned()
+            }
+            Self::Variable(variable) => variable.name(kind),
+            Self::Period(_) if kind.turns() => "angle within a period".to_owned(),
+            Self::Period(_) => "place within a period".to_owned(),
+        }
+    }
+
+    /// Its SI unit, at a kind of site.
+    #[must_use]
+    pub fn unit(self, kind: Kind) -> &'static str {
+        match self {
+            Self::Variable(Variable::Speed) => kind.speed_unit(),
+            Self::Variable(Variable::Time | Variable::SpeedByTime) => "s",
+            Self::Variable(Variable::Place | Variable::Turn | Variable::SpeedByPlace)
+            | Self::Period(_) => kind.place_unit(),
+        }
+    }
+}
+
+/// What the records say at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CurvePoint {
+    /// The variable, SI.
+    pub at: f64,
+    /// The force there, SI.
+    pub force: f64,
+    /// Half its 95 % interval, SI.
+    pub half: f64,
+}
+
+/// An effect as a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundCurve {
+    /// The site.
+    pub site: Site,
+    /// Of what it is drawn as a function.
+    pub over: Over,
+    /// The part of its variance that is a function of that, 0 to 1.
+    pub share: f64,
+    /// The variable and the force by the formula, SI.
+    pub law: (Vec<f64>, Vec<f64>),
+    /// What the records say.
+    pub data: Vec<CurvePoint>,
+}
+
+impl Diagnosis {
+    /// A finding, by its number, as a curve; `None` where no force stands for it at its site, or it depends on its past.
+    #[must_use]
+    pub fn curve(&self, inquiry: &Inquiry<'_>, number: usize) -> Option<FoundCurve> {
+        let law = self.law().map(|law| &law.hypothesis);
+        let finding = self.findings.get(number)?;
+        let hypothesis = inquiry.hypotheses.get(finding.hypothesis).or(law)?;
+        let at_site =
+            |site: &&Site| site.path == hypothesis.site || hypothesis.aliases.contains(&site.path);
+        let site = inquiry.sites.iter().find(at_site)?;
+        let ground = Ground {
+            observer: self.observer.as_ref().unwrap_or(inquiry.observer),
+            ..inquiry.ground()
+        };
+        let runs = self.along(inquiry, &ground, (number, hypothesis), site)?;
+        let (over, share) = best(&runs, site.kind, period(hypothesis, finding))?;
+        let felt = self.felt(inquiry, &ground, site)?;
+        let knots = knots(&runs, site.kind, over)?;
+        let fine = finer(&knots);
+        let law: Vec<f64> = mean_force(&runs, site.kind, over, &fine);
+        let asked = asked(&felt, &runs, site.kind, over, &knots)?;
+        let at_knots = mean_force(&runs, site.kind, over, &knots);
+        let each = knots.iter().zip(&at_knots).zip(asked);
+        let data = each.filter_map(|((&at, &force), more)| {
+            let (more, half) = more?;
+            force.is_finite().then_some(CurvePoint {
+                at,
+                force: force + more,
+                half,
+            })
+        });
+        let drawn = fine.iter().zip(&law).filter(|(_, force)| force.is_finite());
+        Some(FoundCurve {
+            site: site.clone(),
+            over,
+            share,
+            law: drawn.map(|(at, force)| (*at, *force)).unzip(),
+            data: data.collect(),
+        })
+    }
+
+    /// The probe put on the model that was found.
+    fn felt(&self, inquiry: &Inquiry<'_>, ground: &Ground<'_>, site: &Site) -> Option<Felt> {
+        let author = |numbers: &[usize], written: &[super::unknown::Written]| {
+            self.built(inquiry, numbers, written)
+        };
+        Felt::new(ground, &self.stage(), site, &author)
+    }
+
+    /// Effects, by number, and written ones behind the law that was found.
+    fn built(
+        &self,
+        inquiry: &Inquiry<'_>,
+        numbers: &[usize],
+        written: &[super::unknown::Written],
+    ) -> Option<super::hypothesis::Built> {
+        let own = inquiry.hypotheses.len();
+        let known: Vec<usize> = numbers.iter().copied().filter(|&one| one != own).collect();
+        let law = self.law().filter(|_| known.len() < numbers.len());
+        let law = law.map(|law| law.written.clone());
+        let written: Vec<super::unknown::Written> =
+            law.into_iter().chain(written.iter().cloned()).collect();
+        (inquiry.author)(&known, &written)
+    }
+
+    /// The site and the force of a finding there, along every record.
+    fn along(
+        &self,
+        inquiry: &Inquiry<'_>,
+        ground: &Ground<'_>,
+        (number, hypothesis): (usize, &Hypothesis),
+        site: &Site,
+    ) -> Option<Vec<Along>> {
+        let stage = self.stage();
+        let built = self.built(inquiry, &stage.numbers(), &[probe(site, CURVE_PROBE)])?;
+        let probe = built.paths.last()?;
+        let set = ground.set_in(&built.program, &stage.values());
+        let (_, path) = stage.effects.get(number)?;
+        let sizes = Hypothesis::names(&hypothesis.sizes, path);
+        let each = ground.recordings.iter();
+        each.map(|recording| Along::of(&built.program, recording, ground, &set, (probe, &sizes)))
+            .collect()
+    }
+}
+
+/// A record: where its site is, row by row, and the force of the effect there.
+struct Along {
+    time: Vec<f64>,
+    place: Vec<f64>,
+    speed: Vec<f64>,
+    /// NaN in a row where no force acts.
+    force: Vec<f64>,
+    innovations: Innovations,
+}
+
+impl Along {
+    fn of(
+        program: &Program,
+        recording: &Recording,
+        ground: &Ground<'_>,
+        set: &[(usize, f64)],
+        (probe, sizes): (&str, &[String]),
+    ) -> Option<Self> {
+        let with = |names: &mut dyn Iterator<Item = String>, value: f64| -> Option<Direction> {
+            let mut all = set.to_vec();
+            for name in names {
+                let (parameter, element) = program.parameter(&name)?;
+                all.push((parameter.place + element, value));
+            }
+            Some(Direction {
+                p: recording.parameters(program, &all),
+                step: 1.0,
+            })
+        };
+        let mut directions = Vec::new();
+        for name in PROBE_SIZES {
+            directions.push(with(&mut std::iter::once(format!("{probe}.{name}")), 1.0)?);
+        }
+        directions.push(with(&mut sizes.iter().cloned(), 0.0)?);
+        let track = Track::new(program, recording, ground.observer, set).ok()?;
+        let p = recording.parameters(program, set);
+        let mut own = Own::new(program, &p, &directions);
+        let mut forces = DMatrix::zeros(own.touched.len(), directions.len());
+        let mut by_output = DMatrix::zeros(recording.channels.len(), directions.len());
+        let mut found = Self {
+            time: Vec::new(),
+            place: Vec::new(),
+            speed: Vec::new(),
+            force: Vec::new(),
+            innovations: track.route.innovations.clone(),
+        };
+        let mut room = Vectors::default();
+        let mut last = [0.0, 0.0];
+        for row in 0..track.route.rows.len() {
+            if own.shown {
+                let at = track.point(row, When::Before, &p, &mut room);
+                own.seen(at, &directions, &mut by_output);
+            }
+            let at = track.point(row, When::After, &p, &mut room);
+            own.forces(at, &directions, &mut forces);
+            found.time.push(at.t);
+            let shown = strongest(&forces).or_else(|| strongest(&by_output));
+            let force = match shown.as_deref() {
+                Some([place, speed, without]) => {
+                    last = [*place, *speed];
+                    -without
+                }
+                _ => f64::NAN,
+            };
+            found.place.push(last[0]);
+            found.speed.push(last[1]);
+            found.force.push(force);
+        }
+        Some(found)
+    }
+
+    /// The variable in a row.
+    fn at(&self, row: usize, kind: Kind, over: Over) -> f64 {
+        match over {
+            Over::Variable(Variable::Speed) if kind.is_grip() => self.speed[row].abs(),
+            Over::Variable(Variable::Speed) => self.speed[row],
+            Over::Variable(Variable::Time | Variable::SpeedByTime) => self.time[row],
+            Over::Variable(Variable::Turn) => self.place[row].rem_euclid(TAU),
+            Over::Variable(Variable::Place | Variable::SpeedByPlace) => self.place[row],
+            Over::Period(length) => self.place[row].rem_euclid(length),
+        }
+    }
+
+    /// The rows in which a force acts.
+    fn rows(&self) -> impl Iterator<Item = usize> {
+        (0..self.force.len()).filter(|&row| self.force[row].is_finite())
+    }
+}
+
+/// The length of a period of an effect that has one, SI: of an order of an angle a part of a revolution.
+fn period(hypothesis: &Hypothesis, finding: &Finding) -> Option<f64> {
+    let shape = finding.shapes.get(hypothesis.periodic?)?;
+    let is_order = hypothesis.shapes.get(hypothesis.periodic?)?.is_number();
+    let length = match is_order {
+        true => TAU / shape.value,
+        false => shape.value,
+    };
+    (length.is_finite() && length > 0.0).then_some(length)
+}
+
+/// The variable of which the effect is a function most, and how much; of those that are alike the first.
+fn best(runs: &[Along], kind: Kind, period: Option<f64>) -> Option<(Over, f64)> {
+    let places = || runs.iter().flat_map(|run| run.place.iter().copied());
+    let travel = places().fold(f64::MIN, f64::max) - places().fold(f64::MAX, f64::min);
+    let mut all: Vec<Over> = period.map(Over::Period).into_iter().collect();
+    if kind.turns() && travel > TAU {
+        all.push(Over::Variable(Variable::Turn));
+    }
+    let others = [Variable::Place, Variable::Speed, Variable::Time];
+    all.extend(others.map(Over::Variable));
+    let mut best: Option<(Over, f64)> = None;
+    for over in all {
+        let share = share(runs, kind, over);
+        if best.is_none_or(|(_, known)| share > known + ALIKE) {
+            best = Some((over, share));
+        }
+    }
+    best.filter(|(_, share)| *share >= A_FUNCTION)
+}
+
+/// The part of the square of an effect that its mean over a variable has: 1 of a function of it.
+fn share(runs: &[Along], kind: Kind, over: Over) -> f64 {
+    let rows = |run| -> Vec<(f64, f64)> {
+        let run: &Along = run;
+        let each = run.rows();
+        each.map(|row| (run.at(row, kind, over), run.force[row]))
+            .collect()
+    };
+    let mut all: Vec<(f64, f64)> = runs.iter().flat_map(rows).collect();
+    all.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let total: f64 = all.iter().map(|(_, force)| force * force).sum();
+    let size = all.len().div_ceil(GROUPS).max(1);
+    let within: f64 = all
+        .chunks(size)
+        .map(|group| {
+            let mean = group.iter().map(|(_, force)| force).sum::<f64>() / group.len() as f64;
+            group
+                .iter()
+                .map(|(_, force)| (force - mean).powi(2))
+                .sum::<f64>()
+        })
+        .sum();
+    match total > 0.0 {
+        true => 1.0 - within / total,
+        false => 0.0,
+    }
+}
+
+/// The knots of the data; denser about rest, where frictions bend.
+fn knots(runs: &[Along], kind: Kind, over: Over) -> Option<Vec<f64>> {
+    let values = || {
+        let each = runs.iter();
+        each.flat_map(|run| run.rows().map(|row| run.at(row, kind, over)))
+    };
+    let (low, high) = match over {
+        Over::Period(length) => (0.0, length),
+        Over::Variable(Variable::Turn) => (0.0, TAU),
+        Over::Variable(_) => (
+            values().fold(f64::INFINITY, f64::min),
+            values().fold(f64::NEG_INFINITY, f64::max),
+        ),
+    };
+    if !(high - low).is_finite() || high <= low {
+        return None;
+    }
+    let parts = (0..KNOTS).map(|k| k as f64 / (KNOTS - 1) as f64);
+    let knots: Vec<f64> = match over {
+        Over::Variable(Variable::Speed) if kind.is_grip() => {
+            parts.map(|part| high * part * part).collect()
+        }
+        Over::Variable(Variable::Speed) => {
+            let most = low.abs().max(high.abs());
+            let both = parts.map(|part| 2.0 * part - 1.0);
+            both.map(|part| most * part * part.abs()).collect()
+        }
+        Over::Variable(_) | Over::Period(_) => {
+            parts.map(|part| low + (high - low) * part).collect()
+        }
+    };
+    Some(knots)
+}
+
+/// The knots with points between them.
+fn finer(knots: &[f64]) -> Vec<f64> {
+    let between = knots.windows(2).flat_map(|pair| {
+        let step = (pair[1] - pair[0]) / FINE as f64;
+        (0..FINE).map(move |part| pair[0] + step * part as f64)
+    });
+    between.chain(knots.last().copied()).collect()
+}
+
+/// The knot before a value, and the part of the way to the next.
+fn between(knots: &[f64], value: f64) -> (usize, f64) {
+    let left = knots.partition_point(|&knot| knot <= value);
+    let left = left.clamp(1, knots.len() - 1) - 1;
+    let part = (value - knots[left]) / (knots[left + 1] - knots[left]);
+    (left, part.clamp(0.0, 1.0))
+}
+
+/// The force of the effect at each knot: the mean of rows, the nearer the heavier, along a line between their knots. NaN where
+/// the records have none.
+fn mean_force(runs: &[Along], kind: Kind, over: Over, knots: &[f64]) -> Vec<f64> {
+    // About each knot a line is fitted: a mean alone would round corners of the law.
+    let mut sums = vec![[0.0; 5]; knots.len()];
+    for run in runs {
+        for row in run.rows() {
+            let (value, force) = (run.at(row, kind, over), run.force[row]);
+            let (left, part) = between(knots, value);
+            for (knot, weight) in [(left, 1.0 - part), (left + 1, part)] {
+                let x = value - knots[knot];
+                let terms = [1.0, x, x * x, force, x * force];
+                for (sum, term) in sums[knot].iter_mut().zip(terms) {
+                    *sum += weight * term;
+                }
+            }
+        }
+    }
+    let line = |[n, x, xx, f, xf]: [f64; 5]| {
+        let determinant = n * xx - x * x;
+        match determinant > 1e-9 * n * xx {
+            true => (xx * f - x * xf) / determinant,
+            false => f / n,
+        }
+    };
+    sums.into_iter().map(line).collect()
+}
+
+/// The force at each knot that the innovations still ask for, with half its 95 % interval; nothing where the records do not
+/// show it.
+fn asked(
+    felt: &Felt,
+    runs: &[Along],
+    kind: Kind,
+    over: Over,
+    knots: &[f64],
+) -> Option<Vec<Option<(f64, f64)>>> {
+    let forces = runs.iter().map(|run| {
+        let mut lists = vec![vec![0.0; run.time.len()]; knots.len()];
+        for row in 0..run.time.len() {
+            let (left, part) = between(knots, run.at(row, kind, over));
+            lists[left][row] = 1.0 - part;
+            lists[left + 1][row] = part;
+        }
+        lists
+    });
+    let columns = felt.changes(&forces.collect::<Vec<_>>());
+    let innovations: Vec<Innovations> = runs.iter().map(|run| run.innovations.clone()).collect();
+    let residual = flat(&innovations);
+    let squares: Vec<f64> = columns.iter().map(|column| dot(column, column)).collect();
+    let most = squares.iter().copied().fold(0.0, f64::max);
+    let shown: Vec<usize> = (0..knots.len())
+        .filter(|&knot| squares[knot] > SHOWN * most)
+        .collect();
+    let count = shown.len();
+    let gram = DMatrix::from_fn(count, count, |i, j| {
+        let own = dot(&columns[shown[i]], &columns[shown[j]]);
+        own * if i == j { 1.0 + 1e-9 } else { 1.0 }
+    });
+    let with = shown.iter().map(|&knot| -dot(&columns[knot], &residual));
+    let factor = Cholesky::new(gram)?;
+    let sizes = factor.solve(&DVector::from_iterator(count, with));
+    let covariance = factor.inverse();
+    let larger = inflation(&innovations);
+    let mut found = vec![None; knots.len()];
+    for (number, &knot) in shown.iter().enumerate() {
+        let half = 1.96 * (larger * covariance[(number, number)]).sqrt();
+        found[knot] = Some((sizes[number], half));
+    }
+    Some(found)
+}

@@ -1,0 +1,199 @@
+//! The curves of a page: what was found over its variable, with what the records say; and channels over frequency.
+
+use super::{Told, named, verdict};
+use crate::before_after::RecordErrors;
+use crate::figures::{error_in, shown};
+use hyde_calibrate::{FreeMeasure, Kind, LatentForce, Panel, Unknown, Variable};
+use hyde_report::{FoundCurve, Response};
+use hyde_signal::spectrum::power_spectral_density;
+use hyde_units::significant;
+
+/// Samples of a segment of a spectrum at most; and so many segments at least.
+const SEGMENT: usize = 4096;
+const SEGMENTS: usize = 6;
+/// Above this the free run is filtered out.
+const HIGHEST_HZ: f64 = 150.0;
+
+/// Every effect that was found as a curve; of what no effect explains the best function.
+pub(super) fn curves(told: &Told<'_>) -> Vec<FoundCurve> {
+    let each = told.found.findings.iter().zip(&told.curves);
+    let found = each.filter_map(|(finding, curve)| {
+        let curve = curve.as_ref()?;
+        let kind = curve.site.kind;
+        let name = named(&told.hypotheses[finding.hypothesis]);
+        let sizes = verdict::quantity(&finding.size);
+        let dependence = match curve.share > 0.98 {
+            true => String::new(),
+            false => format!(
+                " The effect also depends on other variables: {} of its square is a function of this one.",
+                percent(curve.share)
+            ),
+        };
+        Some(FoundCurve {
+            title: format!("{name} ({sizes})"),
+            over: (curve.over.name(kind), curve.over.unit(kind).to_owned()),
+            force: (force(kind).to_owned(), kind.force_unit().to_owned()),
+            law: curve.law.clone(),
+            data: curve.data.iter().map(|own| (own.at, own.force, own.half)).collect(),
+            caption: format!(
+                "The line is the effect as it was found. Rings and the grey band: what the records say at each place without the formula, \
+                 with a 95 % interval.{} {}{dependence}",
+                period(curve.over),
+                sign(kind)
+            ),
+        })
+    });
+    let found: Vec<FoundCurve> = found.collect();
+    if found.is_empty()
+        && let Some(unknown) = &told.found.unknown
+    {
+        return best_function(unknown).into_iter().collect();
+    }
+    found
+}
+
+/// The best function of the site that explains most, over the force that the balance needs there.
+fn best_function(unknown: &Unknown) -> Option<FoundCurve> {
+    let site = &unknown.map.site;
+    let drawn = |panel: &&Panel| {
+        !matches!(
+            panel.variable,
+            Variable::SpeedByPlace | Variable::SpeedByTime
+        )
+    };
+    let best = unknown.map.panels.iter().find(drawn)?;
+    let unit = match best.variable {
+        Variable::Speed => site.kind.speed_unit(),
+        Variable::Time | Variable::SpeedByTime => "s",
+        Variable::Place | Variable::Turn | Variable::SpeedByPlace => site.kind.place_unit(),
+    };
+    let at = |latent: &LatentForce, k: usize| match best.variable {
+        Variable::Speed if site.kind.is_grip() => latent.speed[k].abs(),
+        Variable::Speed => latent.speed[k],
+        Variable::Time | Variable::SpeedByTime => latent.time[k],
+        Variable::Turn => latent.place[k].rem_euclid(std::f64::consts::TAU),
+        Variable::Place | Variable::SpeedByPlace => latent.place[k],
+    };
+    let points = unknown.latent.iter().flat_map(|latent| {
+        (0..latent.force.len()).map(move |k| (at(latent, k), latent.force[k], f64::NAN))
+    });
+    Some(FoundCurve {
+        title: format!("{} at {}", site.kind.words().what, site.path),
+        over: (best.variable.name(site.kind), unit.to_owned()),
+        force: (
+            force(site.kind).to_owned(),
+            site.kind.force_unit().to_owned(),
+        ),
+        law: (best.knots.clone(), best.force.clone()),
+        data: points.collect(),
+        caption: format!(
+            "The line is the function of this variable that explains the residual best: improvement {}, by chance {}. Points: the \
+             force that the balance needs from moment to moment. {}",
+            significant(best.gain, 3),
+            significant(best.band, 3),
+            sign(site.kind)
+        ),
+    })
+}
+
+/// What the vertical axis is called.
+fn force(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Guide => "friction force",
+        Kind::Bearing => "friction torque",
+        Kind::Rail | Kind::Contact => "force",
+        Kind::Flange | Kind::Belt | Kind::Joint => "torque",
+        Kind::Scale | Kind::Encoder => "reading error",
+        Kind::Tacho => "voltage error",
+        Kind::Amplifier => "current",
+    }
+}
+
+/// Which way the force acts.
+fn sign(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Guide | Kind::Bearing => "Positive values act against the motion.",
+        Kind::Rail | Kind::Flange => "Positive values drive in the positive direction.",
+        Kind::Belt
+        | Kind::Joint
+        | Kind::Contact
+        | Kind::Scale
+        | Kind::Encoder
+        | Kind::Tacho
+        | Kind::Amplifier => "Positive values add to what the declared model has.",
+    }
+}
+
+fn period(over: hyde_calibrate::Over) -> String {
+    match over {
+        hyde_calibrate::Over::Period(_) => " All periods are laid over each other.".to_owned(),
+        hyde_calibrate::Over::Variable(_) => String::new(),
+    }
+}
+
+fn percent(part: f64) -> String {
+    format!("{} %", significant(100.0 * part, 2))
+}
+
+/// The channels of the record that judges, over frequency: the first one held out, if there is one.
+pub(super) fn responses(told: &Told<'_>) -> Vec<Response> {
+    let held_out = told.errors.iter().find(|record| record.holdout);
+    let Some(record) = held_out.or(told.errors.first()) else {
+        return Vec::new();
+    };
+    let measured = &told.calibration.compiled.program.experiment.measured;
+    let each = measured.iter().enumerate();
+    each.filter_map(|(number, channel)| {
+        let (unit, of) = error_in(&channel.unit, record.windows(number).after);
+        let mut response = response(record, number)?;
+        for list in response.channel.iter_mut().chain(&mut response.error) {
+            list.iter_mut().for_each(|si| *si = of.scale.remove(*si));
+        }
+        Some(Response {
+            title: format!("{} in {}", channel.name, record.after.record),
+            unit: shown(&unit).to_owned(),
+            ..response
+        })
+    })
+    .collect()
+}
+
+/// A channel of a record over frequency, SI.
+fn response(record: &RecordErrors, number: usize) -> Option<Response> {
+    let before: &FreeMeasure = record.before.free.as_ref().ok()?.get(number)?;
+    let after: &FreeMeasure = record.after.free.as_ref().ok()?.get(number)?;
+    let (old, new) = (&before.channel, &after.channel);
+    let [first, .., last] = new.time_s.as_slice() else {
+        return None;
+    };
+    let rate_hz = (new.time_s.len() - 1) as f64 / (last - first);
+    let measured: Vec<f64> = new
+        .error
+        .iter()
+        .zip(&new.model)
+        .map(|(e, m)| e + m)
+        .collect();
+    // Segments lie over each other by half.
+    let segment = 2 * measured.len() / (SEGMENTS + 1);
+    let segment = segment.min(SEGMENT) / 2 * 2;
+    let of = |values: &[f64]| power_spectral_density(values, rate_hz, segment).ok();
+    let (frequency_hz, density) = of(&measured)?;
+    let lines = |(_, density): (Vec<f64>, Vec<f64>)| -> Vec<f64> {
+        let inside = frequency_hz.iter().zip(density).skip(1);
+        let inside = inside.filter(|(f, _)| **f <= HIGHEST_HZ);
+        inside.map(|(_, density)| density.sqrt()).collect()
+    };
+    let channel = [
+        lines((Vec::new(), density)),
+        lines(of(&old.model)?),
+        lines(of(&new.model)?),
+    ];
+    let error = [lines(of(&old.error)?), lines(of(&new.error)?)];
+    let inside = frequency_hz.iter().skip(1).filter(|f| **f <= HIGHEST_HZ);
+    Some(Response {
+        frequency_hz: inside.copied().collect(),
+        channel,
+        error,
+        ..Response::default()
+    })
+}
