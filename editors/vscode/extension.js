@@ -29,13 +29,34 @@ async function stop() {
   if (old?.isRunning()) await old.stop();
 }
 
-// The live page needs the name of an experiment where the file has several.
+// An experiment of a text: it is asked for where the text has several.
+async function experiment(document) {
+  const names = [...document.getText().matchAll(/^experiment\s+(\w+)/gm)].map((found) => found[1]);
+  return names.length > 1 ? window.showQuickPick(names, { title: "Experiment" }) : names[0];
+}
+
+// The instant of the values that hovers show of the last run.
+async function instant() {
+  const editor = window.activeTextEditor;
+  if (editor?.document.languageId !== "hyde") return;
+  const name = await experiment(editor.document);
+  if (!name) return;
+  const isTime = (text) => text.trim() === "" || Number.isFinite(Number(text));
+  const text = await window.showInputBox({
+    title: "Values at an instant of the last run",
+    prompt: "Time in s; nothing for the end of the run",
+    validateInput: (text) => (isTime(text) ? undefined : "This is not a number."),
+  });
+  if (text === undefined) return;
+  const time = text.trim() === "" ? null : Number(text);
+  await commands.executeCommand("hyde.at", editor.document.uri.toString(), name, time);
+}
+
 async function live() {
   const editor = window.activeTextEditor;
   if (editor?.document.languageId !== "hyde") return;
   await editor.document.save();
-  const names = [...editor.document.getText().matchAll(/^experiment\s+(\w+)/gm)].map((found) => found[1]);
-  const name = names.length > 1 ? await window.showQuickPick(names, { title: "Experiment" }) : names[0];
+  const name = await experiment(editor.document);
   if (!name) return;
   const terminal = window.createTerminal({
     name: `hyde live ${name}`,
@@ -52,6 +73,7 @@ exports.activate = async (context) => {
   };
   context.subscriptions.push(
     commands.registerCommand("hyde.restart", restart),
+    commands.registerCommand("hyde.instant", instant),
     commands.registerCommand("hyde.live", live),
     workspace.onDidChangeConfiguration((change) => {
       if (change.affectsConfiguration("hyde.path")) restart();

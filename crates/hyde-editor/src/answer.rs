@@ -9,6 +9,7 @@ use crate::lens;
 use crate::outline;
 use crate::position::Encoding;
 use crate::rename::{self, Uses};
+use crate::runs;
 use crate::scope::Definition;
 use crate::server::Server;
 use crate::signature;
@@ -16,6 +17,7 @@ use crate::tokens;
 use crate::uri;
 use crate::values;
 use hyde_diag::Code;
+use hyde_syntax::ast::File;
 use lsp_server::ErrorCode;
 use lsp_types::request as ask;
 use lsp_types::{
@@ -190,7 +192,11 @@ fn hover(server: &Server, params: lsp_types::HoverParams) -> Result<Option<Hover
         && let Some(meaning) = &found.meaning
     {
         let mut text = describe::hover(&asked.analysis, meaning);
-        for line in values::of_name(&asked.analysis, &found) {
+        let ran = runs::of_name(server, &asked.analysis, &found);
+        for line in values::of_name(&asked.analysis, &found)
+            .into_iter()
+            .chain(ran)
+        {
             let between = if text.ends_with("```") {
                 "\n\n"
             } else {
@@ -389,8 +395,15 @@ fn lenses(
     params: lsp_types::CodeLensParams,
 ) -> Result<Option<Vec<lsp_types::CodeLens>>, Refusal> {
     let uri = &params.text_document.uri;
-    let found = uri::path(uri).and_then(|path| server.tree(&path));
-    Ok(found.map(|(tree, text)| lens::lenses(&tree, &text, uri.as_str(), server.encoding)))
+    let Some(path) = uri::path(uri) else {
+        return Ok(None);
+    };
+    let runs = server.runs.borrow();
+    let ran = |experiment: &str| runs.lenses(&path, experiment);
+    let of = |(tree, text): (File, String)| {
+        lens::lenses(&tree, &text, uri.as_str(), server.encoding, &ran)
+    };
+    Ok(server.tree(&path).map(of))
 }
 
 /// Starts what a lens asks for; its page is shown when it is there.
@@ -399,6 +412,12 @@ fn execute(
     params: lsp_types::ExecuteCommandParams,
 ) -> Result<Option<Value>, Refusal> {
     let refuse = |reason: String| Err((ErrorCode::RequestFailed, reason));
+    if let Some(instant) = lens::instant(&params.command, &params.arguments) {
+        return match server.choose(&instant) {
+            true => Ok(None),
+            false => refuse(format!("`{}` was not run", instant.experiment)),
+        };
+    }
     let Some(order) = lens::order(&params.command, &params.arguments) else {
         return refuse(format!(
             "`{}` is not a command of this server",

@@ -42,6 +42,13 @@ pub(crate) fn shows_documents(params: &InitializeParams) -> bool {
     shows.is_some_and(|own| own.support)
 }
 
+/// Whether the editor asks for lenses again when it is told to.
+pub(crate) fn refreshes_lenses(params: &InitializeParams) -> bool {
+    let workspace = params.capabilities.workspace.as_ref();
+    let lenses = workspace.and_then(|workspace| workspace.code_lens.as_ref());
+    lenses.is_some_and(|own| own.refresh_support == Some(true))
+}
+
 /// What the server can do.
 pub(crate) fn capabilities(encoding: Encoding) -> ServerCapabilities {
     ServerCapabilities {

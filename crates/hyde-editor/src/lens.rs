@@ -59,10 +59,33 @@ pub struct Order {
     pub name: String,
 }
 
+/// The command that chooses the instant of the values in hovers.
+const AT: &str = "hyde.at";
+
+/// The instant of a run whose values hovers show.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Instant {
+    pub(crate) file: PathBuf,
+    pub(crate) experiment: String,
+    /// In s; the end of the run if there is none.
+    pub(crate) time_s: Option<f64>,
+}
+
 /// The commands that the server knows.
 pub(crate) fn commands() -> Vec<String> {
-    let all = Action::ALL.into_iter();
-    all.map(|own| own.command().to_owned()).collect()
+    let all = Action::ALL.into_iter().map(Action::command);
+    all.chain([AT]).map(str::to_owned).collect()
+}
+
+/// The instant in a request.
+pub(crate) fn instant(command: &str, arguments: &[Value]) -> Option<Instant> {
+    let text = |number: usize| arguments.get(number).and_then(Value::as_str);
+    let uri: lsp_types::Uri = text(0).filter(|_| command == AT)?.parse().ok()?;
+    Some(Instant {
+        file: crate::uri::path(&uri)?,
+        experiment: text(1)?.to_owned(),
+        time_s: arguments.get(2).and_then(Value::as_f64),
+    })
 }
 
 /// The order in a request.
@@ -77,7 +100,14 @@ pub(crate) fn order(command: &str, arguments: &[Value]) -> Option<Order> {
 }
 
 /// The lenses of a file.
-pub(crate) fn lenses(tree: &File, text: &str, uri: &str, encoding: Encoding) -> Vec<CodeLens> {
+/// Behind those of an experiment stand what `ran` says of its last run: titles, and the instant that each chooses.
+pub(crate) fn lenses(
+    tree: &File,
+    text: &str,
+    uri: &str,
+    encoding: Encoding,
+    ran: &dyn Fn(&str) -> Vec<(String, Option<f64>)>,
+) -> Vec<CodeLens> {
     let mut found = Vec::new();
     let mut add = |name: &Name, actions: &[Action]| {
         let bytes = name.span.start as usize..name.span.end as usize;
@@ -91,6 +121,17 @@ pub(crate) fn lenses(tree: &File, text: &str, uri: &str, encoding: Encoding) -> 
             }),
             data: None,
         }));
+        if actions.contains(&Action::Run) {
+            found.extend(ran(&name.text).into_iter().map(|(title, time_s)| CodeLens {
+                range,
+                command: Some(Command {
+                    title,
+                    command: AT.to_owned(),
+                    arguments: Some(vec![json!(uri), json!(name.text), json!(time_s)]),
+                }),
+                data: None,
+            }));
+        }
     };
     for item in &tree.items {
         match item {

@@ -11,6 +11,8 @@
 //! place         which names are known at a place, what a bracket is about  place.rs
 //! values        values, spreads and dimensions                             values.rs
 //! lens          commands over experiments and diagnoses                    lens.rs
+//! outcome       how such a command ended                                   outcome.rs
+//! runs          the last run of each file: its values and its failure      runs.rs, course.rs
 //! occurrences   every name of a file with its meaning                      occurrences.rs
 //! position      places as the protocol counts them                         position.rs
 //! ```
@@ -23,17 +25,20 @@ mod before;
 mod capabilities;
 mod check;
 mod complete;
+mod course;
 mod describe;
 mod documents;
 mod fixes;
 mod inlay;
 mod lens;
 mod occurrences;
+mod outcome;
 mod outline;
 mod place;
 mod position;
 mod publish;
 mod rename;
+mod runs;
 mod scope;
 mod server;
 mod signature;
@@ -42,4 +47,5 @@ mod uri;
 mod values;
 
 pub use lens::{Action, Order};
+pub use outcome::{Course, Courses, Failure, Label, Outcome};
 pub use server::{Host, PAUSE, serve};

@@ -3,12 +3,14 @@
 
 use crate::analysis::Analysis;
 use crate::answer::answer;
-use crate::capabilities::{capabilities, encoding, folders, shows_documents};
+use crate::capabilities::{capabilities, encoding, folders, refreshes_lenses, shows_documents};
 use crate::check::{Checked, Job, check};
 use crate::documents::Documents;
-use crate::lens::Order;
+use crate::lens::{Action, Instant, Order};
+use crate::outcome::Outcome;
 use crate::position::Encoding;
 use crate::publish::published;
+use crate::runs::{OF_RUN, Ran, Runs, marked};
 use crate::uri;
 use crossbeam_channel::{Receiver, Sender, after, bounded, never, select, unbounded};
 use hyde_diag::{Code, Diagnostics, Sources};
@@ -17,7 +19,7 @@ use hyde_syntax::ast::File;
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, RequestId, Response};
 use lsp_types::notification as tell;
 use lsp_types::notification::Notification as _;
-use lsp_types::request::{Request as _, ShowDocument};
+use lsp_types::request::{CodeLensRefresh, Request as _, ShowDocument};
 use lsp_types::{
     InitializeParams, MessageType, NumberOrString, Position, PublishDiagnosticsParams,
     ShowDocumentParams, ShowMessageParams,
@@ -42,8 +44,8 @@ pub trait Host {
     /// What a code means, as Markdown.
     fn explanation(&self, code: Code) -> String;
 
-    /// Starts a command and comes back at once; `done` is told the page that the command wrote, or why there is none.
-    fn start(&self, order: Order, done: Box<dyn FnOnce(Result<PathBuf, String>) + Send>);
+    /// Starts a command and comes back at once; `done` is told how it ended.
+    fn start(&self, order: Order, done: Box<dyn FnOnce(Outcome) + Send>);
 }
 
 /// The state of a session.
@@ -55,12 +57,25 @@ pub(crate) struct Server {
     pub(crate) host: Box<dyn Host>,
     /// What was published for each text.
     published: BTreeMap<PathBuf, Vec<lsp_types::Diagnostic>>,
-    /// Whether the editor can show a page.
+    /// The last run of each file.
+    pub(crate) runs: RefCell<Runs>,
+    /// What ended the last run of a file, with the text that was run.
+    failed: BTreeMap<PathBuf, (String, Vec<lsp_types::Diagnostic>)>,
+    /// Whether the editor can show a page, and asks for lenses again.
     shows_documents: bool,
+    refreshes_lenses: bool,
     /// Where commands tell that they are done.
-    pages: Sender<Result<PathBuf, String>>,
+    told: Sender<Told>,
     /// The analyses of the present revision.
     analyses: RefCell<(u64, BTreeMap<PathBuf, Rc<Analysis>>)>,
+}
+
+/// What comes from elsewhere than the editor.
+enum Told {
+    /// A command ended: what was asked for, the text that it read, and how it ended.
+    Ended(Order, String, Outcome),
+    /// Another instant was chosen.
+    Instant,
 }
 
 /// Serves an editor until it ends the session.
@@ -85,10 +100,13 @@ pub fn serve(
     connection
         .initialize_finish(id, answer)
         .map_err(|error| error.to_string())?;
-    let (pages, shown) = unbounded();
+    let (told, heard) = unbounded();
     let server = Server {
+        runs: RefCell::default(),
+        failed: BTreeMap::new(),
         shows_documents: shows_documents(&params),
-        pages,
+        refreshes_lenses: refreshes_lenses(&params),
+        told,
         documents: Documents::over(disk),
         encoding,
         folders: folders(&params),
@@ -100,7 +118,7 @@ pub fn serve(
     let (done, results) = unbounded::<Checked>();
     std::thread::scope(|scope| {
         scope.spawn(move || work(&to_do, &done));
-        server.run(connection, jobs, (&results, &shown))
+        server.run(connection, jobs, (&results, &heard))
     })
 }
 
@@ -119,7 +137,7 @@ impl Server {
         mut self,
         connection: &Connection,
         jobs: Sender<Job>,
-        (results, pages): (&Receiver<Checked>, &Receiver<Result<PathBuf, String>>),
+        (results, heard): (&Receiver<Checked>, &Receiver<Told>),
     ) -> Result<(), String> {
         let mut asked = 0;
         // The texts to check once the pause is over.
@@ -165,10 +183,17 @@ impl Server {
                         self.checked(connection, checked);
                     }
                 }
-                recv(pages) -> page => {
-                    if let Ok(page) = page {
-                        asked += 1;
+                recv(heard) -> told => {
+                    asked += 1;
+                    if let Ok(Told::Ended(order, text, outcome)) = told {
+                        let page = outcome.page.clone();
+                        self.ended(connection, &order, text, outcome);
                         self.show(connection, page, asked);
+                    }
+                    if self.refreshes_lenses {
+                        let id = RequestId::from(format!("lenses-{asked}"));
+                        let method = CodeLensRefresh::METHOD.to_owned();
+                        send(connection, Request::new(id, method, Value::Null).into());
                     }
                 }
                 recv(pause) -> _ => {
@@ -207,9 +232,50 @@ impl Server {
 
     /// Starts what a lens asks for.
     pub(crate) fn start(&self, order: Order) {
-        let pages = self.pages.clone();
-        let done = move |page| drop(pages.send(page));
-        self.host.start(order, Box::new(done));
+        let told = self.told.clone();
+        let text = self.text(&order.file).unwrap_or_default();
+        let asked = order.clone();
+        let done = move |outcome| drop(told.send(Told::Ended(order, text, outcome)));
+        self.host.start(asked, Box::new(done));
+    }
+
+    /// Chooses the instant of the values in hovers; false if there is no such run.
+    pub(crate) fn choose(&self, instant: &Instant) -> bool {
+        let known = self.runs.borrow_mut().choose(instant);
+        if known {
+            drop(self.told.send(Told::Instant));
+        }
+        known
+    }
+
+    /// Keeps what a run came to, and marks the equations at which it failed.
+    fn ended(&mut self, connection: &Connection, order: &Order, text: String, outcome: Outcome) {
+        if order.action != Action::Run {
+            return;
+        }
+        let (path, experiment) = (&order.file, &order.name);
+        let failed = outcome.failures.iter();
+        let failed = failed.map(|own| marked(own, (path, &text), experiment, self.encoding));
+        let failed: Vec<lsp_types::Diagnostic> = failed.collect();
+        match outcome.courses {
+            Some(courses) => {
+                let ran = Ran {
+                    experiment: experiment.clone(),
+                    text: text.clone(),
+                    courses,
+                    failed: !failed.is_empty(),
+                    instant: None,
+                };
+                self.runs.borrow_mut().put(path, ran);
+            }
+            None => self.runs.borrow_mut().forget(path),
+        }
+        self.failed.insert(path.clone(), (text, failed));
+        if self.documents.get(path).is_some() {
+            let known = self.published.get(path).cloned().unwrap_or_default();
+            let known = known.into_iter().filter(|own| !is_of_run(own));
+            self.publish(connection, path, known.collect());
+        }
     }
 
     /// Whether a text is open and is not what the file on the disk has.
@@ -283,6 +349,7 @@ impl Server {
             .and_then(|own| uri::path(&own.text_document.uri));
         if let Some(path) = path {
             self.documents.close(&path);
+            self.failed.remove(&path);
             self.publish(connection, &path, Vec::new());
             self.published.remove(&path);
         }
@@ -331,6 +398,17 @@ impl Server {
         let Some(uri) = uri::of(path) else {
             return;
         };
+        // A failure of the text as it is; what the check says too is said once.
+        let mut diagnostics = diagnostics;
+        let text = self.documents.get(path).map(|own| &own.text);
+        if let Some((_, failed)) = self.failed.get(path).filter(|own| Some(&own.0) == text) {
+            let said = |own: &lsp_types::Diagnostic| {
+                let mut known = diagnostics.iter();
+                known.any(|other| other.code == own.code && other.range == own.range)
+            };
+            let new: Vec<_> = failed.iter().filter(|own| !said(own)).cloned().collect();
+            diagnostics.extend(new);
+        }
         let version = self.documents.get(path).map(|own| own.version);
         self.published
             .insert(path.to_path_buf(), diagnostics.clone());
@@ -387,6 +465,12 @@ impl Server {
         known.1.insert(path.to_path_buf(), Rc::clone(&analysis));
         Some(analysis)
     }
+}
+
+/// Whether a diagnostic is what ended a run.
+fn is_of_run(own: &lsp_types::Diagnostic) -> bool {
+    let source = own.source.as_deref().unwrap_or_default();
+    source.starts_with(OF_RUN)
 }
 
 /// A message to the editor; one that is gone gets none.

@@ -16,6 +16,8 @@ pub struct Meaning {
     /// The variables that the file declares, by the place of their name, one for each instance; and those that the compiler
     /// makes, by the place they are made for.
     pub variables: Vec<(Span, Quantity)>,
+    /// The variables of all files with their full names, by the place of the name in the declaration: one for each instance.
+    pub names: Vec<(Span, String)>,
 }
 
 /// What an expression is.
@@ -100,13 +102,15 @@ impl Model<'_, '_> {
             }
         });
         let first = self.input.files.first().map(|(id, _)| *id);
-        let variables = self.flat.variables.ids();
-        let variables = variables.map(|id| &self.flat.variables[id]);
-        let variables = variables
+        let all = || self.flat.variables.ids().map(|id| &self.flat.variables[id]);
+        let names = all().map(|own| (own.origin.span, own.name.clone()));
+        let names = names.collect();
+        let variables = all()
             .filter(|own| Some(own.origin.span.file) == first && !own.boolean)
             .map(|own| (own.origin.span, own.quantity.clone()));
         Meaning {
             variables: variables.collect(),
+            names,
             parameters: parameters.collect(),
             expressions: found.into_values().collect(),
         }

@@ -1,6 +1,7 @@
 //! `hyde lsp`: the language server, on standard input and output.
 
 mod commands;
+mod ran;
 
 use super::explain;
 use crate::exit::Exit;
@@ -8,7 +9,7 @@ use crate::files;
 use crate::output::print_error;
 use commands::Commands;
 use hyde_diag::Code;
-use hyde_editor::{Host, Order};
+use hyde_editor::{Host, Order, Outcome};
 use hyde_study::world::Disk;
 use lsp_server::Connection;
 use std::path::{Path, PathBuf};
@@ -57,13 +58,14 @@ impl Host for Machine {
         words.trim_start_matches("# ").trim_end().to_owned()
     }
 
-    fn start(&self, order: Order, done: Box<dyn FnOnce(Result<PathBuf, String>) + Send>) {
+    fn start(&self, order: Order, done: Box<dyn FnOnce(Outcome) + Send>) {
         match cache() {
             Some(cache) => self.commands.start(&cache, order, done),
-            None => done(Err(
-                "there is no folder for the page: neither XDG_CACHE_HOME nor HOME is set"
-                    .to_owned(),
-            )),
+            None => {
+                let reason =
+                    "there is no folder for the page: neither XDG_CACHE_HOME nor HOME is set";
+                done(Err(reason.to_owned()).into());
+            }
         }
     }
 }

@@ -51,6 +51,16 @@ local command = lenses[1].command
 vim.lsp.buf_request_sync(0, "workspace/executeCommand", { command = command.command, arguments = command.arguments }, 60000)
 vim.wait(60000, function() return shown ~= nil end, 20)
 result.shown = shown
+result.value = ask("textDocument/hover", 5, 7)
+result.lensesAfter = ask("textDocument/codeLens", 1, 0)
+-- A run that fails marks the equation.
+vim.cmd("edit " .. vim.fn.fnameescape(vim.env.HYDE_FAILING))
+vim.lsp.buf_attach_client(0, client)
+shown = nil
+command = ask("textDocument/codeLens", 1, 0)[1].command
+vim.lsp.buf_request_sync(0, "workspace/executeCommand", { command = command.command, arguments = command.arguments }, 60000)
+vim.wait(60000, function() return shown ~= nil and #vim.diagnostic.get(0) > 0 end, 20)
+result.failure = vim.diagnostic.get(0)[1]
 io.stdout:write(vim.json and vim.json.encode(result) or vim.fn.json_encode(result))
 io.stdout:flush()
 vim.cmd("qa!")
@@ -59,6 +69,9 @@ vim.cmd("qa!")
 const MODEL: &str = "package pushed;\nimport SI.*;\nmodel Pushed\n  parameter Force F0 = 3 [N] \"that pushes\";\n  Real twice = abs(2*F0);\n  Length s = 1 [kg];\nend Pushed;\n";
 
 const EXPERIMENT: &str = "package coasting;\nimport SI.*;\nmodel Coasting\n  parameter Real k = 2*3 [1/s];\n  Real x(start = 1);\nequation\n  der(x) = -k*x;\nend Coasting;\nexperiment rest of Coasting\n  solve ida(rtol = 1e-6) stop 1 [s] every 10 [ms];\nend rest;\n";
+
+/// It falls, and is not to: its speed is the square root of what is left.
+const FAILING: &str = "package falling;\nimport SI.*;\nmodel Falling\n  Real x(start = 1, fixed = true);\nequation\n  der(x) = -2 [1/s]*sqrt(x - 0.5);\n  assert(x > 0.8, \"it fell too far\");\nend Falling;\nexperiment fall of Falling\n  solve ida(rtol = 1e-6) stop 1 [s] every 10 [ms];\nend fall;\n";
 
 #[test]
 fn neovim_shows_what_the_server_says() {
@@ -80,6 +93,7 @@ fn neovim_shows_what_the_server_says() {
         .arg(format!("luafile {script}"))
         .env("HYDE_FILE", &file)
         .env("HYDE_EXPERIMENT", folder.file("coasting.hyde", EXPERIMENT))
+        .env("HYDE_FAILING", folder.file("falling.hyde", FAILING))
         .env("HYDE_COMMAND", server)
         .env("XDG_STATE_HOME", folder.path("state"))
         .env("XDG_CACHE_HOME", folder.path("cache"))
@@ -112,6 +126,28 @@ fn neovim_shows_what_the_server_says() {
     let at = page.find('/').unwrap();
     let html = std::fs::read_to_string(page[at..].trim_start_matches("//")).unwrap();
     assert!(html.contains("rest"), "{page}");
+    // x = exp(-6 t): 0.00248 at 1 s.
+    let value = answer["value"]["contents"]["value"].as_str().unwrap();
+    assert!(
+        value.contains("run `rest` at 1 s, its end:") && value.contains("`x` = 0.002479"),
+        "{value}"
+    );
+    assert!(
+        value.contains("from 0.002479") && value.contains("to 1  \n`█"),
+        "{value}"
+    );
+    let lenses = answer["lensesAfter"].to_string();
+    assert!(lenses.contains("Values at 1 s"), "{lenses}");
+    let failure = &answer["failure"];
+    assert_eq!(
+        (&failure["code"], &failure["lnum"]),
+        (&"E0704".into(), &6.into()),
+        "{failure}"
+    );
+    assert!(
+        failure["message"].as_str().unwrap().contains("`x` is 0.8"),
+        "{failure}"
+    );
 }
 
 #[test]

@@ -1,8 +1,9 @@
 //! An editor that speaks the protocol with a server in the same process.
 
 use hyde_diag::Code;
-use hyde_editor::{Host, Order};
+use hyde_editor::{Action, Course, Courses, Failure, Host, Label, Order, Outcome};
 use hyde_study::world::Disk;
+use hyde_units::{Dimension, NamedUnit};
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
@@ -33,9 +34,56 @@ impl Host for Machine {
         format!("{code}: {}", code.title())
     }
 
-    fn start(&self, order: Order, done: Box<dyn FnOnce(Result<PathBuf, String>) + Send>) {
+    /// A run of `fade` has values, one of `break` fails at half its way.
+    fn start(&self, order: Order, done: Box<dyn FnOnce(Outcome) + Send>) {
         let page = format!("/pages/{}-{}.html", order.action.title(), order.name);
-        done(Ok(PathBuf::from(page)));
+        let outcome = Outcome::from(Ok(PathBuf::from(page)));
+        done(match (order.action, order.name.as_str()) {
+            (Action::Run, "fade") => Outcome {
+                courses: Some(courses(100)),
+                ..outcome
+            },
+            (Action::Run, "break") => Outcome {
+                courses: Some(courses(50)),
+                failures: vec![failure(&order.file.to_string_lossy())],
+                ..outcome
+            },
+            _ => outcome,
+        });
+    }
+}
+
+/// Two lags that fade, `one.x` from 1 and `two.x` from -2, and a body that stays, in so many hundredths of a second.
+fn courses(rows: u32) -> Courses {
+    let time: Vec<f64> = (0..=rows).map(|k| f64::from(k) / 100.0).collect();
+    let course = |name: &str, start: f64, fall: f64| Course {
+        name: name.to_owned(),
+        unit: NamedUnit::usual(Dimension::LENGTH),
+        values: time.iter().map(|t| start * (1.0 - fall * t)).collect(),
+    };
+    Courses {
+        list: vec![
+            course("one.x", 1.0, 0.5),
+            course("two.x", -2.0, 0.25),
+            course("body.s", 3.0, 0.0),
+        ],
+        time: time.clone(),
+    }
+}
+
+/// A failure at the equation in line 8, `  T*der(x) = -x;`.
+fn failure(file: &str) -> Failure {
+    Failure {
+        code: "E0701".to_owned(),
+        message: "the solver failed at 0.5 s".to_owned(),
+        notes: vec!["`one.x` is 0.75 m there".to_owned()],
+        help: Some("look there".to_owned()),
+        labels: vec![Label {
+            file: file.to_owned(),
+            from: (8, 3),
+            to: (8, 16),
+            text: "this equation, in `one`".to_owned(),
+        }],
     }
 }
 

@@ -12,3 +12,4 @@ mod edits;
 mod examples;
 mod numbers;
 mod renames;
+mod runs;
