@@ -71,6 +71,13 @@ pub(crate) struct Instant {
     pub(crate) time_s: Option<f64>,
 }
 
+/// What stands over an experiment that was run.
+pub(crate) struct Choice {
+    pub(crate) title: String,
+    /// The instant that it chooses, in s; the end of the run if there is none.
+    pub(crate) time_s: Option<f64>,
+}
+
 /// The commands that the server knows.
 pub(crate) fn commands() -> Vec<String> {
     let all = Action::ALL.into_iter().map(Action::command);
@@ -100,13 +107,13 @@ pub(crate) fn order(command: &str, arguments: &[Value]) -> Option<Order> {
 }
 
 /// The lenses of a file.
-/// Behind those of an experiment stand what `ran` says of its last run: titles, and the instant that each chooses.
+/// Behind those of an experiment stand what `ran` says of its last run.
 pub(crate) fn lenses(
     tree: &File,
     text: &str,
     uri: &str,
     encoding: Encoding,
-    ran: &dyn Fn(&str) -> Vec<(String, Option<f64>)>,
+    ran: &dyn Fn(&str) -> Vec<Choice>,
 ) -> Vec<CodeLens> {
     let mut found = Vec::new();
     let mut add = |name: &Name, actions: &[Action]| {
@@ -122,12 +129,12 @@ pub(crate) fn lenses(
             data: None,
         }));
         if actions.contains(&Action::Run) {
-            found.extend(ran(&name.text).into_iter().map(|(title, time_s)| CodeLens {
+            found.extend(ran(&name.text).into_iter().map(|own| CodeLens {
                 range,
                 command: Some(Command {
-                    title,
+                    title: own.title,
                     command: AT.to_owned(),
-                    arguments: Some(vec![json!(uri), json!(name.text), json!(time_s)]),
+                    arguments: Some(vec![json!(uri), json!(name.text), json!(own.time_s)]),
                 }),
                 data: None,
             }));

@@ -2,7 +2,7 @@
 
 use crate::analysis::{Analysis, Identity};
 use crate::course;
-use crate::lens::Instant;
+use crate::lens::{Choice, Instant};
 use crate::occurrences::Occurrence;
 use crate::outcome::{Courses, Failure, Label};
 use crate::position::Encoding;
@@ -68,18 +68,23 @@ impl Runs {
         true
     }
 
-    /// What stands over an experiment that was run: a title, and the instant that it chooses.
-    pub(crate) fn lenses(&self, path: &Path, experiment: &str) -> Vec<(String, Option<f64>)> {
-        let own = self.of.get(path).filter(|own| own.experiment == experiment);
+    /// What stands over an experiment that was run.
+    pub(crate) fn lenses(&self, path: &Path, experiment: &str) -> Vec<Choice> {
+        let own = self.of.get(path);
+        let own = own.filter(|own| own.experiment == experiment);
         let Some((own, span)) = own.and_then(|own| Some((own, own.span()?))) else {
             return Vec::new();
         };
         let at = own.at().unwrap_or(span.1);
         let step = STEP * (span.1 - span.0);
+        let choice = |title: &str, time_s: Option<f64>| Choice {
+            title: title.to_owned(),
+            time_s,
+        };
         vec![
-            (format!("Values at {}", seconds(at)), None),
-            ("Earlier".to_owned(), Some((at - step).max(span.0))),
-            ("Later".to_owned(), Some((at + step).min(span.1))),
+            choice(&format!("Values at {}", seconds(at)), None),
+            choice("Earlier", Some((at - step).max(span.0))),
+            choice("Later", Some((at + step).min(span.1))),
         ]
     }
 }

@@ -422,8 +422,8 @@ fn asked(
 ) -> Option<Vec<Option<(f64, f64)>>> {
     let forces = runs.iter().map(|run| {
         let mut lists = vec![vec![0.0; run.time.len()]; knots.len()];
-        for row in 0..run.time.len() {
-            let (left, part) = between(knots, run.at(row, kind, over));
+        let parts = (0..run.time.len()).map(|row| between(knots, run.at(row, kind, over)));
+        for (row, (left, part)) in parts.enumerate() {
             lists[left][row] = 1.0 - part;
             lists[left + 1][row] = part;
         }

@@ -11,6 +11,8 @@ use hyde_units::significant;
 /// Samples of a segment of a spectrum at most; and so many segments at least.
 const SEGMENT: usize = 4096;
 const SEGMENTS: usize = 6;
+/// The best function is drawn as far as it is so many times the largest force from moment to moment.
+const BEYOND: f64 = 2.0;
 /// Above this the free run is filtered out.
 const HIGHEST_HZ: f64 = 150.0;
 
@@ -33,6 +35,7 @@ pub(super) fn curves(told: &Told<'_>) -> Vec<FoundCurve> {
             title: format!("{name} ({sizes})"),
             over: (curve.over.name(kind), curve.over.unit(kind).to_owned()),
             force: (force(kind).to_owned(), kind.force_unit().to_owned()),
+            line: "found".to_owned(),
             law: curve.law.clone(),
             data: curve.data.iter().map(|own| (own.at, own.force, own.half)).collect(),
             caption: format!(
@@ -74,6 +77,16 @@ fn best_function(unknown: &Unknown) -> Option<FoundCurve> {
         Variable::Turn => latent.place[k].rem_euclid(std::f64::consts::TAU),
         Variable::Place | Variable::SpeedByPlace => latent.place[k],
     };
+    // A knot that the records hardly show may have any force.
+    let forces = unknown.latent.iter().flat_map(|latent| &latent.force);
+    let most = forces.fold(0.0, |most: f64, force| most.max(force.abs()));
+    let is_shown = |force: &f64| force.abs() <= BEYOND * most;
+    let line = best.force.iter();
+    let line = line.map(|force| if is_shown(force) { *force } else { f64::NAN });
+    let line: Vec<f64> = line.collect();
+    if line.iter().all(|force| force.is_nan()) {
+        return None;
+    }
     let points = unknown.latent.iter().flat_map(|latent| {
         (0..latent.force.len()).map(move |k| (at(latent, k), latent.force[k], f64::NAN))
     });
@@ -84,7 +97,8 @@ fn best_function(unknown: &Unknown) -> Option<FoundCurve> {
             force(site.kind).to_owned(),
             site.kind.force_unit().to_owned(),
         ),
-        law: (best.knots.clone(), best.force.clone()),
+        line: "best function".to_owned(),
+        law: (best.knots.clone(), line),
         data: points.collect(),
         caption: format!(
             "The line is the function of this variable that explains the residual best: improvement {}, by chance {}. Points: the \

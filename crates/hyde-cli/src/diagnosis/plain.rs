@@ -195,24 +195,25 @@ fn next(told: &Told<'_>) -> String {
             told.found.channel(first)
         );
     }
-    for finding in &told.found.findings {
-        let own = named(&told.hypotheses[finding.hypothesis]).replace(" at ", "@");
-        for other in &finding.alternatives {
-            let between = named(&told.hypotheses[other.hypothesis]).replace(" at ", "@");
-            let motion = match &other.experiment {
-                Some(experiment) => format!(
-                    "the motion of {} {} times as long",
-                    experiment.record,
-                    significant(experiment.times.max(1.0), 2)
-                ),
-                None => "another motion, because no motion in these records distinguishes them"
-                    .to_owned(),
-            };
-            return format!(
-                "Record next: {motion}; {} designs one.",
-                excite(&format!(" --between {own},{between}"))
-            );
-        }
+    // A law is in no library that the command could take it from.
+    let findings = told.found.findings.iter();
+    let mut known = findings.filter(|own| told.candidates.get(own.hypothesis).is_some());
+    let first = known.find_map(|own| Some((own, own.alternatives.first()?)));
+    if let Some((finding, other)) = first {
+        let named = |number: usize| named(&told.hypotheses[number]).replace(" at ", "@");
+        let (own, between) = (named(finding.hypothesis), named(other.hypothesis));
+        let motion = match &other.experiment {
+            Some(experiment) => format!(
+                "the motion of {} {} times as long",
+                experiment.record,
+                significant(experiment.times.max(1.0), 2)
+            ),
+            None => {
+                "another motion, because no motion in these records distinguishes them".to_owned()
+            }
+        };
+        let designs = excite(&format!(" --between {own},{between}"));
+        return format!("Record next: {motion}; {designs} designs one.");
     }
     if !told.errors.iter().any(|record| record.holdout) {
         return "Record next: another motion of the same axis, as a `holdout` record that confirms this.".to_owned();

@@ -16,7 +16,9 @@ pub struct FoundCurve {
     pub over: (String, String),
     /// The force: what it is called, and its SI unit.
     pub force: (String, String),
-    /// Variable and force by the formula, SI; empty where there is none.
+    /// What the line is called in the legend.
+    pub line: String,
+    /// Variable and force on the line, SI; empty where there is none.
     pub law: (Vec<f64>, Vec<f64>),
     /// What the records say: variable, force and half its 95 % interval, SI; NaN where that is not known.
     pub data: Vec<(f64, f64, f64)>,
@@ -65,7 +67,7 @@ impl FoundCurve {
         }
         if !self.law.0.is_empty() {
             let (at, force) = self.law.clone();
-            lines.push(Line::new("found", at, force).with_colour(AFTER));
+            lines.push(Line::new(self.line.as_str(), at, force).with_colour(AFTER));
         }
         let ends = |sign: f64| -> Vec<f64> {
             let each = y.iter().zip(&half);
