@@ -397,7 +397,7 @@ fn page(page: &str, folder: &Folder) {
     let dom = browsed(browser, &profile, &["--dump-dom"], page).unwrap();
     let dom = String::from_utf8(dom).unwrap();
     assert_eq!(outline(&dom), lines);
-    crate::paper_and_phone::is_readable(page);
+    crate::readable_pages::is_readable(page);
 }
 
 #[test]

@@ -169,7 +169,7 @@ end still;
     let left = folder.file("left.hyde", &format!("{left}{run}"));
     let ran = hyde(&["run", &left, "still"]);
     assert_eq!(status(&ran), 0, "{}{}", errors(&ran), text(&ran));
-    crate::paper_and_phone::is_readable(&folder.path("found/fit.html"));
+    crate::readable_pages::is_readable(&folder.path("found/fit.html"));
     let page = std::fs::read_to_string(folder.path("found/fit.html")).unwrap();
     assert!(page.contains("M at load = 60 kg") && page.contains("<svg"));
     assert!(

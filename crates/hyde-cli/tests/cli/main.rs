@@ -18,10 +18,11 @@ mod fmt;
 mod live;
 mod long_runs;
 mod lsp;
-mod paper_and_phone;
+
 mod parquet;
 mod plot;
 mod printed;
+mod readable_pages;
 mod report;
 mod selftest;
 mod settings;

@@ -252,5 +252,5 @@ fn a_browser_shows_the_page() {
     assert_eq!(bytes[16..20], 1280_u32.to_be_bytes());
     // An empty page of this size is packed into 12 kB.
     assert!(bytes.len() > 60_000, "{} bytes", bytes.len());
-    crate::paper_and_phone::is_readable(&page);
+    crate::readable_pages::is_readable(&page);
 }
