@@ -146,7 +146,9 @@ impl Consistent {
             singular: Vec::new(),
             at_start,
         };
-        Err(Failure::new(kind, t).at_row(state.program, worst, y))
+        let mut failure = Failure::new(kind, t).at_row(state.program, worst, y);
+        failure.residual = Some(self.residual[worst]);
+        Err(failure)
     }
 
     /// The derivatives along the flow of y (all of it) and of the states' y', after [`Consistent::solve`] at the point.

@@ -78,6 +78,8 @@ pub struct Failure {
     pub origins: Vec<Origin>,
     /// The unknowns involved, by name, with their values.
     pub unknowns: Vec<(String, f64)>,
+    /// The residual of the first of these equations, in SI units of its sides, where it could not be made 0.
+    pub residual: Option<f64>,
     /// The automata with the modes they are in, where that matters: name and mode.
     pub modes: Vec<(String, String)>,
     /// Everything up to the failure.
@@ -91,6 +93,7 @@ impl Failure {
             t,
             origins: Vec::new(),
             unknowns: Vec::new(),
+            residual: None,
             modes: Vec::new(),
             results: Results::default(),
         })

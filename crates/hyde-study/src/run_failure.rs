@@ -388,6 +388,12 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
         };
         diagnostic = diagnostic.note(format!("`{name}` is {} there", value.trim_end()));
     }
+    if let Some(residual) = failure.residual.filter(|own| own.is_finite()) {
+        let residual = hyde_units::significant(residual.abs(), 3);
+        diagnostic = diagnostic.note(format!(
+            "the two sides of this equation differ by {residual} there (SI units)"
+        ));
+    }
     if let FailureKind::Zeno { cause, .. } = &failure.kind {
         let recent = failure.results.events.iter().rev().take(4);
         let mut others: Vec<String> = recent
