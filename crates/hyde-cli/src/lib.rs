@@ -11,6 +11,7 @@ mod assumptions;
 mod batch;
 mod before_after;
 mod commands;
+mod compared;
 mod diagnosis;
 mod exit;
 mod figures;

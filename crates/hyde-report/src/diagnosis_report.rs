@@ -25,6 +25,8 @@ pub struct DiagnosisReport {
     pub plain: String,
     /// What was found, as curves.
     pub curves: Vec<FoundCurve>,
+    /// Measured beside simulated.
+    pub compared: Option<Figure>,
     /// What a channel does over frequency, measured and by both models.
     pub responses: Vec<Response>,
     /// What is doubtful about it.
@@ -163,9 +165,13 @@ impl DiagnosisReport {
     pub fn page(&self) -> Page {
         let figures = |list: Vec<Figure>| list.into_iter().map(Block::Figure).collect();
         let responses = self.responses.iter().map(Response::figure);
-        let blocks: [(&str, Vec<Block>); 9] = [
+        let blocks: [(&str, Vec<Block>); 10] = [
             ("Verdict", self.verdict_blocks()),
             ("What was found", self.found_blocks()),
+            (
+                "Measured and simulated",
+                figures(self.compared.iter().cloned().collect()),
+            ),
             ("Error before and after", self.error_blocks()),
             ("Response over frequency", figures(responses.collect())),
             ("Error over time", self.time_blocks()),

@@ -2,6 +2,7 @@
 
 use super::{Told, named, verdict};
 use crate::before_after::RecordErrors;
+use crate::compared::judge;
 use crate::figures::{error_in, shown};
 use hyde_calibrate::{FreeMeasure, Kind, LatentForce, Panel, Unknown, Variable};
 use hyde_report::{FoundCurve, Response};
@@ -151,8 +152,7 @@ fn percent(part: f64) -> String {
 
 /// The channels of the record that judges, over frequency: the first one held out, if there is one.
 pub(super) fn responses(told: &Told<'_>) -> Vec<Response> {
-    let held_out = told.errors.iter().find(|record| record.holdout);
-    let Some(record) = held_out.or(told.errors.first()) else {
+    let Some(record) = judge(&told.errors) else {
         return Vec::new();
     };
     let measured = &told.calibration.compiled.program.experiment.measured;

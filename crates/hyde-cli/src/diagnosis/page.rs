@@ -3,6 +3,7 @@
 use super::{Told, found, named, plain, suspicion, verdict};
 use crate::assumptions;
 use crate::before_after::{self, Change, RecordErrors};
+use crate::compared;
 use crate::figures::{drawn_in, error_in, shown};
 use crate::head;
 use hyde_calibrate::{FittedParameter, ResidualMap, Whiteness};
@@ -14,6 +15,7 @@ use hyde_units::{Unit, significant};
 /// The page as one HTML text.
 pub(crate) fn html(told: &Told<'_>) -> String {
     let calibration = told.calibration;
+    let measured = &calibration.compiled.program.experiment.measured;
     let report = DiagnosisReport {
         title: format!("{} of {}", told.plan.name, calibration.plan.model),
         facts: facts(told),
@@ -21,6 +23,7 @@ pub(crate) fn html(told: &Told<'_>) -> String {
         sentence: verdict::sentence(told),
         plain: plain::paragraph(told),
         curves: found::curves(told),
+        compared: compared::figure(&told.errors, measured),
         responses: found::responses(told),
         doubts: [verdict::grounds(told), verdict::doubts(told)].concat(),
         effects: effects(told),

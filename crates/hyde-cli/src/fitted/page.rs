@@ -4,6 +4,7 @@ use super::text::{interval, noise};
 use super::{Told, experiment_name, identified, plots, shown, shown_difference};
 use crate::assumptions;
 use crate::before_after;
+use crate::compared;
 use crate::diagnosis::suspicion;
 use crate::head;
 use crate::project::Project;
@@ -25,6 +26,7 @@ pub(crate) fn html(told: &Told<'_>) -> String {
     let each = calibration.experiments.iter();
     let assumed: Vec<String> = each.flat_map(before_after::assumptions).collect();
     let sections = [
+        ("Measured and simulated", measured_and_simulated(told)),
         ("Before the fit", before(told)),
         ("Parameters", parameters(told)),
         ("Correlation", correlation(told)),
@@ -49,6 +51,16 @@ pub(crate) fn html(told: &Told<'_>) -> String {
         footer: format!("Hyde {}", env!("CARGO_PKG_VERSION")),
     };
     hyde_report::to_html(&page)
+}
+
+/// Of each experiment the record that judges.
+fn measured_and_simulated(told: &Told<'_>) -> Vec<Block> {
+    let each = told.calibration.experiments.iter().zip(told.errors);
+    let figures = each.filter_map(|(own, errors)| {
+        let measured = &own.compiled.program.experiment.measured;
+        compared::figure(errors, measured)
+    });
+    figures.map(Block::Figure).collect()
 }
 
 fn before(told: &Told<'_>) -> Vec<Block> {

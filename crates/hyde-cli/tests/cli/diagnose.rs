@@ -367,6 +367,7 @@ fn page(page: &str, folder: &Folder) {
         "Verdict",
         "Stribeck",
         "What was found",
+        "Measured and simulated",
         "Error before and after",
         "Response over frequency",
         "Error over time",

@@ -10,10 +10,16 @@ use std::path::{Path, PathBuf};
 /// The file of the results.
 pub(super) const RESULTS: &str = "results.parquet";
 
+/// Larger results would fill the memory of the server: hovers do without them.
+const LARGEST: u64 = 256 << 20;
+
 /// What a run left in a folder, with its page; `said` is what it printed as JSON.
 pub(super) fn outcome(folder: &Path, page: PathBuf, said: &str) -> Outcome {
-    let frame = files::read(&folder.join(RESULTS)).ok();
-    let frame = frame.and_then(|bytes| hyde_signal::read_frame(&bytes).ok());
+    let results = folder.join(RESULTS);
+    let size = std::fs::metadata(&results).map(|own| own.len());
+    let fits = size.is_ok_and(|size| size <= LARGEST);
+    let bytes = fits.then(|| files::read(&results).ok()).flatten();
+    let frame = bytes.and_then(|bytes| hyde_signal::read_frame(&bytes).ok());
     let said: Value = serde_json::from_str(said).unwrap_or_default();
     let failures = said["diagnostics"].as_array().into_iter().flatten();
     Outcome {
