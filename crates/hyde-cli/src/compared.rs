@@ -33,13 +33,15 @@ pub(crate) fn figure(records: &[RecordErrors], measured: &[Measured]) -> Option<
         let sum = new.error.iter().zip(&new.model);
         let sum: Vec<f64> = sum.map(|(error, model)| error + model).collect();
         let line = |label: &str, si: &[f64]| Line::new(label, new.time_s.clone(), values(si));
-        let lines = vec![
-            line("measured", &sum).with_colour(MEASURED),
-            line("before", &old.model).with_colour(BEFORE),
-            line("after", &new.model)
-                .with_colour(AFTER)
-                .with_style(LineStyle::Dashed),
-        ];
+        // Without an effect the model is the same before and after.
+        let changed = old.model != new.model;
+        let mut lines = vec![line("measured", &sum).with_colour(MEASURED)];
+        if changed {
+            lines.push(line("before", &old.model).with_colour(BEFORE));
+        }
+        let label = if changed { "after" } else { "simulated" };
+        let dashed = line(label, &new.model).with_style(LineStyle::Dashed);
+        lines.push(dashed.with_colour(AFTER));
         let most = old.error.iter().chain(&new.error).copied();
         let most = most.fold(0.0, |most: f64, own| most.max(own.abs()));
         let (error_unit, of) = match most > 0.0 {
@@ -50,10 +52,13 @@ pub(crate) fn figure(records: &[RecordErrors], measured: &[Measured]) -> Option<
             let values = si.iter().map(|&si| of.scale.remove(si)).collect();
             Line::new(label, new.time_s.clone(), values).with_colour(colour)
         };
-        let errors = vec![
-            error("before", &old.error, BEFORE),
-            error("after", &new.error, AFTER),
-        ];
+        let errors = match changed {
+            true => vec![
+                error("before", &old.error, BEFORE),
+                error("after", &new.error, AFTER),
+            ],
+            false => vec![error("", &new.error, AFTER)],
+        };
         [
             time_panel(channel.name.clone(), shown(&unit), lines),
             time_panel("residual", shown(&error_unit), errors),

@@ -121,18 +121,23 @@ impl Response {
             Line::new(label, self.frequency_hz.clone(), values.clone())
         };
         let [measured, before, after] = &self.channel;
-        let channel = vec![
-            line("measured", measured).with_colour(DATA),
-            line("before", before).with_colour(BEFORE),
-            line("after", after)
-                .with_colour(AFTER)
-                .with_style(LineStyle::Dashed),
-        ];
         let [old, new] = &self.error;
-        let error = vec![
-            line("before", old).with_colour(BEFORE),
-            line("after", new).with_colour(AFTER),
-        ];
+        let mut channel = vec![line("measured", measured).with_colour(DATA)];
+        let mut error = Vec::new();
+        // Without an effect the model is the same before and after.
+        let changed = before != after;
+        if changed {
+            channel.push(line("before", before).with_colour(BEFORE));
+            error.push(line("before", old).with_colour(BEFORE));
+        }
+        let (model, left) = if changed {
+            ("after", "after")
+        } else {
+            ("simulated", "")
+        };
+        let dashed = line(model, after).with_style(LineStyle::Dashed);
+        channel.push(dashed.with_colour(AFTER));
+        error.push(line(left, new).with_colour(AFTER));
         let panel = |label: &str, lines| {
             let y = Axis::new(label, unit.as_str()).with_scale(Scale::Log);
             Panel::new(axis(), y, lines)
