@@ -267,9 +267,9 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
             Method::Ida | Method::Auto => "ida",
             Method::Esdirk => "esdirk",
         },
-        "esdirk_from_s": statistics.left_ida_s,
         "statistics": {
             "steps": statistics.steps,
+            "esdirk_from_s": statistics.left_ida_s,
             "residual_evaluations": statistics.residual_evaluations,
             "jacobian_evaluations": statistics.jacobian_evaluations,
             "nonlinear_iterations": statistics.nonlinear_iterations,

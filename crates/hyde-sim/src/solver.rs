@@ -170,7 +170,9 @@ impl<'a> Solver<'a> {
             return Ok(false);
         };
         let selected = !multistep.ida.system().program.selections.is_empty();
-        if selected || !multistep.creeping.seen(&multistep.ida) {
+        // Right after a restart there is no step whose length the next could have.
+        let begins = multistep.ida.last_step_s() <= 0.0;
+        if selected || begins || !multistep.creeping.seen(&multistep.ida) {
             return Ok(false);
         }
         let linear = SparseSolver::new(multistep.pattern.clone(), LinearMethod::Auto)?;
