@@ -121,7 +121,15 @@ impl Step<'_> {
                     values[&b]
                 }
                 Expr::If(_, a, _) | Expr::NoEvent(a) => values[&a],
-                leaf => self.leaf(leaf, counter, work),
+                leaf @ (Expr::Const(_)
+                | Expr::Time
+                | Expr::Counter
+                | Expr::Param(..)
+                | Expr::Var(..)
+                | Expr::Der(..)
+                | Expr::Pre(..)
+                | Expr::Relation(_)
+                | Expr::InMode(..)) => self.leaf(leaf, counter, work),
             };
             values.insert(id, value);
         }
