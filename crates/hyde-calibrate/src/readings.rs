@@ -1,4 +1,4 @@
-//! [`Placed`]: readings of channels at the rows of an observer, each channel at its own times.
+//! [`at_rows`]: readings of channels at the rows of an observer, each channel at its own times.
 //!
 //! An observer steps evenly, as fast as its fastest channel is read. A reading goes to the row that is nearest, interpolated
 //! between its neighbours; rows that no reading is nearest to have none, and correct nothing there.

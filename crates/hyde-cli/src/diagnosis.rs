@@ -59,6 +59,8 @@ pub(crate) struct Told<'a> {
     pub(crate) causes: Vec<Cause>,
     /// Hypotheses that could not be put on the model, each with the reason.
     pub(crate) hindered: Vec<(usize, String)>,
+    /// Hypotheses that were found first and dropped.
+    pub(crate) barred: Vec<usize>,
     /// The model that has what was missing.
     pub(crate) written: Written,
 }
@@ -116,6 +118,10 @@ impl<'a> Told<'a> {
             curves: Vec::new(),
             causes: Vec::new(),
             hindered: hindered(project, candidates, found),
+            barred: {
+                let barred = found.barred.iter().copied();
+                barred.filter(|number| *number < hypotheses.len()).collect()
+            },
             written: Written {
                 text: String::new(),
                 model: String::new(),
@@ -178,6 +184,7 @@ fn hindered(
     };
     (0..candidates.len())
         .filter(|number| scores().all(|score| score.hypothesis != *number))
+        .filter(|number| !found.barred.contains(number))
         .map(|number| (number, unknown::hindrance(&request, candidates, number)))
         .collect()
 }

@@ -109,12 +109,15 @@ impl Diagnosis {
     }
 }
 
-/// Drops effects, the least told first, until all that is claimed is told from 0, and a part of what is missing.
+/// Drops effects, the least told first, until all that is claimed is told from 0, and a part of what is missing; the hypotheses
+/// that were not told.
 pub(super) fn only_told(
     inquiry: &Inquiry<'_>,
     diagnosis: &mut Diagnosis,
-) -> Result<(), Unsupported> {
+) -> Result<Vec<usize>, Unsupported> {
+    let mut dropped = Vec::new();
     while let Some(number) = least_told(&diagnosis.findings) {
+        dropped.push(diagnosis.findings[number].hypothesis);
         let less = diagnosis.without(inquiry, number)?;
         diagnosis.keep(inquiry, less);
     }
@@ -130,7 +133,7 @@ pub(super) fn only_told(
             diagnosis.keep(inquiry, less);
         }
     }
-    Ok(())
+    Ok(dropped)
 }
 
 /// The finding that is told least of those that are not.

@@ -81,6 +81,8 @@ pub(crate) struct Forward<'s> {
     pub(crate) hypotheses: &'s [Hypothesis],
     pub(crate) build: &'s Build<'s>,
     pub(crate) max_effects: usize,
+    /// Numbers of hypotheses that are not tried.
+    pub(crate) barred: &'s [usize],
     pub(crate) gates: Gates,
     /// The model as it is declared, calibrated.
     pub(crate) declared: &'s Stage,
@@ -168,9 +170,10 @@ impl<'s> Forward<'s> {
         Ok(branch)
     }
 
-    /// The numbers of all hypotheses.
+    /// The numbers of all hypotheses that are tried.
     fn all(&self) -> Vec<usize> {
-        (0..self.hypotheses.len()).collect()
+        let all = 0..self.hypotheses.len();
+        all.filter(|number| !self.barred.contains(number)).collect()
     }
 
     /// The gates of what is added to a stage.

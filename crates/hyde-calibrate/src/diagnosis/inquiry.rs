@@ -29,6 +29,8 @@ pub struct Inquiry<'a> {
     pub author: &'a Author<'a>,
     /// How many effects are claimed at most.
     pub max_effects: usize,
+    /// Numbers of hypotheses that are not tried: what an earlier search took in and could not tell from its neutral value.
+    pub barred: &'a [usize],
 }
 
 impl Inquiry<'_> {

@@ -120,6 +120,8 @@ pub struct Diagnosis {
     pub observer: Option<Observer>,
     /// Readings that were held for a while: they ask for forces that no drive knows, and no law is sought of them.
     pub frozen: Vec<Frozen>,
+    /// Hypotheses that a search before took in and could not tell from their neutral values: this one was made without them.
+    pub barred: Vec<usize>,
 }
 
 impl Diagnosis {
@@ -180,6 +182,9 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
     search_by(inquiry, By::Declared)
 }
 
+/// The search begins again without effects that were dropped for not being told, so many at most.
+const MOST_BARRED: usize = 2;
+
 /// Whose observer all models are compared by.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum By {
@@ -199,6 +204,7 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
         hypotheses: inquiry.hypotheses,
         build: &build,
         max_effects: inquiry.max_effects,
+        barred: inquiry.barred,
         gates: Gates {
             tried: 1,
             innovations,
@@ -271,13 +277,27 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
         unknown: None,
         frozen,
         observer: None,
+        barred: inquiry.barred.to_vec(),
     };
     match law {
         Some(answer) => take_in(inquiry, &mut diagnosis, answer),
         None => propose(inquiry, &mut diagnosis, &declared, places, gates)?,
     }
     calibrate_found(inquiry, &mut diagnosis)?;
-    only_told(inquiry, &mut diagnosis)?;
+    let dropped = only_told(inquiry, &mut diagnosis)?;
+    let nothing = diagnosis.findings.is_empty() && diagnosis.unexplained && !dropped.is_empty();
+    if nothing && inquiry.barred.len() < MOST_BARRED {
+        // What stood in for another effect, better than this where both were begun, is out of its way.
+        let barred = [inquiry.barred, &dropped].concat();
+        let own = Inquiry {
+            barred: &barred,
+            ..*inquiry
+        };
+        let again = search_by(&own, by)?;
+        if !again.findings.is_empty() {
+            return Ok(again);
+        }
+    }
     Ok(diagnosis)
 }
 

@@ -206,6 +206,7 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         sites: axis.sites,
         author: &author,
         max_effects: axis.max_effects,
+        barred: &[],
     };
     let found = diagnose(&inquiry).map_err(SelftestError::Unsupported)?;
     if axis.interrupted.load(Ordering::Relaxed) {

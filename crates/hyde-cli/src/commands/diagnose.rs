@@ -54,6 +54,7 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
             sites: &sites,
             author: &author,
             max_effects: plan.max_effects,
+            barred: &[],
         };
         hyde_calibrate::diagnose(&inquiry).and_then(|mut found| {
             let agreed = diagnosis::agreed(&calibration, &candidates, &inquiry, &mut found)?;

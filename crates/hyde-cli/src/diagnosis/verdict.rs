@@ -169,6 +169,12 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
             ));
         }
     }
+    for number in &told.barred {
+        let effect = named(&told.hypotheses[*number]);
+        doubts.push(format!(
+            "{effect} was found first and dropped, because the records do not determine its size; the search was repeated without it"
+        ));
+    }
     for (number, because) in &told.hindered {
         let effect = named(&told.hypotheses[*number]);
         doubts.push(format!(
