@@ -8,7 +8,7 @@
 #![no_main]
 
 use hyde_diag::Code;
-use hyde_editor::{Host, Order, serve};
+use hyde_editor::{Host, Order, Outcome, serve};
 use hyde_study::world::{Buffers, World};
 use libfuzzer_sys::fuzz_target;
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
@@ -50,8 +50,8 @@ impl Host for Nobody {
         code.title().to_owned()
     }
 
-    fn start(&self, _: Order, done: Box<dyn FnOnce(Result<PathBuf, String>) + Send>) {
-        done(Err("no".to_owned()));
+    fn start(&self, _: Order, done: Box<dyn FnOnce(Outcome) + Send>) {
+        done(Outcome::from(Err("no".to_owned())));
     }
 }
 
