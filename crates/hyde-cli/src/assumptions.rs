@@ -101,9 +101,23 @@ pub(crate) fn text(notes: &[String]) -> String {
 /// What was taken for granted of a record, as far as the program reads it.
 pub(crate) fn of_record(program: &Program, name: &str, table: &Table) -> Vec<String> {
     let mut all: Vec<String> = table.notes().iter().map(ToString::to_string).collect();
-    let bare = |column: &&str| table.column(column).is_some_and(|c| c.unit().is_none());
-    let used = columns(program).filter(|(record, _)| *record == name);
-    let without: BTreeSet<&str> = used.map(|(_, column)| column).filter(bare).collect();
+    let known: BTreeSet<&str> = columns(program)
+        .filter(|(record, _)| *record == name)
+        .map(|(_, column)| column)
+        .collect();
+    let sparse = known.iter().filter(|column| table.column(column).is_none());
+    for column in sparse {
+        let missing = table.rows() - table.reading(column).rows();
+        all.push(format!(
+            "`{column}` has no reading in {missing} of {} samples: it is compared where it has one",
+            table.rows()
+        ));
+    }
+    let bare = |column: &&str| {
+        let own = table.reading(column).column(column);
+        own.is_some_and(|own| own.unit().is_none())
+    };
+    let without: BTreeSet<&str> = known.into_iter().filter(bare).collect();
     if !without.is_empty() {
         let list: Vec<String> = without.iter().map(|column| format!("`{column}`")).collect();
         let (has, is, them) = match list.len() {
