@@ -275,8 +275,10 @@ impl Consistent {
         Ok(())
     }
 
-    /// Takes the Newton step, halved until the residual does not grow. Returns its size over the tolerance; of a halved one
-    /// infinity.
+    /// Takes the Newton step, halved until the residual does not grow, or the correction that follows from the same factors
+    /// is smaller (the natural monotonicity test: Deuflhard, Newton Methods for Nonlinear Problems, §3.3): rows with large
+    /// terms leave more by rounding than other rows have left to correct. Returns its size over the tolerance; of a halved
+    /// one infinity.
     fn take_step(
         &mut self,
         state: &mut State<'_>,
@@ -308,7 +310,8 @@ impl Consistent {
                 && (after <= before
                     || after <= rounding
                     || halving == MAX_HALVINGS
-                    || self.size(&old) <= ROUNDING)
+                    || self.size(&old) <= ROUNDING
+                    || self.next_size(&old) <= (1.0 - 0.5 * factor) * self.size(&old))
             {
                 whole = halving == 0;
                 break;
@@ -343,17 +346,31 @@ impl Consistent {
             .fold(0.0, |most: f64, (left, terms)| most.max(left.abs() / terms))
     }
 
-    /// The largest correction over its tolerance.
-    fn size(&self, values: &[f64]) -> f64 {
-        let largest = values
-            .iter()
-            .fold(0.0_f64, |most, value| most.max(value.abs()));
-        let pairs = values.iter().zip(&self.correction);
-        pairs.fold(0.0_f64, |most, (value, correction)| {
-            let tolerance = TOLERANCE * (value.abs() + 1e-3 * largest) + LEAST_TOLERANCE;
-            most.max(correction.abs() / tolerance)
-        })
+    /// The size of the correction that the residual asks for by the factors at hand.
+    fn next_size(&mut self, values: &[f64]) -> f64 {
+        let Some(solver) = &mut self.solver else {
+            return f64::INFINITY;
+        };
+        let mut next = self.residual.clone();
+        solver.solve(&mut next);
+        size(values, &next)
     }
+
+    fn size(&self, values: &[f64]) -> f64 {
+        size(values, &self.correction)
+    }
+}
+
+/// The largest correction over its tolerance.
+fn size(values: &[f64], corrections: &[f64]) -> f64 {
+    let largest = values
+        .iter()
+        .fold(0.0_f64, |most, value| most.max(value.abs()));
+    let pairs = values.iter().zip(corrections);
+    pairs.fold(0.0_f64, |most, (value, correction)| {
+        let tolerance = TOLERANCE * (value.abs() + 1e-3 * largest) + LEAST_TOLERANCE;
+        most.max(correction.abs() / tolerance)
+    })
 }
 
 fn largest(values: &[f64]) -> usize {

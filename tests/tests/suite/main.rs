@@ -52,6 +52,7 @@ mod stages;
 mod starts;
 mod stepped;
 mod stick_slip;
+mod tight_shafts;
 mod travelling_nut;
 mod unknown_effects;
 mod whole_arrays;
