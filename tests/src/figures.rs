@@ -72,6 +72,7 @@ pub const FIGURES: &[Figure] = &[
     compile::Y_AXIS,
     compile::GROWTH,
     compile::CHAIN,
+    compile::CARS,
     fixtures::FIGURE,
     cases::FIGURE,
     demo::FIGURE,

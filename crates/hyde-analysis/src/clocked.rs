@@ -9,7 +9,7 @@ use crate::system::System;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_ir::dae::{ClockedAssignment, Dae, Hold, Tick};
 use hyde_ir::flat::ClockedEquation;
-use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, Interpolation, VarId, VariableKind};
+use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, Interpolation, Memo, VarId, VariableKind};
 
 /// Sorts the equations of every clocked part.
 pub(crate) fn sort(dae: &mut Dae, system: &mut System, diagnostics: &mut Diagnostics) {
@@ -317,7 +317,7 @@ fn read_columns_held(dae: &mut Dae, system: &mut System) {
             Some((id, twin))
         })
         .collect();
-    let mut memo = std::collections::HashMap::new();
+    let mut memo = Memo::default();
     for item in &mut system.flat.clocked_equations {
         for side in [&mut item.equation.lhs, &mut item.equation.rhs] {
             *side = dae.exprs.rewrite(*side, &mut memo, |arena, _, expr| {

@@ -15,11 +15,13 @@ use crate::solve::solve_for;
 use crate::split;
 use crate::system::{Cell, Equation, System};
 use crate::whole_arrays;
+use explicit::Explicit;
 use hyde_diag::Diagnostics;
 use hyde_ir::dae::Dependent;
-use hyde_ir::{Expr, ExprArena, ExprId, Range, VariableKind};
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use hyde_ir::{Expr, ExprArena, ExprId, Memo, Range, VariableKind};
+use std::collections::{BTreeMap, BTreeSet};
 
+mod explicit;
 mod fixed;
 mod inline;
 mod inputs;
@@ -69,9 +71,11 @@ fn expand_some(system: &mut System, declared: &[Vec<f64>]) -> bool {
     }
     let wanted = wanted::at_start(system);
     let kept = wanted::kept(system);
+    let mut explicit = Explicit::of(system);
     for pinned in [false, true] {
         // Rates of what became explicit in this pass, in its order. Equations that read it wait for the next pass.
         let mut rates: Vec<(Cell, ExprId)> = Vec::new();
+        let mut fresh: BTreeSet<Cell> = BTreeSet::new();
         for number in 0..system.equations.len() {
             let Equation {
                 range, lhs, rhs, ..
@@ -79,11 +83,10 @@ fn expand_some(system: &mut System, declared: &[Vec<f64>]) -> bool {
             if range != Range::SCALAR {
                 continue;
             }
-            let Some(leaves) = state_leaves(system, lhs, rhs, &differentiated) else {
+            let Some(leaves) = state_leaves(system, lhs, rhs, &differentiated, &explicit) else {
                 continue;
             };
-            let fresh = |cell: &Cell| rates.iter().any(|(known, _)| known == cell);
-            let settled = |cell: &Cell| differentiated.contains(cell) && !fresh(cell);
+            let settled = |cell: &Cell| differentiated.contains(cell) && !fresh.contains(cell);
             if !rates.is_empty() && !leaves.iter().all(settled) {
                 continue;
             }
@@ -93,8 +96,17 @@ fn expand_some(system: &mut System, declared: &[Vec<f64>]) -> bool {
                 .filter(|cell| pinned || !kept.contains(cell))
                 .collect();
             let form = (lhs, rhs);
-            let states = &differentiated;
-            if let Some(rate) = expand(system, declared, number, form, candidates, states, &kept) {
+            let states = (&differentiated, &kept);
+            if let Some(rate) = expand(
+                system,
+                declared,
+                number,
+                form,
+                candidates,
+                states,
+                &mut explicit,
+            ) {
+                fresh.insert(rate.0);
                 rates.push(rate);
                 // The equations of an array have been split.
                 if pinned || system.flat.variables[rate.0.0].len.is_some() {
@@ -104,14 +116,23 @@ fn expand_some(system: &mut System, declared: &[Vec<f64>]) -> bool {
         }
         // Reduction in general leaves pinned variables alone, so that their constraints are looked for further.
         if rates.is_empty() && !pinned && !kept.is_empty() {
-            let states = &differentiated;
-            for (number, lhs, rhs, leaves) in inline::constraints(system, declared, states) {
+            let states = (&differentiated, &kept);
+            for (number, lhs, rhs, leaves) in inline::constraints(system, declared, &differentiated)
+            {
                 let free = leaves
                     .into_iter()
                     .filter(|cell| !kept.contains(cell))
                     .collect();
                 let form = (lhs, rhs);
-                rates.extend(expand(system, declared, number, form, free, states, &kept));
+                rates.extend(expand(
+                    system,
+                    declared,
+                    number,
+                    form,
+                    free,
+                    states,
+                    &mut explicit,
+                ));
                 if !rates.is_empty() {
                     break;
                 }
@@ -135,7 +156,7 @@ fn replace_derivatives(system: &mut System, rates: Vec<(Cell, ExprId)>) {
         found.get(&System::cell(var, index)?).copied()
     };
     for (cell, rate) in rates.into_iter().rev() {
-        let mut memo = HashMap::new();
+        let mut memo = Memo::default();
         let whole = |_: &mut ExprArena, _, expr| replace(&found, expr);
         let rate = system.flat.exprs.rewrite(rate, &mut memo, whole);
         found.insert(cell, rate);
@@ -150,8 +171,8 @@ fn expand(
     number: usize,
     (lhs, rhs): (ExprId, ExprId),
     mut candidates: Vec<Cell>,
-    differentiated: &Cells,
-    kept: &BTreeSet<Cell>,
+    (differentiated, kept): (&Cells, &BTreeSet<Cell>),
+    explicit: &mut Explicit,
 ) -> Option<(Cell, ExprId)> {
     let in_array = |system: &System, cell: &Cell| system.flat.variables[cell.0].len.is_some();
     let is_left = |system: &System, cell: Cell| matches!(system.flat.exprs[lhs], Expr::Var(var, _) if var == cell.0);
@@ -179,17 +200,19 @@ fn expand(
         if system.divides_by_zero(declared, lhs, rhs, leaf) {
             continue;
         }
-        let Some(rate) = derivative(system, value, cell, differentiated, 0) else {
+        let Some(rate) = explicit.derivative(system, value, cell, differentiated) else {
             continue;
         };
         // An element leaves the equations of its array that differentiate it.
         if in_array(system, &cell) && !split::at_cell(system, cell) {
             continue;
         }
+        explicit.forget(system, number);
         let equation = &mut system.equations[number];
         equation.lhs = system.flat.exprs.add(leaf);
         equation.rhs = value;
         let origin = equation.origin.clone();
+        explicit.note(system, number);
         if system.dependent.iter().all(|d| (d.var, d.element) != cell) {
             system.dependent.push(Dependent {
                 var: cell.0,
@@ -224,7 +247,13 @@ pub(crate) fn differentiated(system: &System) -> Cells {
 }
 
 /// The variables of an equation if it has no derivative and every variable in it can be differentiated.
-fn state_leaves(system: &System, lhs: ExprId, rhs: ExprId, states: &Cells) -> Option<Vec<Cell>> {
+fn state_leaves(
+    system: &System,
+    lhs: ExprId,
+    rhs: ExprId,
+    states: &Cells,
+    explicit: &Explicit,
+) -> Option<Vec<Cell>> {
     let mut found = Vec::new();
     for id in system.flat.exprs.below(&[lhs, rhs]) {
         let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
@@ -236,7 +265,7 @@ fn state_leaves(system: &System, lhs: ExprId, rhs: ExprId, states: &Cells) -> Op
         match system.flat.variables[var].kind {
             VariableKind::Continuous => {
                 let cell = System::cell(var, index)?;
-                if !states.contains(&cell) && !derivable(system, cell, states, 0) {
+                if !states.contains(&cell) && !explicit.is_derivable(system, cell, states) {
                     return None;
                 }
                 found.push(cell);
@@ -251,83 +280,6 @@ fn state_leaves(system: &System, lhs: ExprId, rhs: ExprId, states: &Cells) -> Op
         }
     }
     Some(found)
-}
-
-/// Whether a cell has an explicit value whose variables can all be differentiated.
-fn derivable(system: &System, cell: Cell, states: &Cells, depth: usize) -> bool {
-    let Some((_, rhs)) = explicit_equation(system, cell) else {
-        return false;
-    };
-    if depth > 50 {
-        return false;
-    }
-    system.flat.exprs.below(&[rhs]).into_iter().all(|id| {
-        let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
-            return true;
-        };
-        match system.flat.variables[var].kind {
-            _ if derivative => false,
-            VariableKind::Continuous => System::cell(var, index).is_some_and(|inner| {
-                inner != cell
-                    && (states.contains(&inner) || derivable(system, inner, states, depth + 1))
-            }),
-            VariableKind::Discrete | VariableKind::Held(..) => true,
-            VariableKind::Clocked(_)
-            | VariableKind::Column(..)
-            | VariableKind::Delayed(_)
-            | VariableKind::Reduction(_) => false,
-        }
-    })
-}
-
-/// `cell = rhs`, as an equation says it.
-fn explicit_equation(system: &System, cell: Cell) -> Option<(usize, ExprId)> {
-    let leaf = Expr::Var(cell.0, System::cell_index(cell));
-    let found = system.equations.iter().enumerate().find(|(_, equation)| {
-        equation.range == Range::SCALAR && system.flat.exprs[equation.lhs] == leaf
-    });
-    found.map(|(number, equation)| (number, equation.rhs))
-}
-
-/// The time derivative of an expression of states, inputs of which nothing moves, and derivable variables.
-fn derivative(
-    system: &mut System,
-    id: ExprId,
-    of: Cell,
-    states: &Cells,
-    depth: usize,
-) -> Option<ExprId> {
-    if depth > 50 {
-        return None;
-    }
-    let leaves: Vec<Cell> = system
-        .flat
-        .exprs
-        .below(&[id])
-        .into_iter()
-        .filter_map(|id| {
-            let Expr::Var(var, index) = system.flat.exprs[id] else {
-                return None;
-            };
-            System::cell(var, index).filter(|_| system.is_continuous(var))
-        })
-        .collect();
-    let mut rates = BTreeMap::new();
-    for cell in leaves {
-        if cell == of {
-            return None;
-        }
-        let rate = if states.contains(&cell) {
-            system
-                .exprs()
-                .add(Expr::Der(cell.0, System::cell_index(cell)))
-        } else {
-            let (_, value) = explicit_equation(system, cell)?;
-            derivative(system, value, of, states, depth + 1)?
-        };
-        rates.insert(cell, rate);
-    }
-    Some(by_rates(system, id, &rates))
 }
 
 /// The time derivative of an expression by the chain rule; variables without a rate do not change.

@@ -6,8 +6,7 @@ use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
 use hyde_ir::dae::{Alias, Assignment, Dae, Reaction, ReactionKind, Space, Target};
 use hyde_ir::flat::Action;
 use hyde_ir::print::Names;
-use hyde_ir::{AutomatonId, Expr, ExprId, Index, UnaryOp, VarId, VariableKind};
-use std::collections::HashMap;
+use hyde_ir::{AutomatonId, Expr, ExprId, Index, Memo, UnaryOp, VarId, VariableKind};
 
 /// Fills in the reactions of the DAE.
 pub(crate) fn react(dae: &mut Dae, system: &mut System, diagnostics: &mut Diagnostics) {
@@ -133,7 +132,7 @@ fn add(
 /// value.
 fn before_the_event(dae: &mut Dae, value: ExprId, set: &[(VarId, Index, ExprId)]) -> ExprId {
     dae.exprs
-        .rewrite(value, &mut HashMap::new(), |arena, _, expr| {
+        .rewrite(value, &mut Memo::default(), |arena, _, expr| {
             if let Expr::Pre(var, index) = expr {
                 return Some(arena.add(Expr::Var(var, index)));
             }

@@ -13,7 +13,8 @@ use crate::matching::{Matched, Node, sides};
 use crate::segments::Segment;
 use crate::solve::{divisor, solve_for};
 use crate::system::System;
-use hyde_ir::{Expr, ExprId, Index, Range};
+use hyde_ir::{Expr, ExprId, Index, Range, VarId};
+use std::collections::HashMap;
 
 /// More values than the components of a drive have connectors, fewer than a field has nodes.
 const A_FEW: usize = 8;
@@ -82,17 +83,15 @@ pub(crate) fn choose(system: &mut System, matched: &Matched) -> Order {
             };
         }
         for component in loops {
-            let readers = |node: usize| {
-                component
-                    .iter()
-                    .filter(|&&other| edges[other].contains(&node))
-                    .count()
-            };
+            let mut readers: HashMap<usize, usize> = HashMap::new();
+            for &read in component.iter().flat_map(|&node| &edges[node]) {
+                *readers.entry(read).or_default() += 1;
+            }
             let torn = component.iter().copied().max_by_key(|&node| {
                 (
                     matched.unknowns[node].len() == 1,
                     is_guessed(system, matched.unknowns[node]),
-                    readers(node),
+                    readers.get(&node).copied(),
                     usize::MAX - node,
                 )
             });
@@ -211,23 +210,13 @@ fn reads_much(system: &System, solution: &Explicit) -> bool {
 
 /// An array of which a piece stays in the vector stays there whole; so does one in several pieces.
 fn keep_arrays_together(matched: &Matched, in_vector: &mut [bool]) {
-    let pieces = |unknown: Segment| {
-        matched
-            .unknowns
-            .iter()
-            .filter(move |other| other.var == unknown.var)
-            .count()
-    };
-    for (number, &unknown) in matched.unknowns.iter().enumerate() {
-        let same = |other: &Segment| other.var == unknown.var;
-        let kept = matched
-            .unknowns
-            .iter()
-            .zip(&*in_vector)
-            .any(|(other, kept)| same(other) && *kept);
-        if kept || pieces(unknown) > 1 {
-            in_vector[number] = true;
-        }
+    let mut stays: HashMap<VarId, bool> = HashMap::new();
+    for (unknown, kept) in matched.unknowns.iter().zip(&*in_vector) {
+        let in_pieces = stays.contains_key(&unknown.var);
+        *stays.entry(unknown.var).or_default() |= in_pieces || *kept;
+    }
+    for (unknown, kept) in matched.unknowns.iter().zip(in_vector) {
+        *kept |= stays[&unknown.var];
     }
 }
 

@@ -4,7 +4,7 @@
 //! result is the total derivative. One reverse pass a row gives all its entries; an array row gives array entries.
 
 use hyde_ir::dae::{Dae, Definition, Function, InitialCondition, Partial, Space, Wrt};
-use hyde_ir::{Expr, ExprArena, ExprId, Id as _, Index, Range, VarId, VariableKind};
+use hyde_ir::{Expr, ExprArena, ExprId, Id as _, Index, Memo, Range, VarId, VariableKind};
 use std::collections::HashMap;
 
 /// Fills in the derivatives of the DAE's functions.
@@ -174,7 +174,7 @@ pub(crate) fn expand(
     root: ExprId,
     definitions: &HashMap<VarId, Definition>,
 ) -> ExprId {
-    arena.rewrite(root, &mut HashMap::new(), |arena, _, expr| {
+    arena.rewrite(root, &mut Memo::default(), |arena, _, expr| {
         let Expr::Var(var, index) = expr else {
             return None;
         };

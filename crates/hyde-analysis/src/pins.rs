@@ -11,6 +11,7 @@
 mod inlined;
 
 use crate::alias::signed_cell;
+use crate::cells::Cells;
 use crate::explicit::Order;
 use crate::matching::{Matched, Node};
 use crate::segments::Segment;
@@ -18,16 +19,17 @@ use crate::solve::solve_for;
 use crate::system::{Branch, Cell, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy};
 use hyde_ir::dae::{Dae, Pin};
-use hyde_ir::{AutomatonId, Expr, ExprId, VariableKind};
+use hyde_ir::{AutomatonId, Expr, ExprId, VarId, VariableKind};
 pub(crate) use inlined::Values;
+use std::collections::{BTreeSet, HashMap};
 
 /// Marks the branches of slots that fix a state.
 pub(crate) fn mark(system: &mut System, unknowns: &[Segment]) {
-    let is_state = |cell: Cell| {
-        unknowns.iter().any(|unknown| {
-            unknown.state && unknown.var == cell.0 && unknown.overlaps(cell.1, cell.1)
-        })
-    };
+    let mut states = Cells::default();
+    for unknown in unknowns.iter().filter(|unknown| unknown.state) {
+        states.insert(unknown.var, unknown.first, unknown.last);
+    }
+    let is_state = |cell: Cell| states.contains(&cell);
     let values = Values::new(system, &is_state);
     for slot in 0..system.slots.len() {
         for number in 0..system.slots[slot].branches.len() {
@@ -97,6 +99,7 @@ pub(crate) fn exchange_rows(
     diagnostics: &mut Diagnostics,
 ) {
     refuse_two_pins(dae, system, diagnostics);
+    let rows = Rows::new(dae, order);
     for (number, node) in matched.equation_of.iter().enumerate() {
         let Node::Slot(slot) = *node else { continue };
         let branches = system.slots[slot].branches.clone();
@@ -104,12 +107,12 @@ pub(crate) fn exchange_rows(
             continue;
         }
         let automaton = system.slots[slot].automaton;
-        let slot_row = row_of(order, number);
+        let slot_row = rows.of_unknown[number];
         for (mode, branch) in branches.iter().enumerate() {
             let Some((cell, value)) = branch.pin else {
                 continue;
             };
-            let Some(state_row) = row_of_state(dae, cell) else {
+            let Some(state_row) = rows.of_state.get(&cell).copied() else {
                 continue;
             };
             let arena = &mut dae.exprs;
@@ -122,7 +125,7 @@ pub(crate) fn exchange_rows(
             dae.residuals[state_row].value = arena.if_else(in_mode, rate, former);
             let pin_origin = branch.origin.made_by(MadeBy::Pin);
             if state_row != slot_row {
-                if !depends(dae, former, slot_row) {
+                if !rows.depends(dae, former, slot_row) {
                     diagnostics.push(no_force(dae, system, automaton, mode, cell, slot_row));
                     continue;
                 }
@@ -157,17 +160,15 @@ fn constant_between_events(system: &System, id: ExprId) -> bool {
 }
 
 fn refuse_two_pins(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
-    let mut seen: Vec<(Cell, AutomatonId, hyde_diag::Origin)> = Vec::new();
+    let mut seen: HashMap<Cell, (AutomatonId, hyde_diag::Origin)> = HashMap::new();
     for slot in &system.slots {
         for branch in &slot.branches {
             let Some((cell, _)) = branch.pin else {
                 continue;
             };
-            match seen
-                .iter()
-                .find(|(other, automaton, _)| *other == cell && *automaton != slot.automaton)
-            {
-                Some((_, automaton, origin)) => {
+            match seen.get(&cell) {
+                Some((automaton, _)) if *automaton == slot.automaton => {}
+                Some((automaton, origin)) => {
                     let (a, b) = (
                         &system.flat.automata[*automaton].name,
                         &system.flat.automata[slot.automaton].name,
@@ -190,60 +191,74 @@ fn refuse_two_pins(dae: &Dae, system: &System, diagnostics: &mut Diagnostics) {
                             .help("make one an effect of the other, or put a spring between them"),
                     );
                 }
-                None => seen.push((cell, slot.automaton, branch.origin.clone())),
+                None => drop(seen.insert(cell, (slot.automaton, branch.origin.clone()))),
             }
         }
     }
 }
 
-/// Number of the residual of an unknown that stays in the vector.
-fn row_of(order: &Order, number: usize) -> usize {
-    let before = order.in_vector[..number].iter();
-    before.filter(|&&kept| kept).count()
+/// Which residual and which definition belongs to what.
+struct Rows {
+    /// Of each unknown: the number of the residuals before its own, if it stays in the vector.
+    of_unknown: Vec<usize>,
+    /// The residuals of single states.
+    of_state: HashMap<Cell, usize>,
+    /// The residuals of algebraic variables.
+    of_algebraic: HashMap<VarId, Vec<usize>>,
+    /// The definitions.
+    definitions: HashMap<VarId, Vec<usize>>,
 }
 
-fn row_of_state(dae: &Dae, cell: Cell) -> Option<usize> {
-    dae.residuals.iter().position(|residual| {
-        let block = &dae.unknowns[residual.unknown];
-        block.differential && block.var == cell.0 && block.first == cell.1 && block.len == 1
-    })
-}
-
-/// Whether an expression depends on the unknown of a row, through definitions and the rows of other algebraic unknowns:
-/// along such a path each row takes over the unknown of the next, and the last one the force.
-fn depends(dae: &Dae, root: ExprId, row: usize) -> bool {
-    let block = &dae.unknowns[dae.residuals[row].unknown];
-    let mut pending = vec![root];
-    let mut visited = Vec::new();
-    while let Some(id) = pending.pop() {
-        for below in dae.exprs.below(&[id]) {
-            let Expr::Var(var, _) = dae.exprs[below] else {
-                continue;
-            };
-            if var == block.var {
-                return true;
-            }
-            if !visited.contains(&var) {
-                visited.push(var);
-                pending.extend(
-                    dae.definitions
-                        .iter()
-                        .filter(|d| d.var == var)
-                        .map(|d| d.value),
-                );
-                pending.extend(
-                    dae.residuals
-                        .iter()
-                        .filter(|residual| {
-                            let block = &dae.unknowns[residual.unknown];
-                            block.var == var && !block.differential
-                        })
-                        .map(|residual| residual.value),
-                );
+impl Rows {
+    fn new(dae: &Dae, order: &Order) -> Self {
+        let mut before = 0;
+        let of_unknown = order.in_vector.iter().map(|&kept| {
+            before += usize::from(kept);
+            before - usize::from(kept)
+        });
+        let of_unknown = of_unknown.collect();
+        let mut of_state = HashMap::new();
+        let mut of_algebraic: HashMap<VarId, Vec<usize>> = HashMap::new();
+        for (row, residual) in dae.residuals.iter().enumerate() {
+            let block = &dae.unknowns[residual.unknown];
+            match (block.differential, block.len) {
+                (true, 1) => drop(of_state.insert((block.var, block.first), row)),
+                (true, _) => {}
+                (false, _) => of_algebraic.entry(block.var).or_default().push(row),
             }
         }
+        Self {
+            of_unknown,
+            of_state,
+            of_algebraic,
+            definitions: dae.definitions_of_variables(),
+        }
     }
-    false
+
+    /// Whether an expression depends on the unknown of a row, through definitions and the rows of other algebraic unknowns:
+    /// along such a path each row takes over the unknown of the next, and the last one the force.
+    fn depends(&self, dae: &Dae, root: ExprId, row: usize) -> bool {
+        let block = &dae.unknowns[dae.residuals[row].unknown];
+        let mut pending = vec![root];
+        let mut visited = BTreeSet::new();
+        while let Some(id) = pending.pop() {
+            for below in dae.exprs.below(&[id]) {
+                let Expr::Var(var, _) = dae.exprs[below] else {
+                    continue;
+                };
+                if var == block.var {
+                    return true;
+                }
+                if visited.insert(var) {
+                    let own = self.definitions.get(&var).into_iter().flatten();
+                    pending.extend(own.map(|&number| dae.definitions[number].value));
+                    let own = self.of_algebraic.get(&var).into_iter().flatten();
+                    pending.extend(own.map(|&row| dae.residuals[row].value));
+                }
+            }
+        }
+        false
+    }
 }
 
 fn no_force(

@@ -14,8 +14,7 @@ use crate::segments;
 use crate::system::{Branch, Cell, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_ir::flat::{Action, Transition};
-use hyde_ir::{BinaryOp, Expr, ExprId, UnaryOp};
-use std::collections::HashMap;
+use hyde_ir::{BinaryOp, Expr, ExprId, Memo, UnaryOp};
 
 /// Lets modes go on that fix what is prescribed.
 pub(crate) fn let_move(system: &mut System, diagnostics: &mut Diagnostics) {
@@ -86,7 +85,7 @@ fn open_exits(system: &mut System, slot: usize, mode: usize, motion: ExprId) {
 
 /// A guard of the mode entered, with the parameters that the exit gives it.
 fn with_parameters(exprs: &mut hyde_ir::ExprArena, guard: ExprId, exit: &Transition) -> ExprId {
-    exprs.rewrite(guard, &mut HashMap::new(), |_, _, expr| {
+    exprs.rewrite(guard, &mut Memo::default(), |_, _, expr| {
         let Expr::Var(var, index) = expr else {
             return None;
         };

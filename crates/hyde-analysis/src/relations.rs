@@ -8,11 +8,12 @@ use crate::system::System;
 use hyde_diag::Origin;
 use hyde_ir::dae::{Relation, RelationUse};
 use hyde_ir::print::Names;
-use hyde_ir::{AutomatonId, BinaryOp, Expr, ExprId, Id as _, RelationId, VariableKind};
+use hyde_ir::{AutomatonId, BinaryOp, Expr, ExprId, Id as _, Memo, RelationId, VariableKind};
 use std::collections::HashMap;
 
 /// Extracts the relations of equations, exits, `when` conditions and asserts.
 pub(crate) fn extract(system: &mut System) {
+    let mut known = Known::default();
     for number in 0..system.equations.len() {
         let origin = system.equations[number].origin.clone();
         let scalar = system.equations[number].range == hyde_ir::Range::SCALAR;
@@ -20,25 +21,25 @@ pub(crate) fn extract(system: &mut System) {
             // An `if` in an array equation switches cell by cell; it is evaluated as it is, without events.
             continue;
         }
-        let mut memo = HashMap::new();
+        let mut memo = Memo::default();
         let (lhs, rhs) = (system.equations[number].lhs, system.equations[number].rhs);
         system.equations[number].lhs =
-            replace(system, lhs, RelationUse::Equation, &origin, &mut memo);
+            known.replace(system, lhs, RelationUse::Equation, &origin, &mut memo);
         system.equations[number].rhs =
-            replace(system, rhs, RelationUse::Equation, &origin, &mut memo);
+            known.replace(system, rhs, RelationUse::Equation, &origin, &mut memo);
     }
     for slot in 0..system.slots.len() {
         for branch in 0..system.slots[slot].branches.len() {
             let old = system.slots[slot].branches[branch].clone();
-            let mut memo = HashMap::new();
-            let lhs = replace(
+            let mut memo = Memo::default();
+            let lhs = known.replace(
                 system,
                 old.lhs,
                 RelationUse::Equation,
                 &old.origin,
                 &mut memo,
             );
-            let rhs = replace(
+            let rhs = known.replace(
                 system,
                 old.rhs,
                 RelationUse::Equation,
@@ -59,7 +60,7 @@ pub(crate) fn extract(system: &mut System) {
                     (exit.guard, exit.origin.clone())
                 };
                 let used = RelationUse::Exit(id, u32::try_from(mode).unwrap_or(u32::MAX));
-                let guard = replace(system, guard, used, &origin, &mut HashMap::new());
+                let guard = known.replace(system, guard, used, &origin, &mut Memo::default());
                 system.flat.automata[id].modes[mode].exits[exit].guard = guard;
             }
         }
@@ -68,12 +69,12 @@ pub(crate) fn extract(system: &mut System) {
         let origin = system.flat.whens[when].origin.clone();
         for branch in 0..system.flat.whens[when].branches.len() {
             let condition = system.flat.whens[when].branches[branch].0;
-            let condition = replace(
+            let condition = known.replace(
                 system,
                 condition,
                 RelationUse::When,
                 &origin,
-                &mut HashMap::new(),
+                &mut Memo::default(),
             );
             system.flat.whens[when].branches[branch].0 = condition;
         }
@@ -84,7 +85,7 @@ pub(crate) fn extract(system: &mut System) {
             system.flat.edges[edge].origin.clone(),
         );
         let used = RelationUse::When;
-        let condition = replace(system, condition, used, &origin, &mut HashMap::new());
+        let condition = known.replace(system, condition, used, &origin, &mut Memo::default());
         system.flat.edges[edge].condition = condition;
     }
     for assert in 0..system.flat.asserts.len() {
@@ -92,87 +93,100 @@ pub(crate) fn extract(system: &mut System) {
             system.flat.asserts[assert].condition,
             system.flat.asserts[assert].origin.clone(),
         );
-        let condition = replace(
+        let condition = known.replace(
             system,
             condition,
             RelationUse::Assert,
             &origin,
-            &mut HashMap::new(),
+            &mut Memo::default(),
         );
         system.flat.asserts[assert].condition = condition;
     }
 }
 
-fn replace(
-    system: &mut System,
-    root: ExprId,
-    used: RelationUse,
-    origin: &Origin,
-    memo: &mut HashMap<ExprId, ExprId>,
-) -> ExprId {
-    // What stands below noEvent keeps its comparisons: those nodes map to themselves.
-    for id in system.flat.exprs.below(&[root]) {
-        if let Expr::NoEvent(inner) = system.flat.exprs[id] {
-            for kept in system.flat.exprs.below(&[inner]) {
-                memo.insert(kept, kept);
-            }
-        }
-    }
-    for id in system.flat.exprs.below(&[root]) {
-        let Expr::Binary(op, a, b) = system.flat.exprs[id] else {
-            continue;
-        };
-        if memo.contains_key(&id)
-            || !op.is_comparison()
-            || matches!(op, BinaryOp::Eq | BinaryOp::Ne)
-        {
-            continue;
-        }
-        if !varies(system, a) && !varies(system, b) {
-            continue;
-        }
-        let text = text(system, id);
-        let (a, b) = (
-            system.flat.exprs.rewrite(a, memo, |_, _, _| None),
-            system.flat.exprs.rewrite(b, memo, |_, _, _| None),
-        );
-        let (above, below) = if matches!(op, BinaryOp::Gt | BinaryOp::Ge) {
-            (a, b)
-        } else {
-            (b, a)
-        };
-        let root = system.flat.exprs.minus(above, below);
-        let inclusive = matches!(op, BinaryOp::Ge | BinaryOp::Le);
-        let relation = find_or_add(system, root, inclusive, used, text, origin);
-        let leaf = system.flat.exprs.add(Expr::Relation(relation));
-        memo.insert(id, leaf);
-    }
-    system.flat.exprs.rewrite(root, memo, |_, _, _| None)
+/// The relations found so far.
+#[derive(Default)]
+struct Known {
+    of_roots: HashMap<ExprId, Vec<RelationId>>,
 }
 
-fn find_or_add(
-    system: &mut System,
-    root: ExprId,
-    inclusive: bool,
-    used: RelationUse,
-    text: String,
-    origin: &Origin,
-) -> RelationId {
-    let known = system.relations.enumerate().find(|(_, known)| {
-        known.root == root && known.inclusive == inclusive && known.used == used
-    });
-    if let Some((id, _)) = known {
-        return id;
+impl Known {
+    fn replace(
+        &mut self,
+        system: &mut System,
+        root: ExprId,
+        used: RelationUse,
+        origin: &Origin,
+        memo: &mut Memo,
+    ) -> ExprId {
+        // What stands below noEvent keeps its comparisons: those nodes map to themselves.
+        for id in system.flat.exprs.below(&[root]) {
+            if let Expr::NoEvent(inner) = system.flat.exprs[id] {
+                for kept in system.flat.exprs.below(&[inner]) {
+                    memo.insert(kept, kept);
+                }
+            }
+        }
+        for id in system.flat.exprs.below(&[root]) {
+            let Expr::Binary(op, a, b) = system.flat.exprs[id] else {
+                continue;
+            };
+            if memo.contains_key(&id)
+                || !op.is_comparison()
+                || matches!(op, BinaryOp::Eq | BinaryOp::Ne)
+            {
+                continue;
+            }
+            if !varies(system, a) && !varies(system, b) {
+                continue;
+            }
+            let text = text(system, id);
+            let (a, b) = (
+                system.flat.exprs.rewrite(a, memo, |_, _, _| None),
+                system.flat.exprs.rewrite(b, memo, |_, _, _| None),
+            );
+            let (above, below) = if matches!(op, BinaryOp::Gt | BinaryOp::Ge) {
+                (a, b)
+            } else {
+                (b, a)
+            };
+            let root = system.flat.exprs.minus(above, below);
+            let inclusive = matches!(op, BinaryOp::Ge | BinaryOp::Le);
+            let relation = self.find_or_add(system, root, inclusive, used, text, origin);
+            let leaf = system.flat.exprs.add(Expr::Relation(relation));
+            memo.insert(id, leaf);
+        }
+        system.flat.exprs.rewrite(root, memo, |_, _, _| None)
     }
-    let time_event = time_event(system, root);
-    system.relations.push(Relation {
-        root,
-        inclusive,
-        time_event,
-        used,
-        text,
-        origin: origin.clone(),
-    })
+
+    fn find_or_add(
+        &mut self,
+        system: &mut System,
+        root: ExprId,
+        inclusive: bool,
+        used: RelationUse,
+        text: String,
+        origin: &Origin,
+    ) -> RelationId {
+        let same = self.of_roots.get(&root).into_iter().flatten().find(|id| {
+            let known = &system.relations[**id];
+            known.inclusive == inclusive && known.used == used
+        });
+        if let Some(id) = same {
+            return *id;
+        }
+        let time_event = time_event(system, root);
+        let relation = system.relations.push(Relation {
+            root,
+            inclusive,
+            time_event,
+            used,
+            text,
+            origin: origin.clone(),
+        });
+        self.of_roots.entry(root).or_default().push(relation);
+        relation
+    }
 }
 
 /// `time - e` or `e - time` with e of parameters alone changes its sign at e.

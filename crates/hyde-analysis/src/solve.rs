@@ -1,7 +1,6 @@
 //! Solves an equation for one of its leaves where that is linear: `a*v + b = 0` gives `v = -b/a`.
 
-use hyde_ir::{Expr, ExprArena, ExprId};
-use std::collections::HashMap;
+use hyde_ir::{Expr, ExprArena, ExprId, Memo};
 
 /// The value of `leaf` from `lhs = rhs`; `None` unless it stands linearly, with a factor of parameters alone.
 pub(crate) fn solve_for(
@@ -29,7 +28,7 @@ pub(crate) fn solve_for(
     if !arena.is_parametric(*factor) || arena.is_constant(*factor, 0.0) {
         return None;
     }
-    let mut memo = HashMap::new();
+    let mut memo = Memo::default();
     let mut without = |arena: &mut ExprArena, id: ExprId| {
         arena.rewrite(id, &mut memo, |arena, _, expr| {
             (expr == leaf).then(|| arena.constant(0.0))

@@ -6,7 +6,7 @@
 
 use crate::partials::{expand, expanded_definitions, rows};
 use hyde_ir::dae::{Dae, Function, Partial, Space, Wrt};
-use hyde_ir::{ClockId, Expr, ExprId, Index, Range, VarId};
+use hyde_ir::{ClockId, Expr, ExprId, Index, Memo, Range, VarId};
 use std::collections::HashMap;
 
 /// Derivatives of a function by parameters and by the memory, in the order of its rows.
@@ -132,12 +132,14 @@ pub fn tick_partials(dae: &mut Dae, clock: ClockId) -> Vec<(usize, TickWrt, Expr
             };
             let value = expand(&mut dae.exprs, assignment.value, &definitions);
             let value = dae.exprs.with_counter(value, at);
-            let value = dae.exprs.rewrite(value, &mut HashMap::new(), |_, _, expr| {
-                let Expr::Var(var, index) = expr else {
-                    return None;
-                };
-                assigned.get(&(var, index.offset)).copied()
-            });
+            let value = dae
+                .exprs
+                .rewrite(value, &mut Memo::default(), |_, _, expr| {
+                    let Expr::Var(var, index) = expr else {
+                        return None;
+                    };
+                    assigned.get(&(var, index.offset)).copied()
+                });
             let element = assignment.index.at(counter);
             assigned.insert((assignment.var, element), value);
             let Some(target) = dae.place(assignment.var) else {

@@ -5,8 +5,10 @@ use crate::solve::divisor;
 use hyde_diag::{InstancePath, Origin, Span};
 use hyde_ir::dae::{Alias, Dependent};
 use hyde_ir::flat::{self, Action, FlatModel};
-use hyde_ir::{AutomatonId, Expr, ExprArena, ExprId, Id as _, Index, Range, VarId, VariableKind};
-use std::collections::{BTreeMap, HashMap};
+use hyde_ir::{
+    AutomatonId, Expr, ExprArena, ExprId, Id as _, Index, Memo, Range, VarId, VariableKind,
+};
+use std::collections::BTreeMap;
 
 /// An element of a variable, counted from 0.
 pub(crate) type Cell = (VarId, usize);
@@ -145,7 +147,7 @@ impl System {
         except: Option<usize>,
         mut replace: impl FnMut(&mut ExprArena, Expr) -> Option<ExprId>,
     ) {
-        let mut memo: HashMap<ExprId, ExprId> = HashMap::new();
+        let mut memo = Memo::default();
         let flat = &mut self.flat;
         let mut each = |arena: &mut ExprArena, id: &mut ExprId| {
             *id = arena.rewrite(*id, &mut memo, |arena, _, expr| replace(arena, expr));

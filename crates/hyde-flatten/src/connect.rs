@@ -11,16 +11,21 @@ use hyde_diag::{Code, Diagnostic, MadeBy, Origin, Span};
 use hyde_ir::flat::{Equation, Flow};
 use hyde_ir::{Expr as Ir, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{ClassKind, Reference};
+use std::collections::hash_map::Entry;
+use std::collections::{BTreeSet, HashMap};
+
+/// A connector and whether it is seen from outside its component: an inside one of the set.
+type Side = (InstanceId, bool);
 
 /// A `connect` of connectors, as written.
 pub(crate) struct Connection {
-    sides: Vec<(InstanceId, bool)>,
+    sides: Vec<Side>,
     origin: Origin,
 }
 
 impl Connection {
     /// A connection that the compiler makes.
-    pub(crate) fn joining(sides: Vec<(InstanceId, bool)>, origin: Origin) -> Self {
+    pub(crate) fn joining(sides: Vec<Side>, origin: Origin) -> Self {
         Self { sides, origin }
     }
 }
@@ -260,33 +265,41 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    /// The sets of joined connectors, in the order of their first `connect`.
-    fn connection_sets(&mut self) -> Vec<(Vec<(InstanceId, bool)>, Origin)> {
-        let mut sets: Vec<(Vec<(InstanceId, bool)>, Origin)> = Vec::new();
+    /// The sets of joined connectors, in the order of the last `connect` that joined any.
+    fn connection_sets(&mut self) -> Vec<(Vec<Side>, Origin)> {
+        let mut sets: Vec<Option<(Vec<Side>, Origin)>> = Vec::new();
+        // The set that each side was put in, and the later set that each set went into.
+        let mut set_of: HashMap<Side, usize> = HashMap::new();
+        let mut into: Vec<usize> = Vec::new();
         for connection in std::mem::take(&mut self.connections) {
-            let mut merged: Vec<(InstanceId, bool)> = Vec::new();
+            let known = connection.sides.iter().filter_map(|side| set_of.get(side));
+            let joined: BTreeSet<usize> = known.map(|&set| latest(&mut into, set)).collect();
+            let number = sets.len();
+            let mut merged: Vec<Side> = Vec::new();
             let mut origin = connection.origin;
-            let mut rest = Vec::new();
-            for (set, first) in sets {
-                if set.iter().any(|side| connection.sides.contains(side)) {
-                    merged.extend(set);
+            for set in joined {
+                into[set] = number;
+                if let Some((members, first)) = sets[set].take() {
+                    match merged.is_empty() {
+                        true => merged = members,
+                        false => merged.extend(members),
+                    }
                     origin = first;
-                } else {
-                    rest.push((set, first));
                 }
             }
             for side in connection.sides {
-                if !merged.contains(&side) {
+                if let Entry::Vacant(vacant) = set_of.entry(side) {
+                    vacant.insert(number);
                     merged.push(side);
                 }
             }
-            rest.push((merged, origin));
-            sets = rest;
+            sets.push(Some((merged, origin)));
+            into.push(number);
         }
-        sets
+        sets.into_iter().flatten().collect()
     }
 
-    fn set_equations(&mut self, members: &[(InstanceId, bool)], origin: &Origin) {
+    fn set_equations(&mut self, members: &[Side], origin: &Origin) {
         let Some(&(first, _)) = members.first() else {
             return;
         };
@@ -336,7 +349,7 @@ impl<'a> Model<'a, '_> {
 
     /// Notes what goes from one of the joined connectors to another. That of a component whose connector leads on to one
     /// part of it is told where the component is connected.
-    fn flows(&mut self, members: &[(InstanceId, bool)]) {
+    fn flows(&mut self, members: &[Side]) {
         let told: Vec<(InstanceId, String)> = match *members {
             [_] => return,
             [(from, true), (to, true)] => {
@@ -346,9 +359,7 @@ impl<'a> Model<'a, '_> {
             [_, _] => return,
             _ => {
                 let inside = members.iter().filter(|(_, inside)| *inside);
-                let told = |&(id, _): &(InstanceId, bool)| {
-                    (id, format!("into {}", self.instances[id].path))
-                };
+                let told = |&(id, _): &Side| (id, format!("into {}", self.instances[id].path));
                 inside.map(told).collect()
             }
         };
@@ -389,4 +400,14 @@ impl<'a> Model<'a, '_> {
     fn is_connector(&self, member: &Member) -> bool {
         matches!(member, Member::Instance(id) if self.instances[*id].class.kind == ClassKind::Connector)
     }
+}
+
+/// The set that a set went into at last; the way there becomes shorter for the next time.
+fn latest(into: &mut [usize], set: usize) -> usize {
+    let mut at = set;
+    while into[at] != at {
+        into[at] = into[into[at]];
+        at = into[at];
+    }
+    at
 }

@@ -12,7 +12,7 @@ use crate::instance::{InstanceId, Scope, Setting};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy};
 use hyde_ir::flat::{Action, ClockedEquation, Equation, When};
-use hyde_ir::{ClockId, Expr as Ir, ExprId, Id as _, Index, Range, VarId, VariableKind};
+use hyde_ir::{ClockId, Expr as Ir, ExprId, Id as _, Index, Memo, Range, VarId, VariableKind};
 use hyde_syntax::ast;
 use hyde_units::Dimension;
 use std::collections::HashMap;
@@ -151,7 +151,7 @@ impl<'a> Model<'a, '_> {
         let value = self
             .flat
             .exprs
-            .rewrite(value, &mut HashMap::new(), |exprs, _, leaf| {
+            .rewrite(value, &mut Memo::default(), |exprs, _, leaf| {
                 let Ir::Var(var, index) = leaf else {
                     return None;
                 };

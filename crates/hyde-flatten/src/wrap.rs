@@ -7,9 +7,8 @@
 use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic};
-use hyde_ir::{Index, VarId};
+use hyde_ir::{Index, Memo, VarId};
 use hyde_syntax::ast::{Element, Expr, ExprKind, Prefix, Reference};
-use std::collections::HashMap;
 
 /// `wrap x by e;`
 pub(crate) struct Wrap<'a> {
@@ -39,7 +38,7 @@ impl Model<'_, '_> {
             let declared = self.typed(value.id, self.dim(var), value.span);
             self.agree(&declared, &new, "the site and its wrapper are", effect);
             let leaf = self.flat.exprs.var(var);
-            let mut memo = HashMap::from([(leaf, value.id)]);
+            let mut memo = Memo::from_iter([(leaf, value.id)]);
             value.id = self.flat.exprs.rewrite(new.id, &mut memo, |_, _, _| None);
         }
         value

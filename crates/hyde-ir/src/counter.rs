@@ -1,8 +1,7 @@
 //! The counter of an array expression: fixed at a value, or counting differently.
 
-use crate::expr::{Expr, ExprArena, Index};
+use crate::expr::{Expr, ExprArena, Index, Memo};
 use crate::id::ExprId;
-use std::collections::HashMap;
 
 impl ExprArena {
     /// The expression at one value of its counter: elements that count along become fixed ones, the counter a number.
@@ -16,7 +15,7 @@ impl ExprArena {
             stride: index.stride * counter.stride,
             offset: index.at(counter.offset),
         };
-        self.rewrite(root, &mut HashMap::new(), |arena, _, expr| match expr {
+        self.rewrite(root, &mut Memo::default(), |arena, _, expr| match expr {
             Expr::Var(var, index) => Some(arena.add(Expr::Var(var, moved(index)))),
             Expr::Der(var, index) => Some(arena.add(Expr::Der(var, moved(index)))),
             Expr::Pre(var, index) => Some(arena.add(Expr::Pre(var, moved(index)))),
@@ -42,7 +41,7 @@ impl ExprArena {
 
 #[cfg(test)]
 mod tests {
-    use crate::expr::{Expr, ExprArena, Index};
+    use crate::expr::{Expr, ExprArena, Index, Memo};
     use crate::id::{Id as _, VarId};
 
     #[test]

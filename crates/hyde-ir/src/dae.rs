@@ -24,6 +24,7 @@ use crate::id::{
     AutomatonId, ClockId, ColumnId, DelayId, ExprId, IdVec, ParamId, RelationId, UnknownId, VarId,
 };
 use crate::{Column, ExprArena, Parameter, Quantity, Range, Variable};
+use std::collections::HashMap;
 
 /// A reported quantity: scalar, or an array with one column an element.
 #[derive(Clone, Debug)]
@@ -147,6 +148,16 @@ impl Dae {
             | crate::VariableKind::Held(..)
             | crate::VariableKind::Reduction(_) => self.places[var],
         }
+    }
+
+    /// The numbers of the definitions of each variable that has any.
+    #[must_use]
+    pub fn definitions_of_variables(&self) -> HashMap<VarId, Vec<usize>> {
+        let mut found: HashMap<VarId, Vec<usize>> = HashMap::new();
+        for (number, definition) in self.definitions.iter().enumerate() {
+            found.entry(definition.var).or_default().push(number);
+        }
+        found
     }
 
     /// The values that the continuous equations are made of: residuals, definitions, relations.

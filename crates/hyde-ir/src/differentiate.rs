@@ -10,8 +10,9 @@
 use crate::expr::{Expr, ExprArena};
 use crate::id::ExprId;
 use crate::{BinaryOp, UnaryOp};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeMap, HashMap};
 
 /// How far from the end of its domain a function has the slope that stands for the infinite one at the end.
 const NEAR: f64 = 1e-8;
@@ -29,9 +30,9 @@ enum Ends {
 #[derive(Default)]
 struct Branches {
     /// Whether a branch below is zero.
-    zero: HashMap<ExprId, bool>,
+    zero: FxHashMap<ExprId, bool>,
     /// Whether an operation below may give infinity, or no number.
-    infinite: HashMap<ExprId, bool>,
+    infinite: FxHashMap<ExprId, bool>,
 }
 
 impl Branches {
@@ -71,7 +72,7 @@ impl Branches {
 fn below(
     arena: &ExprArena,
     root: ExprId,
-    known: &mut HashMap<ExprId, bool>,
+    known: &mut FxHashMap<ExprId, bool>,
     kind: impl Fn(Expr) -> bool,
 ) -> bool {
     let mut stack = vec![root];
@@ -100,7 +101,7 @@ impl ExprArena {
         root: ExprId,
         mut leaf: impl FnMut(&mut Self, Expr) -> Option<ExprId>,
     ) -> ExprId {
-        let mut known: HashMap<ExprId, Option<ExprId>> = HashMap::new();
+        let mut known: FxHashMap<ExprId, Option<ExprId>> = FxHashMap::default();
         for id in self.below(&[root]) {
             let expr = self[id];
             let mut children = Vec::new();
@@ -138,7 +139,7 @@ impl ExprArena {
     /// The derivative of `root` by each of its leaves that `wanted` picks, in the order of the leaves' ids.
     pub fn gradient(&mut self, root: ExprId, wanted: impl Fn(Expr) -> bool) -> Vec<(Expr, ExprId)> {
         let nodes = self.below(&[root]);
-        let mut relevant: HashMap<ExprId, bool> = HashMap::new();
+        let mut relevant: FxHashMap<ExprId, bool> = FxHashMap::default();
         for &id in &nodes {
             let mut depends = wanted(self[id]);
             self[id].for_each_child(|child| depends |= relevant[&child]);

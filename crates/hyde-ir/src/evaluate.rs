@@ -2,7 +2,7 @@
 
 use crate::expr::{Expr, ExprArena};
 use crate::id::ExprId;
-use std::collections::HashMap;
+use rustc_hash::FxHashMap;
 
 impl ExprArena {
     /// The value of `root` where `leaf` gives the value of each leaf (numbers and operations apart).
@@ -36,7 +36,7 @@ impl ExprArena {
         known: bool,
         mut leaf: impl FnMut(Expr) -> Result<f64, E>,
     ) -> Result<f64, E> {
-        let mut values: HashMap<ExprId, f64> = HashMap::new();
+        let mut values: FxHashMap<ExprId, f64> = FxHashMap::default();
         let unknown = |value: f64| known && value.is_nan();
         for id in self.below(&[root]) {
             let value = match self[id] {

@@ -5,8 +5,11 @@
 
 use crate::id::{AutomatonId, ExprId, Id, ParamId, RelationId, VarId};
 use crate::{BinaryOp, UnaryOp};
-use std::collections::HashMap;
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::ops::Index as IndexOp;
+
+/// What nodes were rewritten to, for [`ExprArena::rewrite`].
+pub type Memo = FxHashMap<ExprId, ExprId>;
 
 /// A constant, compared by its bits.
 #[derive(Clone, Copy, Debug)]
@@ -166,7 +169,7 @@ impl Expr {
 #[derive(Clone, Debug, Default)]
 pub struct ExprArena {
     nodes: Vec<Expr>,
-    known: HashMap<Expr, ExprId>,
+    known: FxHashMap<Expr, ExprId>,
 }
 
 impl IndexOp<ExprId> for ExprArena {
@@ -336,7 +339,7 @@ impl ExprArena {
     /// All nodes below and including `root`, children before parents.
     #[must_use]
     pub fn below(&self, roots: &[ExprId]) -> Vec<ExprId> {
-        let mut seen = std::collections::HashSet::new();
+        let mut seen = FxHashSet::default();
         let mut stack: Vec<ExprId> = roots.to_vec();
         let mut found = Vec::new();
         while let Some(id) = stack.pop() {
@@ -379,7 +382,7 @@ impl ExprArena {
     pub fn rewrite(
         &mut self,
         root: ExprId,
-        memo: &mut HashMap<ExprId, ExprId>,
+        memo: &mut Memo,
         mut replace: impl FnMut(&mut Self, ExprId, Expr) -> Option<ExprId>,
     ) -> ExprId {
         for id in self.below(&[root]) {
@@ -466,7 +469,7 @@ mod tests {
         let (x, y) = (arena.var(v), arena.var(w));
         let product = arena.times(x, y);
         let sum = arena.plus(product, x);
-        let new = arena.rewrite(sum, &mut HashMap::new(), |arena, _, e| {
+        let new = arena.rewrite(sum, &mut Memo::default(), |arena, _, e| {
             matches!(e, Expr::Var(id, _) if id == w).then(|| arena.constant(0.0))
         });
         assert_eq!(new, x);

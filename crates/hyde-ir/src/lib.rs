@@ -42,7 +42,7 @@ mod variable;
 
 pub use builtin::{BinaryOp, UnaryOp};
 pub use dae::Dae;
-pub use expr::{Expr, ExprArena, Index, Number, Range};
+pub use expr::{Expr, ExprArena, Index, Memo, Number, Range};
 pub use flat::FlatModel;
 pub use id::{
     AutomatonId, ClockId, ColumnId, DefinitionId, DelayId, ExprId, Id, IdVec, ParamId, RelationId,

@@ -148,16 +148,17 @@ impl Compiled {
 
 impl Kernels for Compiled {
     fn parameters(&self, set: &[(usize, f64)], p: &mut [f64]) {
+        let set: BTreeMap<usize, f64> = set.iter().copied().collect();
+        // What the parameters before this one are.
+        let mut known = p.to_vec();
         for (param, code) in &self.parameters {
             let place = self.dae.parameter_places[*param];
-            let size = self.dae.parameters[*param].size();
-            let before: Vec<f64> = p.to_vec();
-            code.run(&mut Frame::of_parameters(&before, p));
-            for &(position, value) in set {
-                if (place..place + size).contains(&position) {
-                    p[position] = value;
-                }
+            let own = place..place + self.dae.parameters[*param].size();
+            code.run(&mut Frame::of_parameters(&known, p));
+            for (&position, &value) in set.range(own.clone()) {
+                p[position] = value;
             }
+            known[own.clone()].copy_from_slice(&p[own]);
         }
     }
 

@@ -1,7 +1,7 @@
 //! [`Routine`]: what a kernel computes, step by step, with every leaf resolved to a place in memory.
 
 use hyde_ir::dae::{Dae, Function, Partial, Space};
-use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, Range, VarId, VariableKind};
+use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, Range, VariableKind};
 use std::collections::BTreeSet;
 
 /// The memory a kernel reads and writes.
@@ -113,17 +113,6 @@ impl Routine {
         Self::with_definitions(dae, format!("some_{}", name(function)), steps, None)
     }
 
-    /// An expression over a range, with the definitions that it reads.
-    pub(crate) fn alone(dae: &Dae, range: Range, value: ExprId) -> Self {
-        let step = Step {
-            range,
-            slot: Slot::Out,
-            target: Index::fixed(0),
-            value,
-        };
-        Self::with_definitions(dae, "alone".to_owned(), vec![step], None)
-    }
-
     /// Derivatives, one block of values a [`Partial`].
     pub(crate) fn partials(dae: &Dae, name: String, partials: &[Partial]) -> Self {
         let mut next = 0;
@@ -226,32 +215,24 @@ impl Routine {
 
     /// The definitions that the steps read, before them.
     fn with_definitions(dae: &Dae, name: String, steps: Vec<Step>, tick: Option<ClockId>) -> Self {
-        let mut needed: BTreeSet<VarId> = BTreeSet::new();
+        let of_variables = dae.definitions_of_variables();
+        let mut needed: BTreeSet<usize> = BTreeSet::new();
         let mut pending: Vec<ExprId> = steps.iter().map(|step| step.value).collect();
         while let Some(root) = pending.pop() {
             for id in dae.exprs.below(&[root]) {
                 let Expr::Var(var, _) = dae.exprs[id] else {
                     continue;
                 };
-                let explicit = dae
-                    .place(var)
-                    .is_some_and(|place| place.space == Space::Work);
-                if explicit && needed.insert(var) {
-                    pending.extend(
-                        dae.definitions
-                            .iter()
-                            .filter(|d| d.var == var)
-                            .map(|d| d.value),
-                    );
+                let own = of_variables.get(&var).into_iter().flatten();
+                for &number in own.filter(|&&number| needed.insert(number)) {
+                    pending.push(dae.definitions[number].value);
                 }
             }
         }
-        let definitions = dae
-            .definitions
-            .iter()
-            .filter(|definition| needed.contains(&definition.var));
-        let mut all: Vec<Step> = definitions
-            .map(|definition| {
+        let mut all: Vec<Step> = needed
+            .into_iter()
+            .map(|number| {
+                let definition = &dae.definitions[number];
                 let base = dae.place(definition.var).map_or(0, |place| place.base);
                 let offset = definition.index.offset + i32::try_from(base).unwrap_or(0);
                 let target = Index {

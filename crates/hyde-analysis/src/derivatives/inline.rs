@@ -9,9 +9,8 @@
 use crate::cells::Cells;
 use crate::solve::solve_for;
 use crate::system::{Cell, System};
-use hyde_ir::{Expr, ExprId, Range, VariableKind};
+use hyde_ir::{Expr, ExprId, Memo, Range, VariableKind};
 use std::collections::BTreeMap;
-use std::collections::HashMap;
 
 /// Variables looked at for one equation at most: a constraint goes through few.
 const MAX_VARIABLES: usize = 200;
@@ -147,7 +146,7 @@ fn cell_of(system: &System, leaf: Expr) -> Option<Cell> {
 
 /// An expression with every variable that has a value replaced by it.
 fn replaced(system: &mut System, values: &BTreeMap<Cell, ExprId>, id: ExprId) -> ExprId {
-    let mut memo = HashMap::new();
+    let mut memo = Memo::default();
     system.flat.exprs.rewrite(id, &mut memo, |_, _, expr| {
         let Expr::Var(var, index) = expr else {
             return None;

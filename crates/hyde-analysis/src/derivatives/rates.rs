@@ -2,7 +2,7 @@
 
 use crate::cells::Cells;
 use crate::system::System;
-use hyde_ir::{Expr, ExprId, Index, Range, VarId};
+use hyde_ir::{Expr, ExprId, Index, Memo, Range, VarId};
 use std::collections::BTreeMap;
 
 /// `target[j + shift] = der(var[j])` for the elements j in `first..=last`.
@@ -68,7 +68,7 @@ fn rename(
     } else {
         None
     };
-    let mut memo = std::collections::HashMap::new();
+    let mut memo = Memo::default();
     let mut replace = |system: &mut System, id: ExprId| {
         system.flat.exprs.rewrite(id, &mut memo, |arena, _, expr| {
             let Expr::Der(var, index) = expr else {

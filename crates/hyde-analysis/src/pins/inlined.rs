@@ -6,8 +6,8 @@
 
 use crate::solve::solve_for;
 use crate::system::{Branch, Cell, System};
-use hyde_ir::{Expr, ExprId, Range};
-use std::collections::{BTreeMap, HashMap};
+use hyde_ir::{Expr, ExprId, Memo, Range};
+use std::collections::BTreeMap;
 
 /// Explicit values within each other at most.
 const MAX_DEPTH: usize = 50;
@@ -74,7 +74,7 @@ impl<'a> Values<'a> {
         if depth > MAX_DEPTH {
             return None;
         }
-        let mut memo = HashMap::new();
+        let mut memo = Memo::default();
         for below in system.flat.exprs.below(&[id]) {
             let Some((var, index, derivative)) = system.flat.exprs[below].access() else {
                 continue;

@@ -1,6 +1,6 @@
 //! Which rows of a sparse matrix depend on each other, by exact elimination.
 
-use super::residue::Residue;
+use super::residue::{Generic, Residue};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A sparse row: column and entry.
@@ -9,10 +9,10 @@ pub(crate) type Row = BTreeMap<usize, Residue>;
 /// The rows of a basis of all combinations that give zero, each as few as the others allow: a set that depends on each
 /// other, and would not without any one of it.
 pub(crate) fn dependent_sets(rows: &[Row]) -> Vec<Vec<usize>> {
-    if eliminate(rows, false).is_empty() {
+    if eliminate(rows, false).vanished.is_empty() {
         return Vec::new();
     }
-    let mut found = eliminate(rows, true);
+    let mut found = eliminate(rows, true).vanished;
     // Each set keeps a row of its own: the others are freed of it.
     for number in 0..found.len() {
         let Some((&pivot, &entry)) = found[number].iter().next_back() else {
@@ -36,19 +36,49 @@ pub(crate) fn dependent_sets(rows: &[Row]) -> Vec<Vec<usize>> {
 
 /// The columns whose combination gives zero: the same of the transposed matrix.
 pub(crate) fn dependent_columns(rows: &[Row], columns: usize) -> Vec<Vec<usize>> {
+    dependent_sets(&transposed(rows, columns))
+}
+
+/// The columns that are in any combination of columns that gives zero: those that are not zero in a generic one, from
+/// which the pivots' rows are solved backward.
+pub(crate) fn free_columns(rows: &[Row], columns: usize) -> BTreeSet<usize> {
+    let pivots = eliminate(rows, false).pivots;
+    let mut generic = Generic::new();
+    let mut values: Vec<Residue> = (0..columns).map(|_| generic.next()).collect();
+    for (column, row) in pivots.iter().rev() {
+        let inverse = row.get(column).and_then(|entry| entry.inverse());
+        let others = row.iter().filter(|(other, _)| *other != column);
+        let sum = others.fold(Residue::ZERO, |sum, (&other, &entry)| {
+            sum.plus(entry.times(values[other]))
+        });
+        values[*column] = Residue::ZERO.minus(sum.times(inverse.unwrap_or(Residue::ZERO)));
+    }
+    let columns = values.iter().enumerate();
+    let free = columns.filter(|(_, value)| **value != Residue::ZERO);
+    free.map(|(column, _)| column).collect()
+}
+
+fn transposed(rows: &[Row], columns: usize) -> Vec<Row> {
     let mut transposed = vec![Row::new(); columns];
     for (number, row) in rows.iter().enumerate() {
         for (&column, &entry) in row {
             transposed[column].insert(number, entry);
         }
     }
-    dependent_sets(&transposed)
+    transposed
+}
+
+/// What an elimination leaves.
+struct Eliminated {
+    /// A combination of rows for each row that vanishes, an empty one where they are not asked for.
+    vanished: Vec<Row>,
+    /// In the order of the elimination: the column of each pivot and its row, without the columns eliminated before.
+    pivots: Vec<(usize, Row)>,
 }
 
 /// Gauss's elimination in the order of Markowitz (Duff, Erisman and Reid, Direct Methods for Sparse Matrices, §7.2): a
-/// column with one row first, else the shortest row and in it the shortest column. Gives a combination for each row that
-/// vanishes, an empty one where they are not asked for.
-fn eliminate(rows: &[Row], combinations: bool) -> Vec<Row> {
+/// column with one row first, else the shortest row and in it the shortest column.
+fn eliminate(rows: &[Row], combinations: bool) -> Eliminated {
     let mut rows: Vec<Row> = rows.to_vec();
     let mut made_of: Vec<Row> = (0..rows.len())
         .map(|number| match combinations {
@@ -72,7 +102,7 @@ fn eliminate(rows: &[Row], combinations: bool) -> Vec<Row> {
         .enumerate()
         .map(|(number, row)| (row.len(), number))
         .collect();
-    let mut vanished = Vec::new();
+    let (mut vanished, mut pivots) = (Vec::new(), Vec::new());
     loop {
         let free = single.pop().and_then(|column| {
             let list = readers.get(&column)?;
@@ -83,7 +113,7 @@ fn eliminate(rows: &[Row], combinations: bool) -> Vec<Row> {
             None if !single.is_empty() => continue,
             None => {
                 let Some(&(length, number)) = by_length.first() else {
-                    return vanished;
+                    return Eliminated { vanished, pivots };
                 };
                 if length == 0 {
                     by_length.pop_first();
@@ -135,6 +165,7 @@ fn eliminate(rows: &[Row], combinations: bool) -> Vec<Row> {
                 subtract(&mut made_of[other], &combination, factor);
             }
         }
+        pivots.push((column, own));
     }
 }
 
@@ -174,6 +205,7 @@ mod tests {
         assert_eq!(dependent_sets(&matrix), [vec![0, 3]]);
         // Its columns 0, 1 and 2 can move together: 2, 1, -30.
         assert_eq!(dependent_columns(&matrix, 4), [vec![0, 1, 2]]);
+        assert_eq!(free_columns(&matrix, 4), BTreeSet::from([0, 1, 2]));
         let regular = rows(&[&[(0, 1.0), (1, 1.0)], &[(0, 1.0), (1, 1.000_000_000_1)]]);
         assert!(dependent_sets(&regular).is_empty());
     }

@@ -2,7 +2,8 @@
 
 use super::residue::Residue;
 use hyde_ir::{BinaryOp, Expr, ExprId, FlatModel, ParamId, UnaryOp};
-use std::collections::{BTreeMap, HashMap};
+use rustc_hash::FxHashMap;
+use std::collections::BTreeMap;
 
 /// A value twice: as a residue, and as a double for what residues cannot do.
 #[derive(Clone, Copy, Debug)]
@@ -37,7 +38,7 @@ impl<'a> Exact<'a> {
     }
 
     fn value(&mut self, exprs: &hyde_ir::ExprArena, root: ExprId, counter: i32) -> Option<Value> {
-        let mut values: HashMap<ExprId, Value> = HashMap::new();
+        let mut values: FxHashMap<ExprId, Value> = FxHashMap::default();
         for id in exprs.below(&[root]) {
             let of = |number: f64| {
                 let residue = Residue::of(number)?;

@@ -3,24 +3,21 @@
 //! Such a model is regular and moves nowhere. Equations without a derivative, a known number or a signal in them, which give
 //! a state the value zero, are no drive: reported where more than one component has a part in it.
 
-use super::elimination::{Row, dependent_columns, dependent_sets};
+use super::elimination::{Row, dependent_sets, free_columns};
 use super::exact::Exact;
 use super::residue::Residue;
 use super::words::{Conflict, jammed};
 use crate::matching::Node;
 use crate::system::{Equation, System};
 use hyde_diag::Diagnostics;
-use hyde_ir::{Expr, Range, VarId};
+use hyde_ir::{Expr, Memo, Range, VarId};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Reports states that rigid parts hold at zero; whether there are any.
 pub(super) fn refuse(system: &System, diagnostics: &mut Diagnostics) -> bool {
     let (rows, nodes, columns) = proportions(system);
     // What no combination of unknowns that satisfies them moves.
-    let free: BTreeSet<usize> = dependent_columns(&rows, columns.len())
-        .into_iter()
-        .flatten()
-        .collect();
+    let free = free_columns(&rows, columns.len());
     let mut reported: BTreeSet<usize> = BTreeSet::new();
     for var in bodies(system) {
         let Some(&column) = columns.get(&var).filter(|column| !free.contains(column)) else {
@@ -74,11 +71,9 @@ fn proportions(system: &System) -> (Vec<Row>, Vec<Node>, BTreeMap<VarId, usize>)
             }
         }
         // Without its variables nothing must be left: no length, no offset.
-        let bare = exprs.rewrite(
-            residual,
-            &mut std::collections::HashMap::new(),
-            |exprs, _, expr| expr.access().map(|_| exprs.constant(0.0)),
-        );
+        let bare = exprs.rewrite(residual, &mut Memo::default(), |exprs, _, expr| {
+            expr.access().map(|_| exprs.constant(0.0))
+        });
         if linear && exprs.as_constant(bare) == Some(0.0) {
             rows.push(row);
             nodes.push(Node::Equation(number));

@@ -44,8 +44,11 @@ impl Residue {
     }
 
     pub(crate) fn times(self, other: Self) -> Self {
-        let product = u128::from(self.0) * u128::from(other.0) % u128::from(P);
-        Self(u64::try_from(product).unwrap_or(0))
+        // 2^61 is 1: the high bits are added to the low ones.
+        let product = u128::from(self.0) * u128::from(other.0);
+        let low = u64::try_from(product & u128::from(P)).unwrap_or(0);
+        let high = u64::try_from(product >> 61).unwrap_or(0);
+        Self((low + high) % P)
     }
 
     /// `None` of zero. By Fermat: a^(P-2) is 1/a.

@@ -10,7 +10,7 @@ use crate::instance::{Scope, Setting, Typed};
 use crate::lower::Resolved;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
-use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, VarId, VariableKind};
+use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, Memo, VarId, VariableKind};
 use hyde_syntax::ast::{Expr, ExprKind};
 use hyde_units::Dimension;
 
@@ -147,7 +147,7 @@ impl<'a> Model<'a, '_> {
 
     /// Variables with a declared value replaced by it, down to `keep`.
     fn expand_bindings(&mut self, id: ExprId, keep: VarId, depth: usize) -> ExprId {
-        let mut memo = std::collections::HashMap::new();
+        let mut memo = Memo::default();
         for inner in self.flat.exprs.below(&[id]) {
             let Ir::Var(var, Index::SCALAR) = self.flat.exprs[inner] else {
                 continue;

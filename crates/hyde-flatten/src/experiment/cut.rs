@@ -14,9 +14,8 @@ use crate::lower::Resolved;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy};
 use hyde_ir::flat::{ClockedEquation, Cut, Equation};
-use hyde_ir::{ClockId, Expr as Ir, ExprId, Index, Range, VarId, VariableKind};
+use hyde_ir::{ClockId, Expr as Ir, ExprId, Index, Memo, Range, VarId, VariableKind};
 use hyde_syntax::ast::{self, Reference};
-use std::collections::HashMap;
 
 const HELP: &str = "open the loop at an input, an output, a clocked variable or a variable declared with its value; if there is none, add one to the loop: `Angle measured = rotor.phi;`";
 
@@ -185,7 +184,7 @@ impl<'a> Model<'a, '_> {
     /// Of an expression that is made of the held values of one clock alone, or of variables that are: the same of what they
     /// hold, and the clock. `seen` are the variables on the way there: one that comes again is in a loop.
     fn of_held_values(&mut self, id: ExprId, seen: &mut Vec<VarId>) -> Option<(ClockId, ExprId)> {
-        let mut memo = HashMap::new();
+        let mut memo = Memo::default();
         let mut found = None;
         for below in self.flat.exprs.below(&[id]) {
             match self.flat.exprs[below] {

@@ -6,8 +6,7 @@
 //! see [`super::wrapped`].
 
 use crate::model::Model;
-use hyde_ir::{BinaryOp, Expr as Ir, ExprId, Index, UnaryOp, VariableKind};
-use std::collections::HashMap;
+use hyde_ir::{BinaryOp, Expr as Ir, ExprId, Index, Memo, UnaryOp, VariableKind};
 
 /// How deep clocked variables may be defined by each other.
 const MAX_DEPTH: usize = 40;
@@ -35,7 +34,7 @@ impl Model<'_, '_> {
 
     /// Clocked variables replaced by what is assigned to them, as far as that has no memory.
     fn without_clocks(&mut self, id: ExprId, depth: usize) -> ExprId {
-        let mut memo = HashMap::new();
+        let mut memo = Memo::default();
         for below in self.flat.exprs.below(&[id]) {
             let Ir::Var(var, Index::SCALAR) = self.flat.exprs[below] else {
                 continue;
@@ -100,7 +99,7 @@ impl Model<'_, '_> {
 
     /// Each quantiser replaced by its mean over the error.
     fn without_quantisers(&mut self, id: ExprId) -> ExprId {
-        let mut memo = HashMap::new();
+        let mut memo = Memo::default();
         for below in self.flat.exprs.below(&[id]) {
             let exprs = &mut self.flat.exprs;
             let one = exprs.constant(1.0);

@@ -14,9 +14,8 @@ use crate::lower::Resolved;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy};
 use hyde_ir::flat::Measured;
-use hyde_ir::{Expr as Ir, ExprId, Interpolation, VarId, VariableKind};
+use hyde_ir::{Expr as Ir, ExprId, Interpolation, Memo, VarId, VariableKind};
 use hyde_syntax::ast::{Drive, ExperimentItem};
-use std::collections::HashMap;
 
 /// A clock ticks several times between two rows if its period is at most this part of their distance.
 const SEVERAL: f64 = 0.6;
@@ -249,7 +248,7 @@ impl<'a> Model<'a, '_> {
 
     /// The same with columns held between their rows.
     fn with_held_columns(&mut self, id: ExprId) -> ExprId {
-        let mut memo = HashMap::new();
+        let mut memo = Memo::default();
         for below in self.flat.exprs.below(&[id]) {
             if let Ir::Var(var, _) = self.flat.exprs[below]
                 && let VariableKind::Column(column, Interpolation::Linear) =

@@ -1,0 +1,157 @@
+//! [`Explicit`]: which equation says the value of a variable, `cell = rhs`, and whether that value can be differentiated.
+//!
+//! One look at all equations, then each change is followed; to look at all of them for each variable took most of the time
+//! of models of a thousand components.
+
+use crate::cells::Cells;
+use crate::system::{Cell, System};
+use hyde_ir::{Expr, ExprId, Range, VariableKind};
+use std::cell::RefCell;
+use std::collections::{BTreeSet, HashMap, HashSet};
+
+/// Values through so many values at most.
+const MAX_DEPTH: usize = 50;
+
+/// The scalar equations by the cell on their left.
+pub(super) struct Explicit {
+    equations: HashMap<Cell, BTreeSet<usize>>,
+    /// Cells that were found to have a derivative.
+    derivable: RefCell<HashSet<Cell>>,
+}
+
+impl Explicit {
+    pub(super) fn of(system: &System) -> Self {
+        let mut equations: HashMap<Cell, BTreeSet<usize>> = HashMap::new();
+        for number in 0..system.equations.len() {
+            if let Some(cell) = left_cell(system, number) {
+                equations.entry(cell).or_default().insert(number);
+            }
+        }
+        Self {
+            equations,
+            derivable: RefCell::default(),
+        }
+    }
+
+    /// Takes an equation out before it changes.
+    pub(super) fn forget(&mut self, system: &System, number: usize) {
+        if let Some(list) = left_cell(system, number).and_then(|cell| self.equations.get_mut(&cell))
+        {
+            list.remove(&number);
+        }
+        self.derivable.get_mut().clear();
+    }
+
+    /// Takes an equation in after it changed.
+    pub(super) fn note(&mut self, system: &System, number: usize) {
+        if let Some(cell) = left_cell(system, number) {
+            self.equations.entry(cell).or_default().insert(number);
+        }
+    }
+
+    /// What the first equation that is explicit in a cell says it to be.
+    pub(super) fn value(&self, system: &System, cell: Cell) -> Option<ExprId> {
+        let number = *self.equations.get(&cell)?.first()?;
+        Some(system.equations[number].rhs)
+    }
+
+    /// Whether a cell has an explicit value whose variables can all be differentiated.
+    pub(super) fn is_derivable(&self, system: &System, cell: Cell, states: &Cells) -> bool {
+        self.is_derivable_below(system, cell, states, 0)
+    }
+
+    fn is_derivable_below(
+        &self,
+        system: &System,
+        cell: Cell,
+        states: &Cells,
+        depth: usize,
+    ) -> bool {
+        if self.derivable.borrow().contains(&cell) {
+            return true;
+        }
+        let Some(value) = self.value(system, cell).filter(|_| depth <= MAX_DEPTH) else {
+            return false;
+        };
+        let found = system.flat.exprs.below(&[value]).into_iter().all(|id| {
+            let Some((var, index, derivative)) = system.flat.exprs[id].access() else {
+                return true;
+            };
+            match system.flat.variables[var].kind {
+                _ if derivative => false,
+                VariableKind::Continuous => System::cell(var, index).is_some_and(|inner| {
+                    inner != cell
+                        && (states.contains(&inner)
+                            || self.is_derivable_below(system, inner, states, depth + 1))
+                }),
+                VariableKind::Discrete | VariableKind::Held(..) => true,
+                VariableKind::Clocked(_)
+                | VariableKind::Column(..)
+                | VariableKind::Delayed(_)
+                | VariableKind::Reduction(_) => false,
+            }
+        });
+        if found {
+            self.derivable.borrow_mut().insert(cell);
+        }
+        found
+    }
+
+    /// The time derivative of an expression of states, inputs of which nothing moves, and variables with a derivative;
+    /// `None` if it reads the cell `of`.
+    pub(super) fn derivative(
+        &self,
+        system: &mut System,
+        id: ExprId,
+        of: Cell,
+        states: &Cells,
+    ) -> Option<ExprId> {
+        self.derivative_below(system, id, (of, states), &mut HashMap::new(), 0)
+    }
+
+    fn derivative_below(
+        &self,
+        system: &mut System,
+        id: ExprId,
+        (of, states): (Cell, &Cells),
+        known: &mut HashMap<Cell, ExprId>,
+        depth: usize,
+    ) -> Option<ExprId> {
+        if depth > MAX_DEPTH {
+            return None;
+        }
+        let below = system.flat.exprs.below(&[id]).into_iter();
+        let leaves = below.filter_map(|id| {
+            let Expr::Var(var, index) = system.flat.exprs[id] else {
+                return None;
+            };
+            System::cell(var, index).filter(|_| system.is_continuous(var))
+        });
+        let mut rates = std::collections::BTreeMap::new();
+        for cell in leaves.collect::<Vec<Cell>>() {
+            if cell == of {
+                return None;
+            }
+            let rate = if states.contains(&cell) {
+                let der = Expr::Der(cell.0, System::cell_index(cell));
+                system.exprs().add(der)
+            } else if let Some(&rate) = known.get(&cell) {
+                rate
+            } else {
+                let value = self.value(system, cell)?;
+                self.derivative_below(system, value, (of, states), known, depth + 1)?
+            };
+            known.insert(cell, rate);
+            rates.insert(cell, rate);
+        }
+        Some(super::by_rates(system, id, &rates))
+    }
+}
+
+fn left_cell(system: &System, number: usize) -> Option<Cell> {
+    let equation = &system.equations[number];
+    match system.flat.exprs[equation.lhs] {
+        Expr::Var(var, index) if equation.range == Range::SCALAR => System::cell(var, index),
+        _ => None,
+    }
+}
