@@ -3,6 +3,7 @@
 use crate::compiled::routines;
 use crate::lower;
 use crate::native;
+use crate::parts::Parts;
 use crate::routine::{Routine, Slot};
 use cranelift_codegen::Context;
 use cranelift_codegen::control::ControlPlane;
@@ -11,8 +12,10 @@ use cranelift_codegen::ir::{
 };
 use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
-use hyde_ir::Dae;
+use hyde_ir::{Dae, ExprId};
+use rustc_hash::FxHashSet;
 use std::fmt::Write as _;
+use std::ops::Range;
 
 /// The Cranelift IR of every kernel. It depends on the model alone, not on the machine.
 #[must_use]
@@ -24,8 +27,9 @@ pub fn emit_clif(dae: &Dae) -> String {
         .collect();
     let mut text = format!("; frame: t at 0, {}\n", slots.join(", "));
     for routine in routines(dae) {
-        let function = function(dae, &routine);
-        let _ = write!(text, "\n; {}\n{function}", routine.name);
+        for (name, function) in functions(dae, &routine) {
+            let _ = write!(text, "\n; {name}\n{function}");
+        }
     }
     text
 }
@@ -38,14 +42,16 @@ pub fn emit_assembly(dae: &Dae) -> String {
     };
     let mut text = format!("; {}\n", isa.triple());
     for routine in routines(dae) {
-        let mut context = Context::for_function(function(dae, &routine));
-        context.set_disasm(true);
-        let code = context.compile(&*isa, &mut ControlPlane::default());
-        let listing = code
-            .ok()
-            .and_then(|code| code.vcode.clone())
-            .unwrap_or_default();
-        let _ = write!(text, "\n; {}\n{listing}", routine.name);
+        for (name, function) in functions(dae, &routine) {
+            let mut context = Context::for_function(function);
+            context.set_disasm(true);
+            let code = context.compile(&*isa, &mut ControlPlane::default());
+            let listing = code
+                .ok()
+                .and_then(|code| code.vcode.clone())
+                .unwrap_or_default();
+            let _ = write!(text, "\n; {name}\n{listing}");
+        }
     }
     text
 }
@@ -55,8 +61,8 @@ pub fn emit_assembly(dae: &Dae) -> String {
 pub fn instruction_count(dae: &Dae) -> usize {
     routines(dae)
         .iter()
-        .map(|routine| {
-            let function = function(dae, routine);
+        .flat_map(|routine| functions(dae, routine))
+        .map(|(_, function)| {
             function
                 .layout
                 .blocks()
@@ -66,11 +72,30 @@ pub fn instruction_count(dae: &Dae) -> usize {
         .sum()
 }
 
-fn function(dae: &Dae, routine: &Routine) -> Function {
+/// The functions of a routine, each with its name.
+fn functions(dae: &Dae, routine: &Routine) -> Vec<(String, Function)> {
+    let parts = Parts::of(dae, routine);
+    let mut kept = FxHashSet::default();
+    let names = (0..parts.steps.len()).map(|part| routine.part_name(part));
+    let list = names.zip(&parts.steps);
+    list.map(|(name, steps)| {
+        let part = (&parts, steps.clone());
+        let function = function(dae, routine, part, &mut kept, &name);
+        (name, function)
+    })
+    .collect()
+}
+
+fn function(
+    dae: &Dae,
+    routine: &Routine,
+    part: (&Parts, Range<usize>),
+    kept: &mut FxHashSet<ExprId>,
+    name: &str,
+) -> Function {
     let mut signature = Signature::new(native::PRINTED);
     signature.params.push(AbiParam::new(types::I64));
-    let mut function =
-        Function::with_name_signature(UserFuncName::testcase(&routine.name), signature);
+    let mut function = Function::with_name_signature(UserFuncName::testcase(name), signature);
     let mut builder_context = FunctionBuilderContext::new();
     let builder = FunctionBuilder::new(&mut function, &mut builder_context);
     let mut known: Vec<(&'static str, cranelift_codegen::ir::FuncRef)> = Vec::new();
@@ -82,6 +107,8 @@ fn function(dae: &Dae, routine: &Routine) -> Function {
     lower::lower(
         dae,
         routine,
+        part,
+        kept,
         builder,
         &mut |function, name, arguments| {
             if let Some((_, reference)) = known.iter().find(|(other, _)| *other == name) {

@@ -20,6 +20,7 @@ mod interpret;
 mod ledger;
 mod lower;
 mod native;
+mod parts;
 mod routine;
 mod some_rows;
 mod still;

@@ -6,13 +6,16 @@
 //! what does not change with the counter is computed before it.
 
 use crate::host;
+use crate::parts::Parts;
 use crate::routine::{Leaf, Routine, Slot, Step};
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{self, InstBuilder, MemFlagsData, types};
 use cranelift_codegen::isa::TargetFrontendConfig;
 use cranelift_frontend::FunctionBuilder;
 use hyde_ir::{BinaryOp, Dae, Expr, ExprId, Index, Range, UnaryOp};
+use rustc_hash::{FxHashMap, FxHashSet};
 use std::collections::HashMap;
+use std::ops;
 
 /// Ranges shorter than this are written out.
 const LOOP_FROM: usize = 8;
@@ -34,7 +37,11 @@ pub(crate) struct Lowering<'a, 'f, 'i> {
     /// Scalar explicit variables by their place in the workspace.
     explicit: HashMap<i32, ir::Value>,
     /// Whether each node changes with the counter.
-    pub(crate) moving: HashMap<ExprId, bool>,
+    pub(crate) moving: FxHashMap<ExprId, bool>,
+    /// Which numbers are kept for the parts that follow, and those that are by now.
+    parts: &'a Parts,
+    kept: &'a mut FxHashSet<ExprId>,
+    kept_base: Option<ir::Value>,
 }
 
 /// Nodes that have been lowered: as a number, and as a truth.
@@ -45,7 +52,7 @@ pub(crate) struct Known {
 }
 
 /// How the value of a node is wanted.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(crate) enum Wanted {
     Number,
     Truth,
@@ -76,10 +83,13 @@ pub(crate) enum At {
     Loop { bytes: ir::Value, first: i32 },
 }
 
-/// Writes the code of a routine into a function whose only argument is the frame.
-pub(crate) fn lower(
-    dae: &Dae,
-    routine: &Routine,
+/// Writes the code of a part of a routine into a function whose only argument is the frame. `kept` has the numbers that the
+/// parts before have kept, and then those of this one.
+pub(crate) fn lower<'a>(
+    dae: &'a Dae,
+    routine: &'a Routine,
+    (parts, steps): (&'a Parts, ops::Range<usize>),
+    kept: &'a mut FxHashSet<ExprId>,
     mut builder: FunctionBuilder<'_>,
     import: Import<'_>,
     config: TargetFrontendConfig,
@@ -98,11 +108,14 @@ pub(crate) fn lower(
         bases: [None; Slot::ALL.len()],
         known: Known::default(),
         explicit: HashMap::new(),
-        moving: HashMap::new(),
+        moving: moving(dae, routine, steps.clone()),
+        parts,
+        kept,
+        kept_base: None,
     };
-    lowering.prepare();
-    let mut at = 0;
-    while at < routine.steps.len() {
+    lowering.prepare(&routine.steps[steps.clone()]);
+    let mut at = steps.start;
+    while at < steps.end {
         let step = routine.steps[at];
         if step.range.len() < LOOP_FROM {
             step.range
@@ -113,7 +126,7 @@ pub(crate) fn lower(
         }
         let mut end = at + 1;
         // Results over the same range do not depend on each other, except in a tick.
-        while step.slot == Slot::Out && routine.tick.is_none() && end < routine.steps.len() {
+        while step.slot == Slot::Out && routine.tick.is_none() && end < steps.end {
             let next = routine.steps[end];
             if next.slot != Slot::Out || next.range != step.range {
                 break;
@@ -128,29 +141,25 @@ pub(crate) fn lower(
 }
 
 impl Lowering<'_, '_, '_> {
-    /// Finds which nodes change with the counter, and loads the addresses of the slots that are used.
-    fn prepare(&mut self) {
-        let roots: Vec<ExprId> = self.routine.steps.iter().map(|step| step.value).collect();
+    /// Loads the addresses of the slots that are used.
+    fn prepare(&mut self, steps: &[Step]) {
+        let in_parts = self.parts.steps.len() > 1;
         let mut used = [false; Slot::ALL.len()];
-        for step in &self.routine.steps {
-            used[step.slot as usize] |= step.slot == Slot::Out || step.range.len() > 1;
+        for step in steps {
+            used[step.slot as usize] |= step.slot == Slot::Out || step.range.len() > 1 || in_parts;
         }
-        for id in self.dae.exprs.below(&roots) {
-            let expr = self.dae.exprs[id];
-            let mut moving = match self.routine.leaf(self.dae, expr) {
-                Some(Leaf::Counter) => true,
-                Some(Leaf::Load(slot, index)) => {
-                    used[slot as usize] = true;
-                    index.stride != 0
-                }
-                Some(Leaf::IsMode(..)) => {
-                    used[Slot::Memory as usize] = true;
-                    false
-                }
-                Some(Leaf::Number(_) | Leaf::Time) | None => false,
-            };
-            expr.for_each_child(|child| moving |= self.moving[&child]);
-            self.moving.insert(id, moving);
+        for &id in self.moving.keys() {
+            match self.routine.leaf(self.dae, self.dae.exprs[id]) {
+                Some(Leaf::Load(slot, _)) => used[slot as usize] = true,
+                Some(Leaf::IsMode(..)) => used[Slot::Memory as usize] = true,
+                Some(Leaf::Counter | Leaf::Number(_) | Leaf::Time) | None => {}
+            }
+        }
+        if in_parts {
+            let flags = MemFlagsData::trusted().with_readonly().with_can_move();
+            let (frame, offset) = (self.frame, Parts::OFFSET);
+            let base = self.builder.ins().load(types::I64, flags, frame, offset);
+            self.kept_base = Some(base);
         }
         for slot in Slot::ALL {
             if used[slot as usize] {
@@ -177,7 +186,10 @@ impl Lowering<'_, '_, '_> {
         let element = step.target.at(counter);
         if step.slot == Slot::Work && step.range == Range::SCALAR {
             self.explicit.insert(element, value);
-            return;
+            // A part that follows reads it from memory.
+            if self.parts.steps.len() == 1 {
+                return;
+            }
         }
         self.store(step.slot, element, value);
         if self.routine.tick.is_some() {
@@ -218,14 +230,19 @@ impl Lowering<'_, '_, '_> {
             if self.lookup(id, wanted, local).is_some() {
                 continue;
             }
+            if let Some(value) = self.kept(id, wanted) {
+                self.known.insert(id, wanted, value);
+                continue;
+            }
             if !ready {
                 stack.push((id, wanted, true));
-                self.children(id, wanted, |child, wanted| {
+                children(self.dae, id, wanted, |child, wanted| {
                     stack.push((child, wanted, false))
                 });
                 continue;
             }
             let value = self.node(id, wanted, at, local);
+            self.keep(id, wanted, value);
             let known = if self.moving[&id] {
                 &mut *local
             } else {
@@ -243,34 +260,23 @@ impl Lowering<'_, '_, '_> {
         local.get(id, wanted).or_else(|| self.known.get(id, wanted))
     }
 
-    /// What a node needs of its children, or of itself in another form.
-    pub(crate) fn children(
-        &self,
-        id: ExprId,
-        wanted: Wanted,
-        mut need: impl FnMut(ExprId, Wanted),
-    ) {
-        let expr = self.dae.exprs[id];
-        match (expr, wanted) {
-            (Expr::NoEvent(a), wanted) => need(a, wanted),
-            (Expr::If(c, a, b), wanted) => {
-                need(b, wanted);
-                need(a, wanted);
-                need(c, Wanted::Truth);
-            }
-            _ if is_truth(expr) && wanted == Wanted::Number => need(id, Wanted::Truth),
-            _ if !is_truth(expr) && wanted == Wanted::Truth => need(id, Wanted::Number),
-            (Expr::Unary(UnaryOp::Not, a), _) => need(a, Wanted::Truth),
-            (Expr::Binary(BinaryOp::And | BinaryOp::Or, a, b), _) => {
-                need(b, Wanted::Truth);
-                need(a, Wanted::Truth);
-            }
-            (Expr::Unary(_, a), _) => need(a, Wanted::Number),
-            (Expr::Binary(_, a, b), _) => {
-                need(b, Wanted::Number);
-                need(a, Wanted::Number);
-            }
-            _ => {}
+    /// A number that an earlier part has kept.
+    fn kept(&mut self, id: ExprId, wanted: Wanted) -> Option<ir::Value> {
+        let (place, base) = (self.parts.kept.get(&id)?, self.kept_base?);
+        if wanted == Wanted::Truth || !self.kept.contains(&id) {
+            return None;
+        }
+        let flags = MemFlagsData::trusted();
+        Some(self.builder.ins().load(types::F64, flags, base, 8 * place))
+    }
+
+    fn keep(&mut self, id: ExprId, wanted: Wanted, value: ir::Value) {
+        if let (Wanted::Number, Some(place), Some(base)) =
+            (wanted, self.parts.kept.get(&id), self.kept_base)
+            && self.kept.insert(id)
+        {
+            let flags = MemFlagsData::trusted();
+            self.builder.ins().store(flags, value, base, 8 * place);
         }
     }
 
@@ -451,4 +457,56 @@ pub(crate) fn load_flags(slot: Slot) -> MemFlagsData {
         }
         Slot::Work | Slot::Out => MemFlagsData::trusted(),
     }
+}
+
+/// What a node needs of its children, or of itself in another form.
+pub(crate) fn children(
+    dae: &Dae,
+    id: ExprId,
+    wanted: Wanted,
+    mut need: impl FnMut(ExprId, Wanted),
+) {
+    let expr = dae.exprs[id];
+    match (expr, wanted) {
+        (Expr::NoEvent(a), wanted) => need(a, wanted),
+        (Expr::If(c, a, b), wanted) => {
+            need(b, wanted);
+            need(a, wanted);
+            need(c, Wanted::Truth);
+        }
+        _ if is_truth(expr) && wanted == Wanted::Number => need(id, Wanted::Truth),
+        _ if !is_truth(expr) && wanted == Wanted::Truth => need(id, Wanted::Number),
+        (Expr::Unary(UnaryOp::Not, a), _) => need(a, Wanted::Truth),
+        (Expr::Binary(BinaryOp::And | BinaryOp::Or, a, b), _) => {
+            need(b, Wanted::Truth);
+            need(a, Wanted::Truth);
+        }
+        (Expr::Unary(_, a), _) => need(a, Wanted::Number),
+        (Expr::Binary(_, a, b), _) => {
+            need(b, Wanted::Number);
+            need(a, Wanted::Number);
+        }
+        _ => {}
+    }
+}
+
+/// Which nodes of some steps change with the counter.
+pub(crate) fn moving(
+    dae: &Dae,
+    routine: &Routine,
+    steps: ops::Range<usize>,
+) -> FxHashMap<ExprId, bool> {
+    let roots: Vec<ExprId> = routine.steps[steps].iter().map(|step| step.value).collect();
+    let mut found: FxHashMap<ExprId, bool> = FxHashMap::default();
+    for id in dae.exprs.below(&roots) {
+        let expr = dae.exprs[id];
+        let mut moving = match routine.leaf(dae, expr) {
+            Some(Leaf::Counter) => true,
+            Some(Leaf::Load(_, index)) => index.stride != 0,
+            Some(Leaf::IsMode(..) | Leaf::Number(_) | Leaf::Time) | None => false,
+        };
+        expr.for_each_child(|child| moving |= found[&child]);
+        found.insert(id, moving);
+    }
+    found
 }

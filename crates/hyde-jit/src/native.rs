@@ -3,23 +3,30 @@
 use crate::host;
 use crate::interpret::Frame;
 use crate::lower;
+use crate::parts::Parts;
 use crate::routine::Routine;
 use cranelift_codegen::ir::{AbiParam, types};
 use cranelift_codegen::isa::{CallConv, OwnedTargetIsa};
 use cranelift_codegen::settings::{self, Configurable};
 use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
-use cranelift_module::{Linkage, Module, default_libcall_names};
-use hyde_ir::Dae;
+use cranelift_module::{FuncId, Linkage, Module, default_libcall_names};
+use hyde_ir::{Dae, ExprId};
+use rustc_hash::FxHashSet;
+use std::ops::Range;
 use std::sync::Mutex;
 
 /// A compiled routine. Its memory is freed when it is dropped.
 pub(crate) struct Native {
-    function: extern "C" fn(*const RawFrame),
+    /// One a part, in their order.
+    functions: Vec<extern "C" fn(*const RawFrame)>,
+    /// How many numbers parts keep for later ones.
+    kept: usize,
     module: Mutex<Option<JITModule>>,
 }
 
-/// The frame as the code sees it: the time, then the addresses of the slots in the order of [`crate::routine::Slot`].
+/// The frame as the code sees it: the time, then the addresses of the slots in the order of [`crate::routine::Slot`], and that
+/// of what parts keep.
 #[repr(C)]
 struct RawFrame {
     t: f64,
@@ -30,6 +37,7 @@ struct RawFrame {
     p: *const f64,
     work: *mut f64,
     out: *mut f64,
+    kept: *mut f64,
 }
 
 impl Native {
@@ -39,65 +47,35 @@ impl Native {
         let mut builder = JITBuilder::with_isa(isa, default_libcall_names());
         builder.symbols(host::functions());
         let mut module = JITModule::new(builder);
-        let mut context = module.make_context();
-        context
-            .func
-            .signature
-            .params
-            .push(AbiParam::new(types::I64));
-        context.func.signature.call_conv = module.target_config().default_call_conv;
-        let id = module
-            .declare_function(&routine.name, Linkage::Local, &context.func.signature)
-            .ok()?;
-        let mut builder_context = FunctionBuilderContext::new();
-        let config = module.target_config();
-        let function = FunctionBuilder::new(&mut context.func, &mut builder_context);
-        let mut failed = false;
-        lower::lower(
-            dae,
-            routine,
-            function,
-            &mut |function, name, arguments| {
-                let mut signature = module.make_signature();
-                signature.params = vec![AbiParam::new(types::F64); arguments];
-                signature.returns.push(AbiParam::new(types::F64));
-                match module.declare_function(name, Linkage::Import, &signature) {
-                    Ok(imported) => module.declare_func_in_func(imported, function),
-                    Err(_) => {
-                        failed = true;
-                        let signature = function.import_signature(signature);
-                        function.import_function(cranelift_codegen::ir::ExtFuncData {
-                            name: cranelift_codegen::ir::ExternalName::testcase(name),
-                            signature,
-                            colocated: false,
-                            patchable: false,
-                        })
-                    }
-                }
-            },
-            config,
-        );
-        if failed {
-            return None;
+        let parts = Parts::of(dae, routine);
+        let mut kept = FxHashSet::default();
+        let mut ids = Vec::new();
+        for (number, steps) in parts.steps.iter().enumerate() {
+            let name = routine.part_name(number);
+            let part = (&parts, steps.clone());
+            ids.push(define(&mut module, dae, routine, part, &mut kept, &name)?);
         }
-        module.define_function(id, &mut context).ok()?;
-        module.clear_context(&mut context);
         module.finalize_definitions().ok()?;
-        let code = module.get_finalized_function(id);
-        // SAFETY: `code` is the address of the function just defined, whose signature is one pointer and no result in
-        // the default calling convention of the host, which is that of `extern "C"`. It stays valid until the module's
-        // memory is freed, which only `drop` does.
-        #[allow(unsafe_code, reason = "the address of code just made")]
-        let function =
-            unsafe { std::mem::transmute::<*const u8, extern "C" fn(*const RawFrame)>(code) };
+        let functions = ids.into_iter().map(|id| {
+            let code = module.get_finalized_function(id);
+            // SAFETY: `code` is the address of the function just defined, whose signature is one pointer and no result in
+            // the default calling convention of the host, which is that of `extern "C"`. It stays valid until the module's
+            // memory is freed, which only `drop` does.
+            #[allow(unsafe_code, reason = "the address of code just made")]
+            unsafe {
+                std::mem::transmute::<*const u8, extern "C" fn(*const RawFrame)>(code)
+            }
+        });
         Some(Self {
-            function,
+            functions: functions.collect(),
+            kept: parts.kept.len(),
             module: Mutex::new(Some(module)),
         })
     }
 
     /// Runs the code on a frame.
     pub(crate) fn run(&self, frame: &mut Frame<'_>) {
+        let mut kept = vec![0.0; self.kept];
         let raw = RawFrame {
             t: frame.t,
             y: frame.y.as_ptr(),
@@ -107,9 +85,66 @@ impl Native {
             p: frame.p.as_ptr(),
             work: frame.work.as_mut_ptr(),
             out: frame.out.as_mut_ptr(),
+            kept: kept.as_mut_ptr(),
         };
-        (self.function)(&raw const raw);
+        for function in &self.functions {
+            function(&raw const raw);
+        }
     }
+}
+
+/// Defines the function of a part; `None` if Cranelift makes no code for it.
+fn define(
+    module: &mut JITModule,
+    dae: &Dae,
+    routine: &Routine,
+    part: (&Parts, Range<usize>),
+    kept: &mut FxHashSet<ExprId>,
+    name: &str,
+) -> Option<FuncId> {
+    let mut context = module.make_context();
+    let parameters = &mut context.func.signature.params;
+    parameters.push(AbiParam::new(types::I64));
+    context.func.signature.call_conv = module.target_config().default_call_conv;
+    let id = module
+        .declare_function(name, Linkage::Local, &context.func.signature)
+        .ok()?;
+    let mut builder_context = FunctionBuilderContext::new();
+    let config = module.target_config();
+    let function = FunctionBuilder::new(&mut context.func, &mut builder_context);
+    let mut failed = false;
+    lower::lower(
+        dae,
+        routine,
+        part,
+        kept,
+        function,
+        &mut |function, name, arguments| {
+            let mut signature = module.make_signature();
+            signature.params = vec![AbiParam::new(types::F64); arguments];
+            signature.returns.push(AbiParam::new(types::F64));
+            match module.declare_function(name, Linkage::Import, &signature) {
+                Ok(imported) => module.declare_func_in_func(imported, function),
+                Err(_) => {
+                    failed = true;
+                    let signature = function.import_signature(signature);
+                    function.import_function(cranelift_codegen::ir::ExtFuncData {
+                        name: cranelift_codegen::ir::ExternalName::testcase(name),
+                        signature,
+                        colocated: false,
+                        patchable: false,
+                    })
+                }
+            }
+        },
+        config,
+    );
+    if failed {
+        return None;
+    }
+    module.define_function(id, &mut context).ok()?;
+    module.clear_context(&mut context);
+    Some(id)
 }
 
 impl Drop for Native {

@@ -204,6 +204,14 @@ impl Routine {
         Self::plain(&parameter.name, steps)
     }
 
+    /// The name of the function of a part.
+    pub(crate) fn part_name(&self, part: usize) -> String {
+        match part {
+            0 => self.name.clone(),
+            _ => format!("{}_part_{}", self.name, part + 1),
+        }
+    }
+
     /// Steps with nothing before them.
     pub(crate) fn plain(name: &str, steps: Vec<Step>) -> Self {
         Self {

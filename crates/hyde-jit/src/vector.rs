@@ -9,7 +9,7 @@
 //! run one element at a time instead.
 
 use crate::host;
-use crate::lower::{At, Known, Lowering, Wanted, is_truth, load_flags};
+use crate::lower::{At, Known, Lowering, Wanted, children, is_truth, load_flags};
 use crate::routine::{Leaf, Slot, Step};
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{self, InstBuilder, MemFlagsData, types};
@@ -167,7 +167,9 @@ fn invariants(lowering: &Lowering<'_, '_, '_>, steps: &[Step]) -> Vec<(ExprId, W
         }
         seen.push(node);
         if lowering.moving[&node.0] {
-            lowering.children(node.0, node.1, |child, wanted| stack.push((child, wanted)));
+            children(lowering.dae, node.0, node.1, |child, wanted| {
+                stack.push((child, wanted))
+            });
         } else {
             found.push(node);
         }
@@ -207,7 +209,7 @@ fn emit_pair(
         }
         if !ready {
             stack.push((id, wanted, true));
-            lowering.children(id, wanted, |child, wanted| {
+            children(lowering.dae, id, wanted, |child, wanted| {
                 stack.push((child, wanted, false))
             });
             continue;
