@@ -7,12 +7,13 @@ use crate::compiled::Compiled;
 use crate::delays::delays;
 use crate::{figures, ledger};
 use hyde_ir::dae::{self, Dae};
-use hyde_ir::{Id as _, Interpolation, VariableKind};
+use hyde_ir::{ExprId, Id as _, Interpolation, VariableKind};
 use hyde_program::{
     Assignment, Automaton, Clock, Column, Derivatives, Firmness, ForeignPart, Hold,
     InitialCondition, Output, Parameter, Pin, Prior, Program, Reaction, ReactionKind, RecordValue,
     RecordValueKind, Relation, RelationUse, Selection, Target, UnknownBlock,
 };
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The program of compiled kernels.
@@ -251,14 +252,18 @@ fn outputs(dae: &Dae) -> Vec<Output> {
         - figures::outputs(&dae.experiment.figures)
         - ledger::outputs(&dae.experiment.ledger);
     let mut found = Vec::new();
+    let mut first_of: HashMap<(ExprId, i32), usize> = HashMap::new();
     for (number, output) in dae.outputs.iter().enumerate() {
-        for name in &output.names {
+        for (name, counter) in output.names.iter().zip(output.range.iter()) {
+            let own = found.len();
+            let first = *first_of.entry((output.value, counter)).or_insert(own);
             found.push(Output {
                 name: name.clone(),
                 dimension: output.quantity.dimension,
                 unit: output.quantity.unit.clone(),
                 discrete: output.discrete,
                 auxiliary: number >= auxiliary_from,
+                same_as: (first != own).then_some(first),
             });
         }
     }

@@ -41,6 +41,8 @@ pub struct Output {
     pub discrete: bool,
     /// Made for the experiment (measured, reduced, response) or the energy ledger, not a variable of the model.
     pub auxiliary: bool,
+    /// The first output that has the same value by its equations, if that is another: the ends of joined parts are one.
+    pub same_as: Option<usize>,
 }
 
 /// The spread of an uncertain number.

@@ -43,10 +43,12 @@ impl Outcome {
     pub(crate) fn of(py: Python<'_>, program: &Program, run: Run) -> PyResult<Self> {
         let results = run.results;
         let (columns, units) = (PyDict::new(py), PyDict::new(py));
-        for (&number, values) in results.outputs.iter().zip(results.columns) {
+        let arrays = results.columns.into_iter().map(|values| array(py, values));
+        let arrays: Vec<_> = arrays.collect::<PyResult<_>>()?;
+        for (&number, &place) in results.outputs.iter().zip(&results.places) {
             let output = &program.outputs[number];
             if !output.auxiliary {
-                columns.set_item(&output.name, array(py, values)?)?;
+                columns.set_item(&output.name, &arrays[place])?;
                 units.set_item(&output.name, output.dimension.usual_unit())?;
             }
         }

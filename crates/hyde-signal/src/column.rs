@@ -16,6 +16,32 @@ pub struct Column {
     meaning: Option<String>,
 }
 
+/// What is written of a column, whoever has its values.
+#[derive(Clone, Debug)]
+pub struct Written<'a> {
+    /// The name, without the unit.
+    pub name: Cow<'a, str>,
+    /// The unit it is written in, if known.
+    pub unit: Option<Cow<'a, NamedUnit>>,
+    /// The values: SI if the unit is known, else as they are in the file.
+    pub values: &'a [f64],
+}
+
+impl Written<'_> {
+    /// The value in a row in the column's unit: see [`Column::in_unit`].
+    #[must_use]
+    pub fn in_unit(&self, row: usize) -> f64 {
+        let value = self.values[row];
+        let unit = self.unit.as_ref();
+        unit.map_or(value, |unit| in_unit(value, unit.unit()))
+    }
+
+    /// Whether both have the same values in memory, and the same unit.
+    pub(crate) fn reads_as(&self, other: &Self) -> bool {
+        std::ptr::eq(self.values, other.values) && self.unit == other.unit
+    }
+}
+
 /// A column was given a unit of another dimension than it has.
 #[derive(Clone, Debug, PartialEq)]
 pub struct UnitConflict {
@@ -94,6 +120,16 @@ impl Column {
                 self.values.iter().map(|&si| in_unit(si, unit)).collect()
             }
             Some(_) | None => Cow::Borrowed(&self.values),
+        }
+    }
+
+    /// The column as a file is made of it.
+    #[must_use]
+    pub fn written(&self) -> Written<'_> {
+        Written {
+            name: Cow::Borrowed(&self.name),
+            unit: self.unit.as_ref().map(Cow::Borrowed),
+            values: &self.values,
         }
     }
 

@@ -49,7 +49,7 @@ mod time_error;
 
 pub use assemble::{Fault, Unusable, align};
 pub use calendar::{Origin, Since};
-pub use column::{Column, UnitConflict, in_unit};
+pub use column::{Column, UnitConflict, Written, in_unit};
 pub use foreign::Foreign;
 pub use frame::{Field, Frame, Kind, Values};
 pub use join::{JoinError, join};

@@ -156,7 +156,9 @@ pub struct Results {
     pub outputs: Vec<usize>,
     /// Times of the rows in s; an instant with an event has two rows, the left and the right limit.
     pub time: Vec<f64>,
-    /// One column an output kept, SI.
+    /// The column of each output kept: outputs with the same value share one.
+    pub places: Vec<usize>,
+    /// The columns, SI.
     pub columns: Vec<Vec<f64>>,
     /// The derivatives by parameters, if they were asked for.
     pub gradient: Option<Gradient>,
@@ -185,7 +187,16 @@ impl Results {
     #[must_use]
     pub fn column(&self, output: usize) -> Option<&[f64]> {
         let at = self.outputs.binary_search(&output).ok()?;
-        Some(&self.columns[at])
+        Some(&self.columns[self.places[at]])
+    }
+
+    /// The outputs kept, each with its column.
+    pub fn kept(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        let columns = self
+            .places
+            .iter()
+            .map(|&place| self.columns[place].as_slice());
+        self.outputs.iter().copied().zip(columns)
     }
 
     /// The rows of an instant: the left limit and the right one (the same row where nothing happened).

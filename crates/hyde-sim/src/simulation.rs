@@ -35,6 +35,7 @@ use crate::solver::method;
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
 use hyde_program::Program;
+use std::collections::HashMap;
 
 /// Relations that are not settled after so many solutions of the initial equations contradict them.
 const MAX_ROUNDS_AT_START: usize = 20;
@@ -53,6 +54,8 @@ pub(crate) struct Simulation<'a> {
     conditions: Vec<bool>,
     results: Results,
     next_row: usize,
+    /// The output of each column of the results.
+    distinct: Vec<usize>,
     outputs: Vec<f64>,
     /// The relations that brought the run where it is.
     crossed: Vec<usize>,
@@ -114,9 +117,11 @@ impl<'a> Simulation<'a> {
             columns: vec![vec![Vec::new(); keep.len()]; parameters.len()],
             end: None,
         };
+        let (places, distinct) = shared_columns(program, &keep);
         let results = Results {
             gradient: setup.sensitivities.map(gradient),
-            columns: vec![Vec::with_capacity(setup.rows_s.len() + 16); keep.len()],
+            columns: vec![Vec::with_capacity(setup.rows_s.len() + 16); distinct.len()],
+            places,
             outputs: keep,
             mode_times: program
                 .automata
@@ -137,6 +142,7 @@ impl<'a> Simulation<'a> {
             conditions: vec![false; program.reactions.len()],
             results,
             next_row: 0,
+            distinct,
             outputs: vec![0.0; program.outputs.len()],
             crossed: Vec::new(),
             in_vain: (Vec::new(), 0),
@@ -403,4 +409,19 @@ impl<'a> Simulation<'a> {
         self.results.energies = self.meter.as_ref().map(Meter::sums);
         self.results.last = (self.integrator.y.clone(), self.integrator.state().z.clone());
     }
+}
+
+/// The column of each output kept, and the output that each column is of: those that have the same value have one.
+fn shared_columns(program: &Program, keep: &[usize]) -> (Vec<usize>, Vec<usize>) {
+    let mut distinct = Vec::new();
+    let mut column_of: HashMap<usize, usize> = HashMap::new();
+    let column = |&output: &usize| {
+        let first = program.outputs[output].same_as.unwrap_or(output);
+        *column_of.entry(first).or_insert_with(|| {
+            distinct.push(output);
+            distinct.len() - 1
+        })
+    };
+    let places = keep.iter().map(column).collect();
+    (places, distinct)
 }

@@ -14,11 +14,12 @@ use crate::{asked_figures, forces, render, report, summary};
 use hyde_compiler::Compiled;
 use hyde_experiment::{Options, Run, RunError};
 use hyde_program::Program;
-use hyde_signal::{Column, csv, parquet};
+use hyde_signal::{Written, csv, parquet};
 use hyde_sim::{Reached, Results};
 use hyde_study::run_failure;
 use hyde_units::{NamedUnit, significant};
 use serde_json::{Map, Value, json};
+use std::borrow::Cow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -181,25 +182,26 @@ fn leave_results(
     program: &Program,
     results: &Results,
 ) -> Result<(), String> {
-    let (name, content) = match format {
-        Format::Csv => (
-            "results.csv",
-            csv::write(&columns(program, results)).into_bytes(),
-        ),
-        Format::Parquet => {
-            let content = parquet::write(&columns(program, results));
-            (
-                "results.parquet",
-                content.map_err(|error| error.to_string())?,
-            )
-        }
+    let name = match format {
+        Format::Csv => "results.csv",
+        Format::Parquet => "results.parquet",
+        Format::Json => "results.json",
+        Format::Mat => "results.mat",
+    };
+    let path = folder.join(name);
+    match format {
+        Format::Csv => files::write_with(&path, |file| {
+            csv::write_to(file, &columns(program, results))
+        }),
+        Format::Parquet => files::write_with(&path, |file| {
+            parquet::write_to(file, &columns(program, results)).map(drop)
+        }),
         Format::Json => {
             let text = format!("{}\n", results_json(program, results));
-            ("results.json", text.into_bytes())
+            files::write(&path, text.as_bytes())
         }
-        Format::Mat => ("results.mat", trajectories::mat(program, results)),
-    };
-    files::write(&folder.join(name), &content)?;
+        Format::Mat => files::write(&path, &trajectories::mat(program, results)),
+    }?;
     let others = [
         "results.csv",
         "results.parquet",
@@ -213,17 +215,21 @@ fn leave_results(
 }
 
 /// Results in the form of a record: time first, every column with its unit.
-fn columns(program: &Program, results: &Results) -> Vec<Column> {
+fn columns<'a>(program: &'a Program, results: &'a Results) -> Vec<Written<'a>> {
     let time = NamedUnit::usual(hyde_units::Dimension::TIME);
-    let mut columns = vec![Column::new("t", time, results.time.clone())];
-    for (&number, values) in results.outputs.iter().zip(&results.columns) {
+    let mut columns = vec![Written {
+        name: "t".into(),
+        unit: Some(Cow::Owned(time)),
+        values: &results.time,
+    }];
+    for (number, values) in results.kept() {
         let output = &program.outputs[number];
         if !output.auxiliary {
-            columns.push(Column::new(
-                output.name.clone(),
-                output.unit.clone(),
-                values.clone(),
-            ));
+            columns.push(Written {
+                name: output.name.as_str().into(),
+                unit: Some(Cow::Borrowed(&output.unit)),
+                values,
+            });
         }
     }
     columns.extend(gradient_columns(program, results));
@@ -231,7 +237,7 @@ fn columns(program: &Program, results: &Results) -> Vec<Column> {
 }
 
 /// The derivatives of every column by each parameter: `d(x)/d(p)`, in SI.
-fn gradient_columns(program: &Program, results: &Results) -> Vec<Column> {
+fn gradient_columns<'a>(program: &Program, results: &'a Results) -> Vec<Written<'a>> {
     let mut columns = Vec::new();
     let Some(gradient) = &results.gradient else {
         return columns;
@@ -244,8 +250,11 @@ fn gradient_columns(program: &Program, results: &Results) -> Vec<Column> {
             let output = &program.outputs[number];
             if !output.auxiliary {
                 let unit = NamedUnit::usual(output.dimension.divide(parameter.dimension));
-                let name = format!("d({})/d({name})", output.name);
-                columns.push(Column::new(name, unit, values.clone()));
+                columns.push(Written {
+                    name: format!("d({})/d({name})", output.name).into(),
+                    unit: Some(Cow::Owned(unit)),
+                    values,
+                });
             }
         }
     }
@@ -258,7 +267,7 @@ fn results_json(program: &Program, results: &Results) -> Value {
         "t".to_owned(),
         json!({ "unit": "s", "values": results.time }),
     );
-    for (&number, values) in results.outputs.iter().zip(&results.columns) {
+    for (number, values) in results.kept() {
         let output = &program.outputs[number];
         if !output.auxiliary {
             let entry = json!({ "unit": output.dimension.usual_unit(), "values": values });
@@ -266,9 +275,9 @@ fn results_json(program: &Program, results: &Results) -> Value {
         }
     }
     for column in gradient_columns(program, results) {
-        let unit = column.unit().map(|unit| unit.unit().dimension.usual_unit());
-        let entry = json!({ "unit": unit, "values": column.values() });
-        columns.insert(column.name().to_owned(), entry);
+        let unit = column.unit.map(|unit| unit.unit().dimension.usual_unit());
+        let entry = json!({ "unit": unit, "values": column.values });
+        columns.insert(column.name.into_owned(), entry);
     }
     Value::Object(columns)
 }

@@ -8,7 +8,7 @@ use crate::command::{Folder, LAG, command, errors, hyde, status};
 use browser::Browser;
 use http::{ask, post};
 use serde_json::{Value, json};
-use std::io::{BufRead as _, BufReader, Write as _};
+use std::io::{BufRead as _, BufReader};
 use std::process::{Child, Stdio};
 
 /// The command, ended with the test.
@@ -47,13 +47,7 @@ fn model() -> String {
 
 #[test]
 fn a_browser_moves_a_slider_and_writes_the_value_back() {
-    let Some(name) = crate::report::browser() else {
-        let mut log = std::io::stderr();
-        writeln!(
-            log,
-            "skipped: no browser is here; `./dev setup` installs one"
-        )
-        .unwrap();
+    let Some(name) = crate::report::browser_or_say() else {
         return;
     };
     let folder = Folder::new();

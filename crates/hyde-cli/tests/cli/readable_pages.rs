@@ -3,7 +3,6 @@
 use crate::command::{Folder, errors, hyde, status};
 use crate::live::browser::Browser;
 use serde_json::json;
-use std::io::Write as _;
 
 /// A phone, and the text of an A4 page, in px.
 const PHONE: u32 = 390;
@@ -31,13 +30,7 @@ const LEAST_CONTRAST: &str = "(() => { \
 
 /// Looks at a page in a browser, if there is one.
 pub(crate) fn is_readable(page: &str) {
-    let Some(name) = crate::report::browser() else {
-        let mut log = std::io::stderr();
-        writeln!(
-            log,
-            "skipped: no browser is here; `./dev setup` installs one"
-        )
-        .unwrap();
+    let Some(name) = crate::report::browser_or_say() else {
         return;
     };
     let mut browser = Browser::open(name, &Folder::new(), &format!("file://{page}"));

@@ -1,6 +1,7 @@
 //! `hyde report`: the page of a batch, as text and in a browser.
 
 use crate::command::{Folder, errors, hyde, read, status, text};
+use std::io::Write as _;
 use std::path::Path;
 use std::process::Command;
 
@@ -186,6 +187,16 @@ pub(crate) fn browser() -> Option<&'static str> {
         let version = Command::new(browser).arg("--version").output();
         version.is_ok_and(|output| output.status.success())
     })
+}
+
+/// The same; that there is none is told.
+pub(crate) fn browser_or_say() -> Option<&'static str> {
+    let found = browser();
+    if found.is_none() {
+        let said = "skipped: no browser is here; `./dev setup` installs one";
+        writeln!(std::io::stderr(), "{said}").unwrap();
+    }
+    found
 }
 
 /// A browser's answer about a page; none where it is not there.

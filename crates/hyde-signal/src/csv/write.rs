@@ -1,8 +1,12 @@
 //! Writes columns as a CSV record, in the form that is read.
 
-use crate::Column;
+use crate::{Column, Written};
 use std::borrow::Cow;
 use std::fmt::Write as _;
+use std::io;
+
+/// So many bytes of text go to a file at once.
+const AT_ONCE: usize = 1 << 16;
 
 /// Writes columns, each in its unit, with commas; the columns of a table are `table.columns()`.
 ///
@@ -11,32 +15,51 @@ use std::fmt::Write as _;
 /// that are not finite are written as `NaN` and `inf`, which no reader accepts. Rows end with the shortest column.
 #[must_use]
 pub fn write<'a>(columns: impl IntoIterator<Item = &'a Column>) -> String {
-    let columns: Vec<&Column> = columns.into_iter().collect();
-    let header: Vec<_> = columns.iter().map(|column| header_cell(column)).collect();
-    let mut text = header.join(",");
-    text.push('\n');
-    let rows = columns
-        .iter()
-        .map(|column| column.values().len())
-        .min()
-        .unwrap_or(0);
-    text.reserve(rows * columns.len() * 20);
-    let cells: Vec<Cow<'_, [f64]>> = columns.iter().map(|column| column.in_unit()).collect();
-    for row in 0..rows {
-        for (at, values) in cells.iter().enumerate() {
-            if at > 0 {
-                text.push(',');
-            }
-            push_number(&mut text, values[row]);
-        }
-        text.push('\n');
-    }
-    text
+    let columns: Vec<Written<'_>> = columns.into_iter().map(Column::written).collect();
+    let mut text = Vec::new();
+    // Writing to memory cannot fail, and all of it is text.
+    let _ = write_to(&mut text, &columns);
+    String::from_utf8(text).unwrap_or_default()
 }
 
-fn header_cell(column: &Column) -> String {
-    let name = column.name();
-    let cell = match column.unit() {
+/// The same to a file, a row at a time: nothing of it is kept.
+///
+/// # Errors
+/// What the file reports.
+pub fn write_to(out: &mut impl io::Write, columns: &[Written<'_>]) -> io::Result<()> {
+    let header: Vec<_> = columns.iter().map(header_cell).collect();
+    let rows = columns.iter().map(|column| column.values.len());
+    // Columns of the same values in the same unit have the same text.
+    let first_of: Vec<usize> = (0..columns.len())
+        .map(|at| {
+            let same = |&other: &usize| columns[other].reads_as(&columns[at]);
+            (0..at).find(same).unwrap_or(at)
+        })
+        .collect();
+    let mut places = vec![0..0; columns.len()];
+    let mut text = header.join(",");
+    for row in 0..rows.min().unwrap_or(0) {
+        for (at, (column, &first)) in columns.iter().zip(&first_of).enumerate() {
+            text.push(if at == 0 { '\n' } else { ',' });
+            let start = text.len();
+            match first < at {
+                true => text.extend_from_within(places[first].clone()),
+                false => push_number(&mut text, column.in_unit(row)),
+            }
+            places[at] = start..text.len();
+        }
+        if text.len() >= AT_ONCE {
+            out.write_all(text.as_bytes())?;
+            text.clear();
+        }
+    }
+    text.push('\n');
+    out.write_all(text.as_bytes())
+}
+
+fn header_cell(column: &Written<'_>) -> String {
+    let name = column.name.as_ref();
+    let cell = match &column.unit {
         Some(unit) => Cow::Owned(format!("{name} [{unit}]")),
         None => Cow::Borrowed(name),
     };
@@ -48,8 +71,12 @@ fn header_cell(column: &Column) -> String {
 
 /// `{:?}` prints the shortest digits and goes over to powers of ten where they are shorter; `1.0` is cut to `1`.
 fn push_number(text: &mut String, value: f64) {
-    // Writing to a string cannot fail.
-    let _ = write!(text, "{value:?}");
+    if value.abs() >= 1e-4 || value == 0.0 {
+        text.push_str(zmij::Buffer::new().format(value));
+    } else {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{value:?}");
+    }
     if text.ends_with(".0") {
         text.truncate(text.len() - 2);
     }
@@ -58,6 +85,36 @@ fn push_number(text: &mut String, value: f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn numbers_are_written_as_rust_prints_them() {
+        let mut bits = 0x1234_5678_9abc_def0_u64;
+        let mut values = vec![
+            0.0,
+            -0.0,
+            1.0,
+            1e15,
+            1e16,
+            1e17,
+            1e-4,
+            1e-5,
+            0.1,
+            f64::MAX,
+            f64::NAN,
+            f64::INFINITY,
+        ];
+        for exponent in -40..40 {
+            bits = bits.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
+            let mantissa = f64::from_bits(0x3ff0_0000_0000_0000 | bits >> 12);
+            values.extend([mantissa, -1.5].map(|m| m * 10_f64.powi(exponent / 2)));
+        }
+        for value in values {
+            let mut text = String::new();
+            push_number(&mut text, value);
+            let expected = format!("{value:?}");
+            assert_eq!(text, expected.strip_suffix(".0").unwrap_or(&expected));
+        }
+    }
     use crate::Layout;
     use crate::csv::read;
     use hyde_units::NamedUnit;

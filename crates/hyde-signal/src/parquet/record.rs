@@ -4,10 +4,14 @@ use super::error::ReadError;
 use super::read::read_frame;
 use super::write::Writer;
 use crate::assemble::{AssembleError, Cells, Raw, assemble};
+use crate::column::Written;
 use crate::frame::{Field, Values};
 use crate::heading::{Heading, Place};
 use crate::{Column, Fault, Layout, Table};
 use std::io;
+
+/// So many rows are in memory twice.
+const ROWS_OF_A_GROUP: usize = 65_536;
 
 /// Whether a file is of this format, by its first bytes.
 #[must_use]
@@ -65,16 +69,35 @@ fn not_finite(name: &str, values: &[f64]) -> Option<Fault> {
 /// # Errors
 /// If they are not.
 pub fn write<'a>(columns: impl IntoIterator<Item = &'a Column>) -> io::Result<Vec<u8>> {
-    let columns: Vec<&Column> = columns.into_iter().collect();
-    let fields: Vec<Field> = columns
-        .iter()
-        .map(|column| Field::number(column.name(), column.unit().cloned()))
+    let columns: Vec<Written<'_>> = columns.into_iter().map(Column::written).collect();
+    write_to(Vec::new(), &columns)
+}
+
+/// The same to a file, a group of rows at a time; gives the file back.
+///
+/// # Errors
+/// What the file reports, or columns that are not equally long.
+pub fn write_to<W: io::Write + Send>(file: W, columns: &[Written<'_>]) -> io::Result<W> {
+    let fields = columns.iter();
+    let fields: Vec<Field> = fields
+        .map(|column| Field::number(column.name.as_ref(), column.unit.as_deref().cloned()))
         .collect();
-    let values: Vec<Values> = columns
-        .iter()
-        .map(|column| Values::Numbers(column.in_unit().into_owned()))
-        .collect();
-    let mut writer = Writer::new(Vec::new(), &fields, &[])?;
-    writer.rows(&values)?;
+    let mut writer = Writer::new(file, &fields, &[])?;
+    let longest = columns.iter().map(|column| column.values.len()).max();
+    // A file without rows has a group without rows.
+    for first in (0..longest.unwrap_or(0).max(1)).step_by(ROWS_OF_A_GROUP) {
+        let group: Vec<Values> = columns
+            .iter()
+            .map(|column| {
+                let last = (first + ROWS_OF_A_GROUP).min(column.values.len());
+                Values::Numbers(
+                    (first.min(last)..last)
+                        .map(|row| column.in_unit(row))
+                        .collect(),
+                )
+            })
+            .collect();
+        writer.rows(&group)?;
+    }
     writer.finish()
 }

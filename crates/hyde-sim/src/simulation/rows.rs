@@ -7,7 +7,7 @@ use hyde_program::Function;
 /// A row of the results.
 pub(super) struct Row {
     t: f64,
-    /// The outputs kept.
+    /// The outputs kept, each value once.
     values: Vec<f64>,
     /// Their derivatives by each parameter, if they are asked for.
     slopes: Vec<Vec<f64>>,
@@ -95,12 +95,8 @@ impl Simulation<'_> {
         self.integrator
             .state_mut()
             .evaluate(Function::Outputs, t, y, yp, &mut outputs);
-        let values = self
-            .results
-            .outputs
-            .iter()
-            .map(|&output| outputs[output])
-            .collect();
+        let values = self.distinct.iter().map(|&output| outputs[output]);
+        let values = values.collect();
         self.outputs = outputs;
         values
     }

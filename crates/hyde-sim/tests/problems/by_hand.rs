@@ -178,6 +178,7 @@ fn output(name: &str) -> Output {
         unit: NamedUnit::usual(Dimension::DIMENSIONLESS),
         discrete: false,
         auxiliary: false,
+        same_as: None,
     }
 }
 

@@ -13,7 +13,7 @@ use hyde_sim::Results;
 pub(super) fn mat(program: &Program, results: &Results) -> Vec<u8> {
     let columns = columns(program, results);
     let (mut names, mut descriptions, mut places) = (Vec::new(), Vec::new(), Vec::new());
-    let time = columns.first().map_or(&[][..], |column| column.values());
+    let time = columns.first().map_or(&[][..], |column| column.values);
     let mut constants: Vec<Vec<f64>> = vec![vec![
         time.first().copied().unwrap_or(0.0),
         time.last().copied().unwrap_or(0.0),
@@ -22,9 +22,9 @@ pub(super) fn mat(program: &Program, results: &Results) -> Vec<u8> {
         let is_time = number == 0;
         names.push(match is_time {
             true => "time".to_owned(),
-            false => column.name().to_owned(),
+            false => column.name.clone().into_owned(),
         });
-        let unit = column.unit().map(|unit| {
+        let unit = column.unit.as_ref().map(|unit| {
             let si = unit.unit().dimension.usual_unit();
             (si, unit.text().to_owned())
         });
@@ -57,7 +57,7 @@ pub(super) fn mat(program: &Program, results: &Results) -> Vec<u8> {
     }
     let rows = columns.len();
     let samples = 0..time.len();
-    let values = samples.flat_map(|k| columns.iter().map(move |column| column.values()[k]));
+    let values = samples.flat_map(|k| columns.iter().map(move |column| column.values[k]));
     let values: Vec<f64> = values.collect();
     let ends = [0, 1].into_iter();
     let ends: Vec<f64> = ends
