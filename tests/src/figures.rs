@@ -22,6 +22,7 @@ mod ivp;
 mod ledger;
 mod linear;
 mod live;
+mod long_run;
 mod lsp;
 mod mode_error;
 mod msl;
@@ -90,6 +91,8 @@ pub const FIGURES: &[Figure] = &[
     batches::KILLS,
     batches::SLURM,
     batches::MEMORY,
+    long_run::MEMORY,
+    long_run::CSV,
     gradient::FIGURE,
     fmu::DEVIATION,
     fmu::EVENTS,

@@ -50,7 +50,7 @@ pub(super) const MEMORY: Figure = Figure {
 /// Processes killed.
 const KILLED: u64 = 50;
 
-fn hyde() -> Result<PathBuf, String> {
+pub(super) fn hyde() -> Result<PathBuf, String> {
     std::env::current_exe().map_err(|error| error.to_string())
 }
 
@@ -99,7 +99,7 @@ fn overhead(_: &Session) -> Result<Measured, String> {
 
 /// CPU time in s so far, of this process or of its children that have ended.
 #[allow(clippy::disallowed_methods, reason = "time is what is measured")]
-fn cpu_s(of_children: bool) -> Option<f64> {
+pub(super) fn cpu_s(of_children: bool) -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;
     // Behind the name in brackets: state is field 3, utime and stime 14 and 15, those of children 16 and 17; 100 a second.
     let fields: Vec<&str> = text.rsplit_once(") ")?.1.split(' ').collect();
@@ -257,7 +257,7 @@ fn memory(_: &Session) -> Result<Measured, String> {
 
 /// The most memory that a process has had so far.
 #[allow(clippy::disallowed_methods, reason = "memory is what is measured")]
-fn memory_kb(process: u32) -> Option<f64> {
+pub(super) fn memory_kb(process: u32) -> Option<f64> {
     let text = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
     let line = text.lines().find(|line| line.starts_with("VmHWM:"))?;
     line.split_whitespace().nth(1)?.parse().ok()
