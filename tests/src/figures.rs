@@ -84,6 +84,7 @@ pub const FIGURES: &[Figure] = &[
     events::P3,
     travelling_nut::DRIFT,
     travelling_nut::RIPPLE,
+    travelling_nut::OVER_FIXED,
     ledger::FIGURE,
     ledger::OPEN,
     batches::OVERHEAD,

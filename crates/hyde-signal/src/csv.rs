@@ -28,4 +28,4 @@ mod write;
 pub use error::ReadError;
 pub use frame::read_frame;
 pub use read::read;
-pub use write::write;
+pub use write::{write, write_to};

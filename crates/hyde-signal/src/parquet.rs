@@ -17,7 +17,7 @@ mod write;
 pub use crate::frame::{Field, Frame, Kind, Values};
 pub use error::ReadError;
 pub use read::{READER, read_frame};
-pub use record::{is_parquet, read, write};
+pub use record::{is_parquet, read, write, write_to};
 pub use write::Writer;
 
 #[cfg(test)]
