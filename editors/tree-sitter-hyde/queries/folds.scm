@@ -1,0 +1,16 @@
+[
+  (model)
+  (connector)
+  (effect)
+  (function)
+  (experiment)
+  (study)
+  (equation_section)
+  (modes)
+  (mode)
+  (actions)
+  (clocked)
+  (if_equation)
+  (when_equation)
+  (for_equation)
+] @fold
