@@ -1,4 +1,5 @@
-//! What editors have of the language: the grammar of the extension for VS Code knows every word of the language.
+//! What editors have of the language: the grammar of the extension for VS Code and the colours of the book know every word of
+//! the language, and the book has the settings of the folder `editors`.
 
 use hyde_tests::root;
 use serde_json::Value;
@@ -46,6 +47,35 @@ fn the_grammar_of_the_extension_has_every_word_of_the_language() {
     assert!(words.len() > 70, "{}", words.len());
     let missing: Vec<&String> = words.difference(&known).collect();
     assert!(missing.is_empty(), "not in the grammar: {missing:?}");
+}
+
+#[test]
+fn the_colours_of_the_book_have_every_word_of_the_language() {
+    let book = read("book/book.toml");
+    assert!(book.contains("additional-js = [\"hyde.js\"]"), "{book}");
+    let script = read("book/hyde.js");
+    let known: BTreeSet<&str> = script
+        .split(|sign: char| !(sign.is_ascii_alphanumeric() || sign == '_'))
+        .collect();
+    let words = words();
+    let missing: Vec<&String> = words
+        .iter()
+        .filter(|word| !known.contains(word.as_str()))
+        .collect();
+    assert!(missing.is_empty(), "not in the colours: {missing:?}");
+}
+
+#[test]
+fn the_page_on_editors_has_the_settings_of_the_folder() {
+    let page = read("book/src/editor.md");
+    for file in ["neovim/hyde.lua", "helix/languages.toml", "emacs/init.el"] {
+        let settings = read(&format!("editors/{file}"));
+        assert!(page.contains(&format!("\n{settings}```")), "{file}");
+    }
+    let readme = read("editors/README.md");
+    let commands = readme.split("```sh\n").nth(1);
+    let commands = commands.and_then(|rest| rest.split("```").next());
+    assert!(page.contains(commands.unwrap_or("no commands")), "commands");
 }
 
 #[test]
