@@ -28,6 +28,7 @@ mod mode_error;
 mod msl;
 mod paper_rows;
 mod promise;
+mod python;
 mod realtime;
 mod residual_cost;
 mod selftest;
@@ -99,6 +100,7 @@ pub const FIGURES: &[Figure] = &[
     fmu::EVENTS,
     fmu::EXPORT,
     live::SLIDER,
+    python::SWEEP,
     lsp::SYNTAX,
     lsp::FULL,
     lsp::COMPLETION,

@@ -1,0 +1,102 @@
+//! `python_sweep_ratio`: a thousand parameter sets of the first example in one process of Python, compiled once, against
+//! `hyde sweep` of the same, both released and on all processors.
+
+use super::clock::now;
+use super::promise::{Figure, Measured, Promise, Session};
+use crate::fmu::{python, succeed};
+use crate::root;
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+pub(super) const SWEEP: Figure = Figure {
+    name: "python_sweep_ratio",
+    unit: "of the rate of `hyde sweep`",
+    promise: Promise::AtLeast(0.9),
+    measure: sweep,
+};
+
+/// Added to the first example; `sweep.py` has the same masses.
+const MASSES: &str = "
+sweep masses of push
+  vary table.M in 200 .. 400 [kg];
+  grid 1000;
+end masses;
+";
+
+/// Each is measured so often, by turns; the shortest time counts, as another program may take a processor.
+const ROUNDS: usize = 4;
+
+/// In Python the time is that of loading and of the runs, without the start of the interpreter; of the command it is that of the
+/// whole process.
+fn sweep(_: &Session) -> Result<Measured, String> {
+    let python = match python() {
+        Ok(python) => python,
+        Err(reason) => return Ok(Measured::Absent(reason)),
+    };
+    for package in ["hyde-cli", "hyde-python"] {
+        let build = ["build", "--release", "--locked", "-q", "-p", package];
+        succeed(Command::new("cargo").args(build))?;
+    }
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    let model = folder.path().join("first.hyde");
+    prepare(folder.path(), &model).map_err(|error| error.to_string())?;
+
+    let (mut in_python, mut by_command) = (f64::INFINITY, f64::INFINITY);
+    for round in 0..ROUNDS {
+        let mut script = Command::new(&python);
+        script.arg(root().join("tests/src/figures/sweep.py"));
+        script.arg(&model).env("PYTHONPATH", folder.path());
+        let answer = json(&succeed(&mut script)?)?;
+        in_python = in_python.min(answer["s"].as_f64().unwrap_or(f64::NAN));
+
+        let start = now();
+        let mut command = Command::new(root().join("target/release/hyde"));
+        command.args(["sweep", "--json"]).arg(&model).arg("masses");
+        command
+            .arg("--out")
+            .arg(folder.path().join(round.to_string()));
+        let printed = succeed(&mut command)?;
+        by_command = by_command.min(start.elapsed().as_secs_f64());
+        let summary = json(printed.lines().last().unwrap_or_default())?;
+        same(&answer["ways"], &summary["measures"][0]["quantiles"])?;
+    }
+    Ok(Measured::Value(by_command / in_python))
+}
+
+/// The model with the sweep, and the package with its module.
+#[allow(
+    clippy::disallowed_methods,
+    reason = "files are laid out for both processes"
+)]
+fn prepare(folder: &Path, model: &Path) -> std::io::Result<()> {
+    let first = fs::read_to_string(root().join("examples/first/first.hyde"))?;
+    fs::write(model, first + MASSES)?;
+    let package = folder.join("hyde");
+    fs::create_dir(&package)?;
+    for entry in fs::read_dir(root().join("crates/hyde-python/python/hyde"))? {
+        let path = entry?.path();
+        if path.extension().is_some_and(|ending| ending == "py") {
+            fs::copy(&path, package.join(path.file_name().unwrap_or_default()))?;
+        }
+    }
+    let module = root().join("target/release/lib_hyde.so");
+    fs::copy(module, package.join("_hyde.abi3.so"))?;
+    Ok(())
+}
+
+fn json(text: &str) -> Result<Value, String> {
+    serde_json::from_str(text).map_err(|error| format!("{error}: {text}"))
+}
+
+/// The shortest and the longest way in Python are those of the command.
+fn same(ways: &Value, quantiles: &Value) -> Result<(), String> {
+    let quantiles = quantiles.as_array().map_or(&[][..], Vec::as_slice);
+    let ends = [quantiles.first(), quantiles.last()].map(|end| end.map(|end| &end["value"]));
+    let equal = (0..2).all(|index| ends[index].is_some_and(|end| *end == ways[index]));
+    match equal {
+        true => Ok(()),
+        false => Err(format!("in Python {ways}, by the command {ends:?}")),
+    }
+}
