@@ -5,6 +5,7 @@ mod arrays;
 mod backends;
 mod bar;
 mod batches;
+mod bench_models;
 mod bouncing_ball;
 mod candidates;
 mod carried;
