@@ -48,7 +48,7 @@ impl<'a> Drive<'a> {
     ///
     /// # Errors
     /// The run has none of that name.
-    pub fn column(&self, name: &str) -> Result<&'a [f64], String> {
+    pub fn column(&self, name: &str) -> Result<std::borrow::Cow<'a, [f64]>, String> {
         let number = self.compiled.program.output(name);
         number
             .and_then(|number| self.run.results.column(number))
@@ -80,14 +80,14 @@ impl<'a> Drive<'a> {
         };
         for (coefficient, quantity) in parts {
             let values = self.column(quantity)?;
-            add(self.parameter(coefficient)?, values, values);
+            add(self.parameter(coefficient)?, &values, &values);
         }
         self.bar(("w", "th"), ("screw.rho", "screw.G", "screw.Ip"), &mut add)?;
         if self.column("screw.u[0]").is_ok() {
             self.bar(("uv", "u"), ("screw.rho", "screw.E", "screw.A"), &mut add)?;
             for end in [0, self.cells] {
                 let seat = self.column(&format!("screw.u[{end}]"))?;
-                add(self.parameter("screw.kb")?, seat, seat);
+                add(self.parameter("screw.kb")?, &seat, &seat);
             }
         }
         Ok(energy)
@@ -107,11 +107,11 @@ impl<'a> Drive<'a> {
         for number in 1..=self.cells {
             let (v, next) = (node(velocity, number - 1)?, node(velocity, number)?);
             // The mass matrix of a cell: half of the consistent one of linear elements, half of the lumped one.
-            add(mass * 5.0 / 12.0, v, v);
-            add(mass * 5.0 / 12.0, next, next);
-            add(mass * 2.0 / 12.0, v, next);
+            add(mass * 5.0 / 12.0, &v, &v);
+            add(mass * 5.0 / 12.0, &next, &next);
+            add(mass * 2.0 / 12.0, &v, &next);
             let (s, next) = (node(displacement, number - 1)?, node(displacement, number)?);
-            let strain: Vec<f64> = next.iter().zip(s).map(|(b, a)| b - a).collect();
+            let strain: Vec<f64> = next.iter().zip(s.iter()).map(|(b, a)| b - a).collect();
             add(stiffness, &strain, &strain);
         }
         Ok(())

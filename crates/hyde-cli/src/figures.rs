@@ -1,6 +1,7 @@
 //! The figures of a run: those asked for; where something was measured, it beside the simulated, each with the residual below;
 //! then what the run is about. The modes stand below.
 
+use crate::thinned::thinned;
 use crate::{asked_figures, panels};
 use hyde_experiment::{Channel, Run};
 use hyde_program::Program;
@@ -12,6 +13,9 @@ use hyde_units::{NamedUnit, Unit};
 
 /// Measured channels in one figure.
 const MAX_CHANNELS: usize = 4;
+
+/// Stretches of a long curve of which the extremes are drawn: many for each pixel of the widest figure.
+const STRETCHES: usize = 20_000;
 
 /// Numbers that are read easily.
 const READABLE: std::ops::Range<f64> = 1e-3..1e5;
@@ -174,8 +178,9 @@ fn residual(channel: &Channel) -> Panel {
 pub(crate) fn curve(name: &str, output: usize, program: &Program, run: &Run) -> Line {
     let (_, unit) = drawn_in(&program.outputs[output].unit);
     let values = run.results.column(output).unwrap_or_default();
-    let values = values.iter().map(|&si| unit.from_si(si)).collect();
-    Line::new(name, run.results.time.clone(), values)
+    let (time, values) = thinned(&run.results.time, &values, STRETCHES);
+    let values = values.into_iter().map(|si| unit.from_si(si)).collect();
+    Line::new(name, time, values)
 }
 
 /// A pure number has no unit on its axis.

@@ -33,6 +33,7 @@ mod sandbox;
 mod start;
 mod study;
 mod summary;
+mod thinned;
 mod unknown;
 mod watch;
 

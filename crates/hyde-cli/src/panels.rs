@@ -135,7 +135,7 @@ fn curves(program: &Program, run: &Run) -> Vec<Curve> {
         .filter_map(|(output, known)| {
             Some(Curve {
                 reason: reason(output, known)?,
-                range: range(run.results.column(output)?),
+                range: range(&run.results.column(output)?),
                 output,
             })
         })

@@ -41,7 +41,7 @@ pub fn flows(program: &Program, results: &Results) -> Vec<FlowLine> {
             output: flow.output,
             least: values.iter().copied().fold(f64::INFINITY, f64::min),
             most: values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
-            rms: mean(&results.time, values, |value| value * value).sqrt(),
+            rms: mean(&results.time, &values, |value| value * value).sqrt(),
             at_s: results.time.get(peak).copied().unwrap_or(f64::NAN),
         })
     };

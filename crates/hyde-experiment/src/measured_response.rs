@@ -260,6 +260,6 @@ pub fn curve_of_run(
         .map(|t| results.rows_at(*t).map(|(left, _)| left))
         .collect::<Option<_>>()?;
     let pick = |values: &[f64]| at.iter().map(|&row| values[row]).collect::<Vec<f64>>();
-    let found = periodic_response(&pick(u), &pick(y), rows.rate_hz, samples).ok()?;
+    let found = periodic_response(&pick(&u), &pick(&y), rows.rate_hz, samples).ok()?;
     Some(rows.curve(found, samples))
 }

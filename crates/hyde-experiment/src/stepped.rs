@@ -192,7 +192,7 @@ impl Sine<'_> {
         let before = results.time.partition_point(|t| *t < from - 1e-6 * period);
         results.time.drain(..before);
         for column in &mut results.columns {
-            column.drain(..before.min(column.len()));
+            *column = column.iter().skip(before).collect();
         }
         let outputs = self.bode.outputs.iter();
         let outputs = outputs.map(|(_, output)| self.fitted(&results, *output, from, amplitude));
@@ -217,7 +217,7 @@ impl Sine<'_> {
         let Some(values) = results.column(output) else {
             return none;
         };
-        let (time, values) = (&rows.time[..to], &rows.values(values)[..to]);
+        let (time, values) = (&rows.time[..to], &rows.values(&values)[..to]);
         let turn = std::f64::consts::TAU * self.frequency_hz;
         let driven: Vec<f64> = time.iter().map(|t| amplitude * (turn * t).sin()).collect();
         let fit = response_at(&[self.frequency_hz], time, &driven, values);

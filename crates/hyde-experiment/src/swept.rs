@@ -31,7 +31,7 @@ pub fn swept_response(bode: &Bode, results: &Results, band_hz: (f64, f64)) -> Ve
         return Vec::new();
     }
     let step_s = (time[time.len() - 1] - time[0]) / (time.len() - 1) as f64;
-    let driven = rows.values(input);
+    let driven = rows.values(&input);
     let mut found = Vec::new();
     for (name, output) in &bode.outputs {
         let Some(values) = results.column(*output) else {
@@ -39,7 +39,7 @@ pub fn swept_response(bode: &Bode, results: &Results, band_hz: (f64, f64)) -> Ve
         };
         // Neighbouring lines are averaged over about half a percent of the record's lines.
         let neighbours = (time.len() / 2000).max(2);
-        if let Ok(all) = response(&driven, &rows.values(values), step_s, neighbours) {
+        if let Ok(all) = response(&driven, &rows.values(&values), step_s, neighbours) {
             found.push(Swept {
                 output: name.clone(),
                 response: all.between(band_hz.0, band_hz.1),

@@ -41,7 +41,7 @@ impl ExprArena {
 
 #[cfg(test)]
 mod tests {
-    use crate::expr::{Expr, ExprArena, Index, Memo};
+    use crate::expr::{Expr, ExprArena, Index};
     use crate::id::{Id as _, VarId};
 
     #[test]

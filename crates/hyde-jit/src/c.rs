@@ -9,8 +9,8 @@
 //! calls, and may differ from them in the last digit.
 
 use crate::compiled::routines;
-use crate::lower::is_truth;
 use crate::routine::{Leaf, Routine, Slot, Step};
+use crate::wanted::is_truth;
 use hyde_ir::{BinaryOp, Dae, Expr, ExprId, UnaryOp};
 use std::collections::{HashMap, HashSet};
 use std::fmt::Write as _;

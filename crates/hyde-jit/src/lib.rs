@@ -26,6 +26,7 @@ mod some_rows;
 mod still;
 mod tables;
 mod vector;
+mod wanted;
 
 pub use c::emit_c;
 pub use compiled::Backend;

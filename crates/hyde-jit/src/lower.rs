@@ -8,6 +8,7 @@
 use crate::host;
 use crate::parts::Parts;
 use crate::routine::{Leaf, Routine, Slot, Step};
+use crate::wanted::{Wanted, children, is_truth, moving};
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{self, InstBuilder, MemFlagsData, types};
 use cranelift_codegen::isa::TargetFrontendConfig;
@@ -49,13 +50,6 @@ pub(crate) struct Lowering<'a, 'f, 'i> {
 pub(crate) struct Known {
     numbers: HashMap<ExprId, ir::Value>,
     truths: HashMap<ExprId, ir::Value>,
-}
-
-/// How the value of a node is wanted.
-#[derive(Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) enum Wanted {
-    Number,
-    Truth,
 }
 
 impl Known {
@@ -148,7 +142,8 @@ impl Lowering<'_, '_, '_> {
         for step in steps {
             used[step.slot as usize] |= step.slot == Slot::Out || step.range.len() > 1 || in_parts;
         }
-        for &id in self.moving.keys() {
+        let roots: Vec<ExprId> = steps.iter().map(|step| step.value).collect();
+        for id in self.dae.exprs.below(&roots) {
             match self.routine.leaf(self.dae, self.dae.exprs[id]) {
                 Some(Leaf::Load(slot, _)) => used[slot as usize] = true,
                 Some(Leaf::IsMode(..)) => used[Slot::Memory as usize] = true,
@@ -430,25 +425,6 @@ impl Lowering<'_, '_, '_> {
     }
 }
 
-/// Whether a node is a truth by itself.
-pub(crate) fn is_truth(expr: Expr) -> bool {
-    match expr {
-        Expr::Binary(op, ..) => op.is_truth(),
-        Expr::Unary(op, _) => op == UnaryOp::Not,
-        Expr::InMode(..) => true,
-        Expr::Const(_)
-        | Expr::Time
-        | Expr::Counter
-        | Expr::Param(..)
-        | Expr::Var(..)
-        | Expr::Der(..)
-        | Expr::Pre(..)
-        | Expr::Relation(_)
-        | Expr::If(..)
-        | Expr::NoEvent(_) => false,
-    }
-}
-
 /// What a kernel reads but never writes may be loaded anywhere.
 pub(crate) fn load_flags(slot: Slot) -> MemFlagsData {
     match slot {
@@ -457,56 +433,4 @@ pub(crate) fn load_flags(slot: Slot) -> MemFlagsData {
         }
         Slot::Work | Slot::Out => MemFlagsData::trusted(),
     }
-}
-
-/// What a node needs of its children, or of itself in another form.
-pub(crate) fn children(
-    dae: &Dae,
-    id: ExprId,
-    wanted: Wanted,
-    mut need: impl FnMut(ExprId, Wanted),
-) {
-    let expr = dae.exprs[id];
-    match (expr, wanted) {
-        (Expr::NoEvent(a), wanted) => need(a, wanted),
-        (Expr::If(c, a, b), wanted) => {
-            need(b, wanted);
-            need(a, wanted);
-            need(c, Wanted::Truth);
-        }
-        _ if is_truth(expr) && wanted == Wanted::Number => need(id, Wanted::Truth),
-        _ if !is_truth(expr) && wanted == Wanted::Truth => need(id, Wanted::Number),
-        (Expr::Unary(UnaryOp::Not, a), _) => need(a, Wanted::Truth),
-        (Expr::Binary(BinaryOp::And | BinaryOp::Or, a, b), _) => {
-            need(b, Wanted::Truth);
-            need(a, Wanted::Truth);
-        }
-        (Expr::Unary(_, a), _) => need(a, Wanted::Number),
-        (Expr::Binary(_, a, b), _) => {
-            need(b, Wanted::Number);
-            need(a, Wanted::Number);
-        }
-        _ => {}
-    }
-}
-
-/// Which nodes of some steps change with the counter.
-pub(crate) fn moving(
-    dae: &Dae,
-    routine: &Routine,
-    steps: ops::Range<usize>,
-) -> FxHashMap<ExprId, bool> {
-    let roots: Vec<ExprId> = routine.steps[steps].iter().map(|step| step.value).collect();
-    let mut found: FxHashMap<ExprId, bool> = FxHashMap::default();
-    for id in dae.exprs.below(&roots) {
-        let expr = dae.exprs[id];
-        let mut moving = match routine.leaf(dae, expr) {
-            Some(Leaf::Counter) => true,
-            Some(Leaf::Load(_, index)) => index.stride != 0,
-            Some(Leaf::IsMode(..) | Leaf::Number(_) | Leaf::Time) | None => false,
-        };
-        expr.for_each_child(|child| moving |= found[&child]);
-        found.insert(id, moving);
-    }
-    found
 }

@@ -6,8 +6,8 @@
 //! ```
 //! A number that a later part reads is computed once. Leaves and truths are made again in each part.
 
-use crate::lower::{self, Wanted};
 use crate::routine::{Routine, Slot};
+use crate::wanted::{Wanted, children, moving};
 use hyde_ir::{Dae, ExprId};
 use rustc_hash::{FxHashMap, FxHashSet};
 use std::ops::Range;
@@ -27,12 +27,12 @@ impl Parts {
     /// Looks at all steps in their order. The assignments of a tick read each other, and stay one part.
     pub(crate) fn of(dae: &Dae, routine: &Routine) -> Self {
         let all = 0..routine.steps.len();
-        let moving = lower::moving(dae, routine, all.clone());
+        let moves = moving(dae, routine, all.clone());
         let mut parts = Self {
             steps: vec![all],
             kept: FxHashMap::default(),
         };
-        if moving.len() < NODES || routine.tick.is_some() {
+        if moves.len() < NODES || routine.tick.is_some() {
             return parts;
         }
         let mut made = FxHashMap::default();
@@ -47,7 +47,7 @@ impl Parts {
             let mut in_loop = FxHashSet::default();
             let mut open = vec![(step.value, Wanted::Number)];
             while let Some((id, wanted)) = open.pop() {
-                if moving[&id] {
+                if moves[&id] {
                     if !in_loop.insert((id, wanted)) {
                         continue;
                     }
@@ -64,7 +64,7 @@ impl Parts {
                         Some(_) | None => count += 1,
                     }
                 }
-                lower::children(dae, id, wanted, |child, wanted| open.push((child, wanted)));
+                children(dae, id, wanted, |child, wanted| open.push((child, wanted)));
             }
         }
         parts.steps.push(first..routine.steps.len());

@@ -9,8 +9,9 @@
 //! run one element at a time instead.
 
 use crate::host;
-use crate::lower::{At, Known, Lowering, Wanted, children, is_truth, load_flags};
+use crate::lower::{At, Known, Lowering, load_flags};
 use crate::routine::{Leaf, Slot, Step};
+use crate::wanted::{Wanted, children, is_truth};
 use cranelift_codegen::ir::condcodes::{FloatCC, IntCC};
 use cranelift_codegen::ir::{self, InstBuilder, MemFlagsData, types};
 use hyde_ir::{BinaryOp, Expr, ExprId, Range, UnaryOp};

@@ -43,7 +43,8 @@ impl Outcome {
     pub(crate) fn of(py: Python<'_>, program: &Program, run: Run) -> PyResult<Self> {
         let results = run.results;
         let (columns, units) = (PyDict::new(py), PyDict::new(py));
-        let arrays = results.columns.into_iter().map(|values| array(py, values));
+        let columns_of_rows = results.columns.iter();
+        let arrays = columns_of_rows.map(|series| array(py, series.values().into_owned()));
         let arrays: Vec<_> = arrays.collect::<PyResult<_>>()?;
         for (&number, &place) in results.outputs.iter().zip(&results.places) {
             let output = &program.outputs[number];

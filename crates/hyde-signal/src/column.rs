@@ -1,5 +1,6 @@
 //! One column of a table: a name, a unit if it is known, and the values.
 
+use crate::Series;
 use hyde_units::{Agreement, Dimension, NamedUnit, Unit};
 use std::borrow::Cow;
 use std::fmt;
@@ -24,21 +25,61 @@ pub struct Written<'a> {
     /// The unit it is written in, if known.
     pub unit: Option<Cow<'a, NamedUnit>>,
     /// The values: SI if the unit is known, else as they are in the file.
-    pub values: &'a [f64],
+    pub values: Values<'a>,
+}
+
+/// Values of rows that belong to someone else.
+#[derive(Clone, Copy, Debug)]
+pub enum Values<'a> {
+    /// One a row.
+    Each(&'a [f64]),
+    /// Without what stays.
+    Series(&'a Series),
+}
+
+impl Values<'_> {
+    /// Number of rows.
+    pub(crate) fn len(&self) -> usize {
+        match self {
+            Self::Each(values) => values.len(),
+            Self::Series(series) => series.len(),
+        }
+    }
+
+    fn are(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Each(own), Self::Each(other)) => std::ptr::eq(*own, *other),
+            (Self::Series(own), Self::Series(other)) => std::ptr::eq(*own, *other),
+            (Self::Each(_), Self::Series(_)) | (Self::Series(_), Self::Each(_)) => false,
+        }
+    }
 }
 
 impl Written<'_> {
-    /// The value in a row in the column's unit: see [`Column::in_unit`].
+    /// The values of all rows: SI if the unit is known.
     #[must_use]
-    pub fn in_unit(&self, row: usize) -> f64 {
-        let value = self.values[row];
-        let unit = self.unit.as_ref();
-        unit.map_or(value, |unit| in_unit(value, unit.unit()))
+    pub fn values(&self) -> Cow<'_, [f64]> {
+        match self.values {
+            Values::Each(values) => Cow::Borrowed(values),
+            Values::Series(series) => series.values(),
+        }
+    }
+
+    /// The values row after row in the column's unit: see [`Column::in_unit`].
+    pub(crate) fn in_unit(&self) -> Box<dyn Iterator<Item = f64> + '_> {
+        let values: Box<dyn Iterator<Item = f64> + '_> = match self.values {
+            Values::Each(values) => Box::new(values.iter().copied()),
+            Values::Series(series) => Box::new(series.iter()),
+        };
+        match self.unit.as_ref().map(|unit| unit.unit()) {
+            Some(unit) if !unit.is_si() => Box::new(values.map(move |si| in_unit(si, unit))),
+            Some(_) | None => values,
+        }
     }
 
     /// Whether both have the same values in memory, and the same unit.
     pub(crate) fn reads_as(&self, other: &Self) -> bool {
-        std::ptr::eq(self.values, other.values) && self.unit == other.unit
+        self.values.are(&other.values) && self.unit == other.unit
     }
 }
 
@@ -129,7 +170,7 @@ impl Column {
         Written {
             name: Cow::Borrowed(&self.name),
             unit: self.unit.as_ref().map(Cow::Borrowed),
-            values: &self.values,
+            values: Values::Each(&self.values),
         }
     }
 

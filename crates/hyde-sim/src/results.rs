@@ -2,6 +2,8 @@
 
 use hyde_diag::Origin;
 use hyde_program::{Firmness, Method};
+use hyde_signal::Series;
+use std::borrow::Cow;
 
 /// What happened.
 #[derive(Clone, Debug, PartialEq)]
@@ -159,7 +161,7 @@ pub struct Results {
     /// The column of each output kept: outputs with the same value share one.
     pub places: Vec<usize>,
     /// The columns, SI.
-    pub columns: Vec<Vec<f64>>,
+    pub columns: Vec<Series>,
     /// The derivatives by parameters, if they were asked for.
     pub gradient: Option<Gradient>,
     /// The event log.
@@ -185,17 +187,14 @@ pub struct Results {
 impl Results {
     /// The column of an output; `None` if it was not kept.
     #[must_use]
-    pub fn column(&self, output: usize) -> Option<&[f64]> {
+    pub fn column(&self, output: usize) -> Option<Cow<'_, [f64]>> {
         let at = self.outputs.binary_search(&output).ok()?;
-        Some(&self.columns[self.places[at]])
+        Some(self.columns[self.places[at]].values())
     }
 
     /// The outputs kept, each with its column.
-    pub fn kept(&self) -> impl Iterator<Item = (usize, &[f64])> {
-        let columns = self
-            .places
-            .iter()
-            .map(|&place| self.columns[place].as_slice());
+    pub fn kept(&self) -> impl Iterator<Item = (usize, &Series)> {
+        let columns = self.places.iter().map(|&place| &self.columns[place]);
         self.outputs.iter().copied().zip(columns)
     }
 

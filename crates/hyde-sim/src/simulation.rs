@@ -35,6 +35,7 @@ use crate::solver::method;
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
 use hyde_program::Program;
+use hyde_signal::Series;
 use std::collections::HashMap;
 
 /// Relations that are not settled after so many solutions of the initial equations contradict them.
@@ -120,7 +121,7 @@ impl<'a> Simulation<'a> {
         let (places, distinct) = shared_columns(program, &keep);
         let results = Results {
             gradient: setup.sensitivities.map(gradient),
-            columns: vec![Vec::with_capacity(setup.rows_s.len() + 16); distinct.len()],
+            columns: vec![Series::default(); distinct.len()],
             places,
             outputs: keep,
             mode_times: program

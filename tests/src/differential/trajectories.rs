@@ -47,8 +47,8 @@ pub(super) fn first_difference(program: &Program, a: &Results, b: &Results) -> O
             .find(|(a, b)| a.to_bits() != b.to_bits());
         return Some(format!("rows at other times, first {first:?}"));
     }
-    for (number, (a_column, b_column)) in a.columns.iter().zip(&b.columns).enumerate() {
-        for ((t, x), y) in a.time.iter().zip(a_column).zip(b_column) {
+    for ((number, a_column), (_, b_column)) in a.kept().zip(b.kept()) {
+        for ((t, x), y) in a.time.iter().zip(a_column.iter()).zip(b_column.iter()) {
             if x.to_bits() != y.to_bits() && !(x.is_nan() && y.is_nan()) {
                 let name = &program.outputs[number].name;
                 return Some(format!("{name} at {t} s: {x:e} and {y:e}"));
@@ -71,7 +71,8 @@ pub(super) fn outside(
         .filter(|&unknown| differential[unknown])
         .map(|unknown| program.unknown_name(unknown))
         .collect();
-    for (number, column) in reference.columns.iter().enumerate() {
+    for (number, column) in reference.kept() {
+        let column = column.values();
         let name = &program.outputs[number].name;
         let twin = name.replace('[', "_").replace(']', "");
         let found = other_program
@@ -79,6 +80,9 @@ pub(super) fn outside(
             .iter()
             .position(|output| output.name == *name || output.name == twin);
         let Some(found) = found else {
+            continue;
+        };
+        let Some(others) = other.column(found) else {
             continue;
         };
         let size = column
@@ -102,7 +106,7 @@ pub(super) fn outside(
             let high = near.iter().fold(f64::NEG_INFINITY, |a, &b| a.max(b));
             let all_known = near.iter().all(|value| value.is_finite());
             for row in [first, last] {
-                let value = other.columns[found][row];
+                let value = others[row];
                 let off = (low - value).max(value - high);
                 let wrong = all_known != value.is_finite() || off > allowed;
                 let times = off / allowed;

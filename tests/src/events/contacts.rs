@@ -52,7 +52,7 @@ pub(super) fn springs() -> Result<(), String> {
 /// Backlash of no width is the spring alone, at 10 rad/s.
 pub(super) fn no_gap() -> Result<(), String> {
     let run = solve("events/contacts", "gap")?;
-    for (t, x) in run.run.results.time.iter().zip(run.column("x")?) {
+    for (t, x) in run.run.results.time.iter().zip(run.column("x")?.iter()) {
         // rtol 1e-9 over three periods, the amplitude is 1 cm.
         close("x", *x, 0.01 * (10.0 * t).cos(), 1e-9)?;
     }
@@ -136,6 +136,7 @@ pub(super) fn at_speed() -> Result<(), String> {
 
 /// Rows in which the clutch slips after it has closed.
 fn slips(run: &Solved) -> Result<usize, String> {
-    let rows = run.run.results.time.iter().zip(run.column("clutch.w_rel")?);
+    let slip = run.column("clutch.w_rel")?;
+    let rows = run.run.results.time.iter().zip(slip.iter());
     Ok(rows.filter(|(t, slip)| **t > 1.0 && **slip != 0.0).count())
 }

@@ -47,7 +47,7 @@ pub(super) fn friction() -> Result<(), String> {
     // The leaving is no matter of the solution: a force that is given.
     close("leaves", run.events()[1].t, 2.0, 1e-11)?;
     let stuck = |t: f64| (stop..2.0).contains(&t).then_some(());
-    for (&t, &v) in run.run.results.time.iter().zip(run.column("v")?) {
+    for (&t, &v) in run.run.results.time.iter().zip(run.column("v")?.iter()) {
         if stuck(t - 1e-9).is_some() && stuck(t + 1e-9).is_some() {
             same("speed while it sticks", &v, &0.0)?;
         }
@@ -110,7 +110,8 @@ pub(super) fn bent() -> Result<(), String> {
     turned(&run, &[(start, "x*x + y*y > 1", SLIDES)], 1e-8)?;
     from(&run, "x", start, |t| (2.0 * t).cos(), 1e-7)?;
     let radius = |run: &Solved| -> Result<Vec<f64>, String> {
-        let pairs = run.column("x")?.iter().zip(run.column("y")?);
+        let (x, y) = (run.column("x")?, run.column("y")?);
+        let pairs = x.iter().zip(y.iter());
         Ok(pairs.map(|(x, y)| x.hypot(*y)).collect())
     };
     for (t, radius) in run.run.results.time.iter().zip(radius(&run)?) {
@@ -126,7 +127,13 @@ pub(super) fn bent() -> Result<(), String> {
     close("leaves", last.t, leave, 1e-10)?;
     let meets = follows.events()[1].t;
     let (x, goal) = (follows.column("x")?, follows.column("goal")?);
-    for (t, (x, goal)) in follows.run.results.time.iter().zip(x.iter().zip(goal)) {
+    for (t, (x, goal)) in follows
+        .run
+        .results
+        .time
+        .iter()
+        .zip(x.iter().zip(goal.iter()))
+    {
         if *t > meets && *t < leave {
             close("x", *x, *goal, 1e-15)?;
         }
@@ -240,7 +247,8 @@ fn from(
     expected: impl Fn(f64) -> f64,
     tolerance: f64,
 ) -> Result<(), String> {
-    let rows = run.run.results.time.iter().zip(run.column(name)?);
+    let column = run.column(name)?;
+    let rows = run.run.results.time.iter().zip(column.iter());
     let mut behind = rows.filter(|(t, _)| **t > start + 1e-9);
     behind.try_for_each(|(&t, &value)| {
         close(&format!("{name} at {t} s"), value, expected(t), tolerance)

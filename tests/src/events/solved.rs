@@ -4,6 +4,7 @@ use crate::Example;
 use hyde_compiler::Compiled;
 use hyde_experiment::{Options, Run};
 use hyde_sim::Event;
+use std::borrow::Cow;
 
 /// A run with its program.
 pub(super) struct Solved {
@@ -29,7 +30,7 @@ pub(super) fn solve_with(
 
 impl Solved {
     /// A column of the results.
-    pub(super) fn column(&self, name: &str) -> Result<&[f64], String> {
+    pub(super) fn column(&self, name: &str) -> Result<Cow<'_, [f64]>, String> {
         let output = self.compiled.program.output(name);
         let column = output.and_then(|output| self.run.results.column(output));
         column.ok_or_else(|| format!("no output `{name}`"))

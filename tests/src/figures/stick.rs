@@ -20,14 +20,14 @@ fn measure(_: &Session) -> Result<Measured, String> {
             .ok_or_else(|| format!("the run has no column `{name}`"))
     };
     let size = |values: &[f64]| values.iter().fold(0.0_f64, |most, v| most.max(v.abs()));
-    if size(column("push.F")?) == 0.0 {
+    if size(&column("push.F")?) == 0.0 {
         return Err("the load is missing".to_owned());
     }
     // An angular velocity counts by what it would move.
     let velocities = ["saddle.v", "motor.w", "pulley.w"];
     let sizes: Result<Vec<f64>, String> = velocities
         .iter()
-        .map(|name| Ok(size(column(name)?)))
+        .map(|name| Ok(size(&column(name)?)))
         .collect();
     Ok(Measured::Value(size(&sizes?)))
 }

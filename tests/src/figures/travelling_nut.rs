@@ -113,7 +113,7 @@ fn ripple(_: &Session) -> Result<Measured, String> {
     let (place, twist) = (column("xn")?, column("twist")?);
     let cell = 1.0 / 24.0;
     let mut worst = 0.0_f64;
-    for (x, twist) in place.iter().zip(twist) {
+    for (x, twist) in place.iter().zip(twist.iter()) {
         if (cell..=1.0 - cell).contains(x) {
             worst = worst.max((twist / (x * (1.0 - x)) - 1.0).abs());
         }

@@ -4,13 +4,14 @@
 use crate::models::{Solved, close, model, solve};
 use hyde_compiler::Backend;
 use hyde_experiment::{Options, frequency_response, linearize, modes};
+use hyde_signal::Series;
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 /// Every row of a column against a function of the time; rows within a nanosecond of an event are left out.
 fn follows(solved: &Solved, name: &str, tolerance: f64, f: impl Fn(f64) -> f64) {
     let mut compared = 0;
-    for (&t, &value) in solved.time().iter().zip(solved.column(name)) {
+    for (&t, &value) in solved.time().iter().zip(solved.column(name).iter()) {
         let (early, late) = (f(t - 1e-9), f(t + 1e-9));
         if (early - late).abs() < 1e-6 {
             close(value, f(t), tolerance);
@@ -226,7 +227,7 @@ fn delays_run_the_same_on_both_backends() {
             hyde_experiment::run(&program, &BTreeMap::new(), &Options::default()).unwrap()
         });
         let bits = |number: usize| {
-            let columns = runs[number].results.columns.iter().flatten();
+            let columns = runs[number].results.columns.iter().flat_map(Series::iter);
             columns.map(|value| value.to_bits()).collect::<Vec<_>>()
         };
         assert_eq!(bits(0), bits(1), "{experiment}");

@@ -69,7 +69,7 @@ fn digest(compiled: &Compiled, run: &Run) -> String {
         if output.auxiliary || (of_array && end) {
             continue;
         }
-        let value = to_digits(last, largest(values), 6);
+        let value = to_digits(last, largest(&values), 6);
         let unit = output.dimension.usual_unit();
         let unit = if unit == "1" { "" } else { &unit };
         let _ = writeln!(out, "{} = {value} {unit}", output.name);

@@ -50,7 +50,7 @@ fn energy_is_kept_to_the_tolerance() {
 fn momentum_is_kept_whatever_the_tolerance() {
     let swing = swing(1e-6);
     let (w1, w2) = (swing.column("one.w"), swing.column("two.w"));
-    for (w1, w2) in w1.iter().zip(w2) {
+    for (w1, w2) in w1.iter().zip(w2.iter()) {
         // Every linear multistep method keeps a linear invariant, but for what Newton's iteration leaves.
         close(J1 * w1 + J2 * w2, J1 * W0, 1e-8 * J1 * W0);
     }

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 fn springs_that_a_plate_reaches_one_after_the_other() {
     let press = solve("loops", "press");
     let k = 1e5;
-    for (&t, &x) in press.time().iter().zip(press.column("x")) {
+    for (&t, &x) in press.time().iter().zip(press.column("x").iter()) {
         let force = 500.0 * t;
         // One spring up to 1 mm, two up to 2 mm, then three.
         let expected = if force <= 100.0 {
@@ -33,7 +33,7 @@ fn a_bridge_of_four_switching_resistances() {
     let columns = ["source", "a", "b", "p"].map(|name| rectify.column(name));
     let (on, off, rs, r) = (0.1, 1e5, 1.0, 10.0);
     for row in 0..rectify.time().len() {
-        let [u, a, b, p] = columns.map(|column| column[row]);
+        let [u, a, b, p] = columns.each_ref().map(|column| column[row]);
         // With u > 0 the current enters at a: from p through the load to n, and back to b. The circuit by the potentials
         // of nodes: a, p, b against n = 0.
         let (first, second) = if u >= 0.0 { (a, b) } else { (b, a) };
@@ -52,7 +52,7 @@ fn a_bridge_of_four_switching_resistances() {
 fn a_torn_loop_is_solved_at_every_row() {
     let follow = solve("loops", "follow");
     assert_eq!(follow.compiled.program.n_unknowns, 1);
-    for (&t, &y) in follow.time().iter().zip(follow.column("y")) {
+    for (&t, &y) in follow.time().iter().zip(follow.column("y").iter()) {
         // Between two steps the interpolant errs by ten times the tolerance of a step.
         close(y * y * y + y, 2.0 * (TAU * t).sin(), 1e-7);
     }

@@ -4,6 +4,7 @@ use hyde_compiler::Compiled;
 use hyde_experiment::{Options, Run};
 use hyde_sim::EventKind;
 use hyde_tests::Example;
+use std::borrow::Cow;
 
 /// A run with its program.
 pub(crate) struct Solved {
@@ -30,7 +31,7 @@ pub(crate) fn solve_with(file: &str, experiment: &str, options: &Options) -> Sol
 
 impl Solved {
     /// A column of the results.
-    pub(crate) fn column(&self, name: &str) -> &[f64] {
+    pub(crate) fn column(&self, name: &str) -> Cow<'_, [f64]> {
         let output = self.compiled.program.output(name);
         let output = output.unwrap_or_else(|| panic!("no output `{name}`"));
         self.run.results.column(output).unwrap()

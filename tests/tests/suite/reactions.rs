@@ -80,7 +80,7 @@ fn modes_act_on_leaving_and_on_entering_in_this_order() {
 fn parallel_modes_go_their_own_ways() {
     let run = solve("reactions", "tank");
     let triangle = |t: f64| 0.3 - ((t % 0.6) - 0.3).abs();
-    for (t, y) in run.time().iter().zip(run.column("y")) {
+    for (t, y) in run.time().iter().zip(run.column("y").iter()) {
         // Straight lines at rtol 1e-9, through eight corners.
         close(*y, triangle(*t), 1e-8);
     }

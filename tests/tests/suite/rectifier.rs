@@ -12,7 +12,7 @@ fn a_diode_of_modes_and_one_of_relations_rectify_alike() {
     assert_eq!(instants(&relations), 62);
     let last = |column: &[f64]| column[column.len() - 1];
     for name in ["uDC", "L1.i", "L2.i"] {
-        let (a, b) = (last(modes.column(name)), last(relations.column(name)));
+        let (a, b) = (last(&modes.column(name)), last(&relations.column(name)));
         // rtol 1e-7 of 600 V and 1000 A over 60 switchings.
         close(a, b, 5e-3);
     }

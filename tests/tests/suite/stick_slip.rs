@@ -69,7 +69,8 @@ fn at_rest_the_velocity_is_exactly_zero() {
 fn below_breakaway_a_whole_drive_stands_still() {
     let axis = solve("stick", "off");
     for name in ["saddle.v", "motor.w", "pulley.w"] {
-        let moved = axis.column(name).iter().filter(|v| v.to_bits() != 0);
+        let column = axis.column(name);
+        let moved = column.iter().filter(|v| v.to_bits() != 0);
         assert_eq!(moved.count(), 0, "{name}");
     }
     assert!(axis.events().is_empty());

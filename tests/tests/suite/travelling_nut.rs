@@ -9,7 +9,7 @@ fn the_nut_feels_a_bar_and_not_its_cells() {
     let walk = solve("travelling_nut", "walk");
     let (place, twist) = (walk.column("xn"), walk.column("twist"));
     let cell = 1.0 / 24.0;
-    for (&x, &twist) in place.iter().zip(twist) {
+    for (&x, &twist) in place.iter().zip(twist.iter()) {
         if (cell..=1.0 - cell).contains(&x) {
             // The bar creeps 1e-6 of its stiffness behind; the promise is 1e-4.
             close(twist, x * (1.0 - x), 1e-6);

@@ -41,7 +41,7 @@ fn ticks_between_the_rows_are_rows() {
 #[test]
 fn an_equation_of_the_time_alone_holds_at_every_row() {
     let bent = solve("without_states", "bent");
-    for (q, u) in bent.column("q").iter().zip(bent.column("u")) {
+    for (q, u) in bent.column("q").iter().zip(bent.column("u").iter()) {
         // rtol 1e-6 of q, up to 2, times its slope 1 + 3 q^2, and some times that between two steps.
         close(q * q * q + q, *u, 1e-4);
     }

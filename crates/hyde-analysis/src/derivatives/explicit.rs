@@ -150,8 +150,8 @@ impl Explicit {
 
 fn left_cell(system: &System, number: usize) -> Option<Cell> {
     let equation = &system.equations[number];
-    match system.flat.exprs[equation.lhs] {
-        Expr::Var(var, index) if equation.range == Range::SCALAR => System::cell(var, index),
-        _ => None,
-    }
+    let Expr::Var(var, index) = system.flat.exprs[equation.lhs] else {
+        return None;
+    };
+    System::cell(var, index).filter(|_| equation.range == Range::SCALAR)
 }

@@ -14,7 +14,7 @@ use crate::{asked_figures, forces, render, report, summary};
 use hyde_compiler::Compiled;
 use hyde_experiment::{Options, Run, RunError};
 use hyde_program::Program;
-use hyde_signal::{Written, csv, parquet};
+use hyde_signal::{Written, WrittenValues, csv, parquet};
 use hyde_sim::{Reached, Results};
 use hyde_study::run_failure;
 use hyde_units::{NamedUnit, significant};
@@ -220,7 +220,7 @@ fn columns<'a>(program: &'a Program, results: &'a Results) -> Vec<Written<'a>> {
     let mut columns = vec![Written {
         name: "t".into(),
         unit: Some(Cow::Owned(time)),
-        values: &results.time,
+        values: WrittenValues::Each(&results.time),
     }];
     for (number, values) in results.kept() {
         let output = &program.outputs[number];
@@ -228,7 +228,7 @@ fn columns<'a>(program: &'a Program, results: &'a Results) -> Vec<Written<'a>> {
             columns.push(Written {
                 name: output.name.as_str().into(),
                 unit: Some(Cow::Borrowed(&output.unit)),
-                values,
+                values: WrittenValues::Series(values),
             });
         }
     }
@@ -253,7 +253,7 @@ fn gradient_columns<'a>(program: &Program, results: &'a Results) -> Vec<Written<
                 columns.push(Written {
                     name: format!("d({})/d({name})", output.name).into(),
                     unit: Some(Cow::Owned(unit)),
-                    values,
+                    values: WrittenValues::Each(values),
                 });
             }
         }
@@ -270,13 +270,14 @@ fn results_json(program: &Program, results: &Results) -> Value {
     for (number, values) in results.kept() {
         let output = &program.outputs[number];
         if !output.auxiliary {
-            let entry = json!({ "unit": output.dimension.usual_unit(), "values": values });
+            let entry = json!({ "unit": output.dimension.usual_unit(), "values": values.values() });
             columns.insert(output.name.clone(), entry);
         }
     }
     for column in gradient_columns(program, results) {
-        let unit = column.unit.map(|unit| unit.unit().dimension.usual_unit());
-        let entry = json!({ "unit": unit, "values": column.values });
+        let unit = column.unit.as_ref();
+        let unit = unit.map(|unit| unit.unit().dimension.usual_unit());
+        let entry = json!({ "unit": unit, "values": column.values() });
         columns.insert(column.name.into_owned(), entry);
     }
     Value::Object(columns)

@@ -193,8 +193,12 @@ pub(crate) fn browser() -> Option<&'static str> {
 pub(crate) fn browser_or_say() -> Option<&'static str> {
     let found = browser();
     if found.is_none() {
-        let said = "skipped: no browser is here; `./dev setup` installs one";
-        writeln!(std::io::stderr(), "{said}").unwrap();
+        let mut log = std::io::stderr();
+        writeln!(
+            log,
+            "skipped: no browser is here; `./dev setup` installs one"
+        )
+        .unwrap();
     }
     found
 }

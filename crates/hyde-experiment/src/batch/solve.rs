@@ -74,7 +74,10 @@ pub fn solve(
     let value = |number: &Option<usize>| number.map_or(f64::NAN, |number| found[number].value);
     let column = |number: &Option<usize>| {
         let column = number.and_then(|number| results.column(number));
-        column.map_or_else(|| vec![f64::NAN; results.time.len()], <[f64]>::to_vec)
+        column.map_or_else(
+            || vec![f64::NAN; results.time.len()],
+            std::borrow::Cow::into_owned,
+        )
     };
     let trajectory = (!wanted.kept.is_empty()).then(|| Trajectory {
         columns: wanted.kept.iter().map(column).collect(),

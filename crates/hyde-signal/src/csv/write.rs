@@ -37,14 +37,15 @@ pub fn write_to(out: &mut impl io::Write, columns: &[Written<'_>]) -> io::Result
         })
         .collect();
     let mut places = vec![0..0; columns.len()];
+    let mut cells: Vec<_> = columns.iter().map(Written::in_unit).collect();
     let mut text = header.join(",");
-    for row in 0..rows.min().unwrap_or(0) {
-        for (at, (column, &first)) in columns.iter().zip(&first_of).enumerate() {
+    for _ in 0..rows.min().unwrap_or(0) {
+        for (at, (values, &first)) in cells.iter_mut().zip(&first_of).enumerate() {
             text.push(if at == 0 { '\n' } else { ',' });
             let start = text.len();
             match first < at {
                 true => text.extend_from_within(places[first].clone()),
-                false => push_number(&mut text, column.in_unit(row)),
+                false => push_number(&mut text, values.next().unwrap_or(f64::NAN)),
             }
             places[at] = start..text.len();
         }

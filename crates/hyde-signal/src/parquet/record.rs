@@ -84,18 +84,12 @@ pub fn write_to<W: io::Write + Send>(file: W, columns: &[Written<'_>]) -> io::Re
         .collect();
     let mut writer = Writer::new(file, &fields, &[])?;
     let longest = columns.iter().map(|column| column.values.len()).max();
+    let mut cells: Vec<_> = columns.iter().map(Written::in_unit).collect();
     // A file without rows has a group without rows.
-    for first in (0..longest.unwrap_or(0).max(1)).step_by(ROWS_OF_A_GROUP) {
-        let group: Vec<Values> = columns
-            .iter()
-            .map(|column| {
-                let last = (first + ROWS_OF_A_GROUP).min(column.values.len());
-                Values::Numbers(
-                    (first.min(last)..last)
-                        .map(|row| column.in_unit(row))
-                        .collect(),
-                )
-            })
+    for _ in (0..longest.unwrap_or(0).max(1)).step_by(ROWS_OF_A_GROUP) {
+        let groups = cells.iter_mut();
+        let group: Vec<Values> = groups
+            .map(|values| Values::Numbers(values.take(ROWS_OF_A_GROUP).collect()))
             .collect();
         writer.rows(&group)?;
     }

@@ -11,6 +11,7 @@ use crate::sensitivity::Cause;
 use crate::session::Advance;
 use crate::setup::same_instant;
 use hyde_program::Function;
+use hyde_signal::Series;
 
 /// Values at the caller's time.
 #[derive(Clone, Debug, Default)]
@@ -182,7 +183,7 @@ impl Simulation<'_> {
     /// The caller takes values as they are: rows are not kept.
     pub(crate) fn forget_rows(&mut self) {
         self.results.time.clear();
-        self.results.columns.iter_mut().for_each(Vec::clear);
+        self.results.columns.iter_mut().for_each(Series::clear);
     }
 
     /// The next instant that is known beforehand.

@@ -167,8 +167,9 @@ pub(crate) fn run(
 }
 
 /// The column of an output.
-pub(crate) fn column<'r>(program: &Program, results: &'r Results, name: &str) -> &'r [f64] {
-    results.column(program.output(name).unwrap()).unwrap()
+pub(crate) fn column(program: &Program, results: &Results, name: &str) -> Vec<f64> {
+    let column = results.column(program.output(name).unwrap()).unwrap();
+    column.into_owned()
 }
 
 fn output(name: &str) -> Output {

@@ -199,7 +199,7 @@ fn states_change_four_times_a_turn() {
     let chosen = of("x is a state");
     let changes = chosen.windows(2).filter(|pair| pair[0] != pair[1]).count();
     assert_eq!(changes, 4 * TURNS);
-    for ((x, y), x_is_state) in of("x").iter().zip(of("y")).zip(chosen) {
+    for ((x, y), x_is_state) in of("x").iter().zip(&of("y")).zip(&chosen) {
         // The other one is solved for; changed where another choice is five times as good, at the end of a step.
         let solved_for = if *x_is_state == 1.0 { y } else { x };
         assert!(solved_for.abs() >= 0.1, "{x}, {y}");

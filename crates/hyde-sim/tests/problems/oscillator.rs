@@ -80,7 +80,7 @@ fn phase_and_amplitude_are_those_of_the_cosine_over_a_hundred_periods() {
         column(&program, &results, "x"),
         column(&program, &results, "v"),
     );
-    for ((t, x), v) in results.time.iter().zip(x).zip(v) {
+    for ((t, x), v) in results.time.iter().zip(&x).zip(&v) {
         let amplitude = x.hypot(v / 3.0);
         let late = (-v / 3.0).atan2(*x) - 3.0 * t;
         let late = late - TAU * (late / TAU).round();

@@ -178,7 +178,7 @@ fn a_mass_that_sticks_has_velocity_zero_to_the_last_bit() {
     let results = run(&program, &[], rows).unwrap();
     let of = |name| column(&program, &results, name);
     let (mut stuck, mut most) = (0, 0.0_f64);
-    for ((v, friction), mode) in of("v").iter().zip(of("friction")).zip(of("mode")) {
+    for ((v, friction), mode) in of("v").iter().zip(&of("friction")).zip(&of("mode")) {
         if *mode == STICK as f64 {
             assert_eq!(v.to_bits(), 0.0_f64.to_bits());
             stuck += 1;

@@ -3,6 +3,7 @@
 use super::text::{delayed, limit, of_channel, of_clock, samples};
 use super::{Seen, layout_of};
 use crate::files;
+use crate::thinned::thinned;
 use hyde_report::{Axis, Block, Figure, Line, Page, Panel, Section, Table, to_html};
 use hyde_signal::look::Channel;
 use hyde_units::significant;
@@ -94,7 +95,7 @@ fn section(seen: &Seen) -> Section {
 fn thumbnail(seen: &Seen, channel: &Channel) -> Option<Block> {
     let part = seen.table.holding(&channel.name);
     let column = part.column(&channel.name)?;
-    let (x, y) = thinned(part.time(), &column.in_unit());
+    let (x, y) = thinned(part.time(), &column.in_unit(), POINTS);
     let unit = channel.unit.clone().unwrap_or_default();
     let panel = Panel::new(
         Axis::new("time", "s"),
@@ -106,27 +107,4 @@ fn thumbnail(seen: &Seen, channel: &Channel) -> Option<Block> {
         panel_height: 120.0,
         ..Figure::new(vec![panel])
     }))
-}
-
-/// The least and the greatest value of every stretch, in their order.
-fn thinned(time: &[f64], values: &[f64]) -> (Vec<f64>, Vec<f64>) {
-    let each = (values.len() / POINTS).max(1);
-    if each == 1 {
-        return (time.to_vec(), values.to_vec());
-    }
-    let (mut x, mut y) = (Vec::new(), Vec::new());
-    for first in (0..values.len()).step_by(each) {
-        let rows = first..(first + each).min(values.len());
-        let least = rows
-            .clone()
-            .min_by(|a, b| values[*a].total_cmp(&values[*b]));
-        let most = rows.max_by(|a, b| values[*a].total_cmp(&values[*b]));
-        let mut both: Vec<usize> = least.into_iter().chain(most).collect();
-        both.sort_unstable();
-        for row in both {
-            x.push(time[row]);
-            y.push(values[row]);
-        }
-    }
-    (x, y)
 }

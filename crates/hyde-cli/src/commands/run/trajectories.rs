@@ -7,13 +7,15 @@
 
 use super::columns;
 use hyde_program::Program;
+use hyde_signal::Written;
 use hyde_signal::mat::Level4;
 use hyde_sim::Results;
 
 pub(super) fn mat(program: &Program, results: &Results) -> Vec<u8> {
     let columns = columns(program, results);
     let (mut names, mut descriptions, mut places) = (Vec::new(), Vec::new(), Vec::new());
-    let time = columns.first().map_or(&[][..], |column| column.values);
+    let values: Vec<_> = columns.iter().map(Written::values).collect();
+    let time = values.first().map_or(&[][..], AsRef::as_ref);
     let mut constants: Vec<Vec<f64>> = vec![vec![
         time.first().copied().unwrap_or(0.0),
         time.last().copied().unwrap_or(0.0),
@@ -57,7 +59,7 @@ pub(super) fn mat(program: &Program, results: &Results) -> Vec<u8> {
     }
     let rows = columns.len();
     let samples = 0..time.len();
-    let values = samples.flat_map(|k| columns.iter().map(move |column| column.values[k]));
+    let values = samples.flat_map(|k| values.iter().map(move |column| column[k]));
     let values: Vec<f64> = values.collect();
     let ends = [0, 1].into_iter();
     let ends: Vec<f64> = ends

@@ -1,0 +1,102 @@
+//! [`Series`]: the values of a quantity row after row, in which a value that stays takes a bit.
+//!
+//! A run under a clock has two rows at each tick, and most quantities jump at none of them; others change at ticks alone, or
+//! never.
+
+use std::borrow::Cow;
+
+/// Bits in a word.
+const WORD: usize = u64::BITS as usize;
+
+/// Values of rows; those equal to the row before to the last bit are not kept again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Series {
+    /// The values that differ from those before.
+    values: Vec<f64>,
+    /// A bit for each row: whether its value is another than that of the row before.
+    new: Vec<u64>,
+    rows: usize,
+}
+
+impl Series {
+    /// Number of rows.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.rows
+    }
+
+    /// Whether there is no row.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.rows == 0
+    }
+
+    /// Appends a row.
+    pub fn push(&mut self, value: f64) {
+        let same = |last: &f64| last.to_bits() == value.to_bits();
+        if self.rows.is_multiple_of(WORD) {
+            self.new.push(0);
+        }
+        if !self.values.last().is_some_and(same) {
+            self.values.push(value);
+            if let Some(word) = self.new.last_mut() {
+                *word |= 1 << (self.rows % WORD);
+            }
+        }
+        self.rows += 1;
+    }
+
+    /// The values of all rows; nothing is copied where each differs from the one before.
+    #[must_use]
+    pub fn values(&self) -> Cow<'_, [f64]> {
+        match self.values.len() == self.rows {
+            true => Cow::Borrowed(&self.values),
+            false => self.iter().collect(),
+        }
+    }
+
+    /// The values row after row.
+    pub fn iter(&self) -> impl Iterator<Item = f64> {
+        let mut next = 0;
+        (0..self.rows).map(move |row| {
+            next += usize::from(self.new[row / WORD] >> (row % WORD) & 1 == 1);
+            self.values[next - 1]
+        })
+    }
+
+    /// Takes all rows out.
+    pub fn clear(&mut self) {
+        *self = Self::default();
+    }
+}
+
+impl FromIterator<f64> for Series {
+    fn from_iter<I: IntoIterator<Item = f64>>(values: I) -> Self {
+        let mut series = Self::default();
+        values.into_iter().for_each(|value| series.push(value));
+        series
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_was_pushed_is_read() {
+        for values in [
+            vec![],
+            vec![1.0, 2.0, 3.0],
+            vec![0.0; 200],
+            (0..300).map(|row| f64::from(row / 2)).collect(),
+            vec![0.0, -0.0, f64::NAN, f64::NAN, 1.0, 1.0, 0.0],
+        ] {
+            let series: Series = values.iter().copied().collect();
+            let bits = |values: &[f64]| values.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&series.values()), bits(&values));
+            assert_eq!(series.len(), values.len());
+        }
+        let moving: Series = [1.0, 2.0].into_iter().collect();
+        assert!(matches!(moving.values(), Cow::Borrowed(_)));
+    }
+}
