@@ -8,11 +8,15 @@ use std::borrow::Cow;
 /// Bits in a word.
 const WORD: usize = u64::BITS as usize;
 
+/// Values are kept in pieces of so many: a piece that is full stays where it is.
+const PIECE: usize = 1 << 16;
+
 /// Values of rows; those equal to the row before to the last bit are not kept again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Series {
-    /// The values that differ from those before.
-    values: Vec<f64>,
+    /// The values that differ from those before: full pieces, and the last one.
+    full: Vec<Vec<f64>>,
+    last: Vec<f64>,
     /// A bit for each row: whether its value is another than that of the row before.
     new: Vec<u64>,
     rows: usize,
@@ -34,11 +38,14 @@ impl Series {
     /// Appends a row.
     pub fn push(&mut self, value: f64) {
         let same = |last: &f64| last.to_bits() == value.to_bits();
+        if self.last.len() == PIECE && !self.last.last().is_some_and(same) {
+            self.full.push(std::mem::take(&mut self.last));
+        }
         if self.rows.is_multiple_of(WORD) {
             self.new.push(0);
         }
-        if !self.values.last().is_some_and(same) {
-            self.values.push(value);
+        if !self.last.last().is_some_and(same) {
+            self.last.push(value);
             if let Some(word) = self.new.last_mut() {
                 *word |= 1 << (self.rows % WORD);
             }
@@ -46,11 +53,11 @@ impl Series {
         self.rows += 1;
     }
 
-    /// The values of all rows; nothing is copied where each differs from the one before.
+    /// The values of all rows; nothing is copied of a short run in which each differs from the one before.
     #[must_use]
     pub fn values(&self) -> Cow<'_, [f64]> {
-        match self.values.len() == self.rows {
-            true => Cow::Borrowed(&self.values),
+        match self.last.len() == self.rows {
+            true => Cow::Borrowed(&self.last),
             false => self.iter().collect(),
         }
     }
@@ -60,7 +67,9 @@ impl Series {
         let mut next = 0;
         (0..self.rows).map(move |row| {
             next += usize::from(self.new[row / WORD] >> (row % WORD) & 1 == 1);
-            self.values[next - 1]
+            let place = next - 1;
+            let piece = self.full.get(place / PIECE).unwrap_or(&self.last);
+            piece[place % PIECE]
         })
     }
 
@@ -89,6 +98,7 @@ mod tests {
             vec![1.0, 2.0, 3.0],
             vec![0.0; 200],
             (0..300).map(|row| f64::from(row / 2)).collect(),
+            (0..400_000).map(|row| f64::from(row / 3)).collect(),
             vec![0.0, -0.0, f64::NAN, f64::NAN, 1.0, 1.0, 0.0],
         ] {
             let series: Series = values.iter().copied().collect();

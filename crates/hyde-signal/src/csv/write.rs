@@ -37,15 +37,15 @@ pub fn write_to(out: &mut impl io::Write, columns: &[Written<'_>]) -> io::Result
         })
         .collect();
     let mut places = vec![0..0; columns.len()];
-    let mut cells: Vec<_> = columns.iter().map(Written::in_unit).collect();
+    let mut cells: Vec<_> = columns.iter().map(Cells::of).collect();
     let mut text = header.join(",");
     for _ in 0..rows.min().unwrap_or(0) {
-        for (at, (values, &first)) in cells.iter_mut().zip(&first_of).enumerate() {
+        for (at, (cells, &first)) in cells.iter_mut().zip(&first_of).enumerate() {
             text.push(if at == 0 { '\n' } else { ',' });
             let start = text.len();
             match first < at {
                 true => text.extend_from_within(places[first].clone()),
-                false => push_number(&mut text, values.next().unwrap_or(f64::NAN)),
+                false => text.push_str(cells.next()),
             }
             places[at] = start..text.len();
         }
@@ -56,6 +56,33 @@ pub fn write_to(out: &mut impl io::Write, columns: &[Written<'_>]) -> io::Result
     }
     text.push('\n');
     out.write_all(text.as_bytes())
+}
+
+/// The cells of a column from the first row to the last. The text of a value that stays is made once.
+struct Cells<'a> {
+    values: Box<dyn Iterator<Item = f64> + 'a>,
+    value: f64,
+    text: String,
+}
+
+impl<'a> Cells<'a> {
+    fn of(column: &'a Written<'_>) -> Self {
+        Self {
+            values: column.in_unit(),
+            value: f64::NAN,
+            text: String::new(),
+        }
+    }
+
+    fn next(&mut self) -> &str {
+        let value = self.values.next().unwrap_or(f64::NAN);
+        if self.text.is_empty() || value.to_bits() != self.value.to_bits() {
+            self.value = value;
+            self.text.clear();
+            push_number(&mut self.text, value);
+        }
+        &self.text
+    }
 }
 
 fn header_cell(column: &Written<'_>) -> String {
@@ -72,7 +99,7 @@ fn header_cell(column: &Written<'_>) -> String {
 
 /// `{:?}` prints the shortest digits and goes over to powers of ten where they are shorter; `1.0` is cut to `1`.
 fn push_number(text: &mut String, value: f64) {
-    if value.abs() >= 1e-4 || value == 0.0 {
+    if (1e-4..1e16).contains(&value.abs()) || value == 0.0 {
         text.push_str(zmij::Buffer::new().format(value));
     } else {
         // Writing to a string cannot fail.
@@ -88,7 +115,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn numbers_are_written_as_rust_prints_them() {
+    fn numbers_have_the_shortest_text_that_reads_back() {
         let mut bits = 0x1234_5678_9abc_def0_u64;
         let mut values = vec![
             0.0,
@@ -112,8 +139,11 @@ mod tests {
         for value in values {
             let mut text = String::new();
             push_number(&mut text, value);
+            // Of two shortest texts in the same distance either will do.
             let expected = format!("{value:?}");
-            assert_eq!(text, expected.strip_suffix(".0").unwrap_or(&expected));
+            let expected = expected.strip_suffix(".0").unwrap_or(&expected);
+            assert_eq!(text.len(), expected.len(), "{text} for {expected}");
+            assert_eq!(text.parse::<f64>().map(f64::to_bits), Ok(value.to_bits()));
         }
     }
     use crate::Layout;
