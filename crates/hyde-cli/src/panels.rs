@@ -8,6 +8,7 @@ use crate::figures::{self, drawn_in, shown};
 use hyde_experiment::{Run, flows};
 use hyde_program::{Output, Program};
 use hyde_report::{Panel, time_panel};
+use hyde_signal::Series;
 use hyde_units::Dimension;
 
 /// Panels in a figure, and curves in a panel.
@@ -135,7 +136,7 @@ fn curves(program: &Program, run: &Run) -> Vec<Curve> {
         .filter_map(|(output, known)| {
             Some(Curve {
                 reason: reason(output, known)?,
-                range: range(&run.results.column(output)?),
+                range: range(run.results.series(output)?),
                 output,
             })
         })
@@ -159,8 +160,8 @@ fn choose(list: &mut Vec<Curve>, run: &Run) {
     list.retain(|curve| curve.reason == Reason::Read || curve.range >= SEEN * most);
     let mut kept: Vec<Curve> = Vec::new();
     for curve in list.drain(..) {
-        let column = |curve: &Curve| run.results.column(curve.output).unwrap_or_default();
-        if kept.len() < CURVES && !kept.iter().any(|own| column(own) == column(&curve)) {
+        let series = |curve: &Curve| run.results.series(curve.output);
+        if kept.len() < CURVES && !kept.iter().any(|own| series(own) == series(&curve)) {
             kept.push(curve);
         }
     }
@@ -178,7 +179,7 @@ fn place(program: &Program, curve: &Curve) -> usize {
 }
 
 /// From the least to the largest value.
-fn range(values: &[f64]) -> f64 {
-    let finite = || values.iter().copied().filter(|value| value.is_finite());
+fn range(series: &Series) -> f64 {
+    let finite = || series.iter().filter(|value| value.is_finite());
     finite().fold(f64::MIN, f64::max) - finite().fold(f64::MAX, f64::min)
 }

@@ -188,8 +188,14 @@ impl Results {
     /// The column of an output; `None` if it was not kept.
     #[must_use]
     pub fn column(&self, output: usize) -> Option<Cow<'_, [f64]>> {
+        self.series(output).map(Series::values)
+    }
+
+    /// The same without making its values; `None` if it was not kept.
+    #[must_use]
+    pub fn series(&self, output: usize) -> Option<&Series> {
         let at = self.outputs.binary_search(&output).ok()?;
-        Some(self.columns[self.places[at]].values())
+        Some(&self.columns[self.places[at]])
     }
 
     /// The outputs kept, each with its column.
