@@ -3,8 +3,9 @@
 //!
 //! Every kernel is a `Routine`: a list of steps, each an expression over a range of its counter with a place to
 //! write to. The interpreter (`interpret`) runs it node by node; `lower` turns it into a Cranelift function: scalars
-//! as straight-line code with common subexpressions shared, ranges as loops over two elements at a time. Both use the
-//! same functions for everything that is no single instruction (`host`), so they agree to the last bit.
+//! as straight-line code with common subexpressions shared, ranges as loops over two elements at a time; a long routine
+//! becomes several functions (`parts`). Both use the same functions for everything that is no single instruction
+//! (`host`), so they agree to the last bit.
 //!
 //! Machine code is made at the first use of a kernel and freed with the last program that holds it.
 
