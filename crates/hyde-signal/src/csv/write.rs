@@ -97,7 +97,7 @@ fn header_cell(column: &Written<'_>) -> String {
     cell.into_owned()
 }
 
-/// `{:?}` prints the shortest digits and goes over to powers of ten where they are shorter; `1.0` is cut to `1`.
+/// The shortest digits: by `zmij` where they have no power of ten, else by `{:?}`; `1.0` is cut to `1`.
 fn push_number(text: &mut String, value: f64) {
     if (1e-4..1e16).contains(&value.abs()) || value == 0.0 {
         text.push_str(zmij::Buffer::new().format(value));
