@@ -10,6 +10,7 @@ mod format;
 mod grammar;
 mod habits;
 mod lookup;
+mod matcher;
 mod nesting;
 mod parse;
 mod recover;

@@ -4,7 +4,7 @@
 
 #![expect(
     clippy::wildcard_enum_match_arm,
-    reason = "pest has one enum for all rules of the grammar; under each node only a few of them can stand"
+    reason = "one enum has all rules of the grammar; under each node only a few of them can stand"
 )]
 
 mod build;
@@ -15,13 +15,11 @@ mod expression;
 mod item;
 
 use crate::ast;
-use crate::grammar::{HydeParser, Rule};
+use crate::grammar::{self, Rule};
+use crate::matcher::Pairs;
 use crate::written::{Node, Part, Written};
-use crate::{habits, nesting, recover, words};
+use crate::{habits, matcher, nesting, recover, words};
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
-use pest::Parser as _;
-use pest::error::{ErrorVariant, InputLocation};
-use pest::iterators::Pairs;
 
 /// Parses one source file. What cannot be parsed is missing in the tree and told in `diagnostics`.
 pub fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> ast::File {
@@ -160,31 +158,21 @@ impl<'a> Parser<'a> {
         words.nth(behind).map(|(_, token)| token)
     }
 
-    /// Parses `rule` here; on success moves past it.
-    fn accept(&mut self, rule: Rule) -> Option<Pairs<'a, Rule>> {
-        self.attempt(rule).ok()
-    }
-
     /// Parses `rule` here or reports why not.
-    fn expect(&mut self, rule: Rule) -> Option<Pairs<'a, Rule>> {
+    fn expect(&mut self, rule: Rule) -> Option<Pairs<'a>> {
         let start = self.at;
-        match self.attempt(rule) {
-            Ok(pairs) => Some(pairs),
-            Err(error) => {
-                let diagnostic = self.syntax_error(start, &error);
-                self.diagnostics.push(diagnostic);
-                None
-            }
+        let pairs = self.accept(rule);
+        if pairs.is_none() {
+            let diagnostic = self.syntax_error(start, rule);
+            self.diagnostics.push(diagnostic);
         }
+        pairs
     }
 
-    fn attempt(&mut self, rule: Rule) -> Result<Pairs<'a, Rule>, Box<pest::error::Error<Rule>>> {
-        let pairs = HydeParser::parse(rule, &self.text[self.at..]).map_err(Box::new)?;
-        let len = pairs
-            .clone()
-            .map(|pair| pair.as_span().end())
-            .max()
-            .unwrap_or(0);
+    /// Parses `rule` here; on success moves past it.
+    fn accept(&mut self, rule: Rule) -> Option<Pairs<'a>> {
+        let pairs = matcher::parse(rule, &self.text[self.at..])?;
+        let len = pairs.clone().map(|pair| pair.end()).max().unwrap_or(0);
         if let Some(record) = &mut self.record {
             let base = self.at;
             record
@@ -192,7 +180,7 @@ impl<'a> Parser<'a> {
                 .extend(pairs.clone().map(|pair| Node::of(pair, base)));
         }
         self.at += len;
-        Ok(pairs)
+        Some(pairs)
     }
 
     /// Reports and skips a statement that is nested too deeply; whether it was.
@@ -229,10 +217,9 @@ impl<'a> Parser<'a> {
         }
     }
 
-    fn syntax_error(&self, start: usize, error: &pest::error::Error<Rule>) -> Diagnostic {
-        let offset = match error.location {
-            InputLocation::Pos(at) | InputLocation::Span((at, _)) => at,
-        };
+    /// Why the text from `start` on is not a `rule`.
+    fn syntax_error(&self, start: usize, rule: Rule) -> Diagnostic {
+        let (offset, expected) = grammar::expected(rule, &self.text[start..]);
         let at = start + offset;
         let found = recover::Scanner::new(self.text, at).next();
         let (begin, end) = found.map_or((at, at), |(begin, token)| (begin, begin + token.len()));
@@ -241,10 +228,6 @@ impl<'a> Parser<'a> {
             begin.min(self.text.len()),
             end.min(self.text.len()),
         );
-        let expected = match &error.variant {
-            ErrorVariant::ParsingError { positives, .. } => words::expected(positives),
-            ErrorVariant::CustomError { message } => message.clone(),
-        };
         let first = self.text[start..]
             .split(|c: char| !c.is_alphanumeric())
             .next();

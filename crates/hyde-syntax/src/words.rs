@@ -1,7 +1,7 @@
 //! The words of the user for the rules of the grammar, so that no message speaks of `binding` or `kw_end`.
 
-use crate::grammar::{HydeParser, Rule};
-use pest::Parser;
+use crate::grammar::Rule;
+use crate::matcher;
 
 /// What the parser expected, in the user's words: at most a handful, each once.
 pub(crate) fn expected(rules: &[Rule]) -> String {
@@ -27,7 +27,7 @@ pub(crate) fn expected(rules: &[Rule]) -> String {
 #[must_use]
 pub fn is_reserved(found: &str) -> bool {
     let token = found.trim_matches('`');
-    HydeParser::parse(Rule::keyword, token).is_ok()
+    matcher::parse(Rule::keyword, token).is_some()
 }
 
 fn word(rule: Rule) -> String {

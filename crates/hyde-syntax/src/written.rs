@@ -4,8 +4,8 @@
 //! needed, the digits of a number, the places of comments. [`written`] records each construct that the parser accepts.
 
 use crate::grammar::Rule;
+use crate::matcher::Pair;
 use hyde_diag::{Diagnostics, FileId, Sources};
-use pest::iterators::Pair;
 
 /// A file as it is written: its parts in the order of the text. Between them are white space and comments only.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -43,12 +43,11 @@ pub struct Node {
 
 impl Node {
     /// From a pair whose places count from `base`.
-    pub(crate) fn of(pair: Pair<'_, Rule>, base: usize) -> Self {
-        let span = pair.as_span();
+    pub(crate) fn of(pair: Pair<'_>, base: usize) -> Self {
         Self {
             rule: pair.as_rule(),
-            start: base + span.start(),
-            end: base + span.end(),
+            start: base + pair.start(),
+            end: base + pair.end(),
             children: pair
                 .into_inner()
                 .map(|inner| Self::of(inner, base))

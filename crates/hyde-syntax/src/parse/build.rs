@@ -2,10 +2,10 @@
 
 use crate::ast::{Name, UnitText};
 use crate::grammar::Rule;
+use crate::matcher::{Pair, Pairs};
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Span};
-use pest::iterators::{Pair, Pairs};
 
-pub(super) type Node<'a> = Pair<'a, Rule>;
+pub(super) type Node<'a> = Pair<'a>;
 
 /// Builds nodes from pairs whose places count from `base`.
 pub(super) struct Builder<'d> {
@@ -16,13 +16,8 @@ pub(super) struct Builder<'d> {
 
 impl Builder<'_> {
     pub(super) fn span(&self, node: &Node<'_>) -> Span {
-        let span = node.as_span();
-        let text = span.as_str();
-        Span::new(
-            self.file,
-            self.base + span.start(),
-            self.base + span.start() + text.trim_end().len(),
-        )
+        let start = self.base + node.start();
+        Span::new(self.file, start, start + node.as_str().trim_end().len())
     }
 
     pub(super) fn name(&self, node: &Node<'_>) -> Name {
@@ -94,7 +89,7 @@ pub(super) fn parts(node: Node<'_>) -> impl Iterator<Item = Node<'_>> {
 }
 
 /// The pairs without keywords.
-pub(super) fn significant(pairs: Pairs<'_, Rule>) -> impl Iterator<Item = Node<'_>> {
+pub(super) fn significant(pairs: Pairs<'_>) -> impl Iterator<Item = Node<'_>> {
     pairs.filter(|pair| !is_keyword(pair.as_rule()))
 }
 

@@ -5,62 +5,72 @@ use crate::ast::{
     Argument, Binary, Comprehension, Expr, ExprKind, Part, Range, Reference, Unary, UnitText,
 };
 use crate::grammar::Rule;
+use crate::matcher::Pairs;
 use hyde_diag::{Code, Diagnostic, Span};
-use pest::pratt_parser::{Assoc, Op, PrattParser};
-use std::cell::RefCell;
-use std::sync::OnceLock;
+use std::iter::Peekable;
+/// How strongly an operator between two operands binds them, as in Modelica.
+fn strength(operator: Rule) -> u8 {
+    match operator {
+        Rule::or => 1,
+        Rule::and => 2,
+        Rule::lt | Rule::le | Rule::gt | Rule::ge | Rule::eq | Rule::ne => 4,
+        Rule::plus | Rule::minus => 5,
+        Rule::times | Rule::over => 7,
+        _ => 8,
+    }
+}
 
-/// Precedence from the loosest to the tightest, as in Modelica.
-fn pratt() -> &'static PrattParser<Rule> {
-    static PRATT: OnceLock<PrattParser<Rule>> = OnceLock::new();
-    PRATT.get_or_init(|| {
-        let left = |rule| Op::infix(rule, Assoc::Left);
-        PrattParser::new()
-            .op(left(Rule::or))
-            .op(left(Rule::and))
-            .op(Op::prefix(Rule::not))
-            .op(left(Rule::lt)
-                | left(Rule::le)
-                | left(Rule::gt)
-                | left(Rule::ge)
-                | left(Rule::eq)
-                | left(Rule::ne))
-            .op(left(Rule::plus) | left(Rule::minus))
-            .op(Op::prefix(Rule::negative) | Op::prefix(Rule::positive))
-            .op(left(Rule::times) | left(Rule::over))
-            .op(Op::infix(Rule::power, Assoc::Right))
-    })
+/// The operator in front of an operand and how strongly it binds it.
+fn in_front(rule: Rule) -> Option<(Unary, u8)> {
+    match rule {
+        Rule::not => Some((Unary::Not, 3)),
+        Rule::negative => Some((Unary::Negative, 6)),
+        Rule::positive => Some((Unary::Positive, 6)),
+        _ => None,
+    }
 }
 
 impl Builder<'_> {
     /// From an `expression` node.
     pub(super) fn expression(&mut self, node: Node<'_>) -> Expr {
-        let whole = self.span(&node);
-        let this = RefCell::new(self);
-        pratt()
-            .map_primary(|primary| this.borrow_mut().primary(primary))
-            .map_prefix(|op, operand| {
-                let start = this.borrow().span(&op);
-                let kind = match op.as_rule() {
-                    Rule::negative => Unary::Negative,
-                    Rule::not => Unary::Not,
-                    _ => Unary::Positive,
-                };
-                let span = start.to(operand.span);
-                Expr {
-                    kind: ExprKind::Unary(kind, Box::new(operand)),
-                    span,
-                }
-            })
-            .map_infix(|left, op, right| {
-                let span = left.span.to(right.span);
-                Expr {
-                    kind: ExprKind::Binary(binary(op.as_rule()), Box::new(left), Box::new(right)),
-                    span,
-                }
-            })
-            .parse(node.into_inner())
-            .with_outer_span(whole)
+        let span = self.span(&node);
+        let mut nodes = node.into_inner().peekable();
+        let expr = self.operators(&mut nodes, 0, span);
+        Expr { span, ..expr }
+    }
+
+    /// The operand that is next with every operator behind it that binds more strongly than `least`; `span` is that of the
+    /// whole expression.
+    fn operators(&mut self, nodes: &mut Peekable<Pairs<'_>>, least: u8, span: Span) -> Expr {
+        let Some(first) = nodes.next() else {
+            // The grammar has an operand behind every operator.
+            let kind = ExprKind::Number(0.0, None);
+            return Expr { kind, span };
+        };
+        let mut left = match in_front(first.as_rule()) {
+            Some((unary, strength)) => {
+                let operand = self.operators(nodes, strength - 1, span);
+                let span = self.span(&first).to(operand.span);
+                let kind = ExprKind::Unary(unary, Box::new(operand));
+                Expr { kind, span }
+            }
+            None => self.primary(first),
+        };
+        while let Some(next) = nodes.peek() {
+            let rule = next.as_rule();
+            let strength = strength(rule);
+            if strength <= least {
+                break;
+            }
+            nodes.next();
+            // A power is taken from the right: `2^3^2` is `2^(3^2)`.
+            let from_right = u8::from(rule == Rule::power);
+            let right = self.operators(nodes, strength - from_right, span);
+            let span = left.span.to(right.span);
+            let kind = ExprKind::Binary(binary(rule), Box::new(left), Box::new(right));
+            left = Expr { kind, span };
+        }
+        left
     }
 
     /// From the first expression among the children of a node.
@@ -253,12 +263,6 @@ impl Builder<'_> {
             },
         };
         Expr { kind, span }
-    }
-}
-
-impl Expr {
-    fn with_outer_span(self, span: Span) -> Self {
-        Self { span, ..self }
     }
 }
 

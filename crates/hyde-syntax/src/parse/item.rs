@@ -167,9 +167,7 @@ impl Parser<'_> {
                 self.end(name);
                 return elements;
             }
-            // An attempt that fails is dear: pest looks for the line of what it did not find.
-            let section_begins = matches!(self.nth_word(0), Some("equation" | "initial"));
-            if section_begins && let Some(pairs) = self.accept(Rule::section) {
+            if let Some(pairs) = self.accept(Rule::section) {
                 let initial = pairs
                     .into_iter()
                     .any(|node| has(&node, Rule::initial_section));
