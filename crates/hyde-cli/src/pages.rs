@@ -8,6 +8,7 @@ use html::{code, documentation, first_sentence, page, table};
 use hyde_diag::{FileId, Sources};
 use hyde_syntax::ast::{self, Class, ClassKind, Item};
 use links::Links;
+use std::sync::Arc;
 
 /// Packages that are documented together.
 #[derive(Default)]
@@ -21,7 +22,7 @@ pub(crate) struct Library {
     /// The texts.
     pub(crate) sources: Sources,
     /// The packages, those with a page first; of the others only the names are known.
-    pub(crate) files: Vec<(FileId, ast::File)>,
+    pub(crate) files: Vec<(FileId, Arc<ast::File>)>,
     /// How many have a page.
     pub(crate) documented: usize,
 }

@@ -2,6 +2,7 @@
 
 use crate::load::File;
 use hyde_syntax::ast::{Change, Experiment, ExperimentItem, Ideal, Item};
+use std::sync::Arc;
 
 /// What the experiment's budget makes ideal, in the order written.
 pub fn ideals(experiment: &Experiment) -> impl Iterator<Item = &Ideal> {
@@ -30,7 +31,7 @@ impl File {
     pub fn idealised(&self, experiment: &str, chosen: impl Fn(&Ideal) -> bool) -> Self {
         let mut file = self.clone();
         let own = file.files.iter_mut().take(1);
-        for item in own.flat_map(|(_, tree)| &mut tree.items) {
+        for item in own.flat_map(|(_, tree)| &mut Arc::make_mut(tree).items) {
             if let Item::Experiment(found) = item
                 && found.name.text == experiment
             {

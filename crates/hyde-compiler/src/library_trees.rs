@@ -12,20 +12,19 @@ type Trees = BTreeMap<&'static str, (FileId, Arc<ast::File>)>;
 static TREES: Mutex<Trees> = Mutex::new(Trees::new());
 
 /// The tree of a package of the library, whose text is the one of that number.
-pub(crate) fn tree(package: Package, sources: &Sources, id: FileId) -> ast::File {
+pub(crate) fn tree(package: Package, sources: &Sources, id: FileId) -> Arc<ast::File> {
     let known = {
         let trees = TREES.lock().unwrap_or_else(PoisonError::into_inner);
         let own = trees.get(package.name).filter(|(own, _)| *own == id);
         own.map(|(_, tree)| Arc::clone(tree))
     };
     if let Some(tree) = known {
-        return ast::File::clone(&tree);
+        return tree;
     }
     // The library has no errors: a test of its own compiles all of it.
-    let tree = hyde_syntax::parse(sources, id, &mut Diagnostics::new());
-    let kept = Arc::new(tree.clone());
+    let tree = Arc::new(hyde_syntax::parse(sources, id, &mut Diagnostics::new()));
     let mut trees = TREES.lock().unwrap_or_else(PoisonError::into_inner);
-    trees.insert(package.name, (id, kept));
+    trees.insert(package.name, (id, Arc::clone(&tree)));
     tree
 }
 

@@ -7,12 +7,13 @@ use hyde_flatten::{FmuInterface, TableFile};
 use hyde_library::Package;
 use hyde_syntax::ast::{self, Item};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Parsed files, the user's first, then every package that one of them names.
 #[derive(Clone)]
 pub struct File {
     /// Texts and trees.
-    pub files: Vec<(FileId, ast::File)>,
+    pub files: Vec<(FileId, Arc<ast::File>)>,
     /// Types and models that none of them declares, with the packages that do.
     pub elsewhere: BTreeMap<String, Vec<String>>,
     /// The files of tables by the source file that names them and the name there: put in by who reads files.
@@ -60,7 +61,7 @@ pub fn load(
 ) -> File {
     let id = sources.add(name, text);
     let tree = hyde_syntax::parse(sources, id, diagnostics);
-    let mut files = vec![(id, tree)];
+    let mut files = vec![(id, Arc::new(tree))];
     let own = files[0].1.package.as_ref();
     let mut known: Vec<String> = own.map(|(path, _)| path.dotted()).into_iter().collect();
     let mut at = 0;
@@ -84,7 +85,7 @@ pub fn load(
                 None => {
                     let tree = hyde_syntax::parse(sources, id, diagnostics);
                     check_name(sources, id, &tree, &name, diagnostics);
-                    tree
+                    Arc::new(tree)
                 }
             };
             files.push((id, tree));
@@ -98,7 +99,7 @@ pub fn load(
         fmus: BTreeMap::new(),
     };
     file.unknown_imports(packages, diagnostics);
-    file.look_elsewhere(packages);
+    file.look_elsewhere(sources, packages);
     file
 }
 
@@ -107,6 +108,14 @@ struct Found {
     place: String,
     text: String,
     of_library: Option<Package>,
+}
+
+/// Whether a file is a package of the library.
+fn of_library(sources: &Sources, file: FileId) -> bool {
+    let text = &sources.get(file).text;
+    hyde_library::PACKAGES
+        .iter()
+        .any(|package| package.text == *text)
 }
 
 /// The package that a file names; a name that the library has too is reported.
@@ -122,10 +131,7 @@ fn find(
         of_library: Some(package),
     });
     // Packages of the library import each other and nothing else.
-    let by_library = hyde_library::PACKAGES
-        .iter()
-        .any(|package| package.text == sources.get(importer).text);
-    if by_library {
+    if self::of_library(sources, importer) {
         return of_library;
     }
     match (
@@ -221,7 +227,7 @@ impl File {
     /// The files of tables that are named, by source file and with where that is.
     #[must_use]
     pub fn tables_named(&self) -> Vec<(FileId, String, Span)> {
-        let of_file = |(id, tree): &(FileId, ast::File)| {
+        let of_file = |(id, tree): &(FileId, Arc<ast::File>)| {
             let id = *id;
             let named = tables_named(tree).into_iter();
             named.map(move |(path, span)| (id, path, span))
@@ -312,7 +318,7 @@ impl File {
     }
 
     /// Finds the packages that have what the files name and none of them declares.
-    fn look_elsewhere(&mut self, packages: &Packages<'_>) {
+    fn look_elsewhere(&mut self, sources: &Sources, packages: &Packages<'_>) {
         let declared = |word: &str, model: bool| {
             ["Real", "Integer", "Boolean"].contains(&word)
                 || self
@@ -320,8 +326,10 @@ impl File {
                     .iter()
                     .any(|(_, file)| declares(file, word, model))
         };
+        let own = self.files.iter();
+        let own = own.filter(|(id, _)| !of_library(sources, *id));
         let mut missing: Vec<(String, bool)> = Vec::new();
-        for (word, model) in self.files.iter().flat_map(|(_, file)| words_named(file)) {
+        for (word, model) in own.flat_map(|(_, file)| words_named(file)) {
             if !declared(word, model) && !missing.iter().any(|(known, _)| known == word) {
                 missing.push((word.to_owned(), model));
             }

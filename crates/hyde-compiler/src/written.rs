@@ -2,6 +2,7 @@
 
 use crate::load::File;
 use hyde_diag::{Diagnostics, Sources};
+use std::sync::Arc;
 
 /// The sources and the file with some texts added to what the user wrote; `None` if one of them cannot be read.
 #[must_use]
@@ -18,7 +19,8 @@ pub fn with_written<'t>(
         if diagnostics.has_errors() {
             return None;
         }
-        file.files.first_mut()?.1.items.extend(tree.items);
+        let (_, own) = file.files.first_mut()?;
+        Arc::make_mut(own).items.extend(tree.items);
     }
     Some((sources, file))
 }

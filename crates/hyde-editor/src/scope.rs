@@ -9,6 +9,7 @@ use hyde_syntax::ast::{
     Reference, Study, TypeItem,
 };
 pub(crate) use hyde_syntax::{FileIndex, dotted};
+use std::sync::Arc;
 
 /// The most classes that extend each other, or names in one reference.
 const DEEPEST: usize = 32;
@@ -57,12 +58,12 @@ pub(crate) enum Inside<'a> {
 /// The loaded files.
 #[derive(Clone, Copy)]
 pub(crate) struct Files<'a> {
-    pub(crate) files: &'a [(FileId, File)],
+    pub(crate) files: &'a [(FileId, Arc<File>)],
 }
 
 impl<'a> Files<'a> {
     pub(crate) fn file(self, index: FileIndex) -> Option<&'a File> {
-        self.files.get(index).map(|(_, tree)| tree)
+        self.files.get(index).map(|(_, tree)| &**tree)
     }
 
     fn lookup(self) -> Lookup<'a> {

@@ -51,6 +51,7 @@ use hyde_ir::FlatModel;
 use hyde_syntax::ast;
 use hyde_units::NamedUnit;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The header of a record: its columns with their units, and whether the first one is time.
 #[derive(Clone, Debug, Default)]
@@ -90,7 +91,7 @@ pub struct Input<'a> {
     /// The source texts, for messages.
     pub sources: &'a Sources,
     /// Every file that may be named, the user's file first.
-    pub files: &'a [(FileId, ast::File)],
+    pub files: &'a [(FileId, Arc<ast::File>)],
     /// Names that no file here declares, with the packages that have them.
     pub elsewhere: &'a BTreeMap<String, Vec<String>>,
     /// The files of tables by the source file that names them and the name there.

@@ -7,6 +7,7 @@ use hyde_syntax::Lookup;
 use hyde_syntax::ast::{self, Class, Item, Reference, TypeItem};
 use hyde_units::Kind;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// What a type name means.
 #[derive(Clone, Copy)]
@@ -31,7 +32,7 @@ impl TypeName<'_> {
 /// The classes and types of all files.
 #[derive(Clone, Copy)]
 pub(crate) struct Names<'a> {
-    files: &'a [(FileId, ast::File)],
+    files: &'a [(FileId, Arc<ast::File>)],
     elsewhere: &'a BTreeMap<String, Vec<String>>,
 }
 

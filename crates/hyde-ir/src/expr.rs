@@ -5,7 +5,7 @@
 
 use crate::id::{AutomatonId, ExprId, Id, ParamId, RelationId, VarId};
 use crate::{BinaryOp, UnaryOp};
-use rustc_hash::{FxHashMap, FxHashSet};
+use rustc_hash::FxHashMap;
 use std::ops::Index as IndexOp;
 
 /// What nodes were rewritten to, for [`ExprArena::rewrite`].
@@ -334,48 +334,6 @@ impl ExprArena {
         } else {
             self.intern(Expr::NoEvent(a))
         }
-    }
-
-    /// All nodes below and including `root`, children before parents.
-    #[must_use]
-    pub fn below(&self, roots: &[ExprId]) -> Vec<ExprId> {
-        let mut seen = FxHashSet::default();
-        let mut stack: Vec<ExprId> = roots.to_vec();
-        let mut found = Vec::new();
-        while let Some(id) = stack.pop() {
-            if seen.insert(id) {
-                found.push(id);
-                self[id].for_each_child(|child| stack.push(child));
-            }
-        }
-        found.sort_unstable();
-        found
-    }
-
-    /// Whether some node below and including `root` satisfies `test`.
-    #[must_use]
-    pub fn any(&self, root: ExprId, test: impl Fn(Expr) -> bool) -> bool {
-        self.below(&[root]).into_iter().any(|id| test(self[id]))
-    }
-
-    /// Whether an expression is made of parameters and numbers alone.
-    #[must_use]
-    pub fn is_parametric(&self, root: ExprId) -> bool {
-        !self.any(root, |expr| match expr {
-            Expr::Time
-            | Expr::Counter
-            | Expr::Var(..)
-            | Expr::Der(..)
-            | Expr::Pre(..)
-            | Expr::Relation(_)
-            | Expr::InMode(..) => true,
-            Expr::Const(_)
-            | Expr::Param(..)
-            | Expr::Unary(..)
-            | Expr::Binary(..)
-            | Expr::If(..)
-            | Expr::NoEvent(_) => false,
-        })
     }
 
     /// Rebuilds `root` with every leaf (and `NoEvent`) passed through `replace`, which returns `None` to keep it.

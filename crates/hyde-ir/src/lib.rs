@@ -31,6 +31,7 @@ pub mod dae;
 pub mod flat;
 pub mod print;
 
+mod below;
 mod builtin;
 mod counter;
 mod differentiate;

@@ -47,7 +47,10 @@ pub(crate) fn read(
     let mut found = Vec::new();
     let mut models = Vec::new();
     for (id, tree) in &mut file.files {
-        for item in &mut tree.items {
+        if !tree.items.iter().any(is_fmu) {
+            continue;
+        }
+        for item in &mut Arc::make_mut(tree).items {
             let Item::Class(class) = item else { continue };
             let ClassBody::Short {
                 base,
@@ -98,10 +101,18 @@ pub(crate) fn read(
         }
     }
     for (source, tree, interface) in models {
-        file.files.push((source, tree));
+        file.files.push((source, Arc::new(tree)));
         file.fmus.insert(source, interface);
     }
     found
+}
+
+/// Whether an item is an FMU.
+fn is_fmu(item: &Item) -> bool {
+    match item {
+        Item::Class(class) => matches!(class.body, ClassBody::Short { fmu: Some(_), .. }),
+        Item::Type(_) | Item::Experiment(_) | Item::Study(_) => false,
+    }
 }
 
 /// What an FMU is given that it does not have, and a communication step that it is not given.

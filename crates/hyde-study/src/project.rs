@@ -16,6 +16,7 @@ use hyde_syntax::ast::{Experiment, ExperimentItem, Item};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::sync::Arc;
 
 /// A loaded file with what was chosen of it.
 pub struct Project {
@@ -355,7 +356,7 @@ impl Project {
     pub fn release(&mut self, inputs: &[String]) -> Result<(), String> {
         let chosen = self.experiment.clone();
         let items = self.file.files.first_mut().into_iter();
-        let items = items.flat_map(|(_, tree)| &mut tree.items);
+        let items = items.flat_map(|(_, tree)| &mut Arc::make_mut(tree).items);
         let experiment = items.into_iter().find_map(|item| match item {
             Item::Experiment(own) if chosen.as_ref() == Some(&own.name.text) => Some(own),
             Item::Experiment(_) | Item::Class(_) | Item::Type(_) | Item::Study(_) => None,

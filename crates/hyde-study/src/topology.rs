@@ -282,7 +282,7 @@ mod tests {
         let file = sources.add("whole.hyde", text);
         let mut diagnostics = Diagnostics::default();
         let tree = hyde_syntax::parse(&sources, file, &mut diagnostics);
-        let files = [(file, tree)];
+        let files = [(file, std::sync::Arc::new(tree))];
         let found = topology(Lookup { files: &files }, "Whole");
         let names: Vec<&str> = found.parts.iter().map(|part| part.name.as_str()).collect();
         assert_eq!(names, ["u", "first", "second", "third[2]"]);

@@ -2,6 +2,7 @@
 
 use crate::ast::{Class, File, Item, Part, Reference, TypeItem};
 use hyde_diag::FileId;
+use std::sync::Arc;
 
 /// A file by its number among those loaded.
 pub type FileIndex = usize;
@@ -10,7 +11,7 @@ pub type FileIndex = usize;
 #[derive(Clone, Copy)]
 pub struct Lookup<'a> {
     /// The files with their texts, the user's file first.
-    pub files: &'a [(FileId, File)],
+    pub files: &'a [(FileId, Arc<File>)],
 }
 
 impl<'a> Lookup<'a> {

@@ -134,14 +134,15 @@ fn facts(manifest: &Manifest) -> Vec<(&'static str, String)> {
         .collect()
 }
 
-type Parsed = (Sources, Vec<(FileId, ast::File)>);
+type Parsed = (Sources, Vec<(FileId, Arc<ast::File>)>);
 
 fn parsed(texts: Vec<(String, String)>, model: &ModelArgs) -> Result<Parsed, Exit> {
     let (mut sources, mut diagnostics) = (Sources::new(), Diagnostics::new());
     let mut files = Vec::new();
     for (place, text) in texts {
         let id = sources.add(place, text);
-        files.push((id, hyde_syntax::parse(&sources, id, &mut diagnostics)));
+        let tree = hyde_syntax::parse(&sources, id, &mut diagnostics);
+        files.push((id, Arc::new(tree)));
     }
     if diagnostics.has_errors() {
         return Err(report_errors(model, &sources, &diagnostics));

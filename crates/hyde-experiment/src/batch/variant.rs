@@ -6,6 +6,7 @@ use hyde_syntax::ast::{
     Argument, Change, Class, ClassBody, ClassKind, Drive, Experiment, ExperimentItem, Expr,
     ExprKind, Item, Name, Part, Reference,
 };
+use std::sync::Arc;
 
 /// The file and the model of a variant: `options` has the number of an alternative for each choice of the draft.
 ///
@@ -41,7 +42,7 @@ pub fn varied(file: &File, draft: &Draft, model: &str, options: &[usize]) -> (Fi
         };
         let base = reference(&model, span);
         model.clone_from(&name.text);
-        tree.items.push(Item::Class(Class {
+        Arc::make_mut(tree).items.push(Item::Class(Class {
             kind: ClassKind::Model,
             name,
             doc: None,
@@ -73,12 +74,15 @@ pub fn record_files<'d>(draft: &'d Draft, options: &[usize]) -> Vec<(&'d str, &'
 
 fn experiment_of<'f>(file: &'f mut File, draft: &Draft) -> Option<&'f mut Experiment> {
     let (_, tree) = file.files.first_mut()?;
-    tree.items.iter_mut().find_map(|item| match item {
-        Item::Experiment(experiment) if experiment.name.text == draft.experiment => {
-            Some(experiment)
-        }
-        Item::Experiment(_) | Item::Class(_) | Item::Type(_) | Item::Study(_) => None,
-    })
+    Arc::make_mut(tree)
+        .items
+        .iter_mut()
+        .find_map(|item| match item {
+            Item::Experiment(experiment) if experiment.name.text == draft.experiment => {
+                Some(experiment)
+            }
+            Item::Experiment(_) | Item::Class(_) | Item::Type(_) | Item::Study(_) => None,
+        })
 }
 
 /// `(screw(redeclare GapContact contact(gap = 20 [um])))` among the changes of an experiment.

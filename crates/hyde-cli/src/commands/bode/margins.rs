@@ -14,6 +14,7 @@ use hyde_units::significant;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
+use std::sync::Arc;
 
 /// Crossovers listed in the text, of each kind; JSON has all.
 const LISTED: usize = 8;
@@ -48,7 +49,7 @@ pub(crate) fn add_cuts(project: &mut Project, signals: &[String]) {
         });
         let added: Vec<_> = items.flatten().collect();
         let own = project.file.files.iter_mut().take(1);
-        for item in own.flat_map(|(_, tree)| &mut tree.items) {
+        for item in own.flat_map(|(_, tree)| &mut Arc::make_mut(tree).items) {
             if let Item::Experiment(experiment) = item
                 && Some(&experiment.name.text) == project.experiment.as_ref()
             {

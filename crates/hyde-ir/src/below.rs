@@ -1,0 +1,72 @@
+//! The nodes below an expression, each once.
+
+use crate::{Expr, ExprArena, ExprId};
+use rustc_hash::FxHashSet;
+
+impl ExprArena {
+    /// All nodes below and including `root`, children before parents.
+    #[must_use]
+    pub fn below(&self, roots: &[ExprId]) -> Vec<ExprId> {
+        let mut found = Vec::new();
+        self.walk(roots, &mut found, |_| false);
+        found.sort_unstable();
+        found
+    }
+
+    /// Whether some node below and including `root` satisfies `test`.
+    #[must_use]
+    pub fn any(&self, root: ExprId, test: impl Fn(Expr) -> bool) -> bool {
+        self.walk(&[root], &mut Vec::new(), |id| test(self[id]))
+    }
+
+    /// Visits each node below and including the roots once, until one ends it; whether one did. What was visited is `found`.
+    fn walk(
+        &self,
+        roots: &[ExprId],
+        found: &mut Vec<ExprId>,
+        ends: impl Fn(ExprId) -> bool,
+    ) -> bool {
+        /// Most expressions are small, and a short list is searched sooner than a table is made.
+        const SHORT: usize = 24;
+        let mut stack: Vec<ExprId> = roots.to_vec();
+        let mut seen = FxHashSet::default();
+        while let Some(id) = stack.pop() {
+            let new = if found.len() < SHORT {
+                !found.contains(&id)
+            } else {
+                if seen.is_empty() {
+                    seen.extend(found.iter().copied());
+                }
+                seen.insert(id)
+            };
+            if new {
+                if ends(id) {
+                    return true;
+                }
+                found.push(id);
+                self[id].for_each_child(|child| stack.push(child));
+            }
+        }
+        false
+    }
+
+    /// Whether an expression is made of parameters and numbers alone.
+    #[must_use]
+    pub fn is_parametric(&self, root: ExprId) -> bool {
+        !self.any(root, |expr| match expr {
+            Expr::Time
+            | Expr::Counter
+            | Expr::Var(..)
+            | Expr::Der(..)
+            | Expr::Pre(..)
+            | Expr::Relation(_)
+            | Expr::InMode(..) => true,
+            Expr::Const(_)
+            | Expr::Param(..)
+            | Expr::Unary(..)
+            | Expr::Binary(..)
+            | Expr::If(..)
+            | Expr::NoEvent(_) => false,
+        })
+    }
+}
