@@ -2,9 +2,10 @@
 //!
 //! States and their derivatives count as known, so `a.tau = J*der(w)` is explicit too. The definitions are ordered by
 //! Tarjan's algorithm; of a loop one variable after the other is torn (kept in the vector with its equation as the
-//! residual) until the rest is explicit, those with a guess first. A variable that reads much of an array (a field at a place that moves) stays in
-//! the vector: in its place every equation that reads it would depend on all of that. Array variables are kept or taken
-//! whole. The unknown of a `modes` block stays in
+//! residual) until the rest is explicit, those with a guess first. A variable that reads much of an array (a field at a
+//! place that moves) stays in the vector: in its place every equation that reads it would depend on all of that. So does an
+//! array of which one equation reads much (the weights at such a place): the derivative of that equation would repeat the
+//! definition for every element. Array variables are kept or taken whole. The unknown of a `modes` block stays in
 //! the vector where a mode fixes a state (its row changes place then) or does not give it explicitly without a division by
 //! parameters.
 
@@ -14,7 +15,7 @@ use crate::segments::Segment;
 use crate::solve::{divisor, solve_for};
 use crate::system::System;
 use hyde_ir::{Expr, ExprId, Index, Range, VarId};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// More values than the components of a drive have connectors, fewer than a field has nodes.
 const A_FEW: usize = 8;
@@ -44,15 +45,17 @@ pub(crate) fn choose(system: &mut System, matched: &Matched) -> Order {
         .map(|unknown| unknown.state)
         .collect();
     let declared = system.declared_values();
+    let much = read_much_of(system);
     let mut explicit: Vec<Option<Explicit>> = (0..count).map(|_| None).collect();
     for number in 0..count {
         if in_vector[number] {
             continue;
         }
         explicit[number] = solve(system, matched, number, &declared);
+        let of_much = much.contains(&matched.unknowns[number].var);
         in_vector[number] = explicit[number]
             .as_ref()
-            .is_none_or(|solution| reads_much(system, solution));
+            .is_none_or(|solution| of_much || reads_much(system, solution));
     }
     keep_arrays_together(matched, &mut in_vector);
     loop {
@@ -206,6 +209,22 @@ fn reads_much(system: &System, solution: &Explicit) -> bool {
         .into_iter()
         .filter(|&id| system.flat.exprs[id].access().is_some());
     read.count() > A_FEW
+}
+
+/// The arrays of which one equation reads more than a few elements.
+fn read_much_of(system: &System) -> HashSet<VarId> {
+    let mut found = HashSet::new();
+    for equation in &system.equations {
+        let mut read: HashMap<VarId, usize> = HashMap::new();
+        for id in system.flat.exprs.below(&[equation.lhs, equation.rhs]) {
+            if let Expr::Var(var, _) = system.flat.exprs[id] {
+                *read.entry(var).or_default() += 1;
+            }
+        }
+        let much = read.into_iter().filter(|(_, count)| *count > A_FEW);
+        found.extend(much.map(|(var, _)| var));
+    }
+    found
 }
 
 /// An array of which a piece stays in the vector stays there whole; so does one in several pieces.

@@ -57,6 +57,8 @@ pub(crate) struct System {
     pub(crate) known_starts: Vec<(VarId, ExprId, ExprId)>,
     /// Variables that constraints tie to each other.
     pub(crate) groups: Vec<Group>,
+    /// The array of the derivatives of each array that has one.
+    pub(crate) rates_of_arrays: BTreeMap<VarId, VarId>,
     pub(crate) relations: hyde_ir::IdVec<hyde_ir::RelationId, hyde_ir::dae::Relation>,
     pub(crate) notes: Vec<String>,
     /// Variables that equations give by states, so that they are none.
@@ -118,6 +120,7 @@ impl System {
             starts,
             known_starts: Vec::new(),
             groups: Vec::new(),
+            rates_of_arrays: BTreeMap::new(),
             relations: hyde_ir::IdVec::new(),
             notes,
             dependent: Vec::new(),

@@ -149,6 +149,19 @@ pub(crate) struct Domain<'a> {
     pub(crate) span: Span,
     /// Lower end and cell length once lowered, with their dimension.
     pub(crate) mesh: Option<(ExprId, ExprId, Dim)>,
+    /// The weights of its nodes at each place that moves.
+    pub(crate) weights: Vec<WeightArray>,
+}
+
+/// The weights of the nodes of a domain at a place that moves, from the node before the first to the one behind the last.
+#[derive(Clone, Copy)]
+pub(crate) struct WeightArray {
+    /// The place's distance from the first node in cells.
+    pub(crate) place: ExprId,
+    pub(crate) array: VarId,
+    /// Their derivatives by the place, if they are asked for.
+    pub(crate) slopes: Option<VarId>,
+    pub(crate) span: Span,
 }
 
 /// What a counter of a `for` equation stands for while its body is lowered.

@@ -14,15 +14,25 @@ fn every_kernel_agrees_to_the_last_bit() {
     }
 }
 
-/// The weights of a travelling nut are read by the rows of all nodes: such a kernel becomes several functions, and those
-/// that come later read what the first has made.
+/// Four hundred rows that read one explicit variable: such a kernel becomes several functions, and those that come later
+/// read what the first has made.
 #[test]
 fn a_kernel_of_several_functions_agrees_to_the_last_bit() {
-    let nut = Example::load("tests/models/travelling_nut.hyde", Some("free")).unwrap();
+    let mut text =
+        "package rows;\nmodel Rows\n  Real shared = sin(x1*(1 [rad]))*exp(-x2^2);\n".to_owned();
+    for row in 1..=400 {
+        text += &format!("  Real x{row}(start = {row}/400, fixed = true);\n");
+    }
+    text += "equation\n";
+    for row in 1..=400 {
+        text += &format!("  der(x{row}) = (shared*x{row} - sin(x{row}*(1 [rad]))^3)/(1 [s]);\n");
+    }
+    text += "end Rows;\nexperiment run of Rows\n  stop 1 [s];\nend run;\n";
+    let any = Example::load("tests/models/travelling_nut.hyde", Some("free")).unwrap();
     let case = Case {
-        name: "travelling nut".to_owned(),
+        name: "rows".to_owned(),
         folder: String::new(),
-        example: nut.set("screw.n", 40.0),
+        example: any.replaced(&text, "run"),
     };
     let clif = case.example.emit(Stage::Clif).unwrap();
     assert!(clif.contains("residual_partials_part_2"));

@@ -1,11 +1,19 @@
 //! [`Explicit`]: which equation says the value of a variable, `cell = rhs`, and whether that value can be differentiated.
 //!
+//! The derivative of an array whose elements one equation gives by values that have derivatives is an array of its own:
+//!
+//! ```text
+//! weights[i] = f(x, i),  … der(weights[3])        rate[i] = f'(x, i)*der(x),  … rate[3]
+//! ```
+//! Written out for every element, the derivative of what reads all of them would be as many copies of f'.
+//!
 //! One look at all equations, then each change is followed; to look at all of them for each variable took most of the time
 //! of models of a thousand components.
 
 use crate::cells::Cells;
-use crate::system::{Cell, System};
-use hyde_ir::{Expr, ExprId, Range, VariableKind};
+use crate::system::{Cell, Equation, System};
+use hyde_diag::MadeBy;
+use hyde_ir::{Expr, ExprId, Index, Quantity, Range, StateChoice, VarId, Variable, VariableKind};
 use std::cell::RefCell;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -15,6 +23,8 @@ const MAX_DEPTH: usize = 50;
 /// The scalar equations by the cell on their left.
 pub(super) struct Explicit {
     equations: HashMap<Cell, BTreeSet<usize>>,
+    /// The array equations by the array that is their left side as a whole.
+    arrays: HashMap<VarId, usize>,
     /// Cells that were found to have a derivative.
     derivable: RefCell<HashSet<Cell>>,
 }
@@ -22,13 +32,18 @@ pub(super) struct Explicit {
 impl Explicit {
     pub(super) fn of(system: &System) -> Self {
         let mut equations: HashMap<Cell, BTreeSet<usize>> = HashMap::new();
+        let mut arrays = HashMap::new();
         for number in 0..system.equations.len() {
+            if let Some(var) = left_array(system, number) {
+                arrays.entry(var).or_insert(number);
+            }
             if let Some(cell) = left_cell(system, number) {
                 equations.entry(cell).or_default().insert(number);
             }
         }
         Self {
             equations,
+            arrays,
             derivable: RefCell::default(),
         }
     }
@@ -70,7 +85,9 @@ impl Explicit {
         if self.derivable.borrow().contains(&cell) {
             return true;
         }
-        let Some(value) = self.value(system, cell).filter(|_| depth <= MAX_DEPTH) else {
+        let value = self.value(system, cell);
+        let value = value.or_else(|| self.value_of_element(system, cell));
+        let Some(value) = value.filter(|_| depth <= MAX_DEPTH) else {
             return false;
         };
         let found = system.flat.exprs.below(&[value]).into_iter().all(|id| {
@@ -137,15 +154,79 @@ impl Explicit {
                 system.exprs().add(der)
             } else if let Some(&rate) = known.get(&cell) {
                 rate
-            } else {
-                let value = self.value(system, cell)?;
+            } else if let Some(value) = self.value(system, cell) {
                 self.derivative_below(system, value, (of, states), known, depth + 1)?
+            } else if let Some(&array) = system.rates_of_arrays.get(&cell.0) {
+                let rate = Expr::Var(array, System::cell_index(cell));
+                system.exprs().add(rate)
+            } else {
+                let value = self.value_of_element(system, cell)?;
+                let rate = self.derivative_below(system, value, (of, states), known, depth + 1)?;
+                let array = self.rate_array(system, cell.0, rate)?;
+                let rate = Expr::Var(array, System::cell_index(cell));
+                system.exprs().add(rate)
             };
             known.insert(cell, rate);
             rates.insert(cell, rate);
         }
         Some(super::by_rates(system, id, &rates))
     }
+}
+
+impl Explicit {
+    /// What an element of an array is, by the counter of the array's equation.
+    fn value_of_element(&self, system: &System, cell: Cell) -> Option<ExprId> {
+        let number = *self.arrays.get(&cell.0)?;
+        Some(system.equations[number].rhs)
+    }
+
+    /// An array for the derivatives of the elements of another one.
+    fn rate_array(&self, system: &mut System, of: VarId, rate: ExprId) -> Option<VarId> {
+        let number = *self.arrays.get(&of)?;
+        let Equation {
+            range, ref origin, ..
+        } = system.equations[number];
+        let origin = origin.made_by(MadeBy::Expression);
+        let variable = &system.flat.variables[of];
+        let dimension = variable.quantity.dimension;
+        let array = system.flat.variables.push(Variable {
+            name: format!("der({})", variable.name),
+            quantity: Quantity::usual(dimension.divide(hyde_units::Dimension::TIME)),
+            start: Vec::new(),
+            fixed: false,
+            state: StateChoice::Open,
+            origin: origin.clone(),
+            ..variable.clone()
+        });
+        system.rates_of_arrays.insert(of, array);
+        let lhs = system.exprs().add(Expr::Var(array, WHOLE));
+        system.equations.push(Equation {
+            range,
+            lhs,
+            rhs: rate,
+            origin,
+            order: 0,
+            constraint: false,
+        });
+        Some(array)
+    }
+}
+
+/// Every element where the counter is its number.
+const WHOLE: Index = Index {
+    stride: 1,
+    offset: 0,
+};
+
+/// The array that an equation over a range gives as a whole, by numbers and scalars.
+fn left_array(system: &System, number: usize) -> Option<VarId> {
+    let equation = &system.equations[number];
+    let Expr::Var(var, WHOLE) = system.flat.exprs[equation.lhs] else {
+        return None;
+    };
+    let size = system.flat.variables[var].size();
+    let whole = System::interval(WHOLE, equation.range) == (0, size.checked_sub(1)?);
+    (equation.range != Range::SCALAR && whole).then_some(var)
 }
 
 fn left_cell(system: &System, number: usize) -> Option<Cell> {

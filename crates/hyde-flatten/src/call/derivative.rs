@@ -137,9 +137,23 @@ impl<'a> Model<'a, '_> {
         let index = index.unwrap_or_default();
         let value = self.value(e, scope);
         let expanded = self.expand_bindings(value.id, var, 0);
-        let one = self.flat.exprs.constant(1.0);
-        let id = self.flat.exprs.tangent(expanded, |_, leaf| {
-            (leaf == Ir::Var(var, index)).then_some(one)
+        let by_place = self.slopes_of_weights(expanded, |model, place| {
+            let place = model.expand_bindings(place, var, 0);
+            let one = model.flat.exprs.constant(1.0);
+            model.flat.exprs.tangent(place, |_, leaf| {
+                (leaf == Ir::Var(var, index)).then_some(one)
+            })
+        });
+        let id = self.flat.exprs.tangent(expanded, |arena, leaf| {
+            if leaf == Ir::Var(var, index) {
+                return Some(arena.constant(1.0));
+            }
+            let Ir::Var(of, element) = leaf else {
+                return None;
+            };
+            let &(slopes, of_place) = by_place.get(&of)?;
+            let slope = arena.add(Ir::Var(slopes, element));
+            Some(arena.times(slope, of_place))
         });
         let dim = value.dim.divide(&self.dim(var));
         self.typed(id, dim, span)

@@ -85,6 +85,7 @@ impl<'a> Model<'a, '_> {
             averaged,
             span,
             mesh: None,
+            weights: Vec::new(),
         };
         self.domains.push(domain);
         self.instances[id]
