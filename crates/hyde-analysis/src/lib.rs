@@ -52,6 +52,7 @@ mod system;
 mod unroll;
 mod whole_arrays;
 
+pub use outputs::beside_time;
 pub use partials::rows;
 pub use sliding::sliding_cells;
 pub use still::{

@@ -10,6 +10,15 @@ use hyde_ir::{Expr, Index, Quantity, Range, VariableKind};
 /// Arrays longer than this are not reported element by element: more columns than a person looks at.
 const MAX_ELEMENTS: usize = 32;
 
+/// What results call the time.
+const TIME: &str = "t";
+
+/// What results call a variable `t` of the model.
+#[must_use]
+pub fn beside_time() -> String {
+    format!("variable {TIME}")
+}
+
 /// Fills in the outputs of the DAE.
 pub(crate) fn report(dae: &mut Dae, system: &mut System) {
     let mut skipped = Vec::new();
@@ -82,6 +91,7 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
         };
         let names = (0..variable.size())
             .map(|element| variable.element_name(element))
+            .map(|name| if name == TIME { beside_time() } else { name })
             .collect();
         dae.outputs.push(Output {
             names,

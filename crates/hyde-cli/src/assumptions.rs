@@ -42,6 +42,12 @@ fn all(
         notes.map(move |note| format!("table `{name}`: {note}"))
     });
     let mut all: Vec<String> = own.chain(looked_up).collect();
+    let beside_time = hyde_compiler::beside_time();
+    if program.outputs.iter().any(|own| own.name == beside_time) {
+        all.push(format!(
+            "results call the variable `t` of the model `{beside_time}`: `t` is the time there"
+        ));
+    }
     all.extend(of_fmus(project, program));
     all.extend(of_start(program, &tables, start, stop_s));
     all

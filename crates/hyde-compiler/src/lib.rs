@@ -17,6 +17,7 @@ mod written;
 
 pub use diagnosis::DiagnosisPlan;
 pub use emit::{Stage, emit, kernels_as_c};
+pub use hyde_analysis::beside_time;
 pub use hyde_flatten::{FUNCTIONS, usage};
 pub use hyde_flatten::{FmuInterface, Form, FreeInputs, Header, TableFile, fmu_has_no_equations};
 pub use hyde_ir::{Prior, Quantity};
