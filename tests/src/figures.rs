@@ -6,6 +6,7 @@ mod bench;
 mod cases;
 mod clif_growth;
 mod clock;
+mod command_start;
 mod compile;
 mod demo;
 mod diagnosis;
@@ -27,6 +28,7 @@ mod lsp;
 mod mode_error;
 mod msl;
 mod paper_rows;
+mod process;
 mod promise;
 mod python;
 mod realtime;
@@ -47,6 +49,7 @@ pub const FIGURES: &[Figure] = &[
     clif_growth::FIGURE,
     residual_cost::FIGURE,
     start::FIGURE,
+    command_start::FIGURE,
     stick::FIGURE,
     emps::FORCE,
     emps::VELOCITY,

@@ -1,6 +1,7 @@
 //! Batches: what a case costs beyond its solution, what a second core brings, what is lost when processes are killed, whether
 //! a cluster gives the same, and what many cases need of memory. The command is this program itself.
 
+use super::process::{cpu_s, memory_kb, this_program};
 use super::promise::{Figure, Measured, Promise, Session};
 use crate::Example;
 use crate::batches::{Batch, number};
@@ -8,7 +9,6 @@ use hyde_compiler::Backend;
 use hyde_sim::Setup;
 use std::collections::BTreeMap;
 use std::io::Read as _;
-use std::path::PathBuf;
 use std::process::{Child, Stdio};
 use std::time::Duration;
 
@@ -50,10 +50,6 @@ pub(super) const MEMORY: Figure = Figure {
 /// Processes killed.
 const KILLED: u64 = 50;
 
-pub(super) fn hyde() -> Result<PathBuf, String> {
-    std::env::current_exe().map_err(|error| error.to_string())
-}
-
 /// CPU time of a batch over that of its bare solutions, the better of a few: P3 to 10 s, whose cases take some 10 ms. The
 /// start of the process, the compiler and the data set count as overhead.
 fn overhead(_: &Session) -> Result<Measured, String> {
@@ -89,23 +85,12 @@ fn overhead(_: &Session) -> Result<Measured, String> {
             hyde_sim::simulate(program, &setup).map_err(|failure| format!("{:?}", failure.kind))?;
         }
         bare = bare.min(cpu_s(false).unwrap_or(0.0) - before);
-        let batch = Batch::backlash(&hyde()?, CASES, 10.0)?;
+        let batch = Batch::backlash(&this_program()?, CASES, 10.0)?;
         let before = cpu_s(true).unwrap_or(0.0);
         batch.run(&format!("out{round}"), &["--jobs", "1"])?;
         whole = whole.min(cpu_s(true).unwrap_or(0.0) - before);
     }
     Ok(Measured::Value(100.0 * (whole / bare - 1.0)))
-}
-
-/// CPU time in s so far, of this process or of its children that have ended.
-#[allow(clippy::disallowed_methods, reason = "time is what is measured")]
-pub(super) fn cpu_s(of_children: bool) -> Option<f64> {
-    let text = std::fs::read_to_string("/proc/self/stat").ok()?;
-    // Behind the name in brackets: state is field 3, utime and stime 14 and 15, those of children 16 and 17; 100 a second.
-    let fields: Vec<&str> = text.rsplit_once(") ")?.1.split(' ').collect();
-    let first = if of_children { 13 } else { 11 };
-    let ticks = |at: usize| fields.get(at)?.parse::<f64>().ok();
-    Some((ticks(first)? + ticks(first + 1)?) / 100.0)
 }
 
 /// Time on the clock with one job over that with two, the least of a few each: what else the machine does only adds. It
@@ -117,7 +102,7 @@ fn two_cores(_: &Session) -> Result<Measured, String> {
             "a second core: this machine has one".to_owned(),
         ));
     }
-    let batch = Batch::backlash(&hyde()?, 400, 10.0)?;
+    let batch = Batch::backlash(&this_program()?, 400, 10.0)?;
     let (mut one, mut two) = (f64::INFINITY, f64::INFINITY);
     for round in 0..3 {
         let timed = |jobs: &str| {
@@ -139,7 +124,7 @@ fn two_cores(_: &Session) -> Result<Measured, String> {
 )]
 fn kills(_: &Session) -> Result<Measured, String> {
     const CASES: usize = 10_000;
-    let batch = Batch::backlash(&hyde()?, CASES, 1.0)?;
+    let batch = Batch::backlash(&this_program()?, CASES, 1.0)?;
     batch.run("whole", &[])?;
     let whole = batch.journal_bytes("whole");
     let mut chance = Chance(7);
@@ -216,7 +201,7 @@ impl Chance {
 }
 
 fn slurm(_: &Session) -> Result<Measured, String> {
-    let batch = Batch::backlash(&hyde()?, 1000, 10.0)?;
+    let batch = Batch::backlash(&this_program()?, 1000, 10.0)?;
     batch.run("whole", &[])?;
     match batch.on_slurm(&batch.dataset("whole")?)? {
         Some(equal) => Ok(Measured::Value(f64::from(u8::from(equal)))),
@@ -229,7 +214,7 @@ fn slurm(_: &Session) -> Result<Measured, String> {
 /// The most memory of a process with 10 000 short cases over that with 1 000.
 fn memory(_: &Session) -> Result<Measured, String> {
     let most = |cases: usize| {
-        let batch = Batch::backlash(&hyde()?, cases, 0.01)?;
+        let batch = Batch::backlash(&this_program()?, cases, 0.01)?;
         let mut command = batch.sweep("out", &["--jobs", "2"]);
         let mut child = command
             .stdout(Stdio::null())
@@ -253,12 +238,4 @@ fn memory(_: &Session) -> Result<Measured, String> {
         ));
     }
     Ok(Measured::Value(many / few))
-}
-
-/// The most memory that a process has had so far.
-#[allow(clippy::disallowed_methods, reason = "memory is what is measured")]
-pub(super) fn memory_kb(process: u32) -> Option<f64> {
-    let text = std::fs::read_to_string(format!("/proc/{process}/status")).ok()?;
-    let line = text.lines().find(|line| line.starts_with("VmHWM:"))?;
-    line.split_whitespace().nth(1)?.parse().ok()
 }

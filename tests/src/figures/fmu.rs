@@ -2,10 +2,10 @@
 //! an export takes.
 
 use super::clock::now;
+use super::process::released;
 use super::promise::{Figure, Measured, Promise, Session};
 use super::start::START;
 use crate::fmu::{Agreement, Compared, KINDS, compare, python, succeed};
-use crate::root;
 use std::process::Command;
 
 /// The models with what an importer that integrates is compared with: a run whose own error does not count.
@@ -49,7 +49,7 @@ pub(super) const EXPORT: Figure = Figure {
     unit: "s",
     promise: Promise::Below(1.0),
     measure: |_| {
-        let hyde = command()?;
+        let hyde = released()?;
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let start = now();
         let mut export = Command::new(hyde);
@@ -58,13 +58,6 @@ pub(super) const EXPORT: Figure = Figure {
         Ok(Measured::Value(start.elapsed().as_secs_f64()))
     },
 };
-
-/// The released command.
-fn command() -> Result<std::path::PathBuf, String> {
-    let build = ["build", "--release", "--locked", "-q", "-p", "hyde-cli"];
-    succeed(Command::new("cargo").args(build))?;
-    Ok(root().join("target/release/hyde"))
-}
 
 /// The largest of a number over all models and kinds.
 fn measured(session: &Session, of: fn(&Agreement) -> f64) -> Result<Measured, String> {
@@ -77,7 +70,7 @@ fn measured(session: &Session, of: fn(&Agreement) -> f64) -> Result<Measured, St
 }
 
 fn agreements() -> Result<Vec<Agreement>, String> {
-    let hyde = command()?;
+    let hyde = released()?;
     let mut found = Vec::new();
     for (file, experiment, run, tolerance) in MODELS {
         for fmi in ["3", "2"] {

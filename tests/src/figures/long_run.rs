@@ -1,7 +1,7 @@
 //! `long_run_mb` and `csv_share_percent`: ten minutes of an axis under a controller of 1 kHz with a row each millisecond. How
 //! much memory does the run take, and how much of its time the results as text? The command is this program itself.
 
-use super::batches::{cpu_s, hyde, memory_kb};
+use super::process::{cpu_s, memory_kb, this_program};
 use super::promise::{Figure, Measured, Promise, Session};
 use std::process::{Command, Stdio};
 use std::time::Duration;
@@ -38,7 +38,7 @@ fn run(options: &[&str]) -> Result<(f64, Option<f64>), String> {
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
     let model = crate::root().join("tests/models/ten_minutes.hyde");
     let before = cpu_s(true);
-    let mut child = Command::new(hyde()?)
+    let mut child = Command::new(this_program()?)
         .arg("run")
         .arg(model)
         .args(options)

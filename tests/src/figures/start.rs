@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 pub(super) const FIGURE: Figure = Figure {
     name: "start_to_first_step_ms",
     unit: "ms",
-    promise: Promise::Below(150.0),
+    promise: Promise::AtMost(25.0),
     measure,
 };
 
