@@ -3,11 +3,25 @@
 import asyncio
 import json
 import sys
+from pathlib import Path
 
+import anyio
 from mcp import ClientSession, StdioServerParameters
 from mcp.client.stdio import stdio_client
 
 hyde, folder = sys.argv[1:]
+LONG = "tests/models/ten_minutes.hyde"
+
+
+def running(word):
+    """Whether a process with a word among its arguments runs."""
+    for known in Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            if word.encode() in known.read_bytes():
+                return True
+        except OSError:
+            pass
+    return False
 
 
 def answer(result):
@@ -53,6 +67,15 @@ async def main():
             assert wrong.is_error and answer(wrong)["diagnostics"], wrong
             missing = await session.call_tool("run", {"file": "absent.hyde"})
             assert missing.is_error and "absent.hyde" in missing.content[0].text
+
+            # A run of minutes that the client cancels ends: tools run one after the other, and the next one is answered.
+            with anyio.move_on_after(1.0) as scope:
+                await session.call_tool("run", {"file": LONG, "out": folder})
+            assert scope.cancelled_caught, "it was to be cancelled"
+            await session.send_ping()
+            checked = answer(await session.call_tool("check", {"file": first["file"]}))
+            assert checked["ok"]
+            assert not running(LONG), "the run goes on"
 
 
 asyncio.run(main())

@@ -19,6 +19,8 @@ mod tools;
 pub use digest::digest;
 pub use server::serve;
 
+use std::sync::atomic::AtomicBool;
+
 /// What a command left.
 #[derive(Clone, Debug, Default)]
 pub struct Ran {
@@ -32,11 +34,11 @@ pub struct Ran {
 
 /// What the server needs of the machine.
 pub trait Host {
-    /// Runs the command with arguments.
+    /// Runs the command with arguments; ends it when it is `cancelled`.
     ///
     /// # Errors
     /// It could not be started.
-    fn run(&self, arguments: &[String]) -> Result<Ran, String>;
+    fn run(&self, arguments: &[String], cancelled: &AtomicBool) -> Result<Ran, String>;
 
     /// Writes a text to a file of a folder, and makes the folder; gives back the path.
     ///

@@ -1,10 +1,13 @@
-//! [`serve`]: JSON-RPC 2.0, one message a line, one after the other.
+//! [`serve`]: JSON-RPC 2.0, one message a line: one thread reads and answers, another runs the tools one after the other.
 
 use crate::components::components;
 use crate::tools::{TOOLS, Tool};
 use crate::{Host, Ran, digest};
 use serde_json::{Map, Value, json};
+use std::collections::BTreeMap;
 use std::io::{BufRead, Write};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError, mpsc};
 
 /// Versions of the protocol with `initialize`, the newest first.
 const VERSIONS: [&str; 4] = ["2025-11-25", "2025-06-18", "2025-03-26", "2024-11-05"];
@@ -26,14 +29,62 @@ const LONGEST: u64 = 10_000_000;
 /// An error of the protocol: code and message.
 type Fault = (i64, String);
 
-/// Answers a client until its messages end.
+/// Answers a client until its messages end, and works off the calls that are left then.
+///
+/// Calls of tools run one after the other; everything else is answered at once, so that a call can be cancelled.
 ///
 /// # Errors
 /// A message cannot be read or written.
 pub fn serve(
     input: &mut dyn BufRead,
-    output: &mut dyn Write,
-    host: &dyn Host,
+    output: &mut (dyn Write + Send),
+    host: &(dyn Host + Sync),
+) -> std::io::Result<()> {
+    let output = Mutex::new(output);
+    let asked = Asked::default();
+    let (calls, waiting) = mpsc::channel::<Call>();
+    std::thread::scope(|scope| {
+        let (asked, output) = (&asked, &output);
+        let worker = scope.spawn(move || work(waiting, asked, output, host));
+        let read = read(input, &calls, asked, output);
+        drop(calls);
+        let worked = worker.join();
+        read.and(worked.unwrap_or(Ok(())))
+    })
+}
+
+/// A stream of answers that both threads write to.
+type Output<'a> = Mutex<&'a mut (dyn Write + Send)>;
+
+/// A tool that was called.
+struct Call {
+    id: Value,
+    params: Map<String, Value>,
+    cancelled: Arc<AtomicBool>,
+}
+
+/// The calls without an answer yet, by the text of their id.
+#[derive(Default)]
+struct Asked(Mutex<BTreeMap<String, Arc<AtomicBool>>>);
+
+impl Asked {
+    fn with<T>(&self, work: impl FnOnce(&mut BTreeMap<String, Arc<AtomicBool>>) -> T) -> T {
+        work(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+}
+
+fn write(output: &Output<'_>, answer: &Value) -> std::io::Result<()> {
+    let mut output = output.lock().unwrap_or_else(PoisonError::into_inner);
+    writeln!(output, "{answer}")?;
+    output.flush()
+}
+
+/// Reads messages: puts calls of tools into the queue, and answers the others.
+fn read(
+    input: &mut dyn BufRead,
+    calls: &mpsc::Sender<Call>,
+    asked: &Asked,
+    output: &Output<'_>,
 ) -> std::io::Result<()> {
     loop {
         let mut line = Vec::new();
@@ -45,42 +96,92 @@ pub fn serve(
             continue;
         }
         let answer = match serde_json::from_slice::<Value>(&line) {
-            Ok(message) => answer(&message, host),
+            Ok(message) => answer(&message, asked, calls),
             Err(error) => Some(failed(&Value::Null, (PARSE, error.to_string()))),
         };
         if let Some(answer) = answer {
-            writeln!(output, "{answer}")?;
-            output.flush()?;
+            write(output, &answer)?;
         }
     }
 }
 
-/// The answer to a message; a notification has none.
-fn answer(message: &Value, host: &dyn Host) -> Option<Value> {
+/// Runs the tools that were called. A call that the client has cancelled has no answer.
+fn work(
+    waiting: mpsc::Receiver<Call>,
+    asked: &Asked,
+    output: &Output<'_>,
+    host: &(dyn Host + Sync),
+) -> std::io::Result<()> {
+    for Call {
+        id,
+        params,
+        cancelled,
+    } in waiting
+    {
+        let is_cancelled = || cancelled.load(Ordering::Relaxed);
+        let result = match is_cancelled() {
+            true => None,
+            false => Some(called(&params, host, &cancelled)),
+        };
+        asked.with(|known| known.remove(&id.to_string()));
+        if let Some(result) = result.filter(|_| !is_cancelled()) {
+            write(output, &answered(&id, result))?;
+        }
+    }
+    Ok(())
+}
+
+/// The answer to a message; a notification has none, and a call of a tool none yet.
+fn answer(message: &Value, asked: &Asked, calls: &mpsc::Sender<Call>) -> Option<Value> {
     let Some(request) = message.as_object() else {
         let fault = "a message is one JSON object a line".to_owned();
         return Some(failed(&Value::Null, (INVALID_REQUEST, fault)));
     };
-    // An answer to a request that this server never makes, or a notification.
-    let id = request.get("id")?;
+    let empty = Map::new();
+    let params = request.get("params").and_then(Value::as_object);
+    let params = params.unwrap_or(&empty);
+    let Some(id) = request.get("id") else {
+        // An answer to a request that this server never makes, or a notification.
+        if request.get("method").and_then(Value::as_str) == Some("notifications/cancelled")
+            && let Some(id) = params.get("requestId")
+        {
+            asked.with(|known| {
+                let call = known.get(&id.to_string());
+                call.inspect(|call| call.store(true, Ordering::Relaxed));
+            });
+        }
+        return None;
+    };
     let Some(method) = request.get("method").and_then(Value::as_str) else {
         let fault = "a request has a `method`".to_owned();
         return Some(failed(id, (INVALID_REQUEST, fault)));
     };
-    let empty = Map::new();
-    let params = request.get("params").and_then(Value::as_object);
-    let params = params.unwrap_or(&empty);
     let result = match method {
         "initialize" => Ok(initialized(params)),
         "ping" => Ok(json!({})),
         "tools/list" => Ok(json!({ "tools": listed() })),
-        "tools/call" => called(params, host),
+        "tools/call" => {
+            let cancelled = Arc::<AtomicBool>::default();
+            asked.with(|known| known.insert(id.to_string(), Arc::clone(&cancelled)));
+            let call = Call {
+                id: id.clone(),
+                params: params.clone(),
+                cancelled,
+            };
+            // There is a worker as long as answers can be written.
+            let _sent = calls.send(call);
+            return None;
+        }
         other => Err((NO_METHOD, format!("no method `{other}`"))),
     };
-    Some(match result {
+    Some(answered(id, result))
+}
+
+fn answered(id: &Value, result: Result<Value, Fault>) -> Value {
+    match result {
         Ok(result) => json!({ "jsonrpc": "2.0", "id": id, "result": result }),
         Err(fault) => failed(id, fault),
-    })
+    }
 }
 
 fn failed(id: &Value, (code, message): Fault) -> Value {
@@ -115,7 +216,11 @@ fn listed() -> Vec<Value> {
     all
 }
 
-fn called(params: &Map<String, Value>, host: &dyn Host) -> Result<Value, Fault> {
+fn called(
+    params: &Map<String, Value>,
+    host: &dyn Host,
+    cancelled: &AtomicBool,
+) -> Result<Value, Fault> {
     let name = params.get("name").and_then(Value::as_str);
     let name = name.ok_or((INVALID_PARAMS, "a call has the `name` of a tool".to_owned()))?;
     let empty = Map::new();
@@ -139,7 +244,7 @@ fn called(params: &Map<String, Value>, host: &dyn Host) -> Result<Value, Fault> 
         // The caller can mend it: an answer, not an error of the protocol.
         Err(reason) => return Ok(told(&reason, true)),
     };
-    let ran = match host.run(&line) {
+    let ran = match host.run(&line, cancelled) {
         Ok(ran) => ran,
         Err(reason) => return Ok(told(&reason, true)),
     };

@@ -3,24 +3,26 @@
 
 use hyde_mcp::{Host, Ran, serve};
 use serde_json::{Value, json};
-use std::cell::RefCell;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
 
 /// A machine that remembers what it was asked.
 #[derive(Default)]
 struct Recording {
-    ran: RefCell<Vec<Vec<String>>>,
-    written: RefCell<Vec<String>>,
+    ran: Mutex<Vec<Vec<String>>>,
+    written: Mutex<Vec<String>>,
     answer: Ran,
 }
 
 impl Host for Recording {
-    fn run(&self, arguments: &[String]) -> Result<Ran, String> {
-        self.ran.borrow_mut().push(arguments.to_vec());
+    fn run(&self, arguments: &[String], _: &AtomicBool) -> Result<Ran, String> {
+        self.ran.lock().unwrap().push(arguments.to_vec());
         Ok(self.answer.clone())
     }
 
     fn write(&self, folder: &str, name: &str, text: &str) -> Result<String, String> {
-        self.written.borrow_mut().push(text.to_owned());
+        self.written.lock().unwrap().push(text.to_owned());
         Ok(format!("{folder}/{name}"))
     }
 
@@ -29,13 +31,69 @@ impl Host for Recording {
     }
 }
 
-fn talk(host: &dyn Host, lines: &[&str]) -> Vec<Value> {
+/// The answers in the order of their ids, those without one first: calls of tools are answered later than others.
+fn talk(host: &(dyn Host + Sync), lines: &[&str]) -> Vec<Value> {
     let mut output = Vec::new();
     serve(&mut lines.join("\n").as_bytes(), &mut output, host).unwrap();
     let text = String::from_utf8(output).unwrap();
-    text.lines()
+    let answers = text.lines();
+    let mut answers: Vec<Value> = answers
         .map(|line| serde_json::from_str(line).unwrap())
-        .collect()
+        .collect();
+    answers.sort_by_key(|answer| answer["id"].as_i64());
+    answers
+}
+
+/// A machine whose commands run until they are cancelled.
+struct Endless(Mutex<Vec<String>>);
+
+impl Host for Endless {
+    fn run(&self, arguments: &[String], cancelled: &AtomicBool) -> Result<Ran, String> {
+        self.0.lock().unwrap().extend(arguments.last().cloned());
+        while !cancelled.load(Ordering::Relaxed) {
+            std::thread::sleep(Duration::from_millis(1));
+        }
+        Ok(Ran::default())
+    }
+
+    fn write(&self, _: &str, _: &str, _: &str) -> Result<String, String> {
+        Err("nothing is written".to_owned())
+    }
+
+    fn folder(&self) -> String {
+        "somewhere".to_owned()
+    }
+}
+
+#[test]
+fn a_call_that_is_cancelled_ends_and_has_no_answer() {
+    let host = Endless(Mutex::default());
+    let call = |id: &str, file: &str| {
+        format!(
+            r#"{{"jsonrpc":"2.0","id":{id},"method":"tools/call","params":{{"name":"run","arguments":{{"file":"{file}"}}}}}}"#
+        )
+    };
+    let cancel = |id: &str| {
+        format!(
+            r#"{{"jsonrpc":"2.0","method":"notifications/cancelled","params":{{"requestId":{id}}}}}"#
+        )
+    };
+    let answers = talk(
+        &host,
+        &[
+            &call("1", "first.hyde"),
+            &call("\"two\"", "second.hyde"),
+            r#"{"jsonrpc":"2.0","id":3,"method":"ping"}"#,
+            &cancel("9"),
+            &cancel("\"two\""),
+            &cancel("1"),
+        ],
+    );
+    assert_eq!(answers.len(), 1, "{answers:?}");
+    assert_eq!(answers[0]["id"], 3);
+    // The one that waited was not begun; the other may have been cancelled before it was.
+    let ran = host.0.lock().unwrap();
+    assert!(ran.iter().all(|file| file == "first.hyde"), "{ran:?}");
 }
 
 #[test]
@@ -112,9 +170,9 @@ fn samples_stay_on_the_disk() {
         json!({ "numbers": 500, "least": 0.0, "most": 499.0 })
     );
     assert_eq!(told["complete_answer"], "somewhere/run.json");
-    assert!(host.written.borrow()[0].contains("499.0"));
+    assert!(host.written.lock().unwrap()[0].contains("499.0"));
     let line = ["run", "--out=somewhere", "--json", "--", "a.hyde"];
-    assert_eq!(host.ran.borrow()[0], line);
+    assert_eq!(host.ran.lock().unwrap()[0], line);
 }
 
 #[test]

@@ -4,9 +4,12 @@ use crate::exit::Exit;
 use crate::files;
 use crate::output::print_error;
 use hyde_mcp::{Host, Ran};
-use std::io::BufReader;
+use std::io::{BufReader, Read};
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::Duration;
 
 /// Serves one client until its messages end.
 pub(crate) fn mcp() -> Exit {
@@ -21,20 +24,47 @@ pub(crate) fn mcp() -> Exit {
     }
 }
 
+/// How often a command that runs is looked at whether it is cancelled.
+const LOOKS: Duration = Duration::from_millis(20);
+
+/// Everything that a stream gives. The sender is held until then.
+fn text(stream: Option<impl Read>, _ended: mpsc::Sender<()>) -> String {
+    let mut bytes = Vec::new();
+    // What a process that ended left is read to its end.
+    let _read = stream.map(|mut stream| stream.read_to_end(&mut bytes));
+    String::from_utf8_lossy(&bytes).into_owned()
+}
+
 /// What the server needs of the machine.
 struct Machine;
 
 impl Host for Machine {
-    fn run(&self, arguments: &[String]) -> Result<Ran, String> {
+    fn run(&self, arguments: &[String], cancelled: &AtomicBool) -> Result<Ran, String> {
         let own = std::env::current_exe().map_err(|error| files::reason(&error))?;
         let mut command = Command::new(own);
         // The messages on standard input are not for it.
         command.args(arguments).stdin(Stdio::null());
-        let left = command.output().map_err(|error| files::reason(&error))?;
-        Ok(Ran {
-            stdout: String::from_utf8_lossy(&left.stdout).into_owned(),
-            stderr: String::from_utf8_lossy(&left.stderr).into_owned(),
-            status: left.status.code().unwrap_or(-1),
+        command.stdout(Stdio::piped()).stderr(Stdio::piped());
+        let mut running = command.spawn().map_err(|error| files::reason(&error))?;
+        let (stdout, stderr) = (running.stdout.take(), running.stderr.take());
+        // Both readers hold a sender until they are at the end.
+        let (sender, ended) = mpsc::channel::<()>();
+        std::thread::scope(|scope| {
+            let other = sender.clone();
+            let stdout = scope.spawn(move || text(stdout, sender));
+            let stderr = scope.spawn(move || text(stderr, other));
+            while ended.recv_timeout(LOOKS) == Err(RecvTimeoutError::Timeout) {
+                if cancelled.load(Ordering::Relaxed) {
+                    running.kill().map_err(|error| files::reason(&error))?;
+                    break;
+                }
+            }
+            let status = running.wait().map_err(|error| files::reason(&error))?;
+            Ok(Ran {
+                stdout: stdout.join().unwrap_or_default(),
+                stderr: stderr.join().unwrap_or_default(),
+                status: status.code().unwrap_or(-1),
+            })
         })
     }
 
