@@ -15,6 +15,7 @@ pub mod fixed_step;
 pub mod fmu;
 mod folder;
 pub mod gradient;
+pub mod imported;
 pub mod ivp;
 mod last_bit;
 pub mod library;

@@ -57,7 +57,7 @@ fn every_code_has_a_fixture() {
 fn every_page_explains_its_code_with_examples_that_are_true() {
     let scratch = tempfile::tempdir().unwrap();
     copy(&folder().join("packages"), &scratch.path().join("packages"));
-    for fmu in ["controller.fmu", "exchange.fmu"] {
+    for fmu in ["controller.fmu", "windows.fmu"] {
         std::fs::copy(folder().join(fmu), scratch.path().join(fmu)).unwrap();
     }
     for code in Code::ALL {

@@ -8,61 +8,25 @@
 )]
 
 use hyde_tests::fmu::{python, succeed};
+use hyde_tests::imported::{self, LOOP, column, largest_difference, of_hyde, thrown, write};
 use hyde_tests::root;
 use serde_json::Value;
 use std::path::Path;
 use std::process::{Command, Output};
 
+const HYDE: &str = env!("CARGO_BIN_EXE_hyde-tested");
+
 fn hyde(folder: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_hyde-tested"));
-    command
-        .current_dir(folder)
-        .args(arguments)
-        .output()
-        .unwrap()
+    imported::hyde(HYDE, folder, arguments)
 }
 
-/// What a run that succeeds leaves: the columns by name.
 fn columns(folder: &Path, arguments: &[&str]) -> Value {
-    let out = tempfile::tempdir().unwrap();
-    let path = out.path().to_string_lossy().into_owned();
-    let more = ["--quiet", "--format", "json", "--out", path.as_str()];
-    let all: Vec<&str> = arguments.iter().copied().chain(more).collect();
-    let output = hyde(folder, &all);
-    let said = String::from_utf8_lossy(&output.stderr);
-    assert!(output.status.success(), "{arguments:?}: {said}");
-    let text = std::fs::read_to_string(out.path().join("results.json")).unwrap();
-    serde_json::from_str(&text).unwrap()
-}
-
-fn column(results: &Value, name: &str) -> Vec<f64> {
-    let values = results[name]["values"].as_array();
-    let values = values.unwrap_or_else(|| panic!("no column {name}"));
-    values.iter().map(|value| value.as_f64().unwrap()).collect()
-}
-
-fn largest_difference(a: &[f64], b: &[f64]) -> f64 {
-    assert_eq!(a.len(), b.len());
-    let pairs = a.iter().zip(b);
-    pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-}
-
-/// A folder with the FMUs of Hyde.
-fn of_hyde() -> tempfile::TempDir {
-    let folder = tempfile::tempdir().unwrap();
-    let model = root().join("tests/models/fmu_import.hyde");
-    for fmi in ["3", "2"] {
-        let out = folder.path().join(format!("lag{fmi}.fmu"));
-        let mut command = Command::new(env!("CARGO_BIN_EXE_hyde-tested"));
-        command.args(["export", "fmu", "--quiet", "--fmi", fmi]);
-        succeed(command.arg(&model).arg("--out").arg(out)).unwrap();
-    }
-    folder
+    imported::columns(HYDE, folder, arguments)
 }
 
 /// A folder with the FMUs of other tools, if those are there; says so if not.
 fn of_others() -> Option<tempfile::TempDir> {
-    let folder = of_hyde();
+    let folder = of_hyde(HYDE);
     std::fs::rename(
         folder.path().join("lag3.fmu"),
         folder.path().join("lag.fmu"),
@@ -81,55 +45,9 @@ fn of_others() -> Option<tempfile::TempDir> {
     Some(folder)
 }
 
-fn write(folder: &Path, name: &str, text: &str) {
-    std::fs::write(folder.join(name), text).unwrap();
-}
-
-const LOOP: &str = r#"
-import SI.*;
-
-model Controller = fmu("lag3.fmu", k = 3, step = 1 [ms]);
-
-model Loop
-  Controller c;
-  Velocity v(start = 0, fixed = true);
-equation
-  c.u = 0.1 [m/s] - v;
-  2 [kg]*der(v) = c.F;
-end Loop;
-
-model Same "with the equations of the FMU"
-  Velocity v(start = 0, fixed = true);
-  Velocity u = hold(c.u);
-  Force F = hold(c.F);
-  Real x(start = 0, fixed = true);
-  clocked c(1 [ms])
-    Velocity u = sample(0.1 [m/s] - v);
-    Force F = (300 [N])*sample(x);
-  end c;
-equation
-  20 [ms]*der(x) = u/(1 [m/s]) - x;
-  2 [kg]*der(v) = F;
-end Same;
-
-experiment imported of Loop
-  solve auto(rtol = 1e-9) stop 0.3 [s] every 5 [ms];
-end imported;
-
-experiment native of Same
-  solve auto(rtol = 1e-9) stop 0.3 [s] every 5 [ms];
-end native;
-
-sweep gains of imported
-  vary c.k in 1 .. 4;
-  grid 4;
-  expect last(v) > 0 [m/s];
-end gains;
-"#;
-
 #[test]
 fn an_fmu_of_hyde_gives_the_run_of_its_equations() {
-    let folder = of_hyde();
+    let folder = of_hyde(HYDE);
     let folder = folder.path();
     write(folder, "three.hyde", LOOP);
     write(folder, "two.hyde", &LOOP.replace("lag3", "lag2"));
@@ -150,7 +68,7 @@ fn an_fmu_of_hyde_gives_the_run_of_its_equations() {
 
 #[test]
 fn cases_of_a_sweep_have_instances_of_their_own() {
-    let folder = of_hyde();
+    let folder = of_hyde(HYDE);
     let folder = folder.path();
     let text = LOOP.replace("  grid 4;\n  expect last(v) > 0 [m/s];\n", "  grid 4;\n");
     let text = text.replace("  solve auto(rtol = 1e-9) stop 0.3 [s] every 5 [ms];\nend imported;",
@@ -199,7 +117,7 @@ fn cases_of_a_sweep_have_instances_of_their_own() {
 
 #[test]
 fn what_cannot_be_had_of_an_fmu_is_refused_with_the_line_to_write() {
-    let folder = of_hyde();
+    let folder = of_hyde(HYDE);
     let folder = folder.path();
     let said = |change: (&str, &str), arguments: &[&str]| {
         write(folder, "t.hyde", &LOOP.replace(change.0, change.1));
@@ -235,13 +153,13 @@ fn what_cannot_be_had_of_an_fmu_is_refused_with_the_line_to_write() {
 
 #[test]
 fn the_run_tells_whose_machine_code_it_runs_and_leaves_no_files() {
-    let (folder, temporary) = (of_hyde(), tempfile::tempdir().unwrap());
+    let (folder, temporary) = (of_hyde(HYDE), tempfile::tempdir().unwrap());
     write(folder.path(), "loop.hyde", LOOP);
     for (more, told) in [
         (&[][..], "in this process"),
         (&["--sandbox"], "in a process of its own"),
     ] {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_hyde-tested"));
+        let mut command = Command::new(HYDE);
         command
             .current_dir(folder.path())
             .env("TMPDIR", temporary.path());
@@ -328,28 +246,12 @@ end run;
                 "{t}: {}",
                 container[row]
             );
-            let (height, count) = bounced(t);
+            let (height, count) = thrown(t, 0.5, 0.5);
             assert!((ball[row] - height).abs() < 1e-9, "{t}: {}", ball[row]);
             assert!((bounces[row] - count).abs() < 1e-12, "{t}");
         }
         assert!(looked_at >= 21, "{looked_at}");
     }
-}
-
-/// Height and number of bounces of a ball that falls from 0.5 m and keeps half of its speed.
-fn bounced(t: f64) -> (f64, f64) {
-    let (g, fall) = (9.81_f64, 0.5);
-    let first = (2.0 * fall / g).sqrt();
-    if t < first {
-        return (fall - g * t * t / 2.0, 0.0);
-    }
-    let (mut rest, mut v, mut count) = (t - first, g * first / 2.0, 1.0);
-    while rest >= 2.0 * v / g && count < 30.0 {
-        rest -= 2.0 * v / g;
-        v /= 2.0;
-        count += 1.0;
-    }
-    (v * rest - g * rest * rest / 2.0, count)
 }
 
 #[test]
@@ -442,4 +344,43 @@ fn a_controller_of_another_tool_closes_the_position_loop_of_the_y_axis() {
     assert!(moved > 0.015, "the axis moves: {moved}");
     let difference = largest_difference(&imported, &native);
     assert!(difference < 1e-5 * moved, "{difference} of {moved}");
+}
+
+#[test]
+fn an_error_budget_splits_what_an_fmu_contributes() {
+    let folder = of_hyde(HYDE);
+    let folder = folder.path();
+    let asked = "  measure Velocity reached = last(v);\n  budget weak(c.k = 4), slow(c.T = 1 [ms]);\n  solve auto(rtol = 1e-9) stop 0.3 [s] every 5 [ms];\nend imported;";
+    let plain = "  solve auto(rtol = 1e-9) stop 0.3 [s] every 5 [ms];\nend imported;";
+    let text = LOOP.replacen(plain, asked, 1);
+    write(folder, "loop.hyde", &text);
+    // What the measure is with a gain, run for itself.
+    let with = |k: &str| {
+        let output = hyde(
+            folder,
+            &["run", "loop.hyde", "imported", "--set", k, "--json"],
+        );
+        let told: Value = serde_json::from_slice(&output.stdout).unwrap();
+        told["measures"][0]["value"].as_f64().unwrap()
+    };
+    let (real, without) = (with("c.k=3"), with("c.k=4"));
+    let split = |more: &[&str]| {
+        let all: Vec<&str> = ["budget", "loop.hyde", "imported", "--json"]
+            .iter()
+            .chain(more)
+            .copied()
+            .collect();
+        let output = hyde(folder, &all);
+        let said = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{said}");
+        serde_json::from_slice::<Value>(&output.stdout).unwrap()
+    };
+    let told = split(&[]);
+    let budget = &told["measures"][0];
+    assert_eq!(budget["value"].as_f64(), Some(real));
+    let mut shares = budget["shares"].as_array().unwrap().iter();
+    let weak = shares.find(|own| own["name"] == "weak").unwrap();
+    let share = weak["share"].as_f64().unwrap();
+    assert!((share - (real - without)).abs() < 1e-12, "{budget}");
+    assert_eq!(told, split(&["--sandbox"]));
 }

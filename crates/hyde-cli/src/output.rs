@@ -4,22 +4,48 @@
 use crate::exit::Exit;
 use crate::render;
 use hyde_diag::{Diagnostics, Sources};
+use std::fs::File;
 use std::io::{ErrorKind, IsTerminal as _, Write as _};
+use std::os::fd::AsFd as _;
 use std::sync::OnceLock;
 
 /// Why standard output of this process could not be written. There is one of it, whoever prints.
 static FAILED: OnceLock<String> = OnceLock::new();
 
+/// Where this command prints, if standard output of the process is left to what others print in it.
+static OWN: OnceLock<File> = OnceLock::new();
+
+/// From here on what libraries of FMUs print in this process goes to standard error, so that it never mixes with what this
+/// command prints. Without a second descriptor all stays as it is.
+pub(crate) fn keep_own() {
+    if OWN.get().is_some() {
+        return;
+    }
+    let _flushed = std::io::stdout().flush();
+    let own = std::io::stdout().as_fd().try_clone_to_owned();
+    if let Ok(own) = own
+        && rustix::stdio::dup2_stdout(std::io::stderr().as_fd()).is_ok()
+    {
+        let _first = OWN.set(File::from(own));
+    }
+}
+
+fn print(text: &[u8]) -> std::io::Result<()> {
+    match OWN.get() {
+        Some(mut own) => own.write_all(text),
+        None => std::io::stdout().lock().write_all(text),
+    }
+}
+
 /// A line on standard output. Whoever reads it may have gone: a closed pipe is no mistake.
 pub(crate) fn print_output(text: &str) {
     let text = visible(text.trim_end());
-    let written = writeln!(std::io::stdout().lock(), "{text}");
-    note(written);
+    note(print(format!("{text}\n").as_bytes()));
 }
 
 /// A text on standard output as it is: it is the input of another program.
 pub(crate) fn write_output(text: &str) {
-    note(std::io::stdout().lock().write_all(text.as_bytes()));
+    note(print(text.as_bytes()));
 }
 
 /// A line on standard error.

@@ -3,7 +3,7 @@
 use crate::args::ModelArgs;
 use crate::exit::Exit;
 pub(crate) use crate::output::{print_diagnostics, print_error, print_output};
-use crate::{render, sandbox};
+use crate::{output, render, sandbox};
 use hyde_compiler::{Candidate, Compiled};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_experiment::RunError;
@@ -49,7 +49,11 @@ pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
 /// Loads what the arguments name. What is wrong in the files stays in the project's diagnostics.
 pub(crate) fn load_silently(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
     let project = hyde_study::load(&asked(args)?, needed);
-    project.map_err(|reason| complain(args, Exit::CommandLine, &reason))
+    let project = project.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
+    if !project.fmus.is_empty() && !sandbox::is_asked() {
+        output::keep_own();
+    }
+    Ok(project)
 }
 
 /// The file that the arguments name, parsed; what is wrong in it stays among its diagnostics.

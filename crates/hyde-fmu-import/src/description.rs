@@ -14,6 +14,15 @@ pub enum Version {
     Three,
 }
 
+/// How an FMU is used.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// It integrates itself.
+    CoSimulation,
+    /// It gives derivatives, and is integrated here.
+    ModelExchange,
+}
+
 /// What kind of numbers a variable has, and with which functions they are set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Numbers {
@@ -149,6 +158,12 @@ pub struct Description {
     pub once_per_process: bool,
     /// The communication step in s that it proposes.
     pub step: Option<f64>,
+    /// How it is used: by co-simulation if it has it.
+    pub used: Use,
+    /// The relative tolerance that it proposes.
+    pub tolerance: Option<f64>,
+    /// The numbers of states and event indicators, of FMI 2.0.
+    pub(crate) counts: (usize, usize),
     /// Its variables in their order.
     pub variables: Vec<FmuVariable>,
     /// What it has that a model cannot use, and units that were read in a way worth saying.
@@ -176,17 +191,12 @@ impl Description {
                 ));
             }
         };
-        let Some(simulated) = child(root, "CoSimulation") else {
-            let kinds: Vec<&str> = ["ModelExchange", "ScheduledExecution"]
-                .into_iter()
-                .filter(|kind| child(root, kind).is_some())
-                .collect();
+        let simulated = child(root, "CoSimulation").map(|own| (own, Use::CoSimulation));
+        let exchanged = child(root, "ModelExchange").map(|own| (own, Use::ModelExchange));
+        let Some((simulated, used)) = simulated.or(exchanged) else {
             return Err(Unusable::new(
-                format!(
-                    "`{file}` has no co-simulation, only `{}`",
-                    kinds.join("`, `")
-                ),
-                "export it for co-simulation: an FMU for model exchange needs the solver of its importer inside its equations",
+                format!("`{file}` has neither co-simulation nor model exchange"),
+                "export it for co-simulation",
             ));
         };
         let identifier = simulated
@@ -196,7 +206,8 @@ impl Description {
             Version::Two => "guid",
             Version::Three => "instantiationToken",
         };
-        let step = child(root, "DefaultExperiment").and_then(|own| own.attribute("stepSize"));
+        let experiment = child(root, "DefaultExperiment");
+        let step = experiment.and_then(|own| own.attribute("stepSize"));
         let step = step.or_else(|| simulated.attribute("fixedInternalStepSize"));
         let mut found = Self {
             version,
@@ -210,9 +221,20 @@ impl Description {
             step: step
                 .and_then(|step| step.trim().parse().ok())
                 .filter(|step: &f64| *step > 0.0 && step.is_finite()),
+            used,
+            tolerance: experiment
+                .and_then(|own| own.attribute("tolerance"))
+                .and_then(|own| own.trim().parse().ok())
+                .filter(|own: &f64| *own > 0.0 && own.is_finite()),
+            counts: counts(root),
             variables: Vec::new(),
             notes: Vec::new(),
         };
+        if used == Use::ModelExchange {
+            found.notes.push(
+                "it has no co-simulation: Hyde integrates its equations within each communication step".to_owned(),
+            );
+        }
         found.read_variables(root);
         Ok(found)
     }
@@ -227,6 +249,15 @@ impl Description {
         let Some(all) = child(root, "ModelVariables") else {
             return;
         };
+        // They keep their start values, and so do the sizes of arrays.
+        let structural: BTreeMap<&str, usize> = all
+            .children()
+            .filter(|own| own.attribute("causality") == Some("structuralParameter"))
+            .filter_map(|own| {
+                let size = own.attribute("start")?.trim().parse().ok()?;
+                Some((own.attribute("valueReference")?, size))
+            })
+            .collect();
         let mut unusable: BTreeMap<&str, Vec<String>> = BTreeMap::new();
         for own in all.children().filter(Node::is_element) {
             // FMI 2.0 has the type in an element of its own.
@@ -258,8 +289,8 @@ impl Description {
                 unusable.entry(why).or_default().push(name.to_owned());
                 continue;
             };
-            let Ok(len) = length(own) else {
-                let list = unusable.entry("arrays of a structural size are not used");
+            let Ok(len) = length(own, &structural) else {
+                let list = unusable.entry("arrays without a size are not used");
                 list.or_default().push(name.to_owned());
                 continue;
             };
@@ -364,16 +395,27 @@ impl Description {
     }
 }
 
+/// The numbers of states and event indicators, as FMI 2.0 says them.
+fn counts(root: Node<'_, '_>) -> (usize, usize) {
+    let structure = child(root, "ModelStructure");
+    let derivatives = structure.and_then(|own| child(own, "Derivatives"));
+    let states = derivatives.map_or(0, |own| own.children().filter(Node::is_element).count());
+    let indicators = root.attribute("numberOfEventIndicators");
+    let indicators = indicators.and_then(|own| own.trim().parse().ok());
+    (states, indicators.unwrap_or(0))
+}
+
 /// The number of elements of an array; none of a scalar.
-fn length(own: Node<'_, '_>) -> Result<Option<usize>, ()> {
+fn length(own: Node<'_, '_>, structural: &BTreeMap<&str, usize>) -> Result<Option<usize>, ()> {
     let mut len = None;
     let dimensions = own.children().filter(|own| own.has_tag_name("Dimension"));
     for dimension in dimensions {
-        let size: usize = dimension
-            .attribute("start")
-            .and_then(|size| size.parse().ok())
-            .ok_or(())?;
-        len = Some(len.unwrap_or(1) * size);
+        let fixed = dimension.attribute("start");
+        let fixed = fixed.and_then(|size| size.trim().parse::<usize>().ok());
+        let other = dimension.attribute("valueReference");
+        let other = other.and_then(|reference| structural.get(reference).copied());
+        let size = fixed.or(other).ok_or(())?;
+        len = Some(len.unwrap_or(1_usize).checked_mul(size).ok_or(())?);
     }
     Ok(len)
 }

@@ -1,11 +1,15 @@
-//! An instance of FMI 2.0 for co-simulation.
+//! An instance of FMI 2.0.
 #![allow(unsafe_code, reason = "the functions are those of a foreign library")]
 
 use crate::Fmu;
-use crate::description::{FmuVariable, NumberKind};
+use crate::description::{FmuVariable, NumberKind, Use};
+use crate::exchange::{Exchange, Updated};
 use crate::library::{Called, Functions, Library, Slave, checked, whole};
 use crate::log::{Log, hyde_fmu_logger};
-use fmi_sys::fmi2::{Fmi2Binding, fmi2CallbackFunctions, fmi2Component, fmi2Type_fmi2CoSimulation};
+use fmi_sys::fmi2::{
+    Fmi2Binding, fmi2CallbackFunctions, fmi2Component, fmi2EventInfo, fmi2Type_fmi2CoSimulation,
+    fmi2Type_fmi2ModelExchange,
+};
 use std::ffi::{CString, c_void};
 use std::sync::Arc;
 
@@ -31,6 +35,7 @@ pub(crate) struct Instance {
     _log: Arc<Log>,
     dead: u8,
     running: bool,
+    counts: (usize, usize),
 }
 
 // SAFETY: an instance may be called from any thread as long as one calls at a time, which `&mut self` holds.
@@ -82,7 +87,10 @@ impl Instance {
         let component = unsafe {
             instantiate(
                 name.as_ptr(),
-                fmi2Type_fmi2CoSimulation,
+                match fmu.description.used {
+                    Use::CoSimulation => fmi2Type_fmi2CoSimulation,
+                    Use::ModelExchange => fmi2Type_fmi2ModelExchange,
+                },
                 token.as_ptr(),
                 resources.as_ptr(),
                 &raw const *callbacks,
@@ -100,6 +108,7 @@ impl Instance {
             _log: log.clone(),
             dead: 0,
             running: false,
+            counts: fmu.description.counts,
         })
     }
 
@@ -176,6 +185,94 @@ impl Slave for Instance {
 
     fn step(&mut self, t: f64, step: f64) -> Called {
         call!(self, fmi2DoStep(t, step, 1))
+    }
+}
+
+impl Exchange for Instance {
+    fn counts(&mut self) -> Result<(usize, usize), String> {
+        Ok(self.counts)
+    }
+
+    fn set_time(&mut self, t: f64) -> Called {
+        call!(self, fmi2SetTime(t))
+    }
+
+    fn states(&mut self, values: &mut [f64]) -> Called {
+        match values.is_empty() {
+            true => Ok(()),
+            false => call!(
+                self,
+                fmi2GetContinuousStates(values.as_mut_ptr(), values.len())
+            ),
+        }
+    }
+
+    fn set_states(&mut self, values: &[f64]) -> Called {
+        call!(self, fmi2SetContinuousStates(values.as_ptr(), values.len()))
+    }
+
+    fn derivatives(&mut self, values: &mut [f64]) -> Called {
+        match values.is_empty() {
+            true => Ok(()),
+            false => call!(self, fmi2GetDerivatives(values.as_mut_ptr(), values.len())),
+        }
+    }
+
+    fn indicators(&mut self, values: &mut [f64]) -> Called {
+        match values.is_empty() {
+            true => Ok(()),
+            false => call!(
+                self,
+                fmi2GetEventIndicators(values.as_mut_ptr(), values.len())
+            ),
+        }
+    }
+
+    fn nominals(&mut self, values: &mut [f64]) -> Called {
+        match values.is_empty() {
+            true => Ok(()),
+            false => call!(
+                self,
+                fmi2GetNominalsOfContinuousStates(values.as_mut_ptr(), values.len())
+            ),
+        }
+    }
+
+    fn enter_event_mode(&mut self) -> Called {
+        call!(self, fmi2EnterEventMode())
+    }
+
+    fn update(&mut self) -> Result<Updated, String> {
+        let mut info = fmi2EventInfo {
+            newDiscreteStatesNeeded: 0,
+            terminateSimulation: 0,
+            nominalsOfContinuousStatesChanged: 0,
+            valuesOfContinuousStatesChanged: 0,
+            nextEventTimeDefined: 0,
+            nextEventTime: 0.0,
+        };
+        call!(self, fmi2NewDiscreteStates(&raw mut info))?;
+        Ok(Updated {
+            again: info.newDiscreteStatesNeeded != 0,
+            terminate: info.terminateSimulation != 0,
+            next: (info.nextEventTimeDefined != 0).then_some(info.nextEventTime),
+        })
+    }
+
+    fn enter_continuous_mode(&mut self) -> Called {
+        call!(self, fmi2EnterContinuousTimeMode())
+    }
+
+    fn completed_step(&mut self) -> Result<bool, String> {
+        let (mut event, mut terminate) = (0, 0);
+        call!(
+            self,
+            fmi2CompletedIntegratorStep(1, &raw mut event, &raw mut terminate)
+        )?;
+        match terminate {
+            0 => Ok(event != 0),
+            _ => Err("it asked to end the simulation".to_owned()),
+        }
     }
 }
 

@@ -1,8 +1,9 @@
-//! An instance of FMI 3.0 for co-simulation, without event mode: the FMU handles its events inside a step.
+//! An instance of FMI 3.0; for co-simulation without event mode: the FMU handles its events inside a step.
 #![allow(unsafe_code, reason = "the functions are those of a foreign library")]
 
 use crate::Fmu;
-use crate::description::{FmuVariable, Numbers};
+use crate::description::{FmuVariable, Numbers, Use};
+use crate::exchange::{Exchange, Updated};
 use crate::library::{Called, Functions, Library, Slave, checked, whole};
 use crate::log::{Log, logged_in_fmi_3};
 use fmi_sys::fmi3::{Fmi3Binding, fmi3Instance};
@@ -75,9 +76,6 @@ impl Instance {
         let Functions::Three(functions) = &library.functions else {
             return Err("the library is not one of FMI 3.0".to_owned());
         };
-        let Ok(instantiate) = &functions.fmi3InstantiateCoSimulation else {
-            return Err("the library has no function `fmi3InstantiateCoSimulation`".to_owned());
-        };
         let text = |text: &str| CString::new(text).map_err(|error| error.to_string());
         let resources = format!("{}/", library.folder.file("resources").display());
         let (name, token, resources) = (
@@ -85,25 +83,50 @@ impl Instance {
             text(&fmu.description.token)?,
             text(&resources)?,
         );
-        // SAFETY: the strings hold for the call, the log as long as the instance.
-        let instance = unsafe {
-            instantiate(
-                name.as_ptr(),
-                token.as_ptr(),
-                resources.as_ptr(),
-                false,
-                true,
-                false,
-                false,
-                std::ptr::null(),
-                0,
-                log.environment(),
-                Some(logged_in_fmi_3),
-                None,
-            )
+        let missing = |name: &str| format!("the library has no function `{name}`");
+        let (name, token) = (name.as_ptr(), token.as_ptr());
+        let (resources, environment) = (resources.as_ptr(), log.environment());
+        let logger = Some(logged_in_fmi_3 as _);
+        let (instance, function) = match fmu.description.used {
+            Use::CoSimulation => {
+                let function = "fmi3InstantiateCoSimulation";
+                let Ok(instantiate) = &functions.fmi3InstantiateCoSimulation else {
+                    return Err(missing(function));
+                };
+                let none = std::ptr::null();
+                // SAFETY: the strings hold for the call, the log as long as the instance.
+                let instance = unsafe {
+                    instantiate(
+                        name,
+                        token,
+                        resources,
+                        false,
+                        true,
+                        false,
+                        false,
+                        none,
+                        0,
+                        environment,
+                        logger,
+                        None,
+                    )
+                };
+                (instance, function)
+            }
+            Use::ModelExchange => {
+                let function = "fmi3InstantiateModelExchange";
+                let Ok(instantiate) = &functions.fmi3InstantiateModelExchange else {
+                    return Err(missing(function));
+                };
+                // SAFETY: the strings hold for the call, the log as long as the instance.
+                let instance = unsafe {
+                    instantiate(name, token, resources, false, true, environment, logger)
+                };
+                (instance, function)
+            }
         };
         if instance.is_null() {
-            return Err("`fmi3InstantiateCoSimulation` gave no instance".to_owned());
+            return Err(format!("`{function}` gave no instance"));
         }
         Ok(Self {
             instance,
@@ -209,6 +232,105 @@ impl Slave for Instance {
             ));
         }
         Ok(())
+    }
+}
+
+impl Exchange for Instance {
+    fn counts(&mut self) -> Result<(usize, usize), String> {
+        let (mut states, mut indicators) = (0, 0);
+        call!(self, fmi3GetNumberOfContinuousStates(&raw mut states))?;
+        call!(self, fmi3GetNumberOfEventIndicators(&raw mut indicators))?;
+        Ok((states, indicators))
+    }
+
+    fn set_time(&mut self, t: f64) -> Called {
+        call!(self, fmi3SetTime(t))
+    }
+
+    fn states(&mut self, values: &mut [f64]) -> Called {
+        match values.is_empty() {
+            true => Ok(()),
+            false => call!(
+                self,
+                fmi3GetContinuousStates(values.as_mut_ptr(), values.len())
+            ),
+        }
+    }
+
+    fn set_states(&mut self, values: &[f64]) -> Called {
+        call!(self, fmi3SetContinuousStates(values.as_ptr(), values.len()))
+    }
+
+    fn derivatives(&mut self, values: &mut [f64]) -> Called {
+        match values.is_empty() {
+            true => Ok(()),
+            false => call!(
+                self,
+                fmi3GetContinuousStateDerivatives(values.as_mut_ptr(), values.len())
+            ),
+        }
+    }
+
+    fn indicators(&mut self, values: &mut [f64]) -> Called {
+        match values.is_empty() {
+            true => Ok(()),
+            false => call!(
+                self,
+                fmi3GetEventIndicators(values.as_mut_ptr(), values.len())
+            ),
+        }
+    }
+
+    fn nominals(&mut self, values: &mut [f64]) -> Called {
+        match values.is_empty() {
+            true => Ok(()),
+            false => call!(
+                self,
+                fmi3GetNominalsOfContinuousStates(values.as_mut_ptr(), values.len())
+            ),
+        }
+    }
+
+    fn enter_event_mode(&mut self) -> Called {
+        call!(self, fmi3EnterEventMode())
+    }
+
+    fn update(&mut self) -> Result<Updated, String> {
+        // As bytes: a library may write other truths than 1.
+        let (mut again, mut terminate, mut defined) = (0_u8, 0_u8, 0_u8);
+        let (mut nominals, mut values, mut next) = (0_u8, 0_u8, 0.0);
+        call!(
+            self,
+            fmi3UpdateDiscreteStates(
+                (&raw mut again).cast(),
+                (&raw mut terminate).cast(),
+                (&raw mut nominals).cast(),
+                (&raw mut values).cast(),
+                (&raw mut defined).cast(),
+                &raw mut next
+            )
+        )?;
+        Ok(Updated {
+            again: again != 0,
+            terminate: terminate != 0,
+            next: (defined != 0).then_some(next),
+        })
+    }
+
+    fn enter_continuous_mode(&mut self) -> Called {
+        call!(self, fmi3EnterContinuousTimeMode())
+    }
+
+    fn completed_step(&mut self) -> Result<bool, String> {
+        let (mut event, mut terminate) = (0_u8, 0_u8);
+        call!(
+            self,
+            fmi3CompletedIntegratorStep(true, (&raw mut event).cast(), (&raw mut terminate).cast())
+        )?;
+        match terminate {
+            0 => Ok(event != 0),
+            _ => Err("it asked to end the simulation".to_owned()),
+        }
     }
 }
 

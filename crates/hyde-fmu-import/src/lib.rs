@@ -2,11 +2,14 @@
 //!
 //! [`Fmu`] reads the archive: its description ([`description`]) becomes the interface of a model ([`interface`]) whose clock
 //! is the communication step. A run makes instances ([`InProcess`]): the archive is unpacked to a temporary folder
-//! (`unpacked.rs`), its library loaded, and the functions of FMI 2.0 or 3.0 called at each tick (`instance.rs`). [`host`] does
-//! the same in another process, which a library that crashes ends alone.
+//! (`unpacked.rs`), its library loaded, and the functions of FMI 2.0 or 3.0 called at each tick (`instance.rs`). An FMU for
+//! model exchange is integrated between them (`exchange.rs`). [`host`] does the same in another process, which a library that
+//! crashes ends alone.
 
 pub mod description;
 mod description_units;
+mod dormand_prince;
+mod exchange;
 mod fmi_2_0;
 mod fmi_3_0;
 pub mod host;
@@ -16,7 +19,7 @@ mod library;
 mod log;
 mod unpacked;
 
-pub use description::{Description, Version};
+pub use description::{Description, Use, Version};
 pub use instance::InProcess;
 pub use interface::Interface;
 

@@ -1,7 +1,8 @@
 //! [`Library`]: an FMU that is unpacked and loaded, and [`Slave`]: what both versions of the standard do for an instance.
 #![allow(unsafe_code, reason = "the library is foreign")]
 
-use crate::description::{FmuVariable, Version};
+use crate::description::{Description, FmuVariable, Use, Version};
+use crate::exchange::Exchanged;
 use crate::log::Log;
 use crate::unpacked::Unpacked;
 use crate::{Fmu, fmi_2_0, fmi_3_0};
@@ -85,9 +86,24 @@ impl Library {
                     .to_owned(),
             );
         }
-        Ok(match &self.functions {
-            Functions::Two(_) => Box::new(fmi_2_0::Instance::new(self, fmu, name, log)?),
-            Functions::Three(_) => Box::new(fmi_3_0::Instance::new(self, fmu, name, log)?),
+        let Description {
+            used, tolerance, ..
+        } = fmu.description;
+        Ok(match (&self.functions, used) {
+            (Functions::Two(_), Use::CoSimulation) => {
+                Box::new(fmi_2_0::Instance::new(self, fmu, name, log)?)
+            }
+            (Functions::Three(_), Use::CoSimulation) => {
+                Box::new(fmi_3_0::Instance::new(self, fmu, name, log)?)
+            }
+            (Functions::Two(_), Use::ModelExchange) => {
+                let instance = fmi_2_0::Instance::new(self, fmu, name, log)?;
+                Box::new(Exchanged::new(instance, tolerance))
+            }
+            (Functions::Three(_), Use::ModelExchange) => {
+                let instance = fmi_3_0::Instance::new(self, fmu, name, log)?;
+                Box::new(Exchanged::new(instance, tolerance))
+            }
         })
     }
 }
