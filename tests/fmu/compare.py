@@ -1,8 +1,9 @@
-"""Simulates an FMU with FMPy and compares it with the results of `hyde run`.
+"""Simulates an FMU with FMPy or fmi-rs and compares it with the results of `hyde run`.
 
 Usage: compare.py FMU RESULTS.json EVENTS.csv TOLERANCE KIND...
 
-KIND is CoSimulation, CoSimulationEvents or ModelExchange; TOLERANCE the relative one of the integrator for the last.
+KIND is CoSimulation, CoSimulationEvents or ModelExchange; TOLERANCE the relative one of the integrator for the last. FmiRs and
+FmiRsEvents are co-simulation with the program of `fmi-rs/`, which the variable FMI_RS names.
 
 Prints one JSON object: findings of fmpy.validation, and for each kind the largest deviation over the range of a quantity, and
 the largest distance of an event from the one of `hyde run`, in us.
@@ -10,10 +11,15 @@ the largest distance of an event from the one of `hyde run`, in us.
 
 import csv
 import json
+import os
+import subprocess
 import sys
+import tempfile
+from pathlib import Path
 
 import numpy as np
 from fmpy import read_model_description, simulate_fmu
+from fmpy.util import read_csv
 from fmpy.validation import validate_fmu
 
 
@@ -74,6 +80,22 @@ def run(fmu, kind, tolerance, t, columns, messages):
     )
 
 
+def run_fmi_rs(fmu, events, t, columns, messages):
+    description = read_model_description(fmu)
+    known = {v.name for v in description.modelVariables if v.type in ("Real", "Float64")}
+    steps = round((t[-1] - t[0]) / float(description.defaultExperiment.stepSize or (t[-1] - t[0]) / 1000.0))
+    with tempfile.TemporaryDirectory() as folder:
+        names, results, log = (Path(folder) / name for name in ("names", "results.csv", "log"))
+        names.write_text("".join(name + "\n" for name in columns if name in known))
+        how = "events" if events else "steps"
+        asked = [os.environ["FMI_RS"], fmu, how, repr(float(t[0])), repr(float(t[-1])), str(steps), results, log, names]
+        ran = subprocess.run(asked, capture_output=True, text=True)
+        if ran.returncode != 0:
+            raise RuntimeError(ran.stderr)
+        messages += [(line.split("] ", 2)[-1],) for line in log.read_text().splitlines()]
+        return read_csv(results)
+
+
 def distance(times, others):
     """How far the farthest of some times is from the nearest of others."""
     if not times:
@@ -94,7 +116,10 @@ def main():
     for kind in kinds:
         messages = []
         try:
-            result = run(fmu, kind, float(tolerance), t, columns, messages)
+            if kind.startswith("FmiRs"):
+                result = run_fmi_rs(fmu, kind == "FmiRsEvents", t, columns, messages)
+            else:
+                result = run(fmu, kind, float(tolerance), t, columns, messages)
         except Exception as error:
             texts = [as_text(message[-1]) for message in messages[-3:]]
             found["kinds"][kind] = {"failed": str(error), "log": texts}

@@ -31,6 +31,7 @@ mod paper_rows;
 mod process;
 mod promise;
 mod python;
+mod random_fmus;
 mod realtime;
 mod residual_cost;
 mod selftest;
@@ -102,6 +103,8 @@ pub const FIGURES: &[Figure] = &[
     fmu::DEVIATION,
     fmu::EVENTS,
     fmu::EXPORT,
+    random_fmus::FAILED,
+    random_fmus::LEAKS,
     live::SLIDER,
     python::SWEEP,
     lsp::SYNTAX,

@@ -18,6 +18,22 @@ pub fn python() -> Result<PathBuf, String> {
     }
 }
 
+/// The program that simulates FMUs with fmi-rs.
+///
+/// # Errors
+/// It is not there, and how to get it.
+#[allow(clippy::disallowed_methods, reason = "tests look for the importer")]
+pub fn fmi_rs() -> Result<PathBuf, String> {
+    let program = root().join("target/fmi-rs/release/hyde-fmi-rs");
+    match program.is_file() {
+        true => Ok(program),
+        false => Err("fmi-rs is not built in target/fmi-rs: `./dev test` does it".to_owned()),
+    }
+}
+
+/// How fmi-rs uses an FMU.
+pub const FMI_RS_KINDS: [&str; 2] = ["FmiRs", "FmiRsEvents"];
+
 /// How an FMU is used: as in `tests/fmu/compare.py`.
 pub const KINDS: [&str; 3] = ["CoSimulation", "CoSimulationEvents", "ModelExchange"];
 
@@ -74,6 +90,13 @@ pub fn compare(hyde: &Path, compared: &Compared<'_>) -> Result<Vec<Agreement>, S
         .arg(&fmu);
     succeed(&mut command)?;
     let mut command = Command::new(python);
+    if compared
+        .kinds
+        .iter()
+        .any(|kind| FMI_RS_KINDS.contains(kind))
+    {
+        command.env("FMI_RS", fmi_rs()?);
+    }
     command.arg("tests/fmu/compare.py").arg(&fmu);
     command
         .arg(run.join("results.json"))

@@ -23,6 +23,7 @@ pub mod linear;
 pub mod msl;
 mod numbers;
 pub mod paper;
+pub mod random_fmus;
 pub mod random_ledger;
 pub mod stored_energy;
 pub mod traces;

@@ -7,8 +7,10 @@
     reason = "tests open files, tell what they skip, and unwrap what must be there"
 )]
 
-use hyde_tests::fmu::{Compared, KINDS, compare, python, succeed};
+use hyde_tests::fmu::{Compared, FMI_RS_KINDS, KINDS, compare, fmi_rs, python, succeed};
+use hyde_tests::random_fmus::RandomFmus;
 use hyde_tests::root;
+use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -179,4 +181,135 @@ fn a_model_with_a_delay_is_exported_for_co_simulation_alone() {
     let text = String::from_utf8_lossy(&output.stdout);
     assert!(output.status.success(), "{output:?}");
     assert!(text.contains("no model exchange"), "{text}");
+}
+
+/// Exports an experiment, and what FMPy finds in its reference results.
+fn reference(arguments: &[&str], experiment: &str) -> Option<Value> {
+    let python = python()
+        .map_err(|reason| eprintln!("skipped: {reason}"))
+        .ok()?;
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("x.fmu").to_string_lossy().into_owned();
+    let all: Vec<&str> = arguments.iter().copied().chain(["--out", &out]).collect();
+    let output = export(&all);
+    assert!(output.status.success(), "{output:?}");
+    let mut command = Command::new(python);
+    let command = command.arg("tests/fmu/reference.py").arg(out);
+    let printed = succeed(command.arg(experiment)).unwrap();
+    let found: Value = serde_json::from_str(&printed).unwrap();
+    assert_eq!(found["findings"], Value::Array(Vec::new()), "{found}");
+    Some(found)
+}
+
+#[test]
+fn an_fmu_holds_the_results_of_its_experiment_which_an_importer_repeats() {
+    for fmi in ["3", "2"] {
+        let asked = [MODELS, "stepped", "--fmi", fmi];
+        let Some(found) = reference(&asked, "stepped") else {
+            return;
+        };
+        assert_eq!(found["related"]["result"], "stepped_out.csv");
+        assert_eq!(found["inputs"], 0, "{found}");
+        assert!(found["compared"].as_u64().unwrap() > 250, "{found}");
+        assert!(found["deviation"].as_f64().unwrap() <= 1e-12, "{found}");
+        // The importer sets the input: its stimulus is in the FMU as a table.
+        let asked = [MODELS, "stepped", "--input", "u", "--fmi", fmi];
+        let found = reference(&asked, "stepped").unwrap();
+        assert_eq!(found["inputs"], 1, "{found}");
+        assert!(found["deviation"].as_f64().unwrap() <= 1e-6, "{found}");
+    }
+}
+
+#[test]
+fn expectations_and_measures_are_in_the_fmu() {
+    let asked = ["examples/first/first.hyde", "push"];
+    let Some(found) = reference(&asked, "push") else {
+        return;
+    };
+    assert_eq!(found["related"]["testcase"], "push_expect.json");
+    let expected = &found["expected"]["expectations"][0];
+    assert_eq!(expected["holds"], true, "{found}");
+    assert!(found["deviation"].as_f64().unwrap() <= 1e-9, "{found}");
+}
+
+#[test]
+fn without_a_run_there_are_no_reference_results() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("x.fmu").to_string_lossy().into_owned();
+    let said = |arguments: &[&str]| {
+        let all: Vec<&str> = arguments.iter().copied().chain(["--out", &out]).collect();
+        let output = export(&all);
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8_lossy(&output.stdout).into_owned()
+    };
+    let crushed = said(&[MODELS, "crushed"]);
+    assert!(crushed.contains("no reference results: E0704"), "{crushed}");
+    for without in [
+        said(&[MODELS, "stepped", "--no-reference"]),
+        said(&[MODELS, "--model", "Lag"]),
+    ] {
+        assert!(!without.contains("reference results"), "{without}");
+    }
+}
+
+#[test]
+fn random_models_run_in_an_importer() {
+    if !importer() {
+        return;
+    }
+    let fmus = RandomFmus::export(hyde(), 0..10).unwrap();
+    assert!(fmus.len() >= 9, "refused: {:?}", fmus.refused);
+    let failures = fmus.failures().unwrap();
+    assert!(failures.is_empty(), "{failures:#?}");
+}
+
+#[test]
+fn a_second_importer_agrees_with_the_runs_of_the_examples() {
+    if !importer() {
+        return;
+    }
+    if let Err(reason) = fmi_rs() {
+        eprintln!("skipped: {reason}");
+        return;
+    }
+    // Event mode is one of FMI 3.0.
+    for (file, experiment, fmi, kinds) in [
+        (MODELS, "stepped", "3", &FMI_RS_KINDS[..]),
+        (MODELS, "bouncing", "3", &FMI_RS_KINDS),
+        (MODELS, "moved", "3", &FMI_RS_KINDS),
+        (MODELS, "bouncing", "2", &FMI_RS_KINDS[..1]),
+        ("examples/first/first.hyde", "push", "3", &FMI_RS_KINDS),
+        ("examples/first/first.hyde", "push", "2", &FMI_RS_KINDS[..1]),
+        ("examples/shaft/shaft.hyde", "step", "3", &FMI_RS_KINDS),
+    ] {
+        let compared = Compared {
+            file,
+            experiment,
+            fmi,
+            run: &[],
+            tolerance: "1e-8",
+            kinds,
+        };
+        for own in compare(hyde(), &compared).unwrap() {
+            let (samples, _, _) = own.compared;
+            assert!(samples > 100, "{experiment}: {own:?}");
+            assert!(own.deviation.0 <= 1e-6, "{experiment}: {own:?}");
+            assert!(own.event_time_error_us <= 1.0, "{experiment}: {own:?}");
+        }
+    }
+}
+
+#[test]
+fn an_instance_leaves_no_memory_behind() {
+    if !importer() {
+        return;
+    }
+    if Command::new("valgrind").arg("--version").output().is_err() {
+        eprintln!("skipped: there is no valgrind: `./dev setup` installs it");
+        return;
+    }
+    // One of FMI 3.0, one of FMI 2.0.
+    let fmus = RandomFmus::export(hyde(), 0..2).unwrap();
+    let (lost, errors, told) = fmus.memory().unwrap();
+    assert_eq!((fmus.len(), lost, errors), (2, 0, 0), "{told}");
 }

@@ -1,6 +1,7 @@
 //! The archive: description, library, and what the library reads.
 
 use crate::kept::RESOURCE;
+use crate::reference::Reference;
 use std::fmt;
 use std::io::{Cursor, Write as _};
 use zip::CompressionMethod;
@@ -45,8 +46,8 @@ impl fmt::Display for ArchiveError {
     }
 }
 
-/// Puts an FMU together: `libraries` with their names, of which the first is called as the model, and `sources` with their
-/// places where the texts are to be read by people.
+/// Puts an FMU together: `libraries` with their names, of which the first is called as the model, `sources` with their
+/// places where the texts are to be read by people, and what the FMU is expected to compute.
 ///
 /// # Errors
 /// The archive cannot be written.
@@ -56,6 +57,7 @@ pub fn archive(
     libraries: &[(String, Vec<u8>)],
     kept: &[u8],
     sources: &[(String, Vec<u8>)],
+    reference: &Reference,
 ) -> Result<Vec<u8>, ArchiveError> {
     let failed = |error: &dyn fmt::Display| ArchiveError(error.to_string());
     let mut zip = ZipWriter::new(Cursor::new(Vec::new()));
@@ -81,6 +83,9 @@ pub fn archive(
             .filter(|part| !matches!(*part, "" | "." | ".."));
         let place = parts.collect::<Vec<_>>().join("/");
         put(&format!("resources/source/{place}"), packed, content)?;
+    }
+    for (place, text) in &reference.files {
+        put(place, packed, text.as_bytes())?;
     }
     let done = zip.finish().map_err(|e| failed(&e))?;
     Ok(done.into_inner())

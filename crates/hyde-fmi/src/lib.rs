@@ -6,6 +6,7 @@
 //! model          the model compiled from it                              model.rs
 //! interface      its variables with their value references               interface.rs
 //! description    modelDescription.xml of FMI 3 and FMI 2                 description.rs, fmi_3_0.rs, fmi_2_0.rs, xml.rs
+//! reference      what it is expected to compute: FMI-LS-REF              reference.rs
 //! archive        the files of the FMU in one                             archive.rs
 //! instance       a run that an importer sets, steps and asks             instance.rs
 //! ```
@@ -20,6 +21,7 @@ mod instance;
 mod interface;
 mod kept;
 mod model;
+mod reference;
 mod running;
 mod xml;
 
@@ -30,3 +32,4 @@ pub use instance::{Arrival, Instance, Interface as Use, Refusal, Saved, Update};
 pub use interface::{Causality, Interface, Source, Variability, Variable};
 pub use kept::{Kept, RESOURCE};
 pub use model::{Chosen, Model, Uncompiled};
+pub use reference::Reference;

@@ -5,15 +5,16 @@ use crate::interface::Interface;
 use crate::kept::Kept;
 use hyde_compiler::Compiled;
 use hyde_diag::{Diagnostic, Diagnostics, Severity, Sources};
-use hyde_experiment::{Options, RunError};
+use hyde_experiment::{Options, Run, RunError};
 use hyde_program::Program;
 use hyde_signal::Table;
-use hyde_sim::{Event, EventKind, Setup};
+use hyde_sim::{Event, EventKind, Reached, Setup};
 use hyde_study::world::Buffers;
 use hyde_study::{Aim, Asked, Inputs, Project, Records, run_failure, settings};
 use hyde_units::significant;
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
 
 /// A model that was chosen for an FMU, before it is compiled.
 pub struct Chosen {
@@ -146,6 +147,30 @@ impl Model {
     #[must_use]
     pub fn project(&self) -> &Project {
         &self.project
+    }
+
+    /// Runs the experiment, for the outputs that are named. `interrupted` ends the run from outside, and `reached` tells how far
+    /// it is.
+    ///
+    /// # Errors
+    /// There is no run, or it fails.
+    pub fn run(
+        &self,
+        outputs: &[&str],
+        interrupted: Arc<AtomicBool>,
+        reached: Arc<Reached>,
+    ) -> Result<Run, RunError> {
+        let options = Options {
+            set: self.set.clone(),
+            interrupted,
+            reached,
+            ..Options::default()
+        };
+        let known = outputs.iter().filter_map(|name| self.program.output(name));
+        let mut keep: Vec<usize> = known.collect();
+        keep.sort_unstable();
+        keep.dedup();
+        hyde_experiment::run_again(&self.program, &self.tables, &options, Some(keep))
     }
 
     /// What a description says of the model. The token is of the bytes that the FMU holds.

@@ -1,11 +1,11 @@
 //! `fmu_deviation`, `fmu_event_time_error_us` and `fmu_export_s`: FMUs in FMPy against the run of their experiment, and how long
-//! an export takes.
+//! an export without reference results takes.
 
 use super::clock::now;
 use super::process::released;
 use super::promise::{Figure, Measured, Promise, Session};
 use super::start::START;
-use crate::fmu::{Agreement, Compared, KINDS, compare, python, succeed};
+use crate::fmu::{Agreement, Compared, FMI_RS_KINDS, KINDS, compare, fmi_rs, python, succeed};
 use std::process::Command;
 
 /// The models with what an importer that integrates is compared with: a run whose own error does not count.
@@ -53,7 +53,15 @@ pub(super) const EXPORT: Figure = Figure {
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let start = now();
         let mut export = Command::new(hyde);
-        export.args(["export", "fmu", START.0, START.1, "--quiet", "--out"]);
+        export.args([
+            "export",
+            "fmu",
+            START.0,
+            START.1,
+            "--quiet",
+            "--no-reference",
+        ]);
+        export.arg("--out");
         succeed(export.arg(folder.path().join("axis.fmu")))?;
         Ok(Measured::Value(start.elapsed().as_secs_f64()))
     },
@@ -85,6 +93,10 @@ fn agreements() -> Result<Vec<Agreement>, String> {
             found.extend(compare(&hyde, &compared)?);
         }
     }
+    let mut kinds = KINDS[..2].to_vec();
+    if fmi_rs().is_ok() {
+        kinds.extend(FMI_RS_KINDS);
+    }
     for (file, experiment) in EXAMPLES {
         let compared = Compared {
             file,
@@ -92,7 +104,7 @@ fn agreements() -> Result<Vec<Agreement>, String> {
             fmi: "3",
             run: &[],
             tolerance: "1e-8",
-            kinds: &KINDS[..2],
+            kinds: &kinds,
         };
         found.extend(compare(&hyde, &compared)?);
     }

@@ -154,7 +154,7 @@ pub(super) fn count(
 }
 
 #[allow(clippy::print_stderr, reason = "a figure that falls short says where")]
-fn tell(seed: u64, reason: &str) {
+pub(super) fn tell(seed: u64, reason: &str) {
     eprintln!("seed {seed}: {reason}");
 }
 

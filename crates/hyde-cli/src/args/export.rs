@@ -40,6 +40,9 @@ pub(crate) struct FmuArgs {
     /// Put the source text of the model into the FMU, for people to read
     #[arg(long)]
     pub(crate) with_source: bool,
+    /// Do not run the experiment for reference results in the FMU
+    #[arg(long)]
+    pub(crate) no_reference: bool,
     /// File of the FMU [default: the model and the experiment, `Axis_positioning.fmu`]
     #[arg(long, value_name = "PATH")]
     pub(crate) out: Option<PathBuf>,

@@ -83,7 +83,7 @@ pub(crate) fn solved_of(
     };
     let tables = hyde_study::tables(&project.records);
     let start = std::time::Instant::now();
-    let watch = watch(args, &options.reached);
+    let watch = watch(args.model.json || args.model.quiet, &options.reached);
     let outcome = hyde_experiment::run(&compiled.program, &tables, &options);
     drop(watch);
     match outcome {
@@ -95,10 +95,10 @@ pub(crate) fn solved_of(
     }
 }
 
-/// Shows how far a run is.
-fn watch(args: &RunArgs, reached: &Arc<Reached>) -> Watch {
+/// Shows how far a run is, unless it is to be silent.
+pub(crate) fn watch(silent: bool, reached: &Arc<Reached>) -> Watch {
     let reached = Arc::clone(reached);
-    Watch::new(args.model.json || args.model.quiet, move || {
+    Watch::new(silent, move || {
         let (now, end) = reached.get();
         let [now, end] = [now, end].map(|time| significant(time, 4));
         format!("simulated {now} s of {end} s")

@@ -3,15 +3,21 @@
 
 use super::identifier;
 use crate::args::{FmiVersion, FmuArgs};
+use crate::commands::run;
 use crate::exit::Exit;
 use crate::files;
+use crate::interruption;
 use crate::project::{self, Project, Records, Told as _, complain, print_output};
-use hyde_fmi::{Causality, Chosen, Described, Kept, Model, Uncompiled, Version, archive};
+use hyde_fmi::{
+    Causality, Chosen, Described, Kept, Model, Reference, Uncompiled, Version, archive,
+};
+use hyde_sim::Reached;
 use hyde_study::Inputs;
 use hyde_units::counted;
 use serde_json::json;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::Ordering;
 
 /// The library of every FMU.
 const LIBRARY: &str = "libhyde_fmu.so";
@@ -64,14 +70,72 @@ fn written(args: &FmuArgs) -> Result<String, Exit> {
         false => Vec::new(),
     };
     let libraries = library.read(&identifier).map_err(refused)?;
-    let content = archive(version, &description, &libraries, &bytes, &sources);
+    let reference = reference(args, &model, &described)?;
+    let files = match &reference {
+        Ok(reference) => reference.as_ref(),
+        Err(_) => None,
+    };
+    let none = Reference::default();
+    let files = files.unwrap_or(&none);
+    let content = archive(version, &description, &libraries, &bytes, &sources, files);
     let content = content.map_err(|error| refused(error.to_string()))?;
     let default = PathBuf::from(format!("{identifier}.fmu"));
     let path = args.out.as_ref().unwrap_or(&default);
     files::write(path, &content).map_err(refused)?;
     Ok(match args.model.json {
-        true => format!("{:#}", told_as_json(path, version, &model, &described)),
-        false => told(path, version, &model, libraries.len() > 1),
+        true => format!(
+            "{:#}",
+            told_as_json(path, version, &model, &described, &reference)
+        ),
+        false => told(path, version, &model, libraries.len() > 1, &reference),
+    })
+}
+
+/// The reference results of an FMU, if it is to have any; or why its experiment has none.
+type Referenced = Result<Option<Reference>, String>;
+
+/// Runs the experiment for the reference results. Inputs that the importer sets have their stimuli in it.
+fn reference(args: &FmuArgs, model: &Model, described: &Described<'_>) -> Result<Referenced, Exit> {
+    let Some(experiment) = model.project().experiment.as_deref() else {
+        return Ok(Ok(None));
+    };
+    if args.no_reference {
+        return Ok(Ok(None));
+    }
+    let driven = match args.input.is_empty() {
+        true => None,
+        false => {
+            let chosen = Chosen {
+                project: project::load(&args.model, Records::Needed)?,
+                inputs: Vec::new(),
+                outputs: args.output.clone(),
+            };
+            Some(chosen.compile().map_err(|other| failed(args, &other))?)
+        }
+    };
+    let driven = driven.as_ref().unwrap_or(model);
+    let interface = &model.interface;
+    let numbers = interface.with(Causality::Input);
+    let numbers = numbers.chain(interface.with(Causality::Output));
+    let names: Vec<&str> = numbers
+        .map(|number| interface.variables[number].name.as_str())
+        .collect();
+    let interrupted = interruption::interrupted();
+    let reached = Arc::<Reached>::default();
+    let watch = run::watch(args.model.json || args.model.quiet, &reached);
+    let run = driven.run(&names, Arc::clone(&interrupted), reached);
+    drop(watch);
+    if interrupted.load(Ordering::Relaxed) {
+        return Err(Exit::Interrupted);
+    }
+    Ok(match run {
+        Ok(run) => Ok(Some(Reference::of(
+            described,
+            experiment,
+            &driven.program,
+            &run,
+        ))),
+        Err(error) => Err(driven.explain(&error)),
     })
 }
 
@@ -138,7 +202,13 @@ impl Library {
 }
 
 /// What was written, and what was assumed.
-fn told(path: &Path, version: Version, model: &Model, complete: bool) -> String {
+fn told(
+    path: &Path,
+    version: Version,
+    model: &Model,
+    complete: bool,
+    reference: &Referenced,
+) -> String {
     let interface = &model.interface;
     let count = |causality, what| counted(interface.with(causality).count(), what);
     let kinds = match &interface.no_model_exchange {
@@ -164,6 +234,15 @@ fn told(path: &Path, version: Version, model: &Model, complete: bool) -> String 
             "  the equations need the derivative of `{input}`; between steps it is 0"
         ));
     }
+    match reference {
+        Ok(Some(_)) => lines.push("  reference results: the run of the experiment".to_owned()),
+        Ok(None) => {}
+        Err(reason) => {
+            // The whole of it is what `hyde run` says.
+            let fact = reason.split("; ").next().unwrap_or(reason);
+            lines.push(format!("  no reference results: {fact}"));
+        }
+    }
     if !complete {
         lines.push("  the importer needs libklu.so.1 (SuiteSparse) on its machine".to_owned());
     }
@@ -175,6 +254,7 @@ fn told_as_json(
     version: Version,
     model: &Model,
     described: &Described<'_>,
+    reference: &Referenced,
 ) -> serde_json::Value {
     let interface = &model.interface;
     let names = |causality| -> Vec<&str> {
@@ -194,5 +274,7 @@ fn told_as_json(
         "parameters": interface.with(Causality::Parameter).count(),
         "states": interface.states.len(),
         "differentiated_inputs": model.program.experiment.differentiated,
+        "reference_results": matches!(reference, Ok(Some(_))),
+        "no_reference_results": reference.as_ref().err(),
     })
 }
