@@ -161,7 +161,7 @@ impl Interface {
                     }
                     None => {
                         self.variables.push(Variable {
-                            name,
+                            name: allowed(name),
                             ..Variable::inside(Source::State(position))
                         });
                         self.variables.len() - 1
@@ -251,6 +251,28 @@ impl Variable {
     }
 }
 
+/// The number of the output of a program that an FMU calls so.
+pub(crate) fn reported(program: &Program, name: &str) -> Option<usize> {
+    let quoted = |output: &Output| allowed(output.name.clone()) == name;
+    let found = program.output(name);
+    found.or_else(|| program.outputs.iter().position(quoted))
+}
+
+/// A name that the standard allows: that of an unknown which the compiler made, as `c.(c.u[i])[5]`, is quoted up to its index.
+fn allowed(name: String) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '.' | '[' | ']' | ',');
+    let derivative = name.strip_prefix("der(");
+    let inner = derivative.and_then(|inner| inner.strip_suffix(')'));
+    if inner.unwrap_or(&name).chars().all(plain) {
+        return name;
+    }
+    let (quoted, index) = match name.rfind('[') {
+        Some(at) if name.ends_with(']') => name.split_at(at),
+        Some(_) | None => (name.as_str(), ""),
+    };
+    format!("'{}'{index}", quoted.replace(['\'', '\\', '"'], "_"))
+}
+
 /// The name of the derivative of a variable, as the standard writes it.
 fn derivative_name(of: &str) -> String {
     match of.strip_prefix("der(").and_then(|of| of.strip_suffix(')')) {
@@ -278,7 +300,7 @@ fn no_model_exchange(program: &Program) -> Option<String> {
 
 fn of_output(output: &Output, number: usize, chosen: &BTreeSet<usize>) -> Variable {
     Variable {
-        name: output.name.clone(),
+        name: allowed(output.name.clone()),
         causality: match chosen.contains(&number) {
             true => Causality::Output,
             false => Causality::Local,
@@ -337,4 +359,23 @@ fn shown_unit(dimension: Dimension, unit: &NamedUnit) -> Option<NamedUnit> {
     let bare = dimension.is_dimensionless() && unit.unit().is_si();
     let bare = bare && dimension.si_exponents().is_none_or(|all| all == [0; 8]);
     (!bare).then(|| unit.clone())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_that_the_compiler_makes_are_quoted() {
+        for (name, told) in [
+            ("table.a.s", "table.a.s"),
+            ("field.u[12]", "field.u[12]"),
+            ("der(x)", "der(x)"),
+            ("c.(c.u[i])[5]", "'c.(c.u[i])'[5]"),
+            ("c.(x*y)", "'c.(x*y)'"),
+        ] {
+            assert_eq!(allowed(name.to_owned()), told);
+        }
+        assert_eq!(derivative_name("'c.(c.u[i])'[5]"), "der('c.(c.u[i])'[5])");
+    }
 }

@@ -1,7 +1,7 @@
 //! [`Model`]: the compiled model of an FMU, which all its instances share.
 
 use crate::description::Described;
-use crate::interface::Interface;
+use crate::interface::{Interface, reported};
 use crate::kept::Kept;
 use hyde_compiler::Compiled;
 use hyde_diag::{Diagnostic, Diagnostics, Severity, Sources};
@@ -166,7 +166,9 @@ impl Model {
             reached,
             ..Options::default()
         };
-        let known = outputs.iter().filter_map(|name| self.program.output(name));
+        let known = outputs
+            .iter()
+            .filter_map(|name| reported(&self.program, name));
         let mut keep: Vec<usize> = known.collect();
         keep.sort_unstable();
         keep.dedup();

@@ -6,7 +6,7 @@
 //! <https://github.com/modelica/ma-hs-experiments>, also a draft.
 
 use crate::description::Described;
-use crate::interface::Causality;
+use crate::interface::{Causality, reported};
 use crate::xml::{Xml, number, some};
 use hyde_experiment::Run;
 use hyde_program::Program;
@@ -79,7 +79,7 @@ impl Reference {
 fn table(program: &Program, run: &Run, names: &[&str]) -> Option<String> {
     let columns: Vec<_> = names
         .iter()
-        .filter_map(|name| Some((*name, run.results.column(program.output(name)?)?)))
+        .filter_map(|name| Some((*name, run.results.column(reported(program, name)?)?)))
         .collect();
     if columns.is_empty() {
         return None;
