@@ -4,6 +4,7 @@
 //! ```text
 //! fixed_step   what a program is with a fixed step, or why it cannot be       fixed_step.rs
 //! names        names of C for inputs, parameters and outputs                  names.rs
+//! elimination  the order in which equations are eliminated                    elimination.rs, elimination.c
 //! header       the header: the interface                                      header.rs
 //! source       tables and kernels around the runtime                          source.rs
 //! runtime.c    the step itself, the same for every model                      runtime.c
@@ -12,6 +13,7 @@
 //! happens at its end: modes change, conditions become true, clocks tick on the values before (as in hyde-sim). Start values
 //! are those that the exporting machine found consistent.
 
+mod elimination;
 mod fixed_step;
 mod header;
 mod names;

@@ -43,88 +43,9 @@ static void hy_pin(@NAME@ *m, double t)
     hy_apply_pins(m);
 }
 
-/* The matrix of Newton's method, by rates of states and by the other unknowns, as triangular factors with the largest
-   pivots of rows that are scaled. */
-static int hy_factor(@NAME@ *m, double t, double h, int kind)
+static double hy_largest(double a, double b)
 {
-    double *a = m->matrix[kind];
-    hy_residual_partials(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->partials);
-    memset(a, 0, sizeof m->matrix[kind]);
-    for (int k = 0; k < HY_PARTIALS; ++k) {
-        const int row = hy_partial_row[k], column = hy_partial_column[k];
-        if (hy_partial_kind[k] == 1) {
-            a[row * HY_N + column] += m->partials[k];
-        } else if (hy_partial_kind[k] == 0) {
-            a[row * HY_N + column] += hy_differential[column] ? h * m->partials[k] : m->partials[k];
-        }
-    }
-    for (int row = 0; row < HY_N; ++row) {
-        double most = 0.0;
-        for (int column = 0; column < HY_N; ++column) {
-            most = fmax(most, fabs(a[row * HY_N + column]));
-        }
-        if (!(most > 0.0) || most > 1e300) {
-            return @NAME@_SINGULAR;
-        }
-        m->scale[kind][row] = 1.0 / most;
-        for (int column = 0; column < HY_N; ++column) {
-            a[row * HY_N + column] /= most;
-        }
-    }
-    for (int k = 0; k < HY_N; ++k) {
-        int pivot = k;
-        for (int row = k + 1; row < HY_N; ++row) {
-            if (fabs(a[row * HY_N + k]) > fabs(a[pivot * HY_N + k])) {
-                pivot = row;
-            }
-        }
-        m->pivot[kind][k] = pivot;
-        if (!(fabs(a[pivot * HY_N + k]) > 1e-300)) {
-            return @NAME@_SINGULAR;
-        }
-        if (pivot != k) {
-            for (int column = 0; column < HY_N; ++column) {
-                const double other = a[k * HY_N + column];
-                a[k * HY_N + column] = a[pivot * HY_N + column];
-                a[pivot * HY_N + column] = other;
-            }
-        }
-        for (int row = k + 1; row < HY_N; ++row) {
-            const double factor = a[row * HY_N + k] / a[k * HY_N + k];
-            a[row * HY_N + k] = factor;
-            if (factor != 0.0) {
-                for (int column = k + 1; column < HY_N; ++column) {
-                    a[row * HY_N + column] -= factor * a[k * HY_N + column];
-                }
-            }
-        }
-    }
-    return @NAME@_OK;
-}
-
-static void hy_substitute(@NAME@ *m, int kind, double *b)
-{
-    const double *a = m->matrix[kind];
-    for (int row = 0; row < HY_N; ++row) {
-        b[row] *= m->scale[kind][row];
-    }
-    for (int k = 0; k < HY_N; ++k) {
-        const int pivot = m->pivot[kind][k];
-        const double other = b[k];
-        b[k] = b[pivot];
-        b[pivot] = other;
-    }
-    for (int row = 0; row < HY_N; ++row) {
-        for (int column = 0; column < row; ++column) {
-            b[row] -= a[row * HY_N + column] * b[column];
-        }
-    }
-    for (int row = HY_N - 1; row >= 0; --row) {
-        for (int column = row + 1; column < HY_N; ++column) {
-            b[row] -= a[row * HY_N + column] * b[column];
-        }
-        b[row] /= a[row * HY_N + row];
-    }
+    return b > a ? b : a;
 }
 
 /* Solves for the rates of the states and the other unknowns; with a step (kind 0) the states are base + h rate, without one
@@ -165,11 +86,12 @@ static int hy_solve(@NAME@ *m, double t, double h, int kind)
                 m->y[k] = m->base[k] + h * m->yp[k];
             }
             double part;
-            m->largest[k] = fmax(m->largest[k], fabs(*value));
+            m->largest[k] = hy_largest(m->largest[k], fabs(*value));
             part = fabs(change) / (HY_RELATIVE * m->largest[k] + HY_ABSOLUTE);
             if (hy_differential[k]) {
                 /* What matters of a rate is what it makes of its state in a step. */
-                part = fmin(part, @NAME@_STEP * fabs(change) / (HY_RELATIVE * fabs(m->y[k]) + HY_ABSOLUTE));
+                const double of_state = @NAME@_STEP * fabs(change) / (HY_RELATIVE * fabs(m->y[k]) + HY_ABSOLUTE);
+                part = of_state < part ? of_state : part;
             }
             if (!(part <= size)) {
                 size = part;

@@ -1,12 +1,13 @@
 //! The source: tables of the model, its kernels, and the runtime that steps them.
 
+use crate::elimination::{Elimination, places};
 use crate::fixed_step::FixedStep;
 use crate::names::Names;
 use hyde_program::{Function, Program, ReactionKind, RelationUse, Target, Wrt};
 use std::fmt::{Display, Write as _};
 
-/// The step, the same for every model; `@NAME@` is the name of the model.
-const RUNTIME: &str = include_str!("runtime.c");
+/// The solution of linear equations and the step, the same for every model; `@NAME@` is the name of the model.
+const RUNTIME: [&str; 2] = [include_str!("elimination.c"), include_str!("runtime.c")];
 
 /// The text of `NAME.c`.
 pub(crate) fn text(model: &FixedStep<'_>, names: &Names, kernels: &str) -> String {
@@ -43,7 +44,7 @@ pub(crate) fn text(model: &FixedStep<'_>, names: &Names, kernels: &str) -> Strin
     clocks(&mut text, model);
     interface(&mut text, model, names);
     text.push('\n');
-    text.push_str(&RUNTIME.replace("@NAME@", name));
+    text.push_str(&RUNTIME.join("\n").replace("@NAME@", name));
     text
 }
 
@@ -99,18 +100,18 @@ fn structure(text: &mut String, program: &Program) {
         "differential",
         differential.iter().map(|own| u8::from(*own)),
     );
+    let order = Elimination::of(program);
+    let [row_at, column_at] = [places(&order.equations), places(&order.unknowns)];
     let entries = program.partials(Function::Residual);
+    // 0 by an unknown, 1 by a rate, 2 by neither, 3 by a state, which its rate changes.
     let place = |wrt: Wrt| match wrt {
-        Wrt::Unknown(column) => (0, column),
-        Wrt::Derivative(column) => (1, column),
+        Wrt::Unknown(column) if differential[column] => (3, column_at[column]),
+        Wrt::Unknown(column) => (0, column_at[column]),
+        Wrt::Derivative(column) => (1, column_at[column]),
         Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => (2, 0),
     };
-    table(
-        text,
-        "int",
-        "partial_row",
-        entries.iter().map(|entry| entry.row),
-    );
+    let rows = entries.iter().map(|entry| row_at[entry.row]);
+    table(text, "int", "partial_row", rows);
     table(
         text,
         "int",
@@ -123,6 +124,8 @@ fn structure(text: &mut String, program: &Program) {
         "partial_kind",
         entries.iter().map(|entry| place(entry.wrt).0),
     );
+    table(text, "int", "equation_at", order.equations.iter());
+    table(text, "int", "unknown_at", order.unknowns.iter());
 }
 
 fn events(text: &mut String, program: &Program) {
