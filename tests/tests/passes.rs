@@ -3,6 +3,12 @@
 //! The passes of hyde-flatten are shown by the flat model, those of hyde-analysis by the DAE, those that refuse a model by
 //! what they say. A result that changes is read before it is accepted.
 
+#![allow(
+    clippy::unwrap_used,
+    clippy::disallowed_methods,
+    reason = "a test reads models and sources, and may panic"
+)]
+
 use hyde_compiler::Stage;
 use hyde_tests::{Example, root};
 use std::collections::BTreeSet;
