@@ -178,13 +178,15 @@ module.exports = grammar({
     ),
     declarator: $ => seq(
       field('name', $.identifier), optional($.subscript), optional($.modification), optional($.on_domain), optional($.binding),
-      optional($.prior), optional($.source), optional($.within), optional(field('doc', $.doc)),
+      optional($.prior), optional($.source), optional($.within), optional($.over_variables),
+      optional(field('doc', $.doc)),
     ),
     on_domain: $ => seq('on', field('domain', $.identifier)),
     binding: $ => seq('=', field('value', $.expression)),
     prior: $ => seq('~', choice('±', '+/-', '+-'), $.number, optional(choice('%', $.unit))),
     source: $ => seq('from', $.string),
     within: $ => seq('in', $.range),
+    over_variables: $ => seq('over', '(', list($.argument), ')'),
 
     modification: $ => seq('(', optional(list($._change)), ')'),
     _change: $ => choice($.redeclaration, $.change),

@@ -2,7 +2,10 @@
 
 use crate::pipeline::{Request, input};
 use hyde_diag::Diagnostics;
-pub use hyde_flatten::{Additions, Candidate, Knob, Meaning, MeaningOf, ValueOf};
+pub use hyde_flatten::{
+    Additions, Candidate, Knob, LawForm, LawSite, LawTarget, LawVariable, Meaning, MeaningOf,
+    ValueOf,
+};
 
 /// Every effect of the files loaded at every site of the model where it fits; `None` if the model has errors.
 ///
@@ -12,6 +15,14 @@ pub fn candidates(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Optio
         return None;
     }
     hyde_flatten::candidates(&input(request, &Additions::new()), diagnostics)
+}
+
+/// The sites of the model where a law may act; `None` if the model has errors.
+pub fn law_sites(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<Vec<LawSite>> {
+    if diagnostics.has_errors() {
+        return None;
+    }
+    hyde_flatten::law_sites(&input(request, &Additions::new()), diagnostics)
 }
 
 /// What the expressions and parameters of the user's file mean in the model, as far as they are understood, errors or not.

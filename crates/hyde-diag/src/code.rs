@@ -53,6 +53,7 @@ codes! {
     BadManifest "E0215" "a manifest cannot be used";
     NotDeclared "E0216" "a file is not declared, or is outside its folder";
     WaveSpeed "E0217" "the number of cells of a field is not known";
+    SiteVariables "E0218" "the variables after `over` are wrong";
     UnitMismatch "E0301" "two sides have different dimensions";
     BadUnit "E0302" "a unit cannot be read";
     AngleMismatch "E0303" "two sides differ only in the angle";

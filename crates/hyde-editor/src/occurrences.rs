@@ -288,6 +288,7 @@ impl<'a> Walk<'a> {
             .iter()
             .for_each(|value| self.expression(value));
         declarator.within.iter().for_each(|range| self.range(range));
+        self.arguments(&declarator.over);
     }
 
     /// A reference in the present scope.

@@ -192,7 +192,7 @@ impl Model<'_, '_> {
     }
 
     /// Every connector with all that are one site with it, the one that names the site first.
-    fn sites(&self) -> BTreeMap<InstanceId, Vec<InstanceId>> {
+    pub(crate) fn sites(&self) -> BTreeMap<InstanceId, Vec<InstanceId>> {
         let equal = self.equal_variables();
         let states = self.states();
         let mut together: BTreeMap<Vec<Place>, Vec<InstanceId>> = BTreeMap::new();

@@ -28,6 +28,8 @@ mod finish;
 mod foreign;
 mod instance;
 mod instantiate;
+mod law_roles;
+mod law_sites;
 mod ledger;
 mod lower;
 mod meaning;
@@ -44,6 +46,8 @@ pub use additions::Additions;
 pub use call::{FUNCTIONS, usage};
 pub use candidates::{Candidate, Knob};
 pub use foreign::fmu_has_no_equations;
+pub use law_roles::LawForm;
+pub use law_sites::{LawSite, LawTarget, LawVariable};
 pub use meaning::{Meaning, MeaningOf, ValueOf};
 
 use hyde_diag::{Diagnostics, FileId, Sources};
@@ -156,6 +160,17 @@ pub fn candidates(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Ve
     flat_model(input, true, diagnostics).map(|(_, candidates)| candidates)
 }
 
+/// The sites of the model where a law may act, in the order of the model.
+///
+/// `None` if there were errors; all of them are in `diagnostics`.
+pub fn law_sites(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Vec<LawSite>> {
+    let before = diagnostics.error_count();
+    let mut model = model::Model::new(input, diagnostics);
+    build(&mut model)?;
+    let sites = model.named_law_sites();
+    (diagnostics.error_count() == before).then_some(sites)
+}
+
 /// What the expressions and parameters of the first file mean, as far as they are understood; what is wrong with the others
 /// is in `diagnostics`.
 pub fn meaning(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Meaning {
@@ -202,6 +217,7 @@ fn build(model: &mut model::Model<'_, '_>) -> Option<()> {
     model.finish();
     model.ports();
     model.check_effect_words();
+    model.find_law_sites();
     model.check_foreign();
     Some(())
 }

@@ -44,6 +44,8 @@ pub(crate) struct Model<'a, 'd> {
     /// Whether effects are offered to what they fit on, and those that were.
     pub(crate) offering: bool,
     pub(crate) offers: Vec<crate::instantiate::Offer<'a>>,
+    /// The sites where a law may act, each with its instance.
+    pub(crate) law_sites: Vec<(InstanceId, crate::law_sites::LawSite)>,
     /// Variables whose equations recorded columns take the place of.
     pub(crate) replays: Vec<crate::experiment::Replay<'a>>,
     /// Connectors of effects with those of their hosts: they join connection sets after everything written.
@@ -95,6 +97,7 @@ impl<'a, 'd> Model<'a, 'd> {
             lowered: None,
             offering: false,
             offers: Vec::new(),
+            law_sites: Vec::new(),
             replays: Vec::new(),
             joined: Vec::new(),
             connections: Vec::new(),

@@ -179,7 +179,7 @@ impl Model<'_, '_> {
     }
 
     /// What an instance declares with one of these prefixes.
-    fn declared(&self, instance: InstanceId, prefixes: &[Prefix]) -> Vec<&str> {
+    pub(crate) fn declared(&self, instance: InstanceId, prefixes: &[Prefix]) -> Vec<&str> {
         let mut found = Vec::new();
         for (_, element) in &self.instances[instance].elements {
             if let Element::Declaration(declaration) = element

@@ -272,6 +272,7 @@ impl Layout<'_, '_> {
                 return Gap::None;
             }
             (Some(","), _) => return Gap::Break,
+            (_, Some("(")) if rule == Rule::over_variables => return Gap::Space,
             (_, Some("(")) => return Gap::None,
             (Some(":"), _) | (_, Some(":")) => return Gap::None,
             (Some("{"), _) if rule == Rule::array => return Gap::KeptNone,
@@ -296,6 +297,7 @@ impl Layout<'_, '_> {
                 Rule::doc
                 | Rule::source
                 | Rule::within
+                | Rule::over_variables
                 | Rule::prior
                 | Rule::effects
                 | Rule::over_what

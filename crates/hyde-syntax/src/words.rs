@@ -88,6 +88,7 @@ fn word(rule: Rule) -> String {
         Rule::prior | Rule::noise => "`~`",
         Rule::source => "`from`",
         Rule::within => "`in`",
+        Rule::over_variables => "`over`",
         Rule::subscript => "a subscript",
         Rule::counted => "`for`",
         Rule::upper => "`:`",

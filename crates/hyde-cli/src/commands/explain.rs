@@ -84,6 +84,7 @@ pages! {
     BadManifest "E0215";
     NotDeclared "E0216";
     WaveSpeed "E0217";
+    SiteVariables "E0218";
     UnitMismatch "E0301";
     BadUnit "E0302";
     AngleMismatch "E0303";

@@ -322,7 +322,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// The classes that a class extends, as far as they are known.
-    fn bases(&self, file: FileIndex, class: &'a Class) -> Vec<(FileIndex, &'a Class)> {
+    pub(crate) fn bases(&self, file: FileIndex, class: &'a Class) -> Vec<(FileIndex, &'a Class)> {
         let known = |base| self.names.class(file, base);
         match &class.body {
             ClassBody::Short { base, .. } => known(base).into_iter().collect(),

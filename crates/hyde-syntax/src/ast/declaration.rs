@@ -1,6 +1,6 @@
 //! Declarations and modifications.
 
-use super::{Expr, Name, Range, Reference, UnitText};
+use super::{Argument, Expr, Name, Range, Reference, UnitText};
 use hyde_diag::Span;
 
 /// The words before a declaration.
@@ -84,6 +84,8 @@ pub struct Declarator {
     pub source: Option<String>,
     /// `in 0 .. 1 [kN]`
     pub within: Option<Range>,
+    /// `over (place = a.s, speed = v)`: the variables that a law of a site is a function of.
+    pub over: Vec<Argument>,
     /// Its documentation.
     pub doc: Option<String>,
 }

@@ -85,6 +85,7 @@ fn of_declarator<'a>(declarator: &'a Declarator, visit: &mut dyn FnMut(&'a Expr)
         .within
         .iter()
         .for_each(|range| of_range(range, visit));
+    of_arguments(&declarator.over, visit);
 }
 
 fn of_changes<'a>(changes: &'a [Change], visit: &mut dyn FnMut(&'a Expr)) {

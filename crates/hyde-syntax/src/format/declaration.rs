@@ -1,7 +1,7 @@
 //! Declarations and modifications as they are written.
 
 use super::expression;
-use super::expression::range;
+use super::expression::{call_arguments, range};
 use super::name::{bracketed, doc, quoted, reference, subscripts};
 use crate::ast::{Change, Declaration, Declarator, Measure, Prior};
 use std::fmt::Write as _;
@@ -39,6 +39,9 @@ fn declarator_text(item: &Declarator) -> String {
     text.push_str(&source_text(item.source.as_deref()));
     if let Some(within) = &item.within {
         let _ = write!(text, " in {}", range(within));
+    }
+    if !item.over.is_empty() {
+        let _ = write!(text, " over {}", call_arguments(&item.over));
     }
     text.push_str(&doc(item.doc.as_deref()));
     text

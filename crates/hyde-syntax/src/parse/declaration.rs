@@ -209,6 +209,7 @@ impl Builder<'_> {
             prior: None,
             source: None,
             within: None,
+            over: Vec::new(),
             doc: None,
         };
         for part in inner {
@@ -224,6 +225,7 @@ impl Builder<'_> {
                 Rule::within => {
                     declarator.within = parts(part).next().and_then(|range| self.range(range))
                 }
+                Rule::over_variables => declarator.over = self.arguments(part),
                 _ => declarator.doc = Some(Self::text(part)),
             }
         }
