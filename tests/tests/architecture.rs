@@ -206,6 +206,42 @@ fn every_file_says_what_it_does_in_its_first_line() {
     assert!(silent.is_empty(), "no `//!`: {}", silent.join(", "));
 }
 
+/// What a component is to a study follows from its declarations. First models are written with parts of the library.
+#[test]
+fn no_study_knows_a_component_by_its_name() {
+    let mut names = BTreeSet::new();
+    for package in hyde_tests::library::names() {
+        names.insert(package.to_owned());
+        let text = hyde_library::package(package).unwrap().text;
+        for line in text.lines() {
+            let mut words = line.split_whitespace();
+            if let (Some("model" | "connector" | "effect"), Some(name)) =
+                (words.next(), words.next())
+            {
+                names.extend([name.to_owned(), format!("{package}.{name}")]);
+            }
+        }
+    }
+    assert!(names.len() > 300, "the library was not found");
+    let studies = ["crates/hyde-calibrate/src/", "crates/hyde-study/src/"];
+    let is_study = |path: &str| studies.iter().any(|crate_| path.starts_with(crate_));
+    for file in sources() {
+        if !is_study(&file.path) || file.path.contains("/first_model/") {
+            continue;
+        }
+        let product = file.text.split("#[cfg(test)]").next().unwrap_or_default();
+        let code = product
+            .lines()
+            .filter(|line| !line.trim_start().starts_with("//"));
+        for literal in code.flat_map(|line| line.split('"').skip(1).step_by(2)) {
+            let words = literal.split(|c: char| !(c.is_alphanumeric() || c == '.' || c == '_'));
+            let words = words.filter(|word| word.contains('.'));
+            let known = words.chain([literal]).find(|word| names.contains(*word));
+            assert_eq!(known, None, "{}: {literal}", file.path);
+        }
+    }
+}
+
 #[test]
 fn files_are_named_after_what_they_do() {
     let banned = [

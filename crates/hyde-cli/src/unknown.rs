@@ -2,31 +2,42 @@
 
 use crate::diagnosis::wrapped;
 use hyde_calibrate::{
-    Built, Diagnosis, FoundLaw, Kind, Map, Panel, Site, Summand, Unknown, Written,
+    Built, Diagnosis, FoundLaw, Kind, LawForm, LawTarget, LawVariable, Map, Panel, Site, Summand,
+    Unknown, Written,
 };
 use hyde_compiler::{Additions, Candidate, Request};
 use hyde_diag::{Diagnostics, Severity};
-use hyde_units::significant;
+use hyde_units::{NamedUnit, significant};
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// The places of a model where a law may act: where an effect of a kind of them fits.
-pub(crate) fn sites(candidates: &[Candidate]) -> Vec<Site> {
-    let mut found: Vec<Site> = Vec::new();
-    for candidate in candidates {
-        let Some(kind) = Kind::of(&candidate.host_package, &candidate.host) else {
-            continue;
-        };
-        if !found.iter().any(|site| site.path == candidate.site) {
-            found.push(Site {
-                kind,
-                path: candidate.site.clone(),
-                aliases: candidate.aliases.clone(),
-            });
-        }
+/// A site of a model where a law may act, as a diagnosis takes it.
+pub(crate) fn site(declared: hyde_compiler::LawSite) -> Site {
+    use hyde_compiler::{LawForm as OfModel, LawTarget as AddedTo};
+    let form = match declared.form {
+        OfModel::Motion => LawForm::Motion,
+        OfModel::Friction => LawForm::Friction,
+        OfModel::Elastic => LawForm::Elastic,
+        OfModel::Demand => LawForm::Demand,
+    };
+    let target = match declared.target {
+        AddedTo::Flow(name) => LawTarget::Flow(name),
+        AddedTo::Value { name, hold, output } => LawTarget::Value { name, hold, output },
+    };
+    let over = declared.over.map(|own| LawVariable {
+        unit: match own.derivative {
+            true => NamedUnit::usual(own.dimension()),
+            false => own.quantity.unit.clone(),
+        },
+        name: own.name,
+        derivative: own.derivative,
+    });
+    Site {
+        kind: Kind::new(declared.host, form, target, declared.dimension, over),
+        path: declared.path,
+        aliases: declared.aliases,
     }
-    found
 }
 
 /// Puts candidates, by number, and written effects on the model.
@@ -131,7 +142,7 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
             for (term, share) in &own.equivalents {
                 let term = format!(
                     "{} ({} of the improvement of the first term)",
-                    named(term, own.law.site.kind),
+                    named(term, &own.law.site.kind),
                     significant(*share, 3)
                 );
                 wrapped(&mut out, "  nearly as good:", &term);
@@ -144,10 +155,10 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
     let _ = writeln!(
         out,
         "\n  {} at {}, fitted as any function of",
-        unknown.map.site.kind.words().what,
+        unknown.map.site.kind.what(),
         unknown.map.site.path
     );
-    let name = |panel: &Panel| panel.variable.name(unknown.map.site.kind);
+    let name = |panel: &Panel| panel.variable.name(&unknown.map.site.kind);
     let wave = wave(&unknown.map);
     let widths = unknown.map.panels.iter().map(|panel| name(panel).len());
     let width = widths.max().unwrap_or(0).max(wave.len());
@@ -189,14 +200,14 @@ pub(crate) fn most_like(unknown: &Unknown) -> Option<String> {
     let map = &unknown.map;
     let told = map.panels.iter().filter(|panel| panel.gain > panel.band);
     let best = told.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
-    let (what, path) = (map.site.kind.words().what, &map.site.path);
-    let variable = best.variable.name(map.site.kind);
+    let (what, path) = (map.site.kind.what(), &map.site.path);
+    let variable = best.variable.name(&map.site.kind);
     Some(format!("{what} at {path} that depends on {variable}"))
 }
 
 /// The same as JSON; numbers are SI.
 pub(crate) fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
-    let panel = |panel: &Panel, kind: Kind| {
+    let panel = |panel: &Panel, kind: &Kind| {
         json!({
             "variable": panel.variable.name(kind),
             "gain": panel.gain,
@@ -207,7 +218,7 @@ pub(crate) fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
     };
     let panels = |map: &Map| -> Vec<Value> {
         let each = map.panels.iter();
-        each.map(|one| panel(one, map.site.kind)).collect()
+        each.map(|one| panel(one, &map.site.kind)).collect()
     };
     let latent: Vec<Value> = unknown
         .latent
@@ -253,7 +264,7 @@ fn law(own: &FoundLaw, found: &Diagnosis) -> Value {
     let equivalents: Vec<Value> = own
         .equivalents
         .iter()
-        .map(|(term, share)| json!({ "form": named(term, own.law.site.kind), "share": share }))
+        .map(|(term, share)| json!({ "form": named(term, &own.law.site.kind), "share": share }))
         .collect();
     json!({
         "name": own.written.name,
@@ -275,7 +286,7 @@ fn law(own: &FoundLaw, found: &Diagnosis) -> Value {
 }
 
 /// A term in words.
-fn named(term: &Summand, kind: Kind) -> String {
+fn named(term: &Summand, kind: &Kind) -> String {
     let names: Vec<String> = term
         .factors
         .iter()

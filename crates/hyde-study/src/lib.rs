@@ -13,6 +13,7 @@
 //! records        the records of an experiment                            records.rs
 //! ports          inputs and outputs of a program for another tool        ports.rs
 //! project        a file parsed once; its model, experiment, program      project.rs
+//! known          which effects fit where, and where a law may act      known.rs
 //! check          everything in a file compiled, and nothing run         check.rs
 //! calibration    a calibration with its records and its observers        calibration.rs
 //! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
@@ -33,6 +34,7 @@ pub mod excitation;
 pub mod first_model;
 mod fmus;
 mod inputs;
+mod known;
 mod package;
 pub mod ports;
 mod project;

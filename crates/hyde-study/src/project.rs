@@ -10,7 +10,7 @@ use crate::run_failure;
 use crate::settings::{self, Setting};
 use crate::tables::{self, Table};
 use crate::world::{as_text, read_text};
-use hyde_compiler::{Backend, Candidate, Compiled, File, Form, FreeInputs, Header, Request};
+use hyde_compiler::{Backend, Compiled, File, Form, FreeInputs, Header, Request};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_syntax::ast::{Experiment, ExperimentItem, Item};
 use sha2::{Digest, Sha256};
@@ -378,23 +378,6 @@ impl Project {
                 driven.join("`, `")
             )),
         }
-    }
-
-    /// Which effects fit where on the model, as long as that is in order; what is wrong stays in the project's diagnostics.
-    pub fn candidates(&mut self) -> Option<Vec<Candidate>> {
-        let request = Request {
-            sources: &self.sources,
-            file: &self.file,
-            model: &self.model,
-            experiment: None,
-            settings: &BTreeMap::new(),
-            records: &BTreeMap::new(),
-            free_inputs: FreeInputs::All,
-            ledger: false,
-            form: Form::Run,
-            backend: Backend::Native,
-        };
-        hyde_compiler::candidates(&request, &mut self.diagnostics)
     }
 
     /// What is asked of the compiler for the project in a form, with these settings and the headers of its records.

@@ -41,6 +41,7 @@ mod multirate;
 mod observer;
 mod operating_points;
 mod orders;
+mod own_sites;
 mod pairs;
 mod paper;
 mod points;

@@ -41,6 +41,12 @@ fn diagnosed_on(changes: &[(&str, &str)], effect: &str, with: &str, study: &str)
 /// A folder with such an axis and its record.
 fn made(changes: &[(&str, &str)], effect: &str, with: &str) -> TempDir {
     let folder = tempfile::tempdir().unwrap();
+    make(folder.path(), changes, effect, with);
+    folder
+}
+
+/// Writes such an axis and its record into a folder; gives the text of the axis.
+pub(crate) fn make(folder: &Path, changes: &[(&str, &str)], effect: &str, with: &str) -> String {
     let model = root().join("tests/models/small_axis.hyde");
     // The saddle is read by a scale, the motor's speed by a tacho.
     let mut plain = read(&model)
@@ -73,14 +79,11 @@ experiment made of Made
 end made;
 "
     );
-    write(&folder.path().join("made.hyde"), &made);
-    write(
-        &folder.path().join("axis.hyde"),
-        &format!("{plain}{DIAGNOSIS}"),
-    );
-    hyde(folder.path(), &["run", "made.hyde", "made", "--out", "out"]);
-    record(folder.path());
-    folder
+    write(&folder.join("made.hyde"), &made);
+    write(&folder.join("axis.hyde"), &format!("{plain}{DIAGNOSIS}"));
+    hyde(folder, &["run", "made.hyde", "made", "--out", "out"]);
+    record(folder);
+    plain
 }
 
 /// The results as a record with the noise that the experiment declares.
@@ -204,7 +207,7 @@ fn a_drag_in_one_direction_beyond_a_place_is_found_and_written() {
 }
 
 /// The text of the law that is the whole answer.
-fn law_alone(found: &Value) -> &str {
+pub(crate) fn law_alone(found: &Value) -> &str {
     assert_eq!(found["verdict"], "unknown", "{}", found["sentence"]);
     let effects = found["effects"].as_array().unwrap();
     assert_eq!(effects.len(), 1, "{}", found["sentence"]);

@@ -50,7 +50,7 @@ pub enum Over {
 impl Over {
     /// Its name, at a kind of site.
     #[must_use]
-    pub fn name(self, kind: Kind) -> String {
+    pub fn name(self, kind: &Kind) -> String {
         match self {
             Self::Variable(Variable::Speed) if kind.is_grip() => {
                 "magnitude of the speed".to_owned()
@@ -63,10 +63,10 @@ impl Over {
 
     /// Its SI unit, at a kind of site.
     #[must_use]
-    pub fn unit(self, kind: Kind) -> &'static str {
+    pub fn unit(self, kind: &Kind) -> String {
         match self {
             Self::Variable(Variable::Speed) => kind.speed_unit(),
-            Self::Variable(Variable::Time | Variable::SpeedByTime) => "s",
+            Self::Variable(Variable::Time | Variable::SpeedByTime) => "s".to_owned(),
             Self::Variable(Variable::Place | Variable::Turn | Variable::SpeedByPlace)
             | Self::Period(_) => kind.place_unit(),
         }
@@ -103,24 +103,37 @@ impl Diagnosis {
     /// A finding, by its number, as a curve; `None` where no force stands for it at its site, or it depends on its past.
     #[must_use]
     pub fn curve(&self, inquiry: &Inquiry<'_>, number: usize) -> Option<FoundCurve> {
-        let law = self.law().map(|law| &law.hypothesis);
         let finding = self.findings.get(number)?;
-        let hypothesis = inquiry.hypotheses.get(finding.hypothesis).or(law)?;
+        let Some(hypothesis) = inquiry.hypotheses.get(finding.hypothesis) else {
+            let law = self.law()?;
+            return self.curve_at(inquiry, (number, &law.hypothesis), &law.law.site);
+        };
         let at_site =
             |site: &&Site| site.path == hypothesis.site || hypothesis.aliases.contains(&site.path);
-        let site = inquiry.sites.iter().find(at_site)?;
+        let mut sites = inquiry.sites.iter().filter(at_site);
+        sites.find_map(|site| self.curve_at(inquiry, (number, hypothesis), site))
+    }
+
+    /// The same at a site.
+    fn curve_at(
+        &self,
+        inquiry: &Inquiry<'_>,
+        (number, hypothesis): (usize, &Hypothesis),
+        site: &Site,
+    ) -> Option<FoundCurve> {
+        let finding = self.findings.get(number)?;
         let ground = Ground {
             observer: self.observer.as_ref().unwrap_or(inquiry.observer),
             ..inquiry.ground()
         };
         let runs = self.along(inquiry, &ground, (number, hypothesis), site)?;
-        let (over, share) = best(&runs, site.kind, period(hypothesis, finding))?;
+        let (over, share) = best(&runs, &site.kind, period(hypothesis, finding))?;
         let felt = self.felt(inquiry, &ground, site)?;
-        let knots = knots(&runs, site.kind, over)?;
+        let knots = knots(&runs, &site.kind, over)?;
         let fine = finer(&knots);
-        let law: Vec<f64> = mean_force(&runs, site.kind, over, &fine);
-        let asked = asked(&felt, &runs, site.kind, over, &knots)?;
-        let at_knots = mean_force(&runs, site.kind, over, &knots);
+        let law: Vec<f64> = mean_force(&runs, &site.kind, over, &fine);
+        let asked = asked(&felt, &runs, &site.kind, over, &knots)?;
+        let at_knots = mean_force(&runs, &site.kind, over, &knots);
         let each = knots.iter().zip(&at_knots).zip(asked);
         let data = each.filter_map(|((&at, &force), more)| {
             let (more, half) = more?;
@@ -256,7 +269,7 @@ impl Along {
     }
 
     /// The variable in a row.
-    fn at(&self, row: usize, kind: Kind, over: Over) -> f64 {
+    fn at(&self, row: usize, kind: &Kind, over: Over) -> f64 {
         match over {
             Over::Variable(Variable::Speed) if kind.is_grip() => self.speed[row].abs(),
             Over::Variable(Variable::Speed) => self.speed[row],
@@ -285,7 +298,7 @@ fn period(hypothesis: &Hypothesis, finding: &Finding) -> Option<f64> {
 }
 
 /// The variable of which the effect is a function most, and how much; of those that are alike the first.
-fn best(runs: &[Along], kind: Kind, period: Option<f64>) -> Option<(Over, f64)> {
+fn best(runs: &[Along], kind: &Kind, period: Option<f64>) -> Option<(Over, f64)> {
     let places = || runs.iter().flat_map(|run| run.place.iter().copied());
     let travel = places().fold(f64::MIN, f64::max) - places().fold(f64::MAX, f64::min);
     let mut all: Vec<Over> = period.map(Over::Period).into_iter().collect();
@@ -305,7 +318,7 @@ fn best(runs: &[Along], kind: Kind, period: Option<f64>) -> Option<(Over, f64)> 
 }
 
 /// The part of the square of an effect that its mean over a variable has: 1 of a function of it.
-fn share(runs: &[Along], kind: Kind, over: Over) -> f64 {
+fn share(runs: &[Along], kind: &Kind, over: Over) -> f64 {
     let rows = |run| -> Vec<(f64, f64)> {
         let run: &Along = run;
         let each = run.rows();
@@ -333,7 +346,7 @@ fn share(runs: &[Along], kind: Kind, over: Over) -> f64 {
 }
 
 /// The knots of the data; denser about rest, where frictions bend.
-fn knots(runs: &[Along], kind: Kind, over: Over) -> Option<Vec<f64>> {
+fn knots(runs: &[Along], kind: &Kind, over: Over) -> Option<Vec<f64>> {
     let values = || {
         let each = runs.iter();
         each.flat_map(|run| run.rows().map(|row| run.at(row, kind, over)))
@@ -385,7 +398,7 @@ fn between(knots: &[f64], value: f64) -> (usize, f64) {
 
 /// The force of the effect at each knot: the mean of rows, the nearer the heavier, along a line between their knots. NaN where
 /// the records have none.
-fn mean_force(runs: &[Along], kind: Kind, over: Over, knots: &[f64]) -> Vec<f64> {
+fn mean_force(runs: &[Along], kind: &Kind, over: Over, knots: &[f64]) -> Vec<f64> {
     // About each knot a line is fitted: a mean alone would round corners of the law.
     let mut sums = vec![[0.0; 5]; knots.len()];
     for run in runs {
@@ -416,7 +429,7 @@ fn mean_force(runs: &[Along], kind: Kind, over: Over, knots: &[f64]) -> Vec<f64>
 fn asked(
     felt: &Felt,
     runs: &[Along],
-    kind: Kind,
+    kind: &Kind,
     over: Over,
     knots: &[f64],
 ) -> Option<Vec<Option<(f64, f64)>>> {

@@ -2,7 +2,7 @@
 //! effect of the language, and fitted and judged like any other.
 //!
 //! ```text
-//! site           places where a law may act, and the language's words there    unknown/site.rs
+//! site           where a law may act, as declared, and the words for it        unknown/site.rs
 //! latent         a force at a site, whatever its course, in the innovations    unknown/latent.rs
 //! felt           a site with a probe run along every record                    unknown/felt.rs
 //! map            of which variable the force is a function                     unknown/map.rs
@@ -31,13 +31,13 @@ mod site;
 pub use factor::Factor;
 pub(crate) use felt::{Felt, PROBE as CURVE_PROBE};
 pub use latent::LatentForce;
-pub(crate) use latent::{PROBE as PROBE_SIZES, strongest};
+pub(crate) use latent::strongest;
 pub use law::{Law, Summand};
 pub use map::{Map, Panel, Variable};
 pub(crate) use places::{Answer, Places};
 pub use seen::{Scales, Seen};
-pub(crate) use site::probe;
-pub use site::{Kind, Site, Written};
+pub use site::{Kind, LawForm, LawTarget, LawVariable, Site, Written};
+pub(crate) use site::{PROBE as PROBE_SIZES, probe};
 
 use super::edges::settled;
 use super::finding::Finding;

@@ -8,7 +8,9 @@ use crate::left_model;
 use crate::project::{Told as _, complain, print_output};
 use crate::study;
 use crate::unknown;
-use hyde_calibrate::{Cause, Hypothesis, Inquiry, Knob, Solution, Unsupported, fitted_parameters};
+use hyde_calibrate::{
+    Cause, Hypothesis, Inquiry, Knob, Site, Solution, Unsupported, fitted_parameters,
+};
 use hyde_compiler::{Candidate, Form};
 use hyde_study::Calibration;
 use hyde_study::unobservable;
@@ -31,7 +33,11 @@ pub(crate) fn diagnose(args: &DiagnoseArgs) -> Exit {
         Ok(candidates) => candidates,
         Err(exit) => return exit,
     };
-    let sites = unknown::sites(&candidates);
+    let sites = match calibration.project.law_sites_or_report(&model_args) {
+        Ok(sites) => sites,
+        Err(exit) => return exit,
+    };
+    let sites: Vec<Site> = sites.into_iter().map(unknown::site).collect();
     let candidates: Vec<Candidate> = candidates
         .into_iter()
         .filter(|candidate| plan.selects(candidate))

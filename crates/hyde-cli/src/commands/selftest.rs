@@ -64,7 +64,8 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
     let asked = asked(args).map_err(refused)?;
     let (plan, mut calibration) = study::diagnosis(&args.study)?;
     let candidates = calibration.project.candidates_or_report(&model_args)?;
-    let sites = unknown::sites(&candidates);
+    let sites = calibration.project.law_sites_or_report(&model_args)?;
+    let sites: Vec<_> = sites.into_iter().map(unknown::site).collect();
     let candidates: Vec<Candidate> = candidates
         .into_iter()
         .filter(|candidate| plan.selects(candidate))

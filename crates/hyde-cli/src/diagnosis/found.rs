@@ -4,7 +4,7 @@ use super::{Told, named, verdict};
 use crate::before_after::RecordErrors;
 use crate::compared::judge;
 use crate::figures::{error_in, shown};
-use hyde_calibrate::{FreeMeasure, Kind, LatentForce, Panel, Unknown, Variable};
+use hyde_calibrate::{FreeMeasure, LatentForce, Panel, Unknown, Variable};
 use hyde_report::{FoundCurve, Response};
 use hyde_signal::spectrum::power_spectral_density;
 use hyde_units::significant;
@@ -22,7 +22,7 @@ pub(super) fn curves(told: &Told<'_>) -> Vec<FoundCurve> {
     let each = told.found.findings.iter().zip(&told.curves);
     let found = each.filter_map(|(finding, curve)| {
         let curve = curve.as_ref()?;
-        let kind = curve.site.kind;
+        let kind = &curve.site.kind;
         let name = named(&told.hypotheses[finding.hypothesis]);
         let sizes = verdict::quantity(&finding.size);
         let dependence = match curve.share > 0.98 {
@@ -34,8 +34,8 @@ pub(super) fn curves(told: &Told<'_>) -> Vec<FoundCurve> {
         };
         Some(FoundCurve {
             title: format!("{name} ({sizes})"),
-            over: (curve.over.name(kind), curve.over.unit(kind).to_owned()),
-            force: (force(kind).to_owned(), kind.force_unit().to_owned()),
+            over: (curve.over.name(kind), curve.over.unit(kind)),
+            force: (kind.axis(), kind.force_unit()),
             line: "found".to_owned(),
             law: curve.law.clone(),
             data: curve.data.iter().map(|own| (own.at, own.force, own.half)).collect(),
@@ -43,7 +43,7 @@ pub(super) fn curves(told: &Told<'_>) -> Vec<FoundCurve> {
                 "The line is the effect as it was found. Rings and the grey band: what the records say at each place without the formula, \
                  with a 95 % interval.{} {}{dependence}",
                 period(curve.over),
-                sign(kind)
+                kind.sign()
             ),
         })
     });
@@ -68,7 +68,7 @@ fn best_function(unknown: &Unknown) -> Option<FoundCurve> {
     let best = unknown.map.panels.iter().find(drawn)?;
     let unit = match best.variable {
         Variable::Speed => site.kind.speed_unit(),
-        Variable::Time | Variable::SpeedByTime => "s",
+        Variable::Time | Variable::SpeedByTime => "s".to_owned(),
         Variable::Place | Variable::Turn | Variable::SpeedByPlace => site.kind.place_unit(),
     };
     let at = |latent: &LatentForce, k: usize| match best.variable {
@@ -92,12 +92,9 @@ fn best_function(unknown: &Unknown) -> Option<FoundCurve> {
         (0..latent.force.len()).map(move |k| (at(latent, k), latent.force[k], f64::NAN))
     });
     Some(FoundCurve {
-        title: format!("{} at {}", site.kind.words().what, site.path),
-        over: (best.variable.name(site.kind), unit.to_owned()),
-        force: (
-            force(site.kind).to_owned(),
-            site.kind.force_unit().to_owned(),
-        ),
+        title: format!("{} at {}", site.kind.what(), site.path),
+        over: (best.variable.name(&site.kind), unit),
+        force: (site.kind.axis(), site.kind.force_unit()),
         line: "best function".to_owned(),
         law: (best.knots.clone(), line),
         data: points.collect(),
@@ -106,37 +103,9 @@ fn best_function(unknown: &Unknown) -> Option<FoundCurve> {
              force that the balance needs from moment to moment. {}",
             significant(best.gain, 3),
             significant(best.band, 3),
-            sign(site.kind)
+            site.kind.sign()
         ),
     })
-}
-
-/// What the vertical axis is called.
-fn force(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Guide => "friction force",
-        Kind::Bearing => "friction torque",
-        Kind::Rail | Kind::Contact => "force",
-        Kind::Flange | Kind::Belt | Kind::Joint => "torque",
-        Kind::Scale | Kind::Encoder => "reading error",
-        Kind::Tacho => "voltage error",
-        Kind::Amplifier => "current",
-    }
-}
-
-/// Which way the force acts.
-fn sign(kind: Kind) -> &'static str {
-    match kind {
-        Kind::Guide | Kind::Bearing => "Positive values act against the motion.",
-        Kind::Rail | Kind::Flange => "Positive values drive in the positive direction.",
-        Kind::Belt
-        | Kind::Joint
-        | Kind::Contact
-        | Kind::Scale
-        | Kind::Encoder
-        | Kind::Tacho
-        | Kind::Amplifier => "Positive values add to what the declared model has.",
-    }
 }
 
 fn period(over: hyde_calibrate::Over) -> String {

@@ -82,7 +82,7 @@ fn frozen(told: &Told<'_>) -> Value {
 
 /// An effect over its variable.
 fn curve(own: &FoundCurve) -> Value {
-    let kind = own.site.kind;
+    let kind = &own.site.kind;
     let data = |of: fn(&CurvePoint) -> f64| own.data.iter().map(of).collect::<Vec<f64>>();
     json!({
         "over": own.over.name(kind),

@@ -97,7 +97,7 @@ fn unknown(told: &Told<'_>) -> Vec<[String; 3]> {
         let site = &own.map.site;
         let panels = own.map.panels.iter().map(move |panel| {
             [
-                format!("{} at {}", panel.variable.name(site.kind), site.path),
+                format!("{} at {}", panel.variable.name(&site.kind), site.path),
                 significant(panel.gain, 3),
                 significant(panel.band, 3),
             ]

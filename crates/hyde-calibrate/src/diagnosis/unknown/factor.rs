@@ -4,6 +4,7 @@
 use super::latent::Course;
 use super::seen::{Scales, Seen};
 use super::site::Kind;
+use hyde_units::{Dimension, NamedUnit};
 
 /// A shape, with its constants, SI.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -66,15 +67,13 @@ pub(crate) struct Constant {
     pub(crate) stem: &'static str,
     pub(crate) value: f64,
     pub(crate) range: (f64, f64),
-    pub(crate) unit: &'static str,
-    /// How many of that unit an SI unit is.
-    pub(crate) per_si: f64,
+    pub(crate) unit: NamedUnit,
 }
 
 impl Factor {
     /// What it is at a kind of site, in words; numbers are SI.
     #[must_use]
-    pub fn words(self, kind: Kind) -> String {
+    pub fn words(self, kind: &Kind) -> String {
         let n = |value: f64| hyde_units::significant(value, 3);
         let [place, speed] = kind.variables();
         match self {
@@ -251,18 +250,18 @@ impl Factor {
     }
 
     /// How it is written, the names of its constants given: one expression, of a wave two.
-    pub(crate) fn expressions(self, kind: Kind, names: &[String]) -> Vec<String> {
-        let words = kind.words();
-        let ((x, _), (v, _)) = (words.place, words.speed);
+    pub(crate) fn expressions(self, kind: &Kind, names: &[String]) -> Vec<String> {
+        let (x, v) = (&kind.place.text, &kind.speed.text);
+        let (x1, v1, t1) = (&kind.place.round, &kind.speed.round, &kind.round_time);
         let name = |index: usize| names.get(index).map_or("", String::as_str);
         let (a, b) = (name(0), name(1));
         let abs = format!("noEvent(abs({v}))");
         let one = match self {
-            Self::Speed => format!("{v}/{v}1"),
-            Self::Magnitude => format!("{abs}/{v}1"),
-            Self::SignedSquare => format!("{v}*{abs}/{v}1^2"),
-            Self::Square => format!("({v}/{v}1)^2"),
-            Self::Cube => format!("({v}/{v}1)^3"),
+            Self::Speed => format!("{v}/{v1}"),
+            Self::Magnitude => format!("{abs}/{v1}"),
+            Self::SignedSquare => format!("{v}*{abs}/{v1}^2"),
+            Self::Square => format!("({v}/{v1})^2"),
+            Self::Cube => format!("({v}/{v1})^3"),
             Self::Switching(_) => format!("{v}/({abs} + {a})"),
             Self::Turning(_) => format!("tanh({v}/{a})"),
             Self::Forwards(_) => format!("(1 + {v}/({abs} + {a}))/2"),
@@ -270,13 +269,13 @@ impl Factor {
             Self::Falling(_) => format!("exp(-{abs}/{a})"),
             Self::Bell(_) => format!("exp(-({v}/{a})^2)"),
             Self::SpeedBump(..) => format!("exp(-(({abs} - {a})/{b})^2)"),
-            Self::Lagged(_) => format!("late_{a}/{v}1"),
-            Self::Worked(_) => format!("worked_{a}/{v}1"),
-            Self::Place => format!("{x}/x1"),
-            Self::PlaceMagnitude => format!("noEvent(abs({x}))/x1"),
-            Self::PlaceSquare => format!("({x}/x1)^2"),
-            Self::PlaceSignedSquare => format!("{x}*noEvent(abs({x}))/x1^2"),
-            Self::PlaceCube => format!("({x}/x1)^3"),
+            Self::Lagged(_) => format!("late_{a}/{v1}"),
+            Self::Worked(_) => format!("worked_{a}/{v1}"),
+            Self::Place => format!("{x}/{x1}"),
+            Self::PlaceMagnitude => format!("noEvent(abs({x}))/{x1}"),
+            Self::PlaceSquare => format!("({x}/{x1})^2"),
+            Self::PlaceSignedSquare => format!("{x}*noEvent(abs({x}))/{x1}^2"),
+            Self::PlaceCube => format!("({x}/{x1})^3"),
             Self::Yielding(_) => format!("{x}/(noEvent(abs({x})) + {a})"),
             Self::Wave(_) if kind.turns() => {
                 return vec![format!("sin({a}*{x})"), format!("cos({a}*{x})")];
@@ -286,17 +285,17 @@ impl Factor {
             }
             Self::Bump(..) => format!("exp(-(({x} - {a})/{b})^2)"),
             Self::Step(..) => format!("(1 + tanh(({x} - {a})/{b}))/2"),
-            Self::Time => "time/t1".to_owned(),
+            Self::Time => format!("time/{t1}"),
             Self::Fading(_) => format!("exp(-time/{a})"),
         };
         vec![one]
     }
 
     /// What else has to be written for it: a filter.
-    pub(crate) fn equations(self, kind: Kind, names: &[String]) -> (String, String) {
-        let (v, (unit, _)) = kind.words().speed;
+    pub(crate) fn equations(self, kind: &Kind, names: &[String]) -> (String, String) {
+        let (v, unit) = (&kind.speed.text, &kind.speed.unit);
         let (name, input, what) = match self {
-            Self::Lagged(_) => ("late", v.to_owned(), "the speed with a lag"),
+            Self::Lagged(_) => ("late", v.clone(), "the speed with a lag"),
             Self::Worked(_) => {
                 let what = "recent motion, filtered";
                 ("worked", format!("noEvent(abs({v}))"), what)
@@ -333,15 +332,13 @@ impl Factor {
     }
 
     /// Its constants as they are written, with the ranges that a fit may search.
-    pub(crate) fn written(self, kind: Kind, seen: &Seen) -> Vec<Constant> {
-        let words = kind.words();
-        let ((_, (place, per_place)), (_, (speed, per_speed))) = (words.place, words.speed);
-        let positive = |stem, value: f64, unit, per_si| Constant {
+    pub(crate) fn written(self, kind: &Kind, seen: &Seen) -> Vec<Constant> {
+        let (place, speed) = (&kind.place.unit, &kind.speed.unit);
+        let positive = |stem, value: f64, unit: &NamedUnit| Constant {
             stem,
             value,
             range: (0.2 * value, 5.0 * value),
-            unit,
-            per_si,
+            unit: unit.clone(),
         };
         match self {
             Self::Speed
@@ -361,36 +358,35 @@ impl Factor {
             | Self::Backwards(a)
             | Self::Falling(a)
             | Self::Bell(a) => {
-                vec![positive("vs", a, speed, per_speed)]
+                vec![positive("vs", a, speed)]
             }
-            Self::Yielding(a) => vec![positive("x0", a, place, per_place)],
+            Self::Yielding(a) => vec![positive("x0", a, place)],
             Self::SpeedBump(centre, width) => vec![
                 Constant {
                     range: (0.0, seen.speed),
-                    ..positive("v0", centre, speed, per_speed)
+                    ..positive("v0", centre, speed)
                 },
-                positive("dv", width, speed, per_speed),
+                positive("dv", width, speed),
             ],
             Self::Lagged(tau) | Self::Worked(tau) | Self::Fading(tau) => {
-                vec![positive("tau", tau, "s", 1.0)]
+                vec![positive("tau", tau, &NamedUnit::usual(Dimension::TIME))]
             }
             Self::Wave(p) => {
-                let (stem, unit) = if kind.turns() {
-                    ("N", "1")
-                } else {
-                    ("period", place)
+                let wave = match kind.turns() {
+                    true => positive("N", p, &NamedUnit::usual(Dimension::DIMENSIONLESS)),
+                    false => positive("period", p, place),
                 };
                 vec![Constant {
                     range: (0.7 * p, 1.4 * p),
-                    ..positive(stem, p, unit, per_place)
+                    ..wave
                 }]
             }
             Self::Bump(centre, width) | Self::Step(centre, width) => vec![
                 Constant {
                     range: (seen.place.0, seen.place.1),
-                    ..positive("x0", centre, place, per_place)
+                    ..positive("x0", centre, place)
                 },
-                positive("width", width, place, per_place),
+                positive("width", width, place),
             ],
         }
     }

@@ -9,6 +9,7 @@
 //! does what any change has in common with every course, which is the same rows backwards. Guards are taken to act when they
 //! do without the force.
 
+use super::site::PROBE;
 use crate::dense::{SIDE_BY_SIDE, add_product, set_product, set_products};
 use crate::diagnosis::projection::dot;
 use crate::gain::Observer;
@@ -74,9 +75,6 @@ impl Passage {
         }
     }
 }
-
-/// The probe's sizes: force, by place, by speed.
-pub(crate) const PROBE: [&str; 3] = ["force", "by_place", "by_speed"];
 
 impl Carrier {
     /// Runs the observer along a record; `p` sets the stage's parameters, `path` is that of the probe's instance.

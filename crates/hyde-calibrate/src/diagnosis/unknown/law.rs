@@ -107,7 +107,7 @@ impl Law {
     /// The law as an effect of that name, and what a search may vary of it. Sizes are declared 0, where the effect is
     /// nothing, or with their values.
     pub(crate) fn written(&self, name: &str, with_sizes: bool) -> (Written, Hypothesis) {
-        let kind = self.site.kind;
+        let kind = &self.site.kind;
         let scales = self.seen.scales();
         let mut text = String::new();
         let (mut sizes, mut shapes) = (Vec::new(), Vec::new());
@@ -115,21 +115,15 @@ impl Law {
         let mut sum: Vec<String> = Vec::new();
         let mut used = [false; 3];
         let mut signature: Vec<String> = Vec::new();
-        let mut stems: Vec<&'static str> = Vec::new();
+        let mut taken = kind.taken.clone();
         let single = self.terms.len() == 1;
-        let words = kind.words();
-        let (size_stem, unit) = words.value;
+        let unit = &kind.value;
         for (number, term) in self.terms.iter().enumerate() {
             let mut products = vec![String::new()];
             for factor in &term.factors {
                 let mut names = Vec::new();
                 for constant in factor.written(kind, &self.seen) {
-                    let again = stems.iter().filter(|stem| **stem == constant.stem).count();
-                    stems.push(constant.stem);
-                    let own = match again {
-                        0 => constant.stem.to_owned(),
-                        more => format!("{}{}", constant.stem, more + 1),
-                    };
+                    let own = taken.free(constant.stem);
                     let _ = writeln!(
                         text,
                         "  shape Real {own} = {} in {};",
@@ -160,7 +154,7 @@ impl Law {
                     .collect();
             }
             for (which, product) in products.iter().enumerate() {
-                let mut own = size_stem.to_owned();
+                let mut own = kind.size.clone();
                 if !single {
                     let _ = write!(own, "{}", number + 1);
                 }
@@ -184,23 +178,22 @@ impl Law {
                     value: 0.0,
                     range: (-most, most),
                     integer: false,
-                    unit: named(unit),
+                    unit: unit.clone(),
                 });
                 sum.push(format!("{own}{product}"));
             }
         }
-        let (speed_name, (speed, per_speed)) = words.speed;
-        let (_, (place, per_place)) = words.place;
+        let second = NamedUnit::usual(Dimension::TIME);
         let units = [
-            (format!("{speed_name}1"), scales.speed * per_speed, speed),
-            ("x1".to_owned(), scales.place * per_place, place),
-            ("t1".to_owned(), scales.time, "s"),
+            (&kind.speed.round, scales.speed, &kind.speed.unit),
+            (&kind.place.round, scales.place, &kind.place.unit),
+            (&kind.round_time, scales.time, &second),
         ];
         for ((own, value, unit), _) in units.iter().zip(used).filter(|(_, used)| *used) {
             let _ = writeln!(
                 text,
                 "  parameter Real {own} = {} [{unit}] \"only a unit for the sizes\";",
-                significant(*value, 3)
+                significant(unit.unit().from_si(*value), 3)
             );
         }
         text.push_str(&declared);
@@ -218,7 +211,7 @@ impl Law {
         }
         let text = format!(
             "effect {name} on {} \"found in records, in no library\"\n{text}end {name};\n",
-            words.host
+            kind.host
         );
         let written = Written {
             name: name.to_owned(),
@@ -239,7 +232,7 @@ impl Law {
 }
 
 /// The mark that a shape leaves.
-fn mark(factor: Factor, kind: Kind, names: &[String]) -> String {
+fn mark(factor: Factor, kind: &Kind, names: &[String]) -> String {
     let first = names.first().map_or("", String::as_str);
     match factor {
         Factor::Speed
@@ -274,26 +267,22 @@ fn knob(name: &str, constant: &Constant) -> Knob {
         value: constant.value,
         range: constant.range,
         integer: false,
-        unit: named(constant.unit),
+        unit: constant.unit.clone(),
     }
 }
 
-fn named(unit: &str) -> NamedUnit {
-    NamedUnit::parse(unit).unwrap_or_else(|_| NamedUnit::usual(Dimension::DIMENSIONLESS))
-}
-
 fn quantity(value: f64, constant: &Constant) -> String {
-    let number = significant(value * constant.per_si, 6);
-    match constant.unit {
+    let number = significant(constant.unit.unit().from_si(value), 6);
+    match constant.unit.text() {
         "1" => number,
         unit => format!("{number} [{unit}]"),
     }
 }
 
 fn range(constant: &Constant) -> String {
-    let number = |value: f64| significant(value * constant.per_si, 6);
+    let number = |value: f64| significant(constant.unit.unit().from_si(value), 6);
     let (low, high) = (number(constant.range.0), number(constant.range.1));
-    match constant.unit {
+    match constant.unit.text() {
         "1" => format!("{low} .. {high}"),
         unit => format!("{low} .. {high} [{unit}]"),
     }

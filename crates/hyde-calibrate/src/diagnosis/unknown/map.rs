@@ -30,11 +30,11 @@ pub enum Variable {
 impl Variable {
     /// Its name in reports, at a kind of site.
     #[must_use]
-    pub fn name(self, kind: Kind) -> String {
+    pub fn name(self, kind: &Kind) -> String {
         let [place, speed] = kind.variables();
         match self {
-            Self::Speed => speed.to_owned(),
-            Self::Place => place.to_owned(),
+            Self::Speed => speed,
+            Self::Place => place,
             Self::Turn => "angle in a revolution".to_owned(),
             Self::Time => "time".to_owned(),
             Self::SpeedByPlace => format!("{speed} times {place}"),

@@ -281,7 +281,7 @@ fn first_steps(term: &Summand, seen: &Seen, turns: bool) -> Vec<f64> {
 
 /// The terms that are tried at a site: shapes of speed times shapes of place or time.
 fn dictionary(felt: &Felt) -> Vec<Summand> {
-    let kind = felt.site.kind;
+    let kind = &felt.site.kind;
     let seen = &felt.seen;
     let parts = |count: i32, least: f64| -> Vec<f64> {
         // From a part of the speed up to it, in equal ratios.
@@ -395,7 +395,7 @@ fn waves(felt: &Felt, count: usize) -> impl Iterator<Item = Factor> {
 
 /// What the best wave over place gains, by itself or times speed; in proportion to speed a friction is a force.
 pub(crate) fn best_wave(felt: &Felt, projection: &Projection) -> f64 {
-    let kind = felt.site.kind;
+    let kind = &felt.site.kind;
     if kind.bends_about_zero() {
         return 0.0;
     }

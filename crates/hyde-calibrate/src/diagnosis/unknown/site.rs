@@ -1,236 +1,89 @@
-//! [`Site`]: a place where an unwritten law may act, and the words that the language has for it there.
+//! [`Site`]: a place where an unwritten law may act, and the words that the language has for it there. All of it follows
+//! from what the model declares at the site: `site Force grip = F over (place = a.s, slip = v);`.
 
-/// A kind of place: a force or torque on a connector, the grip of a friction that sticks, what a spring holds, what a sensor
-/// tells, or what an amplifier is asked for. Place and speed are those of the site; of a spring its stretch and how fast that
-/// grows, of an amplifier the demand and how fast its current changes ([`Kind::variables`]).
+use hyde_units::{Dimension, NamedUnit};
+
+/// What a law of a site is, by the roles of its two variables: a place and its speed, or what stands for them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Kind {
-    /// A force on what slides.
-    Rail,
-    /// A torque on what turns.
-    Flange,
-    /// The Coulomb force of a guideway: against the motion, whatever its sign.
-    Guide,
-    /// The Coulomb torque of a bearing.
-    Bearing,
-    /// The torque of a belt.
-    Belt,
-    /// The torque of an elastic joint of two shafts.
-    Joint,
-    /// The force of an elastic contact.
-    Contact,
-    /// What a position sensor reads.
-    Scale,
-    /// What an angle sensor reads.
-    Encoder,
-    /// The voltage of a tachogenerator.
-    Tacho,
-    /// The demand that reaches a current amplifier.
-    Amplifier,
+pub enum LawForm {
+    /// `place` and `speed`: a force on what moves, the error of a sensor.
+    Motion,
+    /// `place` and `slip`: the size of a friction, its sign that of the motion.
+    Friction,
+    /// `stretch` and `rate`: what is elastic.
+    Elastic,
+    /// `demand` and `rate`: what an amplifier is asked for, and how fast that which follows it changes.
+    Demand,
 }
 
-/// The words of the language at a kind of place. Units are as they are written, with how many of them an SI unit is.
-#[derive(Clone, Copy, Debug)]
-pub struct Words {
+/// What a law is added to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum LawTarget {
+    /// The flow of a connector, by name.
+    Flow(String),
+    /// A value of a component.
+    Value {
+        /// Its name.
+        name: String,
+        /// The value that holds a friction at rest: it takes the same law.
+        hold: Option<String>,
+        /// Whether it is an output, as the reading of a sensor is.
+        output: bool,
+    },
+}
+
+/// A variable of a law as the site's class declares it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LawVariable {
+    /// The variable, `a.s`.
+    pub name: String,
+    /// Whether it is the derivative of that.
+    pub derivative: bool,
+    /// The unit of its values as they are shown to people.
+    pub unit: NamedUnit,
+}
+
+/// A variable as the text of a law names it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Named {
+    /// Its name there.
+    pub(crate) text: String,
+    /// What it is, where the law has to declare it.
+    definition: Option<String>,
+    /// The unit in which its constants are written.
+    pub(crate) unit: NamedUnit,
+    /// What a round value of it is called there.
+    pub(crate) round: String,
+}
+
+/// What is declared at a site: what a law there is added to, and of what it is a function.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Kind {
+    form: LawForm,
+    target: LawTarget,
     /// What an effect there is on.
-    pub(crate) host: &'static str,
-    /// What the law is.
-    pub what: &'static str,
-    /// What a size of the law is called, and its unit.
-    pub(crate) value: (&'static str, &'static str),
-    /// The place as the law's text names it, and its unit.
-    pub(crate) place: (&'static str, (&'static str, f64)),
-    /// The speed as the law's text names it, and its unit.
-    pub(crate) speed: (&'static str, (&'static str, f64)),
+    pub(crate) host: String,
+    /// What a size of a law is called.
+    pub(crate) size: String,
+    /// The SI unit of a law.
+    pub(crate) value: NamedUnit,
+    pub(crate) place: Named,
+    pub(crate) speed: Named,
+    /// What a round time is called.
+    pub(crate) round_time: String,
+    /// The names that a law must not give to anything of its own.
+    pub(crate) taken: Taken,
 }
 
 /// A place where a law may act.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Site {
-    /// What kind of place it is.
+    /// What is declared there.
     pub kind: Kind,
     /// Path of the instance.
     pub path: String,
     /// Other connectors that are the same site.
     pub aliases: Vec<String>,
-}
-
-impl Kind {
-    /// The kind of the type that an effect is on: its package and its name; `None` for all others.
-    #[must_use]
-    pub fn of(package: &str, host: &str) -> Option<Self> {
-        match (package, host.rsplit('.').next().unwrap_or(host)) {
-            ("Translational", "Rail") => Some(Self::Rail),
-            ("Rotational", "Flange") => Some(Self::Flange),
-            ("Translational", "Guide") => Some(Self::Guide),
-            ("Rotational", "Friction") => Some(Self::Bearing),
-            ("Drives", "Belt") => Some(Self::Belt),
-            ("Rotational", "SpringDamper") => Some(Self::Joint),
-            ("Translational", "Contact") => Some(Self::Contact),
-            ("Translational", "PositionSensor") => Some(Self::Scale),
-            ("Rotational", "AngleSensor") => Some(Self::Encoder),
-            ("Drives.Control", "Tachogenerator") => Some(Self::Tacho),
-            ("Electrical", "CurrentControl") => Some(Self::Amplifier),
-            _ => None,
-        }
-    }
-
-    /// Whether the law is of the size of a friction, its sign that of the motion.
-    #[must_use]
-    pub fn is_grip(self) -> bool {
-        matches!(self, Self::Guide | Self::Bearing)
-    }
-
-    /// Whether the law bends about where the site's place is 0, as that of a spring does, and no wave goes along it.
-    #[must_use]
-    pub fn bends_about_zero(self) -> bool {
-        matches!(
-            self,
-            Self::Belt | Self::Joint | Self::Contact | Self::Amplifier
-        )
-    }
-
-    /// What place and speed of the site are.
-    #[must_use]
-    pub fn variables(self) -> [&'static str; 2] {
-        match self {
-            Self::Rail
-            | Self::Flange
-            | Self::Guide
-            | Self::Bearing
-            | Self::Scale
-            | Self::Encoder
-            | Self::Tacho => ["place", "speed"],
-            Self::Belt | Self::Joint | Self::Contact => ["stretch", "rate of stretch"],
-            Self::Amplifier => ["demand", "rate of current"],
-        }
-    }
-
-    /// Whether it turns.
-    #[must_use]
-    pub fn turns(self) -> bool {
-        match self {
-            Self::Rail | Self::Guide | Self::Contact | Self::Scale | Self::Amplifier => false,
-            Self::Flange
-            | Self::Bearing
-            | Self::Belt
-            | Self::Joint
-            | Self::Encoder
-            | Self::Tacho => true,
-        }
-    }
-
-    /// The SI unit of a force there.
-    #[must_use]
-    pub fn force_unit(self) -> &'static str {
-        si(self.words().value.1)
-    }
-
-    /// The SI unit of its place.
-    #[must_use]
-    pub fn place_unit(self) -> &'static str {
-        si(self.words().place.1.0)
-    }
-
-    /// The SI unit of its speed.
-    #[must_use]
-    pub fn speed_unit(self) -> &'static str {
-        si(self.words().speed.1.0)
-    }
-
-    /// The mark that a law of the place leaves.
-    pub(crate) fn mark_of_place(self) -> &'static str {
-        match self {
-            Self::Rail
-            | Self::Flange
-            | Self::Guide
-            | Self::Bearing
-            | Self::Scale
-            | Self::Encoder
-            | Self::Tacho => "position",
-            Self::Belt | Self::Joint | Self::Contact => "torque",
-            Self::Amplifier => "current",
-        }
-    }
-
-    /// The words of the language for it.
-    #[must_use]
-    pub fn words(self) -> Words {
-        let of = |host, what, value, place, speed| Words {
-            host,
-            what,
-            value,
-            place,
-            speed,
-        };
-        let (mm, mm_s) = (("mm", 1e3), ("mm/s", 1e3));
-        let (rad, rad_s) = (("rad", 1.0), ("rad/s", 1.0));
-        let (mrad, um) = (("mrad", 1e3), ("um", 1e6));
-        let (slides, speed) = (("a.s", mm), ("v", mm_s));
-        let (turns, rate) = (("a.phi", rad), ("w", rad_s));
-        let (force, torque) = (("F", "N"), ("T", "N.m"));
-        match self {
-            Self::Rail => of("Translational.Rail", "a force", force, slides, speed),
-            Self::Guide => of("Translational.Guide", "a force", force, slides, speed),
-            Self::Flange => of("Rotational.Flange", "a torque", torque, turns, rate),
-            Self::Bearing => of("Rotational.Friction", "a torque", torque, turns, rate),
-            // What a spring holds is called T or F already.
-            Self::Belt => of(
-                "Drives.Belt",
-                "a torque",
-                ("M", "N.m"),
-                ("stretch", mrad),
-                rate,
-            ),
-            Self::Joint => {
-                let (host, rate) = ("Rotational.SpringDamper", ("w_rel", rad_s));
-                of(host, "a torque", ("M", "N.m"), ("twist", mrad), rate)
-            }
-            Self::Contact => of(
-                "Translational.Contact",
-                "a force",
-                ("P", "N"),
-                ("e", um),
-                speed,
-            ),
-            Self::Scale => {
-                let host = "Translational.PositionSensor";
-                of(host, "an error", ("e", "m"), slides, speed)
-            }
-            Self::Encoder => {
-                let host = "Rotational.AngleSensor";
-                of(host, "an error", ("e", "rad"), turns, rate)
-            }
-            Self::Tacho => {
-                let host = "Drives.Control.Tachogenerator";
-                of(host, "a voltage", ("U", "V"), turns, rate)
-            }
-            Self::Amplifier => {
-                let (host, demand) = ("Electrical.CurrentControl", ("i_ref", ("A", 1.0)));
-                let rise = ("rise", ("A/s", 1.0));
-                of(host, "a current", ("I", "A"), demand, rise)
-            }
-        }
-    }
-
-    /// The lines that put a law on the site.
-    pub(crate) fn clauses(self, law: &str) -> String {
-        match self {
-            Self::Rail => format!("  add a.f = -({law});\n  Real v = der(a.s);\n"),
-            Self::Flange => format!("  add a.tau = -({law});\n  Real w = der(a.phi);\n"),
-            Self::Guide => format!("  wrap grip by grip + {law};\n  wrap hold by hold + {law};\n"),
-            Self::Bearing => format!("  wrap grip by grip + {law};\n"),
-            Self::Belt => format!("  wrap T by T + {law};\n  Real w = der(stretch);\n"),
-            Self::Joint => format!("  wrap T by T + {law};\n"),
-            Self::Contact => format!("  wrap F by F + {law};\n  Real v = der(e);\n"),
-            Self::Scale => format!("  wrap s by s + {law};\n  Real v = der(a.s);\n"),
-            Self::Encoder => format!("  wrap phi by phi + {law};\n  Real w = der(a.phi);\n"),
-            Self::Tacho => format!("  wrap V6 by V6 + {law};\n"),
-            Self::Amplifier => {
-                format!("  wrap demand by demand + {law};\n  Real rise = der(i);\n")
-            }
-        }
-    }
 }
 
 /// An effect of the language that was written here.
@@ -244,30 +97,259 @@ pub struct Written {
     pub site: String,
 }
 
-/// The SI unit of what is written in one of the units of [`Words`].
-pub(crate) fn si(unit: &'static str) -> &'static str {
-    match unit {
-        "mm" | "um" => "m",
-        "mm/s" => "m/s",
-        "mrad" => "rad",
-        other => other,
+impl Kind {
+    /// What is declared: the class of the site, what a law is and is added to, its dimension, and its two variables.
+    #[must_use]
+    pub fn new(
+        host: String,
+        form: LawForm,
+        target: LawTarget,
+        dimension: Dimension,
+        [place, speed]: [LawVariable; 2],
+    ) -> Self {
+        let mut taken = Taken::of(&target, [&place, &speed]);
+        let value = NamedUnit::usual(dimension);
+        let sizes: &[&str] = match value.text() {
+            "N" => &["F", "P"],
+            "N.m" => &["T", "M"],
+            "V" => &["U"],
+            "A" => &["I"],
+            "m" | "rad" => &["e"],
+            _ => &["k"],
+        };
+        let inside = matches!(target, LawTarget::Flow(_));
+        let fine = form == LawForm::Elastic;
+        let rate = match speed.unit.si().text() {
+            "m/s" => "v",
+            "rad/s" => "w",
+            _ => "rate",
+        };
+        Self {
+            size: taken.stem(sizes),
+            place: Named::new(place, "x", inside, fine, &mut taken),
+            speed: Named::new(speed, rate, inside, false, &mut taken),
+            round_time: taken.free("t1"),
+            taken,
+            form,
+            target,
+            host,
+            value,
+        }
+    }
+
+    /// Whether the law is of the size of a friction, its sign that of the motion.
+    #[must_use]
+    pub fn is_grip(&self) -> bool {
+        self.form == LawForm::Friction
+    }
+
+    /// Whether the law bends about where the site's place is 0, as that of a spring does, and no wave goes along it.
+    #[must_use]
+    pub fn bends_about_zero(&self) -> bool {
+        matches!(self.form, LawForm::Elastic | LawForm::Demand)
+    }
+
+    /// What place and speed of the site are.
+    #[must_use]
+    pub fn variables(&self) -> [String; 2] {
+        let [place, speed] = match self.form {
+            LawForm::Motion | LawForm::Friction => ["place", "speed"],
+            LawForm::Elastic => ["stretch", "rate of stretch"],
+            LawForm::Demand => match self.noun() {
+                Some(noun) => return ["demand".to_owned(), format!("rate of {noun}")],
+                None => ["demand", "rate"],
+            },
+        };
+        [place, speed].map(str::to_owned)
+    }
+
+    /// What a law there is: `a force`.
+    #[must_use]
+    pub fn what(&self) -> String {
+        match self.noun() {
+            Some(noun) => format!("a {noun}"),
+            None if self.is_reading() => "an error".to_owned(),
+            None => "a change".to_owned(),
+        }
+    }
+
+    /// What the axis of a figure over which a law is drawn is called.
+    #[must_use]
+    pub fn axis(&self) -> String {
+        match (self.form, self.noun()) {
+            (LawForm::Friction, Some(noun)) => format!("friction {noun}"),
+            (_, Some(noun)) if self.is_reading() => format!("{noun} error"),
+            (_, None) if self.is_reading() => "reading error".to_owned(),
+            (_, Some(noun)) => noun.to_owned(),
+            (LawForm::Friction, None) => "friction".to_owned(),
+            (_, None) => "change".to_owned(),
+        }
+    }
+
+    /// Which way a positive law acts: a sentence.
+    #[must_use]
+    pub fn sign(&self) -> &'static str {
+        match (&self.target, self.form) {
+            (_, LawForm::Friction) => "Positive values act against the motion.",
+            (LawTarget::Flow(_), _) => "Positive values drive in the positive direction.",
+            (LawTarget::Value { .. }, _) => "Positive values add to what the declared model has.",
+        }
+    }
+
+    fn noun(&self) -> Option<&'static str> {
+        match self.value.text() {
+            "N" => Some("force"),
+            "N.m" => Some("torque"),
+            "V" => Some("voltage"),
+            "A" => Some("current"),
+            _ => None,
+        }
+    }
+
+    /// Whether it is what a sensor tells.
+    fn is_reading(&self) -> bool {
+        let output = matches!(self.target, LawTarget::Value { output: true, .. });
+        output && self.form == LawForm::Motion
+    }
+
+    /// Whether its place is an angle.
+    #[must_use]
+    pub fn turns(&self) -> bool {
+        self.place.unit.unit().dimension == Dimension::ANGLE
+    }
+
+    /// The SI unit of a force there.
+    #[must_use]
+    pub fn force_unit(&self) -> String {
+        self.value.text().to_owned()
+    }
+
+    /// The SI unit of its place.
+    #[must_use]
+    pub fn place_unit(&self) -> String {
+        self.place.unit.si().text().to_owned()
+    }
+
+    /// The SI unit of its speed.
+    #[must_use]
+    pub fn speed_unit(&self) -> String {
+        self.speed.unit.si().text().to_owned()
+    }
+
+    /// The mark that a law of the place leaves.
+    pub(crate) fn mark_of_place(&self) -> &'static str {
+        match self.form {
+            LawForm::Motion | LawForm::Friction => "position",
+            LawForm::Elastic => "torque",
+            LawForm::Demand => "current",
+        }
+    }
+
+    /// The lines that put a law on the site.
+    pub(crate) fn clauses(&self, law: &str) -> String {
+        let mut text = match &self.target {
+            LawTarget::Flow(flow) => format!("  add a.{flow} = -({law});\n"),
+            LawTarget::Value { name, hold, .. } => {
+                let wrapped = std::iter::once(name).chain(hold);
+                wrapped
+                    .map(|value| format!("  wrap {value} by {value} + {law};\n"))
+                    .collect()
+            }
+        };
+        for variable in [&self.place, &self.speed] {
+            if let Some(definition) = &variable.definition {
+                text.push_str(&format!("  Real {} = {definition};\n", variable.text));
+            }
+        }
+        text
+    }
+}
+
+impl Named {
+    /// How a law names a variable; one that it has to declare is called `own`. In a connector, `inside`, names are those of
+    /// the connector `a` of the effect.
+    fn new(variable: LawVariable, own: &str, inside: bool, fine: bool, taken: &mut Taken) -> Self {
+        let name = match inside {
+            true => format!("a.{}", variable.name),
+            false => variable.name,
+        };
+        let (text, definition) = match variable.derivative {
+            true => (taken.free(own), Some(format!("der({name})"))),
+            false => (name, None),
+        };
+        Self {
+            round: taken.free(&format!("{own}1")),
+            unit: usual_on_drives(variable.unit, fine),
+            text,
+            definition,
+        }
+    }
+}
+
+/// The unit in which people who build drives write a quantity: that of its declaration, or of what is declared in the units
+/// of SI a usual part of it; a stretch is small.
+fn usual_on_drives(declared: NamedUnit, small: bool) -> NamedUnit {
+    let text = match (declared.text(), small) {
+        ("m", false) => "mm",
+        ("m", true) => "um",
+        ("rad", true) => "mrad",
+        ("m/s", _) => "mm/s",
+        _ => return declared,
+    };
+    NamedUnit::parse(text).unwrap_or(declared)
+}
+
+/// The names that the text of a law has already.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Taken(Vec<String>);
+
+impl Taken {
+    /// Those that the site itself needs.
+    fn of(target: &LawTarget, variables: [&LawVariable; 2]) -> Self {
+        let mut words: Vec<String> = ["a", "time", "pi"].map(str::to_owned).to_vec();
+        if let LawTarget::Value { name, hold, .. } = target {
+            words.push(name.clone());
+            words.extend(hold.clone());
+        }
+        for variable in variables {
+            words.extend(variable.name.split('.').next().map(str::to_owned));
+        }
+        Self(words)
+    }
+
+    /// A name, or the same with a number where that is taken; it is taken then.
+    pub(crate) fn free(&mut self, name: &str) -> String {
+        let numbered = (2..).map(|number| format!("{name}{number}"));
+        let mut all = std::iter::once(name.to_owned()).chain(numbered);
+        let free = all.find(|name| !self.0.contains(name)).unwrap_or_default();
+        self.0.push(free.clone());
+        free
+    }
+
+    /// The first of some words with which no name begins, or the last one with a number.
+    fn stem(&self, words: &[&str]) -> String {
+        let last = words.last().unwrap_or(&"k");
+        let numbered = (2..).map(|number| format!("{last}{number}"));
+        let mut all = words.iter().map(|word| (*word).to_owned()).chain(numbered);
+        let is_free = |word: &String| !self.0.iter().any(|name| name.starts_with(word.as_str()));
+        all.find(is_free).unwrap_or_default()
     }
 }
 
 /// An effect by which a force at a site is felt, or a sensor's error: its sizes are the force, and forces a unit of
 /// place and of speed.
 pub(crate) fn probe(site: &Site, name: &str) -> Written {
-    let kind = site.kind;
-    let words = kind.words();
-    let ((_, unit), (place, (of_place, _)), (speed, (of_speed, _))) =
-        (words.value, words.place, words.speed);
-    let (of_place, of_speed) = (si(of_place), si(of_speed));
-    let law =
-        format!("(force + by_place*{place}/(1 [{of_place}]) + by_speed*{speed}/(1 [{of_speed}]))");
+    let kind = &site.kind;
+    let (unit, of_place, of_speed) = (kind.force_unit(), kind.place_unit(), kind.speed_unit());
+    let (place, speed) = (&kind.place.text, &kind.speed.text);
+    let [force, by_place, by_speed] = PROBE;
+    let law = format!(
+        "({force} + {by_place}*{place}/(1 [{of_place}]) + {by_speed}*{speed}/(1 [{of_speed}]))"
+    );
     let size = format!("= 0 [{unit}] in -1 .. 1 [{unit}]");
     let text = format!(
-        "effect {name} on {}\n  size Real force {size}, by_place {size}, by_speed {size};\n{}end {name};\n",
-        words.host,
+        "effect {name} on {}\n  size Real {force} {size}, {by_place} {size}, {by_speed} {size};\n{}end {name};\n",
+        kind.host,
         kind.clauses(&law)
     );
     Written {
@@ -276,3 +358,6 @@ pub(crate) fn probe(site: &Site, name: &str) -> Written {
         site: site.path.clone(),
     }
 }
+
+/// The probe's sizes: force, by place, by speed. No variable of a site is likely to be called so.
+pub(crate) const PROBE: [&str; 3] = ["probe_force", "probe_by_place", "probe_by_speed"];
