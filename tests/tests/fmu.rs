@@ -233,7 +233,7 @@ fn expectations_and_measures_are_in_the_fmu() {
 }
 
 #[test]
-fn without_a_run_there_are_no_reference_results() {
+fn reference_results_end_with_the_run_and_after_1000_rows() {
     let folder = tempfile::tempdir().unwrap();
     let out = folder.path().join("x.fmu").to_string_lossy().into_owned();
     let said = |arguments: &[&str]| {
@@ -244,8 +244,13 @@ fn without_a_run_there_are_no_reference_results() {
     };
     let crushed = said(&[MODELS, "crushed"]);
     assert!(crushed.contains("no reference results: E0704"), "{crushed}");
+    let long = said(&["examples/y_axis/axis.hyde", "positioning"]);
+    assert!(
+        long.contains("reference results: the run to 1 s;"),
+        "{long}"
+    );
     for without in [
-        said(&[MODELS, "stepped", "--no-reference"]),
+        said(&[MODELS, "stepped", "--reference", "none"]),
         said(&[MODELS, "--model", "Lag"]),
     ] {
         assert!(!without.contains("reference results"), "{without}");

@@ -11,7 +11,7 @@ pub(crate) use batch::{Engine, SweepArgs, TableFormat};
 pub(crate) use editor::{ExplainArgs, FmtArgs, LiveArgs, LspArgs, McpArgs};
 pub(crate) use excite::{Criterion, ExciteArgs, SignalFormat, SignalName};
 pub(crate) use export::{
-    CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, ModelicaArgs, StateSpaceArgs,
+    CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, ModelicaArgs, ReferenceRun, StateSpaceArgs,
 };
 pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 pub(crate) use traces::{LookArgs, NewArgs, TemplateName};

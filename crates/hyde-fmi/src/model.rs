@@ -149,7 +149,7 @@ impl Model {
         &self.project
     }
 
-    /// Runs the experiment, for the outputs that are named. `interrupted` ends the run from outside, and `reached` tells how far
+    /// Runs the experiment, for the outputs that are named, to its stop or for so many rows. `interrupted` ends the run from outside, and `reached` tells how far
     /// it is.
     ///
     /// # Errors
@@ -157,11 +157,17 @@ impl Model {
     pub fn run(
         &self,
         outputs: &[&str],
+        rows: Option<u32>,
         interrupted: Arc<AtomicBool>,
         reached: Arc<Reached>,
     ) -> Result<Run, RunError> {
+        let setup = self.setup(None, None, None)?;
+        let every_s = self.every_s().filter(|every_s| *every_s > 0.0);
+        let until_s = rows.zip(every_s);
+        let until_s = until_s.map(|(rows, every_s)| setup.start_s + f64::from(rows) * every_s);
         let options = Options {
             set: self.set.clone(),
+            stop_s: until_s.filter(|until_s| *until_s < setup.stop_s),
             interrupted,
             reached,
             ..Options::default()
@@ -181,7 +187,6 @@ impl Model {
     /// Why it cannot be run.
     pub fn described(&self, identifier: &str, token: String) -> Result<Described<'_>, RunError> {
         let setup = self.setup(None, None, None)?;
-        let every = hyde_program::Constant::Every;
         Ok(Described {
             interface: &self.interface,
             name: self.program.name.clone(),
@@ -190,8 +195,14 @@ impl Model {
             token,
             times: (setup.start_s, setup.stop_s),
             tolerances: (setup.rtol, setup.atol),
-            every_s: self.program.kernels.constant(every, &self.parameters),
+            every_s: self.every_s(),
         })
+    }
+
+    /// The time between two rows of the experiment in s, if it says one.
+    fn every_s(&self) -> Option<f64> {
+        let every = hyde_program::Constant::Every;
+        self.program.kernels.constant(every, &self.parameters)
     }
 
     /// What an absolute tolerance is to be, over the relative one.

@@ -17,10 +17,12 @@ use std::fmt::Write as _;
 const FOLDER: &str = "extra/org.fmi-standard.fmi-ls-ref";
 
 /// Files of an FMU that say what it is expected to compute.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reference {
     /// Each with its place in the archive.
     pub(crate) files: Vec<(String, String)>,
+    /// Where the run ended, in s, if that is before the stop of the experiment. There are no expectations then.
+    pub until_s: Option<f64>,
 }
 
 impl Reference {
@@ -59,7 +61,9 @@ impl Reference {
             "experiment/smoke-test",
             about,
         ));
-        if let Some(text) = expectations(program, run, experiment) {
+        let until_s = (run.stop_s < described.times.1).then_some(run.stop_s);
+        let expected = expectations(program, run, experiment).filter(|_| until_s.is_none());
+        if let Some(text) = expected {
             let name = format!("{experiment}_expect.json");
             files.push((name.clone(), text));
             let about = "expectations and measures of the experiment";
@@ -70,6 +74,7 @@ impl Reference {
         let placed = placed.map(|(name, text)| (format!("{FOLDER}/{name}"), text));
         Self {
             files: placed.collect(),
+            until_s,
         }
     }
 }

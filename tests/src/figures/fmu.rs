@@ -1,5 +1,5 @@
 //! `fmu_deviation`, `fmu_event_time_error_us` and `fmu_export_s`: FMUs in FMPy against the run of their experiment, and how long
-//! an export without reference results takes.
+//! an export takes.
 
 use super::clock::now;
 use super::process::released;
@@ -53,14 +53,7 @@ pub(super) const EXPORT: Figure = Figure {
         let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
         let start = now();
         let mut export = Command::new(hyde);
-        export.args([
-            "export",
-            "fmu",
-            START.0,
-            START.1,
-            "--quiet",
-            "--no-reference",
-        ]);
+        export.args(["export", "fmu", START.0, START.1, "--quiet"]);
         export.arg("--out");
         succeed(export.arg(folder.path().join("axis.fmu")))?;
         Ok(Measured::Value(start.elapsed().as_secs_f64()))

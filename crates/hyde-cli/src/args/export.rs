@@ -24,6 +24,17 @@ pub(crate) enum ExportKind {
     StateSpace(StateSpaceArgs),
 }
 
+/// How much of an experiment is run for the reference results of an FMU.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ReferenceRun {
+    /// Nothing: the FMU has no reference results
+    None,
+    /// Its first 1000 rows; expectations only if that is all of it
+    First,
+    /// All of it, with its expectations
+    Whole,
+}
+
 #[derive(Debug, Args)]
 pub(crate) struct FmuArgs {
     #[command(flatten)]
@@ -40,9 +51,9 @@ pub(crate) struct FmuArgs {
     /// Put the source text of the model into the FMU, for people to read
     #[arg(long)]
     pub(crate) with_source: bool,
-    /// Do not run the experiment for reference results in the FMU
-    #[arg(long)]
-    pub(crate) no_reference: bool,
+    /// How much of the experiment to run for reference results in the FMU
+    #[arg(long, value_enum, default_value_t = ReferenceRun::First)]
+    pub(crate) reference: ReferenceRun,
     /// File of the FMU [default: the model and the experiment, `Axis_positioning.fmu`]
     #[arg(long, value_name = "PATH")]
     pub(crate) out: Option<PathBuf>,

@@ -2,7 +2,7 @@
 //! runs.
 
 use super::identifier;
-use crate::args::{FmiVersion, FmuArgs};
+use crate::args::{FmiVersion, FmuArgs, ReferenceRun};
 use crate::commands::run;
 use crate::exit::Exit;
 use crate::files;
@@ -91,6 +91,9 @@ fn written(args: &FmuArgs) -> Result<String, Exit> {
     })
 }
 
+/// So many rows of an experiment are reference results, if not all are asked for: an export takes less than a second.
+const REFERENCE_ROWS: u32 = 1000;
+
 /// The reference results of an FMU, if it is to have any; or why its experiment has none.
 type Referenced = Result<Option<Reference>, String>;
 
@@ -99,9 +102,11 @@ fn reference(args: &FmuArgs, model: &Model, described: &Described<'_>) -> Result
     let Some(experiment) = model.project().experiment.as_deref() else {
         return Ok(Ok(None));
     };
-    if args.no_reference {
-        return Ok(Ok(None));
-    }
+    let rows = match args.reference {
+        ReferenceRun::None => return Ok(Ok(None)),
+        ReferenceRun::First => Some(REFERENCE_ROWS),
+        ReferenceRun::Whole => None,
+    };
     let driven = match args.input.is_empty() {
         true => None,
         false => {
@@ -123,7 +128,7 @@ fn reference(args: &FmuArgs, model: &Model, described: &Described<'_>) -> Result
     let interrupted = interruption::interrupted();
     let reached = Arc::<Reached>::default();
     let watch = run::watch(args.model.json || args.model.quiet, &reached);
-    let run = driven.run(&names, Arc::clone(&interrupted), reached);
+    let run = driven.run(&names, rows, Arc::clone(&interrupted), reached);
     drop(watch);
     if interrupted.load(Ordering::Relaxed) {
         return Err(Exit::Interrupted);
@@ -235,7 +240,13 @@ fn told(
         ));
     }
     match reference {
-        Ok(Some(_)) => lines.push("  reference results: the run of the experiment".to_owned()),
+        Ok(Some(reference)) => lines.push(match reference.until_s {
+            None => "  reference results: the run of the experiment".to_owned(),
+            Some(until_s) => format!(
+                "  reference results: the run to {} s; --reference whole: all, with expectations",
+                hyde_units::significant(until_s, 6)
+            ),
+        }),
         Ok(None) => {}
         Err(reason) => {
             // The whole of it is what `hyde run` says.
@@ -275,6 +286,7 @@ fn told_as_json(
         "states": interface.states.len(),
         "differentiated_inputs": model.program.experiment.differentiated,
         "reference_results": matches!(reference, Ok(Some(_))),
+        "reference_until_s": reference.as_ref().ok().and_then(|r| r.as_ref()?.until_s),
         "no_reference_results": reference.as_ref().err(),
     })
 }
