@@ -97,13 +97,24 @@ fn header_cell(column: &Written<'_>) -> String {
     cell.into_owned()
 }
 
-/// The shortest digits: by `zmij` where they have no power of ten, else by `{:?}`; `1.0` is cut to `1`.
+/// The shortest digits, as `{:?}` has them; `1.0` is cut to `1`.
 fn push_number(text: &mut String, value: f64) {
-    if (1e-4..1e16).contains(&value.abs()) || value == 0.0 {
-        text.push_str(zmij::Buffer::new().format(value));
-    } else {
+    // `zmij` is quicker, but writes these without a power of ten.
+    if (1e-6..1e-4).contains(&value.abs()) {
         // Writing to a string cannot fail.
         let _ = write!(text, "{value:?}");
+    } else {
+        let mut buffer = zmij::Buffer::new();
+        let number = buffer.format(value);
+        match number.split_once('e') {
+            None => text.push_str(number),
+            // `1e+16`, `1e-07`
+            Some((digits, power)) => {
+                text.push_str(digits);
+                text.push_str(if power.starts_with('-') { "e-" } else { "e" });
+                text.push_str(power.trim_start_matches(['+', '-', '0']));
+            }
+        }
     }
     if text.ends_with(".0") {
         text.truncate(text.len() - 2);
