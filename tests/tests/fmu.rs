@@ -222,7 +222,7 @@ fn an_fmu_holds_the_results_of_its_experiment_which_an_importer_repeats() {
 
 #[test]
 fn expectations_and_measures_are_in_the_fmu() {
-    let asked = ["examples/first/first.hyde", "push"];
+    let asked = ["examples/first/first.hyde", "push", "--reference", "whole"];
     let Some(found) = reference(&asked, "push") else {
         return;
     };
