@@ -68,6 +68,6 @@ pub use scan::Score;
 pub use search::{Diagnosis, Gates, Round, Verdict, diagnose};
 pub use trial::{Rejection, Trial};
 pub use unknown::{
-    Factor, FoundLaw, Kind, LatentForce, Law, LawForm, LawTarget, LawVariable, Map, Panel, Scales,
-    Seen, Site, Summand, Unknown, Variable, Written,
+    Factor, FoundLaw, Kind, LatentForce, Law, LawVariable, Map, Panel, Scales, Seen, Site, Summand,
+    Unknown, Variable, Written,
 };

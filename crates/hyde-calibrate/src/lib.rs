@@ -72,9 +72,9 @@ mod windows;
 pub use blocks::Fold;
 pub use diagnosis::{
     Alternative, Author, Built, CurvePoint, Diagnosis, Experiment, Factor, Finding, FoundCurve,
-    FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, LawForm,
-    LawTarget, LawVariable, Map, Over, Panel, Quantity, Rejection, Round, Scales, Score, Seen,
-    Site, Summand, Trial, Unknown, Variable, Verdict, Written, diagnose,
+    FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, LawVariable,
+    Map, Over, Panel, Quantity, Rejection, Round, Scales, Score, Seen, Site, Summand, Trial,
+    Unknown, Variable, Verdict, Written, diagnose,
 };
 pub use even_rows::Uneven;
 pub use fit::{ChannelError, Fit, FittedParameter, fit, fitted_parameters};

@@ -2,8 +2,7 @@
 
 use crate::diagnosis::wrapped;
 use hyde_calibrate::{
-    Built, Diagnosis, FoundLaw, Kind, LawForm, LawTarget, LawVariable, Map, Panel, Site, Summand,
-    Unknown, Written,
+    Built, Diagnosis, FoundLaw, Kind, LawVariable, Map, Panel, Site, Summand, Unknown, Written,
 };
 use hyde_compiler::{Additions, Candidate, Request};
 use hyde_diag::{Diagnostics, Severity};
@@ -14,17 +13,6 @@ use std::fmt::Write as _;
 
 /// A site of a model where a law may act, as a diagnosis takes it.
 pub(crate) fn site(declared: hyde_compiler::LawSite) -> Site {
-    use hyde_compiler::{LawForm as OfModel, LawTarget as AddedTo};
-    let form = match declared.form {
-        OfModel::Motion => LawForm::Motion,
-        OfModel::Friction => LawForm::Friction,
-        OfModel::Elastic => LawForm::Elastic,
-        OfModel::Demand => LawForm::Demand,
-    };
-    let target = match declared.target {
-        AddedTo::Flow(name) => LawTarget::Flow(name),
-        AddedTo::Value { name, hold, output } => LawTarget::Value { name, hold, output },
-    };
     let over = declared.over.map(|own| LawVariable {
         unit: match own.derivative {
             true => NamedUnit::usual(own.dimension()),
@@ -34,7 +22,13 @@ pub(crate) fn site(declared: hyde_compiler::LawSite) -> Site {
         derivative: own.derivative,
     });
     Site {
-        kind: Kind::new(declared.host, form, target, declared.dimension, over),
+        kind: Kind::new(
+            declared.host,
+            declared.form,
+            declared.target,
+            declared.dimension,
+            over,
+        ),
         path: declared.path,
         aliases: declared.aliases,
     }

@@ -3,8 +3,7 @@
 use crate::pipeline::{Request, input};
 use hyde_diag::Diagnostics;
 pub use hyde_flatten::{
-    Additions, Candidate, Knob, LawForm, LawSite, LawTarget, LawVariable, Meaning, MeaningOf,
-    ValueOf,
+    Additions, Candidate, Knob, LawSite, LawVariable, Meaning, MeaningOf, ValueOf,
 };
 
 /// Every effect of the files loaded at every site of the model where it fits; `None` if the model has errors.

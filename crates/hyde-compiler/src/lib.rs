@@ -24,8 +24,8 @@ pub use hyde_ir::{Prior, Quantity};
 pub use hyde_jit::Backend;
 pub use ideal::{changed, ideals};
 pub use known::{
-    Additions, Candidate, Knob, LawForm, LawSite, LawTarget, LawVariable, Meaning, MeaningOf,
-    ValueOf, candidates, law_sites, meaning,
+    Additions, Candidate, Knob, LawSite, LawVariable, Meaning, MeaningOf, ValueOf, candidates,
+    law_sites, meaning,
 };
 pub use load::{File, Find, Packages, Place, check_name, load};
 pub use pipeline::{Compiled, Request, analyze, compile, compile_unless, compile_with};

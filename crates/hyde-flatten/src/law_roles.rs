@@ -2,20 +2,8 @@
 
 use crate::names::nearest;
 use hyde_diag::{Code, Diagnostic, Span};
+use hyde_syntax::LawForm;
 use hyde_syntax::ast::{Argument, Declarator, Expr};
-
-/// What a law of a site is, by the roles of its two variables.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LawForm {
-    /// Of a place and its speed: a force, the error of a sensor.
-    Motion,
-    /// Of a place and the speed with which two surfaces slip: a friction, its sign that of the motion.
-    Friction,
-    /// Of a stretch and its rate: what is elastic; it bends about 0.
-    Elastic,
-    /// Of a demand and the rate of what follows it: what an amplifier is asked for; it bends about 0.
-    Demand,
-}
 
 /// The forms, with the roles of their variables.
 const FORMS: [(LawForm, [&str; 2]); 4] = [

@@ -10,7 +10,7 @@
 //! component. What is declared wrongly is reported for every class that the model has.
 
 use crate::instance::{InstanceId, Member};
-use crate::law_roles::{LawForm, Refusal, roles, wrong};
+use crate::law_roles::{Refusal, roles, wrong};
 use crate::model::{Model, listed};
 use crate::names::{FileIndex, nearest};
 use hyde_diag::{Code, Diagnostic, Span};
@@ -19,6 +19,7 @@ use hyde_syntax::ast::{
     Class, ClassBody, ClassKind, Declaration, Declarator, Element, Expr, ExprKind, Prefix,
     Reference,
 };
+use hyde_syntax::{LawForm, LawTarget};
 use hyde_units::{Agreement, Dimension};
 use std::collections::BTreeSet;
 
@@ -31,22 +32,6 @@ pub struct LawVariable {
     pub derivative: bool,
     /// Of the variable that is named: its dimension, and the unit it is declared in.
     pub quantity: Quantity,
-}
-
-/// What a law is added to.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LawTarget {
-    /// The flow of a connector, by name.
-    Flow(String),
-    /// A site, an input or an output of a component.
-    Value {
-        /// Its name.
-        name: String,
-        /// The site that holds a friction at rest.
-        hold: Option<String>,
-        /// Whether it is an output.
-        output: bool,
-    },
 }
 
 /// A site of a model where a law may act.

@@ -46,8 +46,7 @@ pub use additions::Additions;
 pub use call::{FUNCTIONS, usage};
 pub use candidates::{Candidate, Knob};
 pub use foreign::fmu_has_no_equations;
-pub use law_roles::LawForm;
-pub use law_sites::{LawSite, LawTarget, LawVariable};
+pub use law_sites::{LawSite, LawVariable};
 pub use meaning::{Meaning, MeaningOf, ValueOf};
 
 use hyde_diag::{Diagnostics, FileId, Sources};

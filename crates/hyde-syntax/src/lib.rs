@@ -9,6 +9,7 @@ pub mod ast;
 mod format;
 mod grammar;
 mod habits;
+mod law;
 mod lookup;
 mod matcher;
 mod nesting;
@@ -22,6 +23,7 @@ pub use format::{
 };
 pub use grammar::Rule;
 pub use habits::instead_of;
+pub use law::{LawForm, LawTarget};
 pub use lookup::{FileIndex, Lookup, dotted};
 pub use parse::{parse, parse_record};
 pub use recover::{comment_end, string_end};

@@ -36,7 +36,7 @@ pub use law::{Law, Summand};
 pub use map::{Map, Panel, Variable};
 pub(crate) use places::{Answer, Places};
 pub use seen::{Scales, Seen};
-pub use site::{Kind, LawForm, LawTarget, LawVariable, Site, Written};
+pub use site::{Kind, LawVariable, Site, Written};
 pub(crate) use site::{PROBE as PROBE_SIZES, probe};
 
 use super::edges::settled;

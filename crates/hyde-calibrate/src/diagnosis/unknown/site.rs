@@ -1,36 +1,8 @@
 //! [`Site`]: a place where an unwritten law may act, and the words that the language has for it there. All of it follows
 //! from what the model declares at the site: `site Force grip = F over (place = a.s, slip = v);`.
 
+use hyde_syntax::{LawForm, LawTarget};
 use hyde_units::{Dimension, NamedUnit};
-
-/// What a law of a site is, by the roles of its two variables: a place and its speed, or what stands for them.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum LawForm {
-    /// `place` and `speed`: a force on what moves, the error of a sensor.
-    Motion,
-    /// `place` and `slip`: the size of a friction, its sign that of the motion.
-    Friction,
-    /// `stretch` and `rate`: what is elastic.
-    Elastic,
-    /// `demand` and `rate`: what an amplifier is asked for, and how fast that which follows it changes.
-    Demand,
-}
-
-/// What a law is added to.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum LawTarget {
-    /// The flow of a connector, by name.
-    Flow(String),
-    /// A value of a component.
-    Value {
-        /// Its name.
-        name: String,
-        /// The value that holds a friction at rest: it takes the same law.
-        hold: Option<String>,
-        /// Whether it is an output, as the reading of a sensor is.
-        output: bool,
-    },
-}
 
 /// A variable of a law as the site's class declares it.
 #[derive(Clone, Debug, PartialEq)]
