@@ -290,10 +290,7 @@ fn starts(system: &System, dae: &mut Dae) {
             [value] if size > 1 => dae.starts.push(Start {
                 place,
                 range: Range { first: 0, last },
-                index: Index {
-                    stride: 1,
-                    offset: 0,
-                },
+                index: Index::COUNTER,
                 value: *value,
             }),
             values => dae.starts.extend(

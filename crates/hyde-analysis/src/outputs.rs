@@ -51,10 +51,7 @@ pub(crate) fn report(dae: &mut Dae, system: &mut System) {
                     first: 0,
                     last: i32::try_from(len).unwrap_or(0) - 1,
                 },
-                Index {
-                    stride: 1,
-                    offset: 0,
-                },
+                Index::COUNTER,
             ),
             Some(_) => {
                 skipped.push(variable.name.clone());

@@ -272,10 +272,7 @@ impl<'a> Model<'a, '_> {
         let (dim, truth) = (self.dim(var), self.flat.variables[var].boolean);
         let len = self.flat.variables[var].len;
         if let Some(field) = self.notes(var).field {
-            let index = Index {
-                stride: 1,
-                offset: 0,
-            };
+            let index = Index::COUNTER;
             let place = if field.flux {
                 crate::instance::FieldPlace::Cell(field.domain, index)
             } else {
@@ -404,10 +401,7 @@ impl<'a> Model<'a, '_> {
                     first: 0,
                     last: i32::try_from(len).unwrap_or(i32::MAX) - 1,
                 };
-                let index = Index {
-                    stride: 1,
-                    offset: 0,
-                };
+                let index = Index::COUNTER;
                 vec![(range, index, value)]
             }
             (Elements::All(value), None) => {

@@ -149,8 +149,8 @@ impl Model {
         &self.project
     }
 
-    /// Runs the experiment, for the outputs that are named, to its stop or for so many rows. `interrupted` ends the run from outside, and `reached` tells how far
-    /// it is.
+    /// Runs the experiment, for the outputs that are named, to its stop or for so many rows, if it says a time between rows.
+    /// `interrupted` ends the run from outside, and `reached` tells how far it is.
     ///
     /// # Errors
     /// There is no run, or it fails.

@@ -43,6 +43,12 @@ impl Index {
         offset: 0,
     };
 
+    /// Every element where the counter is its number.
+    pub const COUNTER: Self = Self {
+        stride: 1,
+        offset: 0,
+    };
+
     /// A fixed element.
     #[must_use]
     pub fn fixed(offset: i32) -> Self {

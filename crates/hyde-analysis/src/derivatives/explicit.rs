@@ -199,7 +199,7 @@ impl Explicit {
             ..variable.clone()
         });
         system.rates_of_arrays.insert(of, array);
-        let lhs = system.exprs().add(Expr::Var(array, WHOLE));
+        let lhs = system.exprs().add(Expr::Var(array, Index::COUNTER));
         system.equations.push(Equation {
             range,
             lhs,
@@ -212,20 +212,14 @@ impl Explicit {
     }
 }
 
-/// Every element where the counter is its number.
-const WHOLE: Index = Index {
-    stride: 1,
-    offset: 0,
-};
-
 /// The array that an equation over a range gives as a whole, by numbers and scalars.
 fn left_array(system: &System, number: usize) -> Option<VarId> {
     let equation = &system.equations[number];
-    let Expr::Var(var, WHOLE) = system.flat.exprs[equation.lhs] else {
+    let Expr::Var(var, Index::COUNTER) = system.flat.exprs[equation.lhs] else {
         return None;
     };
     let size = system.flat.variables[var].size();
-    let whole = System::interval(WHOLE, equation.range) == (0, size.checked_sub(1)?);
+    let whole = System::interval(Index::COUNTER, equation.range) == (0, size.checked_sub(1)?);
     (equation.range != Range::SCALAR && whole).then_some(var)
 }
 

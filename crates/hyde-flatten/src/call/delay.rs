@@ -127,10 +127,7 @@ impl<'a> Model<'a, '_> {
             }
             Some(_) | None => (self.named(u, scope), Index::SCALAR),
         };
-        let whole = Index {
-            stride: 1,
-            offset: 0,
-        };
+        let whole = Index::COUNTER;
         let (of, read) = match index.stride {
             0 => (index, Index::SCALAR),
             _ => (whole, index),

@@ -42,10 +42,7 @@ impl Model<'_, '_> {
         for (var, number) in read.iter().zip(&numbers) {
             let delay = &self.flat.delays[DelayId::from_index(*number)];
             let (range, rhs) = (delay.range, delay.value);
-            let whole = Index {
-                stride: 1,
-                offset: 0,
-            };
+            let whole = Index::COUNTER;
             let index = match self.flat.variables[*var].len {
                 Some(_) => whole,
                 None => Index::SCALAR,

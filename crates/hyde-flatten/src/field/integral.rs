@@ -21,10 +21,7 @@ const LEFT: Index = Index {
     stride: 1,
     offset: -1,
 };
-const CELL: Index = Index {
-    stride: 1,
-    offset: 0,
-};
+const CELL: Index = Index::COUNTER;
 
 impl<'a> Model<'a, '_> {
     /// The integral's share of each cell, with its dimension.

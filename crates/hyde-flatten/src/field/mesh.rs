@@ -69,10 +69,7 @@ pub(super) fn counted_index(range: Range) -> Index {
     if range.first == range.last {
         Index::fixed(range.first)
     } else {
-        Index {
-            stride: 1,
-            offset: 0,
-        }
+        Index::COUNTER
     }
 }
 

@@ -245,10 +245,7 @@ impl<'a> Model<'a, '_> {
         self.flat.variables[array].len = usize::try_from(nodes).ok();
         self.flat.variables[array].first = -1;
         let arena = &mut self.flat.exprs;
-        let whole = Index {
-            stride: 1,
-            offset: 0,
-        };
+        let whole = Index::COUNTER;
         let lhs = arena.add(Ir::Var(array, whole));
         let (counter, one) = (arena.add(Ir::Counter), arena.constant(1.0));
         let node = arena.minus(counter, one);

@@ -14,10 +14,7 @@ impl<'a> Model<'a, '_> {
             return Some(Index::fixed(i32::try_from(value).unwrap_or(i32::MAX)));
         }
         match &expr.kind {
-            ExprKind::Reference(_) => Some(Index {
-                stride: 1,
-                offset: 0,
-            }),
+            ExprKind::Reference(_) => Some(Index::COUNTER),
             ExprKind::Unary(Unary::Negative, inner) => {
                 let inner = self.affine(inner, scope)?;
                 Some(Index {
