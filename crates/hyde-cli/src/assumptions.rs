@@ -45,7 +45,7 @@ fn all(
     let beside_time = hyde_compiler::beside_time();
     if program.outputs.iter().any(|own| own.name == beside_time) {
         all.push(format!(
-            "results call the variable `t` of the model `{beside_time}`: `t` is the time there"
+            "the variable `t` of the model is `{beside_time}` in the results, where `t` is the time"
         ));
     }
     all.extend(of_fmus(project, program));
