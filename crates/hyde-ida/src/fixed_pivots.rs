@@ -2,9 +2,10 @@
 //! the first one.
 //!
 //! KLU chose a block triangular form, an order within the blocks, and pivots. As long as they serve, the same few
-//! multiplications in the same order factor the next matrix: column after column, each from the columns to the left that
-//! its pattern reaches (J. R. Gilbert and T. Peierls, SIAM J. Sci. Stat. Comput. 9 (1988) 862, without the search). Indices
-//! are 32 bits wide, pivots are kept as their reciprocals, and whether the entries have grown is seen on the way.
+//! multiplications in the same order factor the next matrix, row after row, each from the rows above that its pattern
+//! reaches (J. R. Gilbert and T. Peierls, SIAM J. Sci. Stat. Comput. 9 (1988) 862, for rows and without the search).
+//! Whether the entries have grown is seen on the way. Rows and entries are stored in the order in which a solution reads
+//! them, and a row adds up in a register: the time of a solution is that of its longest chain of operations.
 //!
 //! ```text
 //! P R A Q = block triangular;  L U = a diagonal block;  F = what is above the blocks
@@ -12,18 +13,11 @@
 
 use crate::Pattern;
 
-/// Where a column of a sparse matrix begins, its rows and its values.
-#[derive(Debug, Default)]
-struct Columns {
-    starts: Vec<u32>,
-    rows: Vec<u32>,
-    values: Vec<f64>,
-}
-
-impl Columns {
-    fn range(&self, column: usize) -> std::ops::Range<usize> {
-        self.starts[column] as usize..self.starts[column + 1] as usize
-    }
+/// An entry of a factor: its column, in the order of the solution, and its value.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    column: u32,
+    value: f64,
 }
 
 /// What KLU found, in its own numbers: rows and columns in the order of the pivots.
@@ -40,119 +34,190 @@ pub(crate) struct Extracted {
     pub(crate) scale: Vec<f64>,
 }
 
-/// The factors of a matrix.
+impl Entry {
+    fn of(&column: &u32) -> Self {
+        Self { column, value: 0.0 }
+    }
+}
+
+/// A row of the factors.
+#[derive(Debug)]
+struct Row {
+    /// The equation and the unknown of its pivot.
+    equation: u32,
+    unknown: u32,
+    /// 1 over the scale of the row.
+    scale: f64,
+    /// 1 over the diagonal of U.
+    pivot: f64,
+    /// How many entries it reads on the way down, and how many of these are of F.
+    n_down: u32,
+    n_above: u32,
+    /// Where its entries of U begin, and how many there are.
+    upper: u32,
+    n_upper: u32,
+}
+
+impl Row {
+    /// A row without entries, for one of KLU's pivots.
+    fn new(found: &Extracted, pivot: usize) -> Option<Self> {
+        Some(Self {
+            equation: u32::try_from(found.row_at[pivot]).ok()?,
+            unknown: u32::try_from(found.column_at[pivot]).ok()?,
+            scale: 1.0 / found.scale[pivot],
+            pivot: 0.0,
+            n_down: 0,
+            n_above: 0,
+            upper: 0,
+            n_upper: 0,
+        })
+    }
+}
+
+/// The factors of a matrix, row by row in the order of the solution: the blocks from the last to the first, in each the
+/// pivots as KLU has them.
 #[derive(Debug)]
 pub(crate) struct FixedPivots {
-    lower: Columns,
-    upper: Columns,
-    above: Columns,
-    /// 1 over the diagonal of U.
-    pivots: Vec<f64>,
-    /// For each entry of the matrix, in the order of the pivots' columns: its place in the values, and its row.
+    rows: Vec<Row>,
+    /// The end of each block.
+    ends: Vec<u32>,
+    /// What the rows read on the way down, one after the other: F, then L from left to right.
+    down: Vec<Entry>,
+    /// What they read on the way up, in each block from the last row to the first: U from right to left.
+    up: Vec<Entry>,
+    /// For each entry of the matrix, row after row: its place in the values, and its column.
     sources: Vec<(u32, u32)>,
-    source_starts: Vec<u32>,
-    row_at: Vec<u32>,
-    column_at: Vec<u32>,
-    blocks: Vec<u32>,
-    /// 1 over the scale of each row, in the order of the pivots.
-    scale: Vec<f64>,
-    column: Vec<f64>,
-    right: Vec<f64>,
+    source_ends: Vec<u32>,
+    work: Vec<f64>,
 }
 
 impl FixedPivots {
     /// The factors of matrices of a pattern; they have no values yet. `None` where the indices do not fit.
     pub(crate) fn new(pattern: &Pattern, found: &Extracted) -> Option<Self> {
-        let n = pattern.n();
-        let row_at = narrow(&found.row_at)?;
-        let column_at = narrow(&found.column_at)?;
         let blocks = narrow(&found.blocks)?;
-        let mut place_of_row = vec![0_u32; n];
-        for (place, &row) in row_at.iter().enumerate() {
-            place_of_row[row as usize] = u32::try_from(place).ok()?;
+        let order: Vec<u32> = (blocks.windows(2).rev())
+            .flat_map(|ends| ends[0]..ends[1])
+            .collect();
+        let mut factors = Self {
+            rows: Vec::with_capacity(order.len()),
+            ends: Vec::with_capacity(blocks.len()),
+            down: Vec::new(),
+            up: Vec::new(),
+            sources: Vec::with_capacity(pattern.n_entries()),
+            source_ends: Vec::with_capacity(order.len()),
+            work: vec![0.0; order.len()],
+        };
+        let mut place_of = vec![0_u32; order.len()];
+        for (place, &pivot) in (0..).zip(&order) {
+            place_of[pivot as usize] = place;
+            factors.rows.push(Row::new(found, pivot as usize)?);
         }
-        let mut sources = Vec::with_capacity(pattern.n_entries());
-        let mut source_starts = vec![0];
-        for &column in &column_at {
-            let starts = &pattern.column_starts()[column as usize..];
-            for entry in usize::try_from(starts[0]).ok()?..usize::try_from(starts[1]).ok()? {
-                let row = usize::try_from(pattern.rows()[entry]).ok()?;
-                sources.push((u32::try_from(entry).ok()?, place_of_row[row]));
-            }
-            source_starts.push(u32::try_from(sources.len()).ok()?);
-        }
-        Some(Self {
-            lower: columns(&found.lower, |row, column| row > column)?,
-            upper: columns(&found.upper, |row, column| row < column)?,
-            above: columns(&found.above, |_, _| true)?,
-            pivots: vec![0.0; n],
-            sources,
-            source_starts,
-            row_at,
-            column_at,
-            blocks,
-            scale: found.scale.iter().map(|scale| 1.0 / scale).collect(),
-            column: vec![0.0; n],
-            right: vec![0.0; n],
-        })
+        factors.read_down(
+            &columns(&found.above, &place_of)?,
+            &columns(&found.lower, &place_of)?,
+        )?;
+        let lengths = blocks.windows(2).rev().map(|ends| ends[1] - ends[0]);
+        factors.read_up(lengths, &columns(&found.upper, &place_of)?)?;
+        factors.read_sources(pattern)?;
+        Some(factors)
     }
 
-    /// Factors the matrix with these values. Returns the reciprocal growth of the entries, the least of all columns of the
-    /// blocks; 0 if a pivot is 0 or not finite.
+    /// What the rows read of F and L.
+    fn read_down(&mut self, above: &[Vec<u32>], lower: &[Vec<u32>]) -> Option<()> {
+        for (place, row) in (0_u32..).zip(&mut self.rows) {
+            let above = &above[place as usize];
+            let lower = lower[place as usize].iter();
+            let start = self.down.len();
+            self.down.extend(above.iter().map(Entry::of));
+            let before = lower.take_while(|&&column| column < place);
+            self.down.extend(before.map(Entry::of));
+            row.n_above = u32::try_from(above.len()).ok()?;
+            row.n_down = u32::try_from(self.down.len() - start).ok()?;
+        }
+        Some(())
+    }
+
+    /// What the rows of blocks of these lengths read of U.
+    fn read_up(&mut self, lengths: impl Iterator<Item = u32>, upper: &[Vec<u32>]) -> Option<()> {
+        let mut start = 0;
+        for length in lengths {
+            let end = start + length;
+            for place in (start..end).rev() {
+                let begin = self.up.len();
+                let from_right = upper[place as usize].iter().rev();
+                let after = from_right.take_while(|&&column| column > place);
+                self.up.extend(after.map(Entry::of));
+                let row = &mut self.rows[place as usize];
+                row.upper = u32::try_from(begin).ok()?;
+                row.n_upper = u32::try_from(self.up.len() - begin).ok()?;
+            }
+            self.ends.push(end);
+            start = end;
+        }
+        Some(())
+    }
+
+    /// Where the entries of each row are in the values of the matrix.
+    fn read_sources(&mut self, pattern: &Pattern) -> Option<()> {
+        let mut place_of = vec![0; self.rows.len()];
+        for (place, row) in self.rows.iter().enumerate() {
+            place_of[row.equation as usize] = place;
+        }
+        let mut of_row = vec![Vec::new(); self.rows.len()];
+        for (place, row) in (0_u32..).zip(&self.rows) {
+            let starts = &pattern.column_starts()[row.unknown as usize..];
+            for entry in usize::try_from(starts[0]).ok()?..usize::try_from(starts[1]).ok()? {
+                let equation = usize::try_from(pattern.rows()[entry]).ok()?;
+                of_row[place_of[equation]].push((u32::try_from(entry).ok()?, place));
+            }
+        }
+        for sources in of_row {
+            self.sources.extend(sources);
+            let end = u32::try_from(self.sources.len()).ok()?;
+            self.source_ends.push(end);
+        }
+        Some(())
+    }
+
+    /// Factors the matrix with these values. Returns the reciprocal growth of the entries, the least of all rows; 0 if a
+    /// pivot is 0 or not finite.
     pub(crate) fn factor(&mut self, values: &[f64]) -> f64 {
-        let Self {
-            lower,
-            upper,
-            above,
-            column: x,
-            ..
-        } = self;
+        let x = &mut self.work;
+        x.fill(0.0);
         let mut growth = f64::INFINITY;
-        let mut block = 0;
-        for k in 0..self.pivots.len() {
-            if self.blocks[block + 1] as usize == k {
-                block += 1;
-            }
-            let first = self.blocks[block];
+        let mut down = self.down.iter_mut();
+        let mut start = 0;
+        for k in 0..self.rows.len() {
+            let row = &self.rows[k];
             let mut largest = 0.0_f64;
-            let sources = self.source_starts[k] as usize..self.source_starts[k + 1] as usize;
-            for &(entry, row) in &self.sources[sources] {
-                let value = values[entry as usize] * self.scale[row as usize];
-                x[row as usize] = value;
-                if row >= first {
-                    largest = largest.max(value.abs());
-                }
+            let end = self.source_ends[k] as usize;
+            for &(entry, column) in &self.sources[start..end] {
+                let value = values[entry as usize] * row.scale;
+                x[column as usize] = value;
+                largest = largest.max(value.abs());
             }
-            for entry in above.range(k) {
-                let row = above.rows[entry] as usize;
-                above.values[entry] = std::mem::take(&mut x[row]);
+            start = end;
+            for entry in down.by_ref().take(row.n_above as usize) {
+                entry.value = std::mem::take(&mut x[entry.column as usize]);
             }
-            let mut grown = 0.0_f64;
-            for entry in upper.range(k) {
-                let row = upper.rows[entry] as usize;
-                let value = std::mem::take(&mut x[row]);
-                upper.values[entry] = value;
-                grown = grown.max(value.abs());
-                let below = lower.range(row);
-                let pairs = lower.rows[below.clone()].iter().zip(&lower.values[below]);
-                for (&row, factor) in pairs {
-                    x[row as usize] -= factor * value;
+            for entry in down.by_ref().take((row.n_down - row.n_above) as usize) {
+                let above = &self.rows[entry.column as usize];
+                let factor = std::mem::take(&mut x[entry.column as usize]) * above.pivot;
+                entry.value = factor;
+                for above in &self.up[above.upper as usize..][..above.n_upper as usize] {
+                    x[above.column as usize] -= factor * above.value;
                 }
             }
             let pivot = std::mem::take(&mut x[k]);
-            grown = grown.max(pivot.abs());
+            let mut grown = pivot.abs();
+            for entry in &mut self.up[row.upper as usize..][..row.n_upper as usize] {
+                entry.value = std::mem::take(&mut x[entry.column as usize]);
+                grown = grown.max(entry.value.abs());
+            }
             growth = growth.min(largest / grown);
             let pivot = 1.0 / pivot;
-            self.pivots[k] = pivot;
-            let below = lower.range(k);
-            for (&row, value) in lower.rows[below.clone()]
-                .iter()
-                .zip(&mut lower.values[below])
-            {
-                *value = std::mem::take(&mut x[row as usize]) * pivot;
-            }
+            self.rows[k].pivot = pivot;
             if !pivot.is_finite() || grown.is_nan() {
-                x.fill(0.0);
                 return 0.0;
             }
         }
@@ -161,56 +226,49 @@ impl FixedPivots {
 
     /// Replaces `b` by the solution with the matrix factored last.
     pub(crate) fn solve(&mut self, b: &mut [f64]) {
-        let x = &mut self.right;
-        for (place, &row) in self.row_at.iter().enumerate() {
-            x[place] = b[row as usize] * self.scale[place];
-        }
-        for ends in self.blocks.windows(2).rev() {
-            let block = ends[0] as usize..ends[1] as usize;
-            if block.len() > 1 {
-                for k in block.clone() {
-                    subtract(&self.lower, k, x[k], x);
-                }
+        let x = &mut self.work;
+        let (mut down, mut up) = (&self.down[..], &self.up[..]);
+        let mut start = 0;
+        for &end in &self.ends {
+            let end = end as usize;
+            let rows = &self.rows[start..end];
+            for (k, row) in (start..).zip(rows) {
+                let (own, rest) = down.split_at(row.n_down as usize);
+                down = rest;
+                x[k] = subtract(own, x, b[row.equation as usize] * row.scale);
             }
-            for k in block.rev() {
-                x[k] *= self.pivots[k];
-                subtract(&self.upper, k, x[k], x);
-                subtract(&self.above, k, x[k], x);
+            for (k, row) in (start..end).zip(rows).rev() {
+                let (own, rest) = up.split_at(row.n_upper as usize);
+                up = rest;
+                x[k] = subtract(own, x, x[k]) * row.pivot;
             }
+            start = end;
         }
-        for (place, &column) in self.column_at.iter().enumerate() {
-            b[column as usize] = x[place];
+        for (row, x) in self.rows.iter().zip(x) {
+            b[row.unknown as usize] = *x;
         }
     }
 }
 
-/// Subtracts a column times a number.
-fn subtract(columns: &Columns, column: usize, factor: f64, x: &mut [f64]) {
-    let range = columns.range(column);
-    let rows = &columns.rows[range.clone()];
-    for (&row, value) in rows.iter().zip(&columns.values[range]) {
-        x[row as usize] -= value * factor;
+/// What is left of `value` after the entries of a row times their unknowns are subtracted from it.
+#[inline(always)]
+fn subtract(row: &[Entry], x: &[f64], mut value: f64) -> f64 {
+    for entry in row {
+        value -= entry.value * x[entry.column as usize];
     }
+    value
 }
 
-/// A pattern with ascending rows, of the entries that are wanted.
-fn columns(
-    (starts, rows): &(Vec<i64>, Vec<i64>),
-    wanted: impl Fn(i64, i64) -> bool,
-) -> Option<Columns> {
-    let mut found = Columns {
-        starts: vec![0],
-        ..Columns::default()
-    };
-    for (column, ends) in (0_i64..).zip(starts.windows(2)) {
-        let range = usize::try_from(ends[0]).ok()?..usize::try_from(ends[1]).ok()?;
-        let mut own: Vec<i64> = rows[range].to_vec();
-        own.retain(|&row| wanted(row, column));
-        own.sort_unstable();
-        found.rows.extend(narrow(&own)?);
-        found.starts.push(u32::try_from(found.rows.len()).ok()?);
+/// The columns of each row of a matrix that KLU gives by columns, ascending, in the order of the solution.
+fn columns((starts, rows): &(Vec<i64>, Vec<i64>), place_of: &[u32]) -> Option<Vec<Vec<u32>>> {
+    let mut found = vec![Vec::new(); place_of.len()];
+    for (&place, ends) in place_of.iter().zip(starts.windows(2)) {
+        for &row in &rows[usize::try_from(ends[0]).ok()?..usize::try_from(ends[1]).ok()?] {
+            let of_row: &mut Vec<u32> = &mut found[place_of[usize::try_from(row).ok()?] as usize];
+            of_row.push(place);
+        }
     }
-    found.values = vec![0.0; found.rows.len()];
+    found.iter_mut().for_each(|columns| columns.sort_unstable());
     Some(found)
 }
 

@@ -14,11 +14,15 @@ use sundials_sys as sys;
 use suitesparse_sys as _;
 
 use crate::fixed_pivots::{Extracted, FixedPivots};
+use crate::interleave::interleaved;
 use crate::{Error, Pattern, Singular};
 
 /// Below this reciprocal growth of the entries while factoring, the old pivots are given up: half of the digits of the
 /// solution may be lost then (user guide, `klu_rgrowth`).
 const SMALLEST_RECIPROCAL_GROWTH: f64 = 1e-8;
+
+/// The same for the first matrix in another order than KLU's, in which the pivots were not chosen.
+const SMALLEST_OF_ANOTHER_ORDER: f64 = 1e-3;
 
 /// A pattern's analysis and, after `factor`, a matrix's factors: KLU's own or those with its pivots.
 #[derive(Debug)]
@@ -73,11 +77,15 @@ impl KluFactors {
             return Ok(Pivots::Kept);
         }
         self.choose_pivots(pattern, values)?;
-        let mut fixed = FixedPivots::new(pattern, &self.extract(pattern.n())).map(Box::new);
-        // Where they are of no use even for this matrix, KLU's own factors serve.
-        let serve =
-            |fixed: &mut Box<FixedPivots>| fixed.factor(values) >= SMALLEST_RECIPROCAL_GROWTH;
-        self.fixed = fixed.take_if(serve);
+        let found = self.extract(pattern.n());
+        let serving = |found: &Extracted, growth: f64| {
+            let mut fixed = Box::new(FixedPivots::new(pattern, found)?);
+            (fixed.factor(values) >= growth).then_some(fixed)
+        };
+        // Where neither order is of use even for this matrix, KLU's own factors serve.
+        self.fixed = interleaved(&found)
+            .and_then(|found| serving(&found, SMALLEST_OF_ANOTHER_ORDER))
+            .or_else(|| serving(&found, SMALLEST_RECIPROCAL_GROWTH));
         if self.fixed.is_some() {
             self.free_numeric();
         }

@@ -52,6 +52,7 @@ mod dense;
 mod error;
 mod failure;
 mod fixed_pivots;
+mod interleave;
 mod klu;
 mod linear;
 mod memory;

@@ -190,9 +190,12 @@ impl<'a> Integrator<'a> {
 
     /// Whether an algebraic variable is twice as large as the tolerances know.
     fn has_grown(&self) -> bool {
-        let mut pairs = self.largest.iter().zip(&self.allowed);
+        let pairs = self.largest.iter().zip(&self.allowed);
         let atol = self.tolerances.1 / self.tolerances.0;
-        pairs.any(|(largest, allowed)| *largest > 2.0 * allowed.max(atol))
+        // To the end: without a way out the loop takes several at a time.
+        pairs.fold(false, |grown, (largest, allowed)| {
+            grown | (*largest > 2.0 * allowed.max(atol))
+        })
     }
 
     /// The tolerances of a step. A force is the difference of large ones wherever it passes zero, so that an absolute

@@ -13,7 +13,7 @@ mod stages;
 mod tableau;
 
 use hyde_ida::{Error, Failure, FailureKind, LinearMethod, SparseSolver, Statistics, System};
-use passes::{correct, sum_of_squares};
+use passes::{correct, inside, sum_of_squares};
 use stages::Obstacle;
 use tableau::{BUBBLE, GAMMA, STAGES};
 
@@ -169,17 +169,20 @@ impl<S: System> RungeKutta<S> {
         self.from = self.t;
         std::mem::swap(&mut self.before, &mut self.y);
         self.slopes.swap(0, LAST);
-        for (index, weight) in self.weights.iter_mut().enumerate() {
+        let kinds = self.differential.iter().zip(&self.counts);
+        let sizes = self.before.iter().zip(&self.largest).zip(&self.atol);
+        let weights = self.weights.iter_mut().zip(&mut self.counted);
+        for ((weight, counted), ((differential, counts), ((before, largest), atol))) in
+            weights.zip(kinds.zip(sizes))
+        {
             // An algebraic variable is the difference of large ones wherever it passes zero.
-            let size = match self.differential[index] {
-                true => self.before[index].abs(),
-                false => self.largest[index],
+            let size = if *differential {
+                before.abs()
+            } else {
+                *largest
             };
-            *weight = 1.0 / (self.rtol * size + self.atol[index]);
-            self.counted[index] = match self.counts[index] {
-                true => *weight,
-                false => 0.0,
-            };
+            *weight = 1.0 / (self.rtol * size + atol);
+            *counted = if *counts { *weight } else { 0.0 };
         }
         let (wanted, left) = (self.next_step_s.min(self.max_step_s), stop - self.from);
         let step = self.fitting(wanted, left);
@@ -353,17 +356,13 @@ impl<S: System> RungeKutta<S> {
             shares[share].0 += more.0;
             shares[share].1 += more.1;
         }
-        for index in 0..y.len() {
-            let step = self.y[index] - self.before[index];
-            y[index] = self.before[index] + rise.0 * step;
-            yp[index] = rise.1 * step;
-        }
-        for ((value, rate), slopes) in shares.into_iter().zip(&self.slopes) {
-            for ((y, yp), slope) in y.iter_mut().zip(yp.iter_mut()).zip(slopes) {
-                *y += value * slope;
-                *yp += rate * slope;
-            }
-        }
+        inside(
+            (y, yp),
+            (&self.before, &self.y),
+            rise,
+            &self.slopes,
+            &shares,
+        );
     }
 }
 

@@ -1,10 +1,19 @@
 //! Passes over vectors, each of which does at once what belongs together: memory is read once, and sums run in four lanes
-//! that the processor adds side by side.
+//! that the processor adds side by side. A machine with AVX2 does the same operations in the same order, more of them at
+//! once: the bits are those of any machine.
+
+use std::array;
+
+use multiversion::multiversion;
+
+use super::LAST;
+use super::tableau::STAGES;
 
 /// Lanes of a sum.
 const LANES: usize = 4;
 
 /// `to = from + sum(factors[j]*slopes[j])`, summed from the first on.
+#[multiversion(targets("x86_64+avx2"))]
 pub(super) fn combine(to: &mut [f64], from: &[f64], factors: &[f64], slopes: &[Vec<f64>]) {
     match (factors, slopes) {
         ([a], [k, ..]) => {
@@ -28,6 +37,7 @@ pub(super) fn combine(to: &mut [f64], from: &[f64], factors: &[f64], slopes: &[V
 }
 
 /// `to += sum(factors[j]*slopes[j])`.
+#[inline(always)]
 fn add(to: &mut [f64], factors: &[f64], slopes: &[Vec<f64>]) {
     match (factors, slopes) {
         ([a, b, rest @ ..], [k, l, others @ ..]) => {
@@ -45,7 +55,47 @@ fn add(to: &mut [f64], factors: &[f64], slopes: &[Vec<f64>]) {
     }
 }
 
+/// `to = sum(parts[j]*slopes[j])`, summed from the last one on and then from the first.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn weigh(to: &mut [f64], slopes: &[Vec<f64>], parts: &[f64; STAGES]) {
+    let n = to.len();
+    let slopes: [&[f64]; STAGES] = array::from_fn(|j| &slopes[j][..n]);
+    for (index, to) in to.iter_mut().enumerate() {
+        let last = parts[LAST] * slopes[LAST][index];
+        let earlier = parts.iter().zip(slopes).take(LAST);
+        *to = earlier.fold(last, |sum, (part, slope)| sum + part * slope[index]);
+    }
+}
+
+/// A value and a rate within a step: those of its begin and of the rise to its end, and of the slopes with their shares.
+///
+/// ```text
+/// y = before + rise.0*(end - before) + sum(shares[j].0*slopes[j])
+/// yp =         rise.1*(end - before) + sum(shares[j].1*slopes[j])
+/// ```
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn inside(
+    (y, yp): (&mut [f64], &mut [f64]),
+    (before, end): (&[f64], &[f64]),
+    rise: (f64, f64),
+    slopes: &[Vec<f64>],
+    shares: &[(f64, f64); STAGES],
+) {
+    let n = y.len();
+    let slopes: [&[f64]; STAGES] = array::from_fn(|j| &slopes[j][..n]);
+    let ends = before[..n].iter().zip(&end[..n]).enumerate();
+    for ((y, yp), (index, (before, end))) in y.iter_mut().zip(&mut yp[..n]).zip(ends) {
+        let step = end - before;
+        (*y, *yp) = (before + rise.0 * step, rise.1 * step);
+        for ((value, rate), slope) in shares.iter().zip(slopes) {
+            *y += value * slope[index];
+            *yp += rate * slope[index];
+        }
+    }
+}
+
 /// Whether all values are finite: what is not, times 0, is not 0.
+#[multiversion(targets("x86_64+avx2"))]
 pub(super) fn are_finite(values: &[f64]) -> bool {
     let mut lanes = [0.0; LANES];
     let mut values = values.chunks_exact(LANES);
@@ -63,6 +113,7 @@ const NONE: f64 = 1e-9;
 
 /// What Newton's method makes of a correction: `stage -= correction` and `slope -= cj*correction`. What rests at 0 rests to
 /// the last bit.
+#[multiversion(targets("x86_64+avx2"))]
 pub(super) fn correct(
     stage: &mut [f64],
     slope: &mut [f64],
@@ -80,6 +131,7 @@ pub(super) fn correct(
 }
 
 /// The sum of the squares of weighted values; NaN if one of them is not finite, whatever its weight.
+#[multiversion(targets("x86_64+avx2"))]
 pub(super) fn sum_of_squares(values: &[f64], weights: &[f64]) -> f64 {
     let mut lanes = [0.0; LANES];
     let (mut values, mut weights) = (values.chunks_exact(LANES), weights.chunks_exact(LANES));

@@ -8,7 +8,7 @@
 //! step changes, and when the iteration contracts slowly. A linear system is solved by the first iteration, so the
 //! contraction measured last decides whether one is enough; the last stage is always iterated twice, which measures it.
 
-use super::passes::{are_finite, combine, correct, sum_of_squares};
+use super::passes::{are_finite, combine, correct, sum_of_squares, weigh};
 use super::tableau::{A, C, ERROR, GAMMA, INSIDE, STAGES};
 use super::{LAST, RungeKutta};
 use hyde_ida::System;
@@ -115,9 +115,11 @@ impl<S: System> RungeKutta<S> {
         combine(&mut self.base, &self.before, &factors[..i], earlier);
         let (first, second) = (&earlier[0], &earlier[1.min(i - 1)]);
         let (part, diagonal) = (C[i] / C[1], h * GAMMA);
-        for (index, slope) in slope[0].iter_mut().enumerate() {
-            *slope = first[index] + part * (second[index] - first[index]);
-            self.stage[index] = self.base[index] + diagonal * *slope;
+        let guesses = self.stage.iter_mut().zip(&mut slope[0]);
+        let known = self.base.iter().zip(first).zip(second);
+        for ((stage, slope), ((base, first), second)) in guesses.zip(known) {
+            *slope = first + part * (second - first);
+            *stage = base + diagonal * *slope;
         }
     }
 
@@ -174,24 +176,24 @@ impl<S: System> RungeKutta<S> {
     /// there, and is the error of algebraic variables as well, as far as it comes from states.
     fn error(&mut self, h: f64) -> Result<(f64, usize), Obstacle> {
         let cj = 1.0 / (GAMMA * h);
-        let (earlier, last) = self.slopes.split_at(LAST);
-        let end = &last[0];
-        let (mut unseen, mut rough) = ((0.0, 0), 0.0_f64);
-        for (index, slope) in self.base.iter_mut().enumerate() {
-            let (mut error, mut inside) = (ERROR[LAST] * end[index], INSIDE[LAST] * end[index]);
-            for ((part, within), slopes) in ERROR.iter().zip(INSIDE).zip(earlier) {
-                error += part * slopes[index];
-                inside += within * slopes[index];
+        let (error, inside) = (&mut self.base, &mut self.correction);
+        weigh(error, &self.slopes, &ERROR);
+        weigh(inside, &self.slopes, &INSIDE);
+        let mut unseen = (0.0, 0);
+        let largest = self.largest.iter().zip(&self.stage).zip(&self.atol);
+        let counted = inside.iter().zip(largest).zip(&self.counts).enumerate();
+        for (index, ((inside, ((largest, stage), atol)), counts)) in counted {
+            let largest = largest.max(stage.abs());
+            let part = h * inside.abs() / (SEEN * largest + atol);
+            if *counts && part > unseen.0 {
+                unseen = (part, index);
             }
-            *slope = end[index] + cj * h * error;
-            rough = rough.max((h * error * self.weights[index]).abs());
-            if self.counts[index] {
-                let largest = self.largest[index].max(self.stage[index].abs());
-                let part = h * inside.abs() / (SEEN * largest + self.atol[index]);
-                if part > unseen.0 {
-                    unseen = (part, index);
-                }
-            }
+        }
+        let mut rough = 0.0_f64;
+        let end = self.slopes[LAST].iter().zip(&self.weights);
+        for (slope, (end, weight)) in error.iter_mut().zip(end) {
+            rough = rough.max((h * *slope * weight).abs());
+            *slope = end + cj * h * *slope;
         }
         self.smooth = rough <= 1.0;
         self.statistics.residual_evaluations += 1;
