@@ -17,6 +17,7 @@ mod frame;
 mod grid;
 mod groups;
 mod head;
+mod labview;
 mod number;
 mod pairs;
 mod read;

@@ -1,6 +1,6 @@
 //! The heading of a column: its name, and its unit where that is written.
 
-use hyde_units::{Dimension, NamedUnit, UnitError};
+use hyde_units::{Dimension, NamedUnit, UnitError, parse_spelled};
 
 /// Name and unit of a column.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +13,8 @@ pub(crate) struct Heading {
     pub(crate) unit: Option<Result<NamedUnit, UnitError>>,
     /// Where the unit stands.
     pub(crate) place: Place,
+    /// How the file spells the unit, where a model spells it otherwise: `Nm`.
+    pub(crate) spelled: Option<String>,
     /// What the file says in another row that the column shows.
     pub(crate) meaning: Option<String>,
 }
@@ -37,6 +39,7 @@ impl Heading {
             name,
             unit: None,
             place: Place::Usual,
+            spelled: None,
             meaning: None,
         }
     }
@@ -52,6 +55,7 @@ impl Heading {
             name: name.trim_end().to_owned(),
             unit,
             place,
+            spelled: None,
             meaning: None,
         };
         let bracketed = cell
@@ -60,10 +64,10 @@ impl Heading {
         if let Some((name, inside)) = bracketed
             && !is_index(name, inside)
         {
-            return heading(name, Some(unit(inside)), Place::Usual);
+            return heading(name, Some(unit(inside)), Place::Usual).spelled_as(inside);
         }
-        if let Some((name, unit)) = in_parentheses(cell) {
-            return heading(name, Some(Ok(unit)), Place::Parentheses);
+        if let Some((name, inside, unit)) = in_parentheses(cell) {
+            return heading(name, Some(Ok(unit)), Place::Parentheses).spelled_as(inside);
         }
         heading(cell, None, Place::Usual)
     }
@@ -75,7 +79,16 @@ impl Heading {
         {
             self.unit = Some(unit);
             self.place = Place::Row;
+            return self.spelled_as(bare(cell.trim()));
         }
+        self
+    }
+
+    /// The same, whose unit the file spells like this.
+    fn spelled_as(mut self, text: &str) -> Self {
+        let other = |unit: &&NamedUnit| unit.text() != text.trim();
+        let is_other = self.known_unit().filter(other).is_some();
+        self.spelled = is_other.then(|| text.trim().to_owned());
         self
     }
 
@@ -87,10 +100,12 @@ impl Heading {
                 self.unit = Some(Ok(unit.clone()));
                 self.place = Place::Row;
                 self.meaning = Some(shown.name);
+                self.spelled = shown.spelled;
             }
             (_, Some(Ok(unit))) => {
                 self.unit = Some(Ok(unit));
                 self.place = Place::Row;
+                return self.spelled_as(bare(cell.trim()));
             }
             (_, Some(Err(error))) => {
                 if cell.trim().ends_with(')') {
@@ -135,9 +150,9 @@ pub(crate) fn may_be_of_row(cell: &str) -> bool {
     bare(cell) != cell || of_row(cell).is_none_or(|unit| unit.is_ok())
 }
 
-/// A unit as Hyde writes it, or a time as loggers do: `sec`, `msec`.
+/// A unit as Hyde writes it or as devices do, or a time as loggers do: `sec`, `msec`.
 fn unit(text: &str) -> Result<NamedUnit, UnitError> {
-    NamedUnit::parse(text).or_else(|error| {
+    parse_spelled(text).or_else(|error| {
         let word = unit_word(&text.trim().to_lowercase());
         word.and_then(|word| NamedUnit::parse(word).ok())
             .ok_or(error)
@@ -157,14 +172,14 @@ fn bare(cell: &str) -> &str {
         .trim()
 }
 
-fn in_parentheses(cell: &str) -> Option<(&str, NamedUnit)> {
+fn in_parentheses(cell: &str) -> Option<(&str, &str, NamedUnit)> {
     let (name, inside) = cell.strip_suffix(')')?.rsplit_once('(')?;
     let of_a_name = name.trim().is_empty() || name.contains(['(', '/']);
     let number = inside.chars().all(|c| !c.is_alphabetic() && c != '%');
     if of_a_name || number {
         return None;
     }
-    Some((name, unit(inside.trim()).ok()?))
+    Some((name, inside, unit(inside.trim()).ok()?))
 }
 
 fn is_index(name: &str, inside: &str) -> bool {
@@ -295,6 +310,24 @@ mod tests {
         assert_eq!(split("speed (raw)"), bare("speed (raw)"));
         assert_eq!(split("d(s)/d(m)"), bare("d(s)/d(m)"));
         assert_eq!(split("axis (1)"), bare("axis (1)"));
+    }
+
+    #[test]
+    fn a_unit_may_be_spelled_as_devices_do() {
+        for (cell, name, unit, spelled) in [
+            ("M [Nm]", "M", "N.m", Some("Nm")),
+            ("n (U/min)", "n", "rpm", Some("U/min")),
+            ("Weg (inch)", "Weg", "in", Some("inch")),
+            ("x [mm]", "x", "mm", None),
+        ] {
+            let heading = Heading::of(cell);
+            assert_eq!(heading.name, name);
+            assert_eq!(heading.known_unit().unwrap().text(), unit);
+            assert_eq!(heading.spelled.as_deref(), spelled);
+        }
+        let below = Heading::of("M").with_row("(Nm)");
+        assert_eq!(below.known_unit().unwrap().text(), "N.m");
+        assert_eq!(below.spelled.as_deref(), Some("Nm"));
     }
 
     #[test]

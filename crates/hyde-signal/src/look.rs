@@ -70,6 +70,7 @@ pub fn look(table: &Table) -> Look {
         }
     }
     let (slopes, delays) = pairs::of(&parts);
+    role::by_names(&mut channels);
     role::by_delays(&mut channels, &delays);
     role::by_slopes(&mut channels, &slopes);
     Look {

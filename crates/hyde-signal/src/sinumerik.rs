@@ -8,7 +8,7 @@ mod base85;
 use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::heading::{Heading, Place};
 use crate::{Layout, Note, Table, TableError, TimeError};
-use hyde_units::NamedUnit;
+use hyde_units::parse_spelled;
 use roxmltree::{Document, Node};
 use std::fmt;
 
@@ -246,7 +246,7 @@ fn doubles(node: Node<'_, '_>, array: &str, what: &str) -> Result<Vec<f64>, Read
 fn raw(name: &str, unit: Option<&str>, values: Vec<f64>) -> Raw {
     Raw {
         heading: Heading {
-            unit: unit.map(NamedUnit::parse),
+            unit: unit.map(parse_spelled),
             place: Place::Usual,
             ..Heading::plain(name)
         },

@@ -46,6 +46,26 @@ pub(crate) fn explain(symbol: &str) -> UnitErrorKind {
     }
 }
 
+/// The one unit that a symbol can mean: a product without its dot, a word, or a symbol of several letters in the wrong case.
+pub(crate) fn meant(symbol: &str) -> Option<String> {
+    if AMBIGUOUS.iter().any(|(text, _)| *text == symbol) {
+        return None;
+    }
+    if let Some((_, product)) = WELL_KNOWN.iter().find(|(joined, _)| *joined == symbol) {
+        return Some((*product).to_owned());
+    }
+    let several = symbol.chars().count() > 1;
+    let candidates = meant_by_word(symbol).unwrap_or_else(|| match several {
+        true => other_case(symbol),
+        false => Vec::new(),
+    });
+    match candidates.as_slice() {
+        [one] => Some(one.clone()),
+        [] if several => split(symbol),
+        _ => None,
+    }
+}
+
 /// Products whose letters would also match something less likely: `nm`, `N.ms`.
 #[rustfmt::skip]
 const WELL_KNOWN: [(&str, &str); 14] = [
@@ -55,8 +75,13 @@ const WELL_KNOWN: [(&str, &str); 14] = [
     ("lbft", "lbf.ft"), ("ftlb", "lbf.ft"), ("ftlbf", "lbf.ft"), ("inozf", "ozf.in"),
 ];
 
+const EFFECTIVE_CURRENT: &str =
+    "an effective value is in `A` as well; the peak of a sine is sqrt(2) times as large";
+const EFFECTIVE_VOLTAGE: &str =
+    "an effective value is in `V` as well; the peak of a sine is sqrt(2) times as large";
+
 /// Symbols of data sheets that stand for more than one quantity, or for none that is a unit.
-const AMBIGUOUS: [(&str, &str); 9] = [
+const AMBIGUOUS: [(&str, &str); 24] = [
     (
         "oz",
         "write `ozf` for a force (a torque is in `ozf.in`), `ozm` for a mass",
@@ -74,6 +99,24 @@ const AMBIGUOUS: [(&str, &str); 9] = [
     ("ppr", "write `counts/rev`"),
     ("ipm", "write `in/min`"),
     ("mph", "write `1.609344 [km/h]` for a mile an hour"),
+    ("U", "turns a minute, U/min, are `rpm`"),
+    ("Umdr", "turns a minute are `rpm`"),
+    ("r", "turns a minute, r/min, are `rpm`; a turn is `rev`"),
+    ("Arms", EFFECTIVE_CURRENT),
+    ("Aeff", EFFECTIVE_CURRENT),
+    ("Vrms", EFFECTIVE_VOLTAGE),
+    ("Veff", EFFECTIVE_VOLTAGE),
+    ("Apk", "write `A`"),
+    ("Ap", "write `A`"),
+    ("Vdc", "write `V`"),
+    ("Grad", "write `deg` for a degree; a gon is `0.9 [deg]`"),
+    ("grd", "write `deg` for a degree; a gon is `0.9 [deg]`"),
+    (
+        "G",
+        "write `gn` for the acceleration of gravity; a gauss is `1e-4 [T]`",
+    ),
+    ("LSB", "write `counts` for steps of a converter"),
+    ("daN", "ten newtons: write `10 [N]`"),
     (
         "dB",
         "a ratio is a pure number: write `10^(x/20)`, for 6 dB `2`",

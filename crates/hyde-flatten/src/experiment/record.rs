@@ -9,7 +9,7 @@ use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::{Column, ColumnId, Interpolation, Parameter, Quantity, VarId, VariableKind};
 use hyde_syntax::ast::Reference;
 use hyde_syntax::member;
-use hyde_units::{Allowed, Dimension, NamedUnit};
+use hyde_units::{Allowed, Dimension, NamedUnit, unit_in_name};
 
 impl<'a> Model<'a, '_> {
     /// `record.column`, `.next`, `.first`, `.mean`; `record.begin` and `record.end`.
@@ -205,7 +205,7 @@ impl<'a> Model<'a, '_> {
                 continue;
             };
             let variable = &self.flat.variables[*linear];
-            let Some(unit) = unit_in_name(name, variable.quantity.dimension) else {
+            let Some(unit) = other_unit_in_name(name, variable.quantity.dimension) else {
                 continue;
             };
             let record = &column.record;
@@ -296,9 +296,8 @@ impl<'a> Model<'a, '_> {
 }
 
 /// The unit of that dimension that a name ends with, unless it is the one of SI.
-fn unit_in_name(name: &str, dimension: Dimension) -> Option<NamedUnit> {
-    let (_, last) = name.rsplit_once(['_', ' ', '/'])?;
-    let unit = NamedUnit::parse(last.trim_matches(['[', ']', '(', ')'])).ok()?;
+fn other_unit_in_name(name: &str, dimension: Dimension) -> Option<NamedUnit> {
+    let unit = unit_in_name(name)?;
     let own = unit.unit().dimension.agreement(dimension);
     (own == hyde_units::Agreement::Same && !unit.unit().is_si()).then_some(unit)
 }

@@ -4,7 +4,7 @@ use super::ReadError;
 use super::facts::Period;
 use super::grid::Grid;
 use super::groups::Group;
-use super::number::{Numbers, Thousands, any_number, is_missing, not_a_number, truth};
+use super::number::{Numbers, Thousands, any_number, is_missing, not_a_number, plain, truth};
 use super::rows::Rows;
 use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::heading::{Heading, Place};
@@ -84,12 +84,10 @@ impl Columns {
                     // Dates have commas of their own; numbers have points from here on.
                     let number = self.numbers.read(cell).is_some();
                     self.of[at].thousands.see(cell);
-                    let cell = if number {
-                        cell.replace(',', ".")
-                    } else {
-                        (*cell).to_owned()
-                    };
-                    group.instants.push(cell);
+                    group.instants.push(match number {
+                        true => plain(cell).into_owned(),
+                        false => (*cell).to_owned(),
+                    });
                     continue;
                 }
                 let column = &mut self.of[at];
@@ -126,6 +124,12 @@ impl Columns {
                 "its numbers have a decimal comma: `0,5` is read as 0.5",
             ));
         }
+        if let Some((cell, value)) = self.numbers.grouped() {
+            notes.push(Note::new(format!(
+                "signs stand between the thousands of its numbers: `{cell}` is read as {value}"
+            )));
+        }
+        notes.extend(spelled(headings));
         let columns = headings.iter().zip(&self.of);
         let truths = columns.filter(|(_, column)| column.truth && column.fault.is_none());
         let names: Vec<String> = truths.map(|(h, _)| format!("`{}`", h.name)).collect();
@@ -225,6 +229,20 @@ impl Column {
         };
         Raw { heading, cells }
     }
+}
+
+/// The units that the file spells otherwise than a model does.
+fn spelled(headings: &[Heading]) -> Option<Note> {
+    let mut told: Vec<String> = Vec::new();
+    for heading in headings {
+        if let (Some(spelled), Some(unit)) = (&heading.spelled, heading.known_unit()) {
+            let text = format!("`{spelled}` is {unit}");
+            if !told.contains(&text) {
+                told.push(text);
+            }
+        }
+    }
+    (!told.is_empty()).then(|| Note::new(format!("of its units, {}", told.join(", "))))
 }
 
 /// The same fault with the lines of further readings that are missing.

@@ -4,6 +4,7 @@ use super::ReadError;
 use super::facts::{Period, period};
 use super::groups::{self, Group};
 use super::head::{Head, Line, declared_above, lines, plain};
+use super::labview;
 use super::number::is_number;
 use super::pairs;
 use super::separator::{Separator, separator};
@@ -150,6 +151,9 @@ impl<'a> Grid<'a> {
             headings = with_units(headings, &units, line.number, &mut notes);
             end = line;
         }
+        let comments = lines(text, 0, 0).take_while(|line| line.number <= end.number);
+        let comments: Vec<Line> = comments.filter(Line::is_comment).collect();
+        let period = period(&comments, separator);
         let (rows, separator) = rows(text, end.end, separator, &mut notes);
         Ok(Self {
             headings,
@@ -157,7 +161,7 @@ impl<'a> Grid<'a> {
             rows,
             lines_above: end.number,
             separator,
-            period: None,
+            period,
             kind: if above > 0 { Kind::Preamble } else { kind },
             notes,
         })
@@ -277,6 +281,8 @@ impl<'a> Grid<'a> {
             .chain(&head.comments)
             .copied()
             .collect();
+        let (columns, note) = labview::with_units(columns, &facts, head.separator);
+        notes.extend(note);
         let (rows, separator) = rows(text, head.first.start, head.separator, &mut notes);
         Ok(Self {
             headings: columns,
@@ -365,12 +371,30 @@ fn rows<'a>(
     }
 }
 
+/// Whether a last column of this name may be one in which nobody has written anything.
+fn may_be_empty(name: &str) -> bool {
+    let words = [
+        "",
+        "comment",
+        "comments",
+        "remark",
+        "remarks",
+        "kommentar",
+        "note",
+        "notes",
+    ];
+    words.iter().any(|word| name.eq_ignore_ascii_case(word))
+}
+
 /// Whether a line above the rows names as many columns as they have.
 fn is_header(head: &Head<'_>, at: usize) -> bool {
     let Some(line) = head.above.get(at) else {
         return false;
     };
-    let cells = head.separator.split(line.text);
+    let mut cells = head.separator.split(line.text);
+    while cells.len() > head.width && cells.last().is_some_and(|cell| may_be_empty(cell)) {
+        cells.pop();
+    }
     let named = cells.iter().rposition(|cell| !cell.is_empty());
     let numbers = cells.iter().any(|cell| is_number(cell));
     let unnamed = cells.iter().take(head.width).filter(|cell| cell.is_empty());

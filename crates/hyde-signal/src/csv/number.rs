@@ -1,6 +1,8 @@
-//! The numbers in cells: with a point or with a comma, the same in the whole file.
+//! The numbers in cells: with a point or with a comma, the same in the whole file; and signs between thousands, where
+//! nothing else can be meant.
 
 use crate::Fault;
+use std::borrow::Cow;
 
 /// The decimal sign of a file, as its cells show it.
 #[derive(Debug)]
@@ -8,6 +10,8 @@ pub(super) struct Numbers {
     /// Whether it is the comma; nothing as long as all numbers are whole.
     comma: Option<bool>,
     both: bool,
+    /// The first number with signs between its thousands, and its value.
+    grouped: Option<(String, f64)>,
 }
 
 impl Numbers {
@@ -16,12 +20,17 @@ impl Numbers {
         Self {
             comma: decimal.map(|sign| sign == ','),
             both: false,
+            grouped: None,
         }
     }
 
     /// The number in a cell, if it is a finite one with the file's decimal sign.
     pub(super) fn read(&mut self, cell: &str) -> Option<f64> {
-        let (value, comma) = number(cell)?;
+        let Number {
+            value,
+            comma,
+            grouped,
+        } = number(cell)?;
         if comma.is_some() {
             let known = *self.comma.get_or_insert(comma == Some(true));
             if comma != Some(known) {
@@ -29,7 +38,16 @@ impl Numbers {
                 return None;
             }
         }
+        if grouped && self.grouped.is_none() {
+            self.grouped = Some((cell.to_owned(), value));
+        }
         Some(value)
+    }
+
+    /// A number with signs between its thousands, and how it is read.
+    pub(super) fn grouped(&self) -> Option<(&str, f64)> {
+        let (cell, value) = self.grouped.as_ref()?;
+        Some((cell, *value))
     }
 
     /// Whether some numbers have a point and others a comma.
@@ -50,12 +68,14 @@ pub(super) fn is_number(cell: &str) -> bool {
 
 /// The number in a cell of a preamble, whatever the decimal sign.
 pub(super) fn any_number(cell: &str) -> Option<f64> {
-    number(cell.trim()).map(|(value, _)| value)
+    number(cell.trim()).map(|number| number.value)
 }
 
 /// The sign before the decimals of a number that has one.
 pub(super) fn decimal_sign(cell: &str) -> Option<char> {
-    is_number(cell).then(|| cell.chars().find(|c| matches!(c, '.' | ',')))?
+    number(cell)?
+        .comma
+        .map(|comma| if comma { ',' } else { '.' })
 }
 
 /// The sign of a number that may as well stand between thousands: `1.000`.
@@ -117,14 +137,77 @@ impl Thousands {
     }
 }
 
-/// The number, and whether its decimal sign is a comma, if it has one.
-fn number(cell: &str) -> Option<(f64, Option<bool>)> {
+/// A finite number in a cell.
+struct Number {
+    value: f64,
+    /// Whether its decimal sign is the comma, if it has one.
+    comma: Option<bool>,
+    /// Whether signs stand between its thousands.
+    grouped: bool,
+}
+
+fn number(cell: &str) -> Option<Number> {
     let finite = |text: &str| text.parse().ok().filter(|value: &f64| value.is_finite());
-    match finite(cell) {
-        Some(value) => Some((value, cell.contains('.').then_some(false))),
-        None if cell.contains('.') => None,
-        None => Some((finite(&cell.replacen(',', ".", 1))?, Some(true))),
+    let read = |value, comma, grouped| Number {
+        value,
+        comma,
+        grouped,
+    };
+    if let Some(value) = finite(cell) {
+        return Some(read(value, cell.contains('.').then_some(false), false));
     }
+    if !cell.contains('.')
+        && let Some(value) = finite(&cell.replacen(',', ".", 1))
+    {
+        return Some(read(value, Some(true), false));
+    }
+    let (plain, comma) = without_groups(cell)?;
+    Some(read(finite(&plain)?, comma, true))
+}
+
+/// A number as a cell has it, with a point and without signs between its thousands.
+pub(super) fn plain(cell: &str) -> Cow<'_, str> {
+    match without_groups(cell) {
+        Some((plain, _)) => Cow::Owned(plain),
+        None if cell.contains(',') => Cow::Owned(cell.replace(',', ".")),
+        None => Cow::Borrowed(cell),
+    }
+}
+
+/// A number without the signs between its thousands, with a point, and whether its decimal sign is a comma: `1.234,5`,
+/// `1'234.5`, `1 234`, `1.234.567`. One point or comma alone may be the decimal sign, and is not taken for another one.
+fn without_groups(cell: &str) -> Option<(String, Option<bool>)> {
+    let is_group = |c: char| matches!(c, '.' | ',' | '\'' | '’' | ' ' | '\u{a0}' | '\u{202f}');
+    let digits = cell.trim_start_matches(['+', '-', '−']);
+    let sign = digits.chars().find(|c| is_group(*c))?;
+    let decimal = digits
+        .char_indices()
+        .rev()
+        .find(|(_, c)| matches!(c, '.' | ',') && *c != sign);
+    let (whole, decimals) = match decimal {
+        Some((at, _)) => (&digits[..at], &digits[at + 1..]),
+        None => (digits, ""),
+    };
+    let groups: Vec<&str> = whole.split(sign).collect();
+    let (first, others) = groups.split_first()?;
+    let all_digits = |text: &str| text.bytes().all(|byte| byte.is_ascii_digit());
+    let even = (1..=3).contains(&first.len())
+        && all_digits(first)
+        && others
+            .iter()
+            .all(|group| group.len() == 3 && all_digits(group));
+    let doubtful = decimal.is_none() && others.len() < 2 && matches!(sign, '.' | ',');
+    if !even || doubtful || !all_digits(decimals) {
+        return None;
+    }
+    let minus = if digits.len() < cell.len() && !cell.starts_with('+') {
+        "-"
+    } else {
+        ""
+    };
+    let point = if decimal.is_some() { "." } else { "" };
+    let plain = format!("{minus}{}{point}{decimals}", groups.concat());
+    Some((plain, decimal.map(|(_, c)| c == ',')))
 }
 
 /// `TRUE` and `FALSE` as 1 and 0.
@@ -165,5 +248,45 @@ pub(super) fn not_a_number(line: u64, column: usize, name: &str, cell: &str) -> 
         repair: "write numbers with a point, `0.5`, or all of them with a comma and another separator, `0,5;1,5`; \
                  take rows that were not measured out"
             .to_owned(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn signs_between_thousands_are_read_where_nothing_else_is_meant() {
+        for (cell, value) in [
+            ("1.234,5", 1234.5),
+            ("-1,234.5", -1234.5),
+            ("1'234.5", 1234.5),
+            ("1 234 567", 1_234_567.0),
+            ("1\u{202f}234,25", 1234.25),
+            ("1.234.567", 1_234_567.0),
+            ("12.345.678,9", 12_345_678.9),
+        ] {
+            let mut numbers = Numbers::of(None);
+            assert_eq!(numbers.read(cell), Some(value), "{cell}");
+            assert_eq!(plain(cell).parse(), Ok(value), "{cell}");
+            assert_eq!(numbers.grouped(), Some((cell, value)));
+        }
+        for cell in [
+            "1.23,5",
+            "1.234,5,6",
+            "1.2.3",
+            "2024.05.06",
+            "1 2",
+            "12:30",
+            "1.234.56",
+            ".234,5",
+        ] {
+            assert!(!is_number(cell), "{cell}");
+        }
+        for (cell, value) in [("1.234", 1.234), ("1,234", 1.234), ("1e3", 1000.0)] {
+            let mut numbers = Numbers::of(None);
+            assert_eq!(numbers.read(cell), Some(value));
+            assert_eq!(numbers.grouped(), None);
+        }
     }
 }

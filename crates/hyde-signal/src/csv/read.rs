@@ -37,7 +37,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     };
     let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
     let mut columns = Columns::of(&grid.headings, &groups, layout.decimal);
-    let (mut positions, mut width) = (Vec::new(), None);
+    let mut positions = Vec::new();
     while rows.advance()? {
         if rows.is_end_mark() {
             break;
@@ -49,8 +49,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
             )));
             break;
         }
-        let width = *width.get_or_insert(rows.count());
-        check_row(&rows, &grid.headings, width, groups.len() > 1)?;
+        check_row(&rows, &grid.headings, groups.len() > 1)?;
         columns.push(&rows, &grid.headings)?;
         positions.push(rows.position());
     }
@@ -165,17 +164,11 @@ fn is_cut_off(rows: &Rows<'_>, before: Option<&u64>, columns: usize) -> bool {
     rows.count() < columns || (shorter && is_number(last))
 }
 
-/// A row has a cell a column, and an empty one behind them if the first one, with `width` cells, has.
-fn check_row(
-    rows: &Rows<'_>,
-    headings: &[Heading],
-    width: usize,
-    may_end: bool,
-) -> Result<(), ReadError> {
+/// A row has a cell a column; those behind them are empty.
+fn check_row(rows: &Rows<'_>, headings: &[Heading], may_end: bool) -> Result<(), ReadError> {
     let (found, expected) = (rows.count(), headings.len());
     let beyond = rows.cells().skip(expected).any(|cell| !cell.is_empty());
-    let uneven = found < expected || (found > expected) != (width > expected);
-    if (uneven && !may_end) || beyond {
+    if (found < expected && !may_end) || beyond {
         let line = rows.line();
         return Err(ReadError::Ragged {
             line,

@@ -6,9 +6,23 @@ use crate::foreign::Foreign;
 use encoding_rs::{Encoding, UTF_16BE, UTF_16LE, WINDOWS_1252};
 use std::borrow::Cow;
 
+/// The text, with lines that end with a line feed, and what was taken for granted of its encoding.
+pub(super) fn decoded<'a>(
+    bytes: &'a [u8],
+    declared: Option<&str>,
+) -> Result<(Cow<'a, str>, Option<Note>), ReadError> {
+    let (text, note) = in_utf_8(bytes, declared)?;
+    let only_returns = text.contains('\r') && !text.contains('\n');
+    let text = match only_returns {
+        true => Cow::Owned(text.replace('\r', "\n")),
+        false => text,
+    };
+    Ok((text, note))
+}
+
 /// The text with what was taken for granted of its encoding: UTF-8, else UTF-16 if every other byte is zero or a mark says
 /// so, else Windows-1252, of which ISO 8859-1 is a part.
-pub(super) fn decoded<'a>(
+fn in_utf_8<'a>(
     bytes: &'a [u8],
     declared: Option<&str>,
 ) -> Result<(Cow<'a, str>, Option<Note>), ReadError> {
@@ -75,5 +89,14 @@ mod tests {
         assert!(note.unwrap().to_string().contains("Windows-1252"));
         assert!(decoded(b"t,x\n0,\0\0\0\n", None).is_err());
         assert!(decoded(b"", None).unwrap().0.is_empty());
+    }
+
+    #[test]
+    fn lines_may_end_with_a_carriage_return_alone() {
+        assert_eq!(decoded(b"t,x\r0,1\r", None).unwrap().0, "t,x\n0,1\n");
+        assert_eq!(
+            decoded(b"t,x\r\n0,1\r\n", None).unwrap().0,
+            "t,x\r\n0,1\r\n"
+        );
     }
 }

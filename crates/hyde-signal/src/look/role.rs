@@ -2,7 +2,7 @@
 
 use super::{Channel, Delay, Slope};
 use crate::Column;
-use hyde_units::{Agreement, Dimension, NamedUnit};
+use hyde_units::{Agreement, Dimension, NamedUnit, unit_in_name};
 use std::fmt;
 
 /// What a channel may show.
@@ -182,6 +182,28 @@ pub(super) fn by_slopes(channels: &mut [Channel], slopes: &[Slope]) {
         }
         guess(channels, of, own, slope);
     }
+}
+
+/// The unit with which the name of a channel ends, where it is one of drives.
+pub(super) fn by_names(channels: &mut [Channel]) {
+    for channel in channels.iter_mut().filter(|channel| channel.unit.is_none()) {
+        if let Some(unit) = unit_in_name(&channel.name).filter(is_of_drives) {
+            let why = "its name ends with it".to_owned();
+            channel.guessed = Some((unit.text().to_owned(), why));
+        }
+    }
+}
+
+/// Whether a unit is one that channels of a drive have; a letter or two may end a name by chance.
+fn is_of_drives(unit: &NamedUnit) -> bool {
+    let usual = [
+        "m", "rad", "m/s", "rad/s", "m/s2", "rad/s2", "A", "V", "N", "N.m", "W", "K", "Hz",
+    ];
+    let by_chance = unit.text().len() == 1 && !"mAVNW".contains(unit.text()) || unit.text() == "in";
+    !by_chance
+        && usual
+            .iter()
+            .any(|usual| of_dimension(usual, unit.unit().dimension))
 }
 
 /// The unit of a slope by that of the channel, where the factor is that of a usual unit.

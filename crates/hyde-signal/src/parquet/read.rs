@@ -5,7 +5,7 @@ use super::error::ReadError;
 use crate::frame::{Field, Frame, Kind, Values};
 use crate::heading::Heading;
 use crc32fast::Hasher;
-use hyde_units::NamedUnit;
+use hyde_units::{NamedUnit, parse_spelled};
 use parquet::basic::Type as Physical;
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, DataType};
@@ -102,7 +102,7 @@ fn named(
 ) -> Result<(String, Option<NamedUnit>), ReadError> {
     let name = column.name().to_owned();
     if let Some(unit) = units.get(&name) {
-        let unit = NamedUnit::parse(unit).map_err(|error| ReadError::Unit(name.clone(), error))?;
+        let unit = parse_spelled(unit).map_err(|error| ReadError::Unit(name.clone(), error))?;
         return Ok((name, Some(unit)));
     }
     Ok(Heading::of(&name).named())

@@ -43,6 +43,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
                 name: field.name,
                 unit: field.unit.map(Ok),
                 place: Place::Usual,
+                spelled: None,
                 meaning: None,
             },
         });

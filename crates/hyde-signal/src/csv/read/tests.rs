@@ -349,3 +349,47 @@ proptest! {
         }
     }
 }
+
+/// A measurement of LabVIEW: facts, a header with a column for comments, rows with and without a tab for it.
+#[test]
+fn a_measurement_of_labview() {
+    let head = "LabVIEW Measurement\t\r\nSeparator\tTab\r\nTime_Pref\tRelative\r\n***End_of_Header***\t\r\n\t\r\n\
+        Channels\t2\t\t\r\nSamples\t4\t4\t\r\nY_Unit_Label\tmm\tA\r\nX_Dimension\tTime\tTime\r\n\
+        X0\t0.0\t0.0\r\nDelta_X\t0.002\t0.002\r\n***End_of_Header***\t\t\t\r\n\
+        X_Value\tpos\tcur\tComment\r\n";
+    for (first, rest) in [("", ""), ("\t", ""), ("\t", "\t")] {
+        let rows = format!("0.000\t1\t5{first}\r\n0.002\t2\t6{rest}\r\n0.004\t3\t7{rest}\r\n");
+        let table = table(&[head, &rows].concat());
+        assert_eq!(table.time(), [0.0, 0.002, 0.004]);
+        assert_eq!(table.column("cur").unwrap().values(), [5.0, 6.0, 7.0]);
+        let units: Vec<Option<&str>> = ["pos", "cur"]
+            .iter()
+            .map(|name| table.column(name).unwrap().unit().map(NamedUnit::text))
+            .collect();
+        assert_eq!(units, [Some("mm"), Some("A")]);
+    }
+}
+
+#[test]
+fn a_rate_in_a_comment_above_a_plain_header() {
+    let table = table("# Sample rate: 500 Hz\npos [mm],cur [A]\n1,5\n2,6\n3,7\n");
+    assert_eq!(table.time(), [0.0, 0.002, 0.004]);
+    assert!(notes(&table).contains("`Sample rate` in line 1"));
+}
+
+#[test]
+fn signs_between_thousands_are_told() {
+    let table = table("t [s];x [mm];y\n0,0;999,5;1\n0,5;1.000,5;2\n1,0;-12.345,25;3\n");
+    let x = table.column("x").unwrap().values();
+    assert!((x[1] - 1.0005).abs() < 1e-12 && (x[2] + 12.345_25).abs() < 1e-12);
+    assert!(notes(&table).contains("`1.000,5` is read as 1000.5"));
+}
+
+#[test]
+fn units_of_devices_are_told() {
+    let table = table("t [s],M [Nm],n [U/min]\n0,1,60\n1,2,120\n");
+    assert_eq!(table.column("M").unwrap().unit().unwrap().text(), "N.m");
+    let speed = table.column("n").unwrap().values()[0];
+    assert!((speed - std::f64::consts::TAU).abs() < 1e-12);
+    assert!(notes(&table).contains("of its units, `Nm` is N.m, `U/min` is rpm"));
+}
