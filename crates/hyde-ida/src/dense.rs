@@ -113,7 +113,48 @@ impl DenseFactors {
         largest
     }
 
+    /// Replaces `b` by the solution of a scaled system. Systems of a few unknowns have loops of a length that the compiler
+    /// knows, with the same operations in the same order.
     fn solve_scaled(&self, b: &mut [f64]) {
+        let solved = match self.n {
+            1 => self.solve_few::<1>(b),
+            2 => self.solve_few::<2>(b),
+            3 => self.solve_few::<3>(b),
+            4 => self.solve_few::<4>(b),
+            5 => self.solve_few::<5>(b),
+            6 => self.solve_few::<6>(b),
+            7 => self.solve_few::<7>(b),
+            8 => self.solve_few::<8>(b),
+            _ => None,
+        };
+        if solved.is_none() {
+            self.solve_any(b);
+        }
+    }
+
+    /// The same for `N` unknowns; `None` if there are others.
+    fn solve_few<const N: usize>(&self, b: &mut [f64]) -> Option<()> {
+        let columns: &[[f64; N]; N] = self.lu.as_chunks::<N>().0.try_into().ok()?;
+        let exchanges: &[usize; N] = self.exchanges.as_slice().try_into().ok()?;
+        let b: &mut [f64; N] = b.try_into().ok()?;
+        for (k, &row) in exchanges.iter().enumerate() {
+            b.swap(k, row);
+        }
+        for (k, column) in columns.iter().enumerate() {
+            for row in k + 1..N {
+                b[row] -= b[k] * column[row];
+            }
+        }
+        for (k, column) in columns.iter().enumerate().rev() {
+            b[k] *= column[k];
+            for row in 0..k {
+                b[row] -= b[k] * column[row];
+            }
+        }
+        Some(())
+    }
+
+    fn solve_any(&self, b: &mut [f64]) {
         for (k, &row) in self.exchanges.iter().enumerate() {
             b.swap(k, row);
         }
@@ -129,6 +170,29 @@ impl DenseFactors {
             for (entry, multiplier) in b[..k].iter_mut().zip(&column[..k]) {
                 *entry -= solved * multiplier;
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn few_unknowns_are_solved_as_many_are() {
+        for n in 1..=9 {
+            let starts = (0..=n).map(|column| (column * n) as i64).collect();
+            let rows = (0..n * n).map(|entry| (entry % n) as i64).collect();
+            let pattern = Pattern::new(n, starts, rows).unwrap();
+            let values: Vec<f64> = (0..n * n).map(|k| (1.0 + 3.7 * k as f64).sin()).collect();
+            let mut factors = DenseFactors::new(n);
+            factors.factor(&pattern, &values).unwrap();
+            let right: Vec<f64> = (0..n).map(|k| (k as f64).cos()).collect();
+            let (mut few, mut any) = (right.clone(), right);
+            factors.solve_scaled(&mut few);
+            factors.solve_any(&mut any);
+            let bits = |x: &[f64]| x.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+            assert_eq!(bits(&few), bits(&any), "{n} unknowns");
         }
     }
 }

@@ -27,8 +27,9 @@ pub enum Backend {
 pub(crate) struct Compiled {
     pub(crate) dae: Dae,
     backend: Backend,
-    values: BTreeMap<dae::Function, Kernel>,
-    partials: BTreeMap<dae::Function, Kernel>,
+    /// One for each function, in the order of [`dae::Function::ALL`].
+    values: Vec<Kernel>,
+    partials: Vec<Kernel>,
     ticks: Vec<Kernel>,
     conditions: Kernel,
     /// Parameters in the order of computation.
@@ -44,6 +45,8 @@ pub(crate) struct Compiled {
 /// A kernel, made at its first use.
 struct Kernel {
     routine: Routine,
+    /// How many values it writes.
+    count: usize,
     code: OnceLock<Code>,
 }
 
@@ -76,24 +79,26 @@ impl Code {
 
 impl Compiled {
     pub(crate) fn new(dae: Dae, backend: Backend) -> Self {
-        let kernel = |routine: Routine| Kernel {
+        let kernel = |routine: Routine, count: usize| Kernel {
             routine,
+            count,
             code: OnceLock::new(),
         };
         let values = dae::Function::ALL
             .into_iter()
-            .map(|f| (f, kernel(Routine::values(&dae, f))))
+            .map(|f| kernel(Routine::values(&dae, f), dae.rows(f)))
             .collect();
+        let entries = |f| dae.partials(f).iter().map(|partial| partial.range.len());
         let partials = dae::Function::ALL
             .into_iter()
-            .map(|f| (f, kernel(partials_of(&dae, f))))
+            .map(|f| kernel(partials_of(&dae, f), entries(f).sum()))
             .collect();
         let ticks = dae
             .ticks
             .ids()
-            .map(|clock| kernel(Routine::tick(&dae, clock)))
+            .map(|clock| kernel(Routine::tick(&dae, clock), dae.n_memory))
             .collect();
-        let conditions = kernel(Routine::conditions(&dae));
+        let conditions = kernel(Routine::conditions(&dae), dae.reactions.len());
         let parameters = dae
             .parameter_order
             .iter()
@@ -127,6 +132,7 @@ impl Compiled {
             .code
             .get_or_init(|| Code::new(&self.dae, &kernel.routine, self.backend));
         self.check(at, workspace);
+        assert!(out.len() >= kernel.count, "room for every value");
         code.run(&mut Frame::at(at, &mut workspace.work, out));
     }
 
@@ -183,9 +189,7 @@ impl Kernels for Compiled {
         workspace: &mut Workspace,
         out: &mut [f64],
     ) {
-        let function = in_dae(function);
-        assert!(out.len() >= self.dae.rows(function), "room for every value");
-        self.run(&self.values[&function], at, workspace, out);
+        self.run(&self.values[in_dae(function) as usize], at, workspace, out);
     }
 
     fn some_rows(&self, function: Function, rows: &[usize]) -> Box<dyn SomeRows + '_> {
@@ -217,15 +221,12 @@ impl Kernels for Compiled {
         workspace: &mut Workspace,
         out: &mut [f64],
     ) {
-        let function = in_dae(function);
-        let count: usize = self
-            .dae
-            .partials(function)
-            .iter()
-            .map(|partial| partial.range.len())
-            .sum();
-        assert!(out.len() >= count, "room for every value");
-        self.run(&self.partials[&function], at, workspace, out);
+        self.run(
+            &self.partials[in_dae(function) as usize],
+            at,
+            workspace,
+            out,
+        );
     }
 
     fn still_entries(&self, function: Function) -> Vec<PartialEntry> {
@@ -260,15 +261,10 @@ impl Kernels for Compiled {
     }
 
     fn conditions(&self, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]) {
-        assert!(
-            out.len() >= self.dae.reactions.len(),
-            "room for every truth"
-        );
         self.run(&self.conditions, at, workspace, out);
     }
 
     fn tick(&self, clock: usize, at: Point<'_>, workspace: &mut Workspace, after: &mut [f64]) {
-        assert!(after.len() >= self.dae.n_memory, "room for the memory");
         self.run(&self.ticks[clock], at, workspace, after);
     }
 
