@@ -90,6 +90,24 @@ const EDGES: &[(&str, &[&str])] = &[
         "report",
         &["calibrate", "diag", "experiment", "signal", "units"],
     ),
+    (
+        "present",
+        &[
+            "calibrate",
+            "compiler",
+            "diag",
+            "experiment",
+            "ida",
+            "library",
+            "program",
+            "report",
+            "signal",
+            "sim",
+            "study",
+            "syntax",
+            "units",
+        ],
+    ),
 ];
 
 /// What stands on top: they may depend on every crate, and no crate of the product on them.

@@ -1,12 +1,12 @@
 //! Errors before and after a calibration or a diagnosis, record by record and channel by channel, over the noise floor (L1).
 
-use crate::assumptions::of_record;
 use crate::diagnosis::wrapped;
 use crate::project::Project;
 use crate::unknown;
 use hyde_calibrate::{FreeMeasure, Measures, Model, Observer, Recording, Unsupported, Written};
 use hyde_compiler::{Additions, Candidate, Form, Request};
 use hyde_diag::Diagnostics;
+use hyde_present::assumptions::of_record;
 use hyde_program::Program;
 use hyde_study::Calibration;
 use hyde_units::{Dimension, NamedUnit, engineering, engineering_difference, significant};

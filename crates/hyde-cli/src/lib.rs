@@ -5,35 +5,24 @@
 //! `study`), rendering diagnostics (`render`), and writing files whole or not at all (`files`).
 
 mod args;
-mod asked_figures;
-mod assumed;
-mod assumptions;
 mod batch;
 mod before_after;
+mod clock;
 mod commands;
 mod compared;
 mod diagnosis;
 mod exit;
-mod figures;
 mod files;
 mod fitted;
-mod forces;
-mod head;
 mod interruption;
-mod ledger;
 mod left_model;
 mod limits;
 mod live;
 mod output;
 mod pages;
-mod panels;
 mod project;
-mod report;
 mod sandbox;
-mod start;
 mod study;
-mod summary;
-mod thinned;
 mod unknown;
 mod watch;
 

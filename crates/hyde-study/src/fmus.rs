@@ -32,6 +32,8 @@ pub struct NamedFmu {
     pub fmu: Arc<Fmu>,
     /// The source file that stands for it.
     pub source: FileId,
+    /// Each instance runs in a process of its own.
+    pub in_own_process: bool,
     /// What makes its instances.
     pub computed_by: Arc<dyn Foreign>,
 }
@@ -93,6 +95,7 @@ pub(crate) fn read(
                         hash,
                         fmu,
                         source,
+                        in_own_process: asked.fmu_host.is_some(),
                         computed_by,
                     });
                 }

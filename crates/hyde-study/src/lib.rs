@@ -14,6 +14,7 @@
 //! ports          inputs and outputs of a program for another tool        ports.rs
 //! project        a file parsed once; its model, experiment, program      project.rs
 //! known          which effects fit where, and where a law may act      known.rs
+//! operating_point  about which point a model is linearised            operating_point.rs
 //! check          everything in a file compiled, and nothing run         check.rs
 //! calibration    a calibration with its records and its observers        calibration.rs
 //! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
@@ -35,6 +36,7 @@ pub mod first_model;
 mod fmus;
 mod inputs;
 mod known;
+pub mod operating_point;
 mod package;
 pub mod ports;
 mod project;

@@ -1,7 +1,7 @@
 //! Trajectories of a batch: whose rows are where, and all cases as envelopes.
 
-use crate::figures::{drawn_in, shown};
 use hyde_experiment::batch::envelope;
+use hyde_present::figures::{drawn_in, shown};
 use hyde_report::Envelope;
 use hyde_signal::{Field, Frame, Values};
 use hyde_units::{NamedUnit, Unit};

@@ -3,11 +3,11 @@
 use super::order::{Order, Parts};
 use super::variants::{Source, Variants};
 use crate::args::ModelArgs;
-use crate::assumptions;
 use crate::exit::Exit;
 use crate::project::{self, Asked, Loaded, Project, Records, Told as _, complain, report_errors};
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::batch::{Dataset, Draft, Model, Plan, record_files};
+use hyde_present::assumptions;
 use hyde_study::{Inputs, Kind};
 use hyde_syntax::ast::{Study, StudyKind};
 use std::path::Path;

@@ -2,8 +2,10 @@
 
 use super::order::Order;
 use super::over_time::{OverTime, drawn, in_si, whole_numbers};
+use crate::clock;
 use crate::commands::sweep::word;
-use crate::{files, head};
+use crate::files;
+use hyde_present::head;
 use hyde_report::{
     BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, FailedCase, Outcome, Section, Verdict,
     WorstCase,
@@ -99,7 +101,7 @@ fn head(folder: &Path, experiment: &str) -> (Vec<(String, String)>, Vec<Section>
     });
     match loaded {
         Some(project) => (
-            head::facts(&project),
+            head::facts(&project, &clock::now()),
             head::model(&project).into_iter().collect(),
         ),
         None => (

@@ -2,8 +2,8 @@
 
 use super::prepare::Prepared;
 use super::work::Took;
-use crate::assumptions;
 use hyde_experiment::batch::{QUANTILES, Summary};
+use hyde_present::assumptions;
 use hyde_units::{counted, engineering_as, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;

@@ -14,19 +14,21 @@ mod stepped;
 use self::measured::Compared;
 use self::response::{Response, band, frequencies, linearised};
 use crate::args::{BodeArgs, ModelArgs, RunArgs};
-use crate::assumed;
-use crate::assumptions;
+use crate::clock;
 use crate::commands::run;
 use crate::exit::Exit;
-use crate::head;
 use crate::project::{self, Aim, Records, Told as _, complain, print_output};
-use crate::summary;
 use crate::watch::Watch;
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::{About, LinearizeError, linearize_about, parameters, poles, swept_response};
+use hyde_present::assumed;
+use hyde_present::assumptions;
+use hyde_present::head;
+use hyde_present::summary;
 use hyde_program::{Bode, Constant, Program};
 use hyde_report::Block;
 use hyde_sim::Reached;
+use hyde_study::operating_point;
 use hyde_units::significant;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
@@ -193,12 +195,12 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     };
     let at = args.about.at.as_deref();
     let asked_modes = args.about.in_modes.iter();
-    let asked_modes = asked_modes.map(|text| assumed::in_mode(program, text));
+    let asked_modes = asked_modes.map(|text| operating_point::in_mode(program, text));
     let asked_modes: Vec<(usize, usize)> = asked_modes.collect::<Result<_, _>>().map_err(wrong)?;
     let name = project.experiment.clone().unwrap_or_default();
     let mut asked = Asked {
         title: title(&project, &name, &program.name),
-        facts: head::facts(&project),
+        facts: head::facts(&project, &clock::now()),
         bodes: Vec::new(),
         margins: Vec::new(),
         json: Vec::new(),
@@ -224,7 +226,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
             .ok_or_else(|| wrong("the band of frequencies is empty".to_owned()))?;
         let frequency = frequencies(band, args.points);
         let time = program.kernels.constant(Constant::RespondsAt(number), &p);
-        let time = assumed::moment(at, bode.at, time).map_err(wrong)?;
+        let time = operating_point::moment(at, bode.at, time).map_err(wrong)?;
         let about = About {
             time,
             modes: &[&asked_modes[..], &bode.modes].concat(),
@@ -401,11 +403,11 @@ fn no_system(
     error: LinearizeError,
 ) -> Exit {
     if let LinearizeError::Failed(failure) = error {
-        return assumed::no_point(project, model, program, failure);
+        return project.report_no_point(model, program, failure);
     }
     let reason = format!(
         "there is no linearised response: {}",
-        assumed::why_not(&error)
+        operating_point::why_not(&error)
     );
     let diagnostic = Diagnostic::error(Code::NoResponse, reason);
     let diagnostic = diagnostic.label(bode.origin.span, "there is no response from here");

@@ -1,8 +1,6 @@
 //! `hyde check`: compiles everything in a file, or in the files of a package, and runs nothing.
 
-use super::effects::wrapped;
 use crate::args::{CheckArgs, ModelArgs};
-use crate::assumptions;
 use crate::batch::order::Order;
 use crate::batch::prepare::Prepared;
 use crate::exit::Exit;
@@ -11,6 +9,8 @@ use crate::project::{self, Project, Records, Told as _, print_output};
 use crate::render;
 use hyde_compiler::{Compiled, States};
 use hyde_diag::Origin;
+use hyde_present::assumptions;
+use hyde_present::lines::wrapped;
 use hyde_program::Program;
 use hyde_study::Inputs;
 use hyde_syntax::ast::StudyKind;

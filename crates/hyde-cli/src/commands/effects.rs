@@ -6,6 +6,7 @@ use crate::args::{EffectsArgs, ModelArgs};
 use crate::exit::Exit;
 use crate::project::{self, Records, Told as _, print_output};
 use hyde_compiler::{Candidate, Knob};
+use hyde_present::lines::wrapped;
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 
@@ -94,21 +95,4 @@ fn as_json(candidate: &Candidate) -> Value {
         "signature": marks.map(|(mark, of)| json!({ "mark": mark, "of": of })).collect::<Vec<_>>(),
         "confounds": candidate.confounds,
     })
-}
-
-/// A list in lines of at most so many characters.
-pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines: Vec<String> = vec![String::new()];
-    for word in text.split(' ') {
-        let last = lines.len() - 1;
-        if !lines[last].is_empty() && lines[last].len() + 1 + word.len() > width {
-            lines.push(word.to_owned());
-            continue;
-        }
-        if !lines[last].is_empty() {
-            lines[last].push(' ');
-        }
-        lines[last].push_str(word);
-    }
-    lines
 }

@@ -9,17 +9,19 @@ mod point;
 pub(crate) use self::point::{Prepared, asked_point, prepared};
 
 use crate::args::{ModelArgs, ModesArgs};
-use crate::assumed;
-use crate::assumptions;
+use crate::clock;
 use crate::exit::Exit;
-use crate::head;
-use crate::project::{complain, print_output};
+use crate::project::{Told as _, complain, print_output};
 use hyde_experiment::{
     About, Linear, LinearizeError, ModeShape, NaturalMode, Pole, Poles, linearize_about,
     mode_shape, poles,
 };
+use hyde_present::assumed;
+use hyde_present::assumptions;
+use hyde_present::head;
 use hyde_program::Program;
 use hyde_report::Block;
+use hyde_study::operating_point;
 use hyde_study::settings::Setting;
 use hyde_units::significant;
 use serde_json::{Map, Value, json};
@@ -125,9 +127,12 @@ pub(crate) fn found(
     let linear = linearize_about(program, &tables, &p, &[], about);
     let linear = linear.map_err(|error| {
         if let LinearizeError::Failed(failure) = error {
-            return assumed::no_point(&mut project, model, program, failure);
+            return project.report_no_point(model, program, failure);
         }
-        let reason = format!("the model is not linearised: {}", assumed::why_not(&error));
+        let reason = format!(
+            "the model is not linearised: {}",
+            operating_point::why_not(&error)
+        );
         complain(model, Exit::CommandLine, &reason)
     })?;
     let poles = poles(&linear);
@@ -152,7 +157,7 @@ pub(crate) fn found(
     };
     Ok(Found {
         name: project.experiment.clone().unwrap_or(program.name.clone()),
-        facts: head::facts(&project),
+        facts: head::facts(&project, &clock::now()),
         units: program.parameters.iter().map(unit).collect(),
         modes,
         shapes,

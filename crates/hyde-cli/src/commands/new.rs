@@ -173,7 +173,7 @@ fn quantity(text: Option<&str>, name: &str, unit: &str) -> Result<Option<f64>, S
 }
 
 fn told(path: &Path, model: &FirstModel) -> String {
-    let notes = crate::assumptions::text(&model.notes);
+    let notes = hyde_present::assumptions::text(&model.notes);
     let mut lines: Vec<String> = notes.lines().map(str::to_owned).collect();
     let confirm = model
         .text

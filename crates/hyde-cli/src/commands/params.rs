@@ -2,9 +2,9 @@
 
 use crate::args::ParamsArgs;
 use crate::exit::Exit;
-use crate::figures::shown;
 use crate::project::{self, Aim, Records, Told as _, print_output};
 use hyde_experiment::parameters;
+use hyde_present::figures::shown;
 use hyde_program::{Parameter, Prior};
 use hyde_units::{counted, significant};
 use serde_json::json;

@@ -3,17 +3,23 @@
 mod trajectories;
 
 use crate::args::{Format, RunArgs};
+use crate::clock;
 use crate::exit::Exit;
 use crate::files;
 use crate::interruption;
 use crate::project::{
     self, Aim, Project, Records, Told as _, complain, print_diagnostics, print_error, print_output,
 };
+use crate::render;
 use crate::watch::Watch;
-use crate::{asked_figures, forces, render, report, summary};
 use hyde_compiler::Compiled;
 use hyde_experiment::{Options, Run, RunError};
+use hyde_present::asked_figures;
+use hyde_present::forces;
+use hyde_present::run_page;
+use hyde_present::summary;
 use hyde_program::Program;
+use hyde_report::to_html;
 use hyde_signal::{Written, WrittenValues, csv, parquet};
 use hyde_sim::{Reached, Results};
 use hyde_study::run_failure;
@@ -168,10 +174,12 @@ fn leave(
     let summary = format!("{:#}\n", summary::json(project, compiled, run));
     files::write(&folder.join("summary.json"), summary.as_bytes())?;
     let figures = asked_figures::of_run(&compiled.program, run);
-    asked_figures::leave(folder, &figures)?;
+    for (name, content) in asked_figures::files(&figures) {
+        files::write(&folder.join(name), &content)?;
+    }
     files::write(
         &folder.join("report.html"),
-        report::html(project, compiled, run).as_bytes(),
+        to_html(&run_page::page(project, compiled, run, &clock::now())).as_bytes(),
     )
 }
 

@@ -5,7 +5,7 @@ use crate::commands::{check, run};
 use crate::exit::Exit;
 use crate::limits::{self, Neutral};
 use crate::project::{self, print_output};
-use crate::summary;
+use hyde_present::summary;
 use hyde_units::significant;
 use serde_json::{Value, json};
 

@@ -3,8 +3,8 @@
 use super::{Told, named, verdict};
 use crate::before_after::RecordErrors;
 use crate::compared::judge;
-use crate::figures::{error_in, shown};
 use hyde_calibrate::{FreeMeasure, LatentForce, Panel, Unknown, Variable};
+use hyde_present::figures::{error_in, shown};
 use hyde_report::{FoundCurve, Response};
 use hyde_signal::spectrum::power_spectral_density;
 use hyde_units::significant;

@@ -1,12 +1,13 @@
 //! The page of a diagnosis.
 
 use super::{Told, found, named, plain, suspicion, verdict};
-use crate::assumptions;
 use crate::before_after::{self, Change, RecordErrors};
+use crate::clock;
 use crate::compared;
-use crate::figures::{drawn_in, error_in, shown};
-use crate::head;
 use hyde_calibrate::{FittedParameter, ResidualMap, Whiteness};
+use hyde_present::assumptions;
+use hyde_present::figures::{drawn_in, error_in, shown};
+use hyde_present::head;
 use hyde_report::{
     ChannelChange, DiagnosisReport, ErrorChange, MovedParameter, RecordChange, Section, TriedEffect,
 };
@@ -50,7 +51,7 @@ pub(crate) fn html(told: &Told<'_>) -> String {
 /// File, model, experiment, date, and what was asked.
 fn facts(told: &Told<'_>) -> Vec<(String, String)> {
     let calibration = told.calibration;
-    let mut facts = head::facts(&calibration.project);
+    let mut facts = head::facts(&calibration.project, &clock::now());
     let own = |name: &str, value: &str| (name.to_owned(), value.to_owned());
     let asked = format!("{} of calibrate {}", told.plan.name, calibration.plan.name);
     facts.insert(0, own("Diagnosis", &asked));

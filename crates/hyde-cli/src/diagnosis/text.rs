@@ -2,9 +2,9 @@
 
 use super::{Told, named, suspicion, verdict};
 use crate::before_after;
-use crate::figures::{drawn_in, shown};
 use crate::unknown;
 use hyde_calibrate::ResidualMap;
+use hyde_present::figures::{drawn_in, shown};
 use hyde_units::{Unit, significant};
 use std::fmt::Write as _;
 

@@ -2,8 +2,8 @@
 
 use super::{Refused, Told, named};
 use crate::before_after::{self, RecordErrors};
-use crate::figures::{drawn_in, shown};
 use hyde_calibrate::{Finding, Frozen, Quantity, Verdict};
+use hyde_present::figures::{drawn_in, shown};
 use hyde_study::unobservable::reason;
 use hyde_units::{NamedUnit, significant};
 

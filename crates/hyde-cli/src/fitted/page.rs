@@ -2,12 +2,13 @@
 
 use super::text::{interval, noise};
 use super::{Told, experiment_name, identified, plots, shown, shown_difference};
-use crate::assumptions;
 use crate::before_after;
+use crate::clock;
 use crate::compared;
 use crate::diagnosis::suspicion;
-use crate::head;
 use crate::project::Project;
+use hyde_present::assumptions;
+use hyde_present::head;
 use hyde_report::{Block, Page, Section, Table};
 use hyde_units::significant;
 
@@ -22,7 +23,7 @@ pub(crate) fn html(told: &Told<'_>) -> String {
         .map(|own| &own.project)
         .collect();
     let mut facts = vec![fact("Calibration", plan.name.clone())];
-    facts.extend(head::facts_of_all(&projects));
+    facts.extend(head::facts_of_all(&projects, &clock::now()));
     let each = calibration.experiments.iter();
     let assumed: Vec<String> = each.flat_map(before_after::assumptions).collect();
     let sections = [

@@ -1,8 +1,8 @@
 //! The plots of a calibration: profiles over a parameter, and correlations as a field of dots.
 
 use super::{Told, unit};
-use crate::figures::{drawn_in, shown};
 use hyde_calibrate::{LIMIT, Profile};
+use hyde_present::figures::{drawn_in, shown};
 use hyde_report::{Axis, Direction, Figure, Line, LineStyle, Panel, Reference};
 
 /// A change of the sum of squares above this is not drawn.

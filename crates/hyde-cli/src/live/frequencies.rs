@@ -1,11 +1,12 @@
 //! The natural frequencies of the model with what the sliders say, about the point that its experiment names.
 
-use crate::assumed;
 use crate::commands::modes::asked_point;
 use hyde_experiment::{About, linearize_about, mode_shape, poles};
+use hyde_present::assumed;
 use hyde_program::Program;
 use hyde_report::{Block, Page, Section, Table};
 use hyde_signal::Table as Record;
+use hyde_study::operating_point;
 use hyde_units::significant;
 use std::collections::BTreeMap;
 
@@ -20,12 +21,16 @@ pub(super) fn page(
 ) -> Result<Page, String> {
     let (modes, moment, time) = asked_point(program, parameters);
     let about = About {
-        time: assumed::moment(None, moment, time)?,
+        time: operating_point::moment(None, moment, time)?,
         modes: &modes,
         open: false,
     };
-    let linear = linearize_about(program, records, parameters, &[], about)
-        .map_err(|error| format!("the model is not linearised: {}", assumed::why_not(&error)))?;
+    let linear = linearize_about(program, records, parameters, &[], about).map_err(|error| {
+        format!(
+            "the model is not linearised: {}",
+            operating_point::why_not(&error)
+        )
+    })?;
     let poles = poles(&linear);
     let row = |pole: &hyde_experiment::Pole| {
         let mode = pole.mode();

@@ -3,10 +3,12 @@
 use super::frequencies;
 use super::sliders::sliders;
 use super::watched::Watched;
-use crate::{files, report};
+use crate::clock;
+use crate::files;
 use hyde_compiler::{Compiled, NewValue, write_values};
 use hyde_diag::Diagnostics;
 use hyde_experiment::{Options, RunError};
+use hyde_present::run_page;
 use hyde_report::to_body;
 use hyde_signal::Table;
 use hyde_study::settings::Setting;
@@ -171,7 +173,7 @@ impl Session {
         }
         let answer = match run {
             Ok(run) => {
-                let page = report::page(&ready.project, &ready.compiled, &run);
+                let page = run_page::page(&ready.project, &ready.compiled, &run, &clock::now());
                 let body = to_body(&page);
                 json!({ "ok": true, "body": body, "took_ms": took, "partial": partial })
             }

@@ -1,14 +1,15 @@
 //! The stability margins of the loops that an experiment cuts: computed, told, as JSON.
 
-use crate::assumed;
 use crate::project::Project;
 use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_experiment::{
     About, CutError, DelayMargin, Margins, Pole, linearize_about, margins, poles,
 };
+use hyde_present::assumed;
 use hyde_program::{Constant, Cut, Program};
 use hyde_report::Block;
 use hyde_signal::Table;
+use hyde_study::operating_point;
 use hyde_syntax::ast::Item;
 use hyde_units::significant;
 use serde_json::{Value, json};
@@ -98,7 +99,7 @@ fn one(
     }
     let input = std::slice::from_ref(&cut.input);
     let constant = |which| program.kernels.constant(which, p);
-    let time = assumed::moment(asked, cut.at, constant(Constant::CutAt(number)));
+    let time = operating_point::moment(asked, cut.at, constant(Constant::CutAt(number)));
     let time = time.map_err(|reason| {
         let diagnostic = Diagnostic::error(Code::NoResponse, reason);
         Box::new(diagnostic.label(cut.origin.span, "linearised there"))
@@ -109,7 +110,7 @@ fn one(
         open: false,
     };
     let linear = linearize_about(program, tables, p, input, about).map_err(|error| {
-        let diagnostic = Diagnostic::error(Code::NoResponse, assumed::why_not(&error));
+        let diagnostic = Diagnostic::error(Code::NoResponse, operating_point::why_not(&error));
         Box::new(diagnostic.label(cut.origin.span, "the loop has no response here"))
     })?;
     let band = constant(Constant::SearchedFrom(number)).zip(constant(Constant::SearchedTo(number)));

@@ -1,9 +1,9 @@
 //! One response of an experiment: of the linearised model, and as measured on the hybrid one.
 
 use super::measured::Compared;
-use crate::figures::{difference_in, shown};
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::{BodeError, Linear, Pole, Poles, SteppedOutput, frequency_response_watched};
+use hyde_present::figures::{difference_in, shown};
 use hyde_program::{Bode, Constant, Program};
 use hyde_signal::spectrum::FrequencyResponse;
 use hyde_sim::Reached;

@@ -3,8 +3,8 @@
 use super::compared::{Compared, Comparison};
 use super::text;
 use crate::args::{Criterion, ExciteArgs};
-use crate::commands::effects::wrapped;
 use hyde_calibrate::UNKNOWN;
+use hyde_present::lines::wrapped;
 use hyde_units::{counted, engineering_as, engineering_difference, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;

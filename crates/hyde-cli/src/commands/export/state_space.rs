@@ -6,14 +6,15 @@ mod python;
 
 use super::identifier;
 use crate::args::{ModelArgs, StateSpaceArgs};
-use crate::assumed;
 use crate::commands::modes::{Prepared, prepared};
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{Project, Told as _, complain, print_output};
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::{About, LinearizeError, StateSpace, linearize_about, poles, state_space};
+use hyde_present::assumed;
 use hyde_program::Program;
+use hyde_study::operating_point;
 use hyde_study::ports::{chosen_outputs, is_input};
 use hyde_units::{counted, significant};
 use serde_json::json;
@@ -233,13 +234,13 @@ fn no_system(
     error: LinearizeError,
 ) -> Exit {
     match error {
-        LinearizeError::Failed(failure) => assumed::no_point(project, model, program, failure),
+        LinearizeError::Failed(failure) => project.report_no_point(model, program, failure),
         LinearizeError::DelayAndClock => {
             project.diagnostics.push(delayed(program));
             project.finish_with_errors(model)
         }
         LinearizeError::NoCommonPeriod | LinearizeError::LongDelay => {
-            let reason = assumed::why_not(&error);
+            let reason = operating_point::why_not(&error);
             let diagnostic = Diagnostic::error(Code::CannotExport, reason);
             let diagnostic = match program.clocks.first() {
                 Some(clock) => diagnostic.label(clock.origin.span, "a clock of the loop"),
@@ -250,7 +251,10 @@ fn no_system(
             project.finish_with_errors(model)
         }
         LinearizeError::NoInput(_) | LinearizeError::TooLarge(_) | LinearizeError::Singular => {
-            let reason = format!("there is no state space: {}", assumed::why_not(&error));
+            let reason = format!(
+                "there is no state space: {}",
+                operating_point::why_not(&error)
+            );
             complain(model, Exit::CommandLine, &reason)
         }
     }

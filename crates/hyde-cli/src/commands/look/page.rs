@@ -3,7 +3,7 @@
 use super::text::{delayed, limit, of_channel, of_clock, samples};
 use super::{Seen, layout_of};
 use crate::files;
-use crate::thinned::thinned;
+use hyde_present::thinned::thinned;
 use hyde_report::{Axis, Block, Figure, Line, Page, Panel, Section, Table, to_html};
 use hyde_signal::look::Channel;
 use hyde_units::significant;

@@ -1,7 +1,7 @@
 //! What `hyde look` prints: a screen a file, 80 columns wide.
 
 use super::{Seen, layout_of};
-use crate::commands::effects::wrapped;
+use hyde_present::lines::wrapped;
 use hyde_signal::Unusable;
 use hyde_signal::look::{Channel, Clock};
 use hyde_units::{counted, significant};

@@ -2,7 +2,6 @@
 
 use super::{Prepared, prepared};
 use crate::args::ModesArgs;
-use crate::assumed;
 use crate::exit::Exit;
 use crate::project::Told as _;
 use crate::project::complain;
@@ -10,6 +9,7 @@ use hyde_experiment::{
     Combination, MeasuredMode, ModeFit, ModeFitError, ModeFitRequest, fit_modes,
 };
 use hyde_program::Program;
+use hyde_study::operating_point;
 use hyde_study::run_failure;
 use hyde_units::significant;
 use serde_json::json;
@@ -128,7 +128,10 @@ fn reason(error: &ModeFitError, measured: &[MeasuredMode]) -> String {
         }
         ModeFitError::TooFewModes(count) => format!("the model has {count} modes that oscillate"),
         ModeFitError::Linearize(error) => {
-            format!("the model is not linearised: {}", assumed::why_not(error))
+            format!(
+                "the model is not linearised: {}",
+                operating_point::why_not(error)
+            )
         }
         ModeFitError::Lost(at) => {
             let f = significant(measured[*at].frequency_hz, 4);

@@ -3,9 +3,9 @@
 use super::{Found, found, page};
 use crate::args::{ModelArgs, ModesArgs};
 use crate::exit::Exit;
-use crate::figures::shown;
 use crate::files;
 use crate::project::complain;
+use hyde_present::figures::shown;
 use hyde_report::{Axis, Figure, Line, LineStyle, Panel, to_png, to_svg};
 use hyde_study::settings::{self, Setting};
 use hyde_units::significant;

@@ -1,8 +1,8 @@
 //! The page of `hyde modes`: the modes of each experiment, and about what it is linearised.
 
 use super::Found;
-use crate::assumed;
 use crate::files;
+use hyde_present::assumed;
 use hyde_report::{Block, Figure, Outcome, Page, Section, Table, Verdict, to_html};
 use hyde_units::significant;
 use std::path::Path;

@@ -2,7 +2,6 @@
 //! for.
 
 use crate::args::{AboutArgs, ModelArgs};
-use crate::assumed;
 use crate::exit::Exit;
 use crate::project::{self, Aim, Project, Records, Told as _, complain};
 use hyde_compiler::Compiled;
@@ -10,6 +9,7 @@ use hyde_experiment::parameters;
 use hyde_program::{Constant, Moment, Program};
 use hyde_signal::Table;
 use hyde_sim::PointTime;
+use hyde_study::operating_point;
 use hyde_study::settings::Setting;
 use std::collections::BTreeMap;
 
@@ -42,9 +42,9 @@ pub(crate) fn prepared(
         .map_err(|error| project.report_refused(model, program, &error))?;
     let (mut chosen, moment, time) = asked_point(program, &parameters);
     for text in &about.in_modes {
-        chosen.insert(0, assumed::in_mode(program, text).map_err(wrong)?);
+        chosen.insert(0, operating_point::in_mode(program, text).map_err(wrong)?);
     }
-    let time = assumed::moment(about.at.as_deref(), moment, time).map_err(wrong)?;
+    let time = operating_point::moment(about.at.as_deref(), moment, time).map_err(wrong)?;
     Ok(Prepared {
         project,
         compiled,

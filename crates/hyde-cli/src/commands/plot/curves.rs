@@ -3,7 +3,7 @@
 use super::source::Recorded;
 use super::strip;
 use crate::args::PlotArgs;
-use crate::figures::{drawn_in, shown};
+use hyde_present::figures::{drawn_in, shown};
 use hyde_report::{Figure, Line, time_panel, time_plot, xy_plot};
 use hyde_signal::{Column, Table};
 use hyde_units::{Agreement, NamedUnit, Unit, significant};

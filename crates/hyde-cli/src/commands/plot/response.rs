@@ -1,7 +1,7 @@
 //! A frequency response from its table: what `hyde bode --out` leaves, or a measured one in the same columns.
 
 use super::source::Source;
-use crate::figures::shown;
+use hyde_present::figures::shown;
 use hyde_report::{BodeCurve, Figure, LineStyle, bode_plot};
 use hyde_signal::{Frame, Values};
 use hyde_units::{Agreement, Dimension};

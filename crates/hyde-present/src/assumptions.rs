@@ -1,22 +1,22 @@
 //! What was taken for granted of records and tables: told on the console, in JSON and on the page.
 
-use crate::commands::effects::wrapped;
-use crate::project::Project;
+use crate::lines::wrapped;
 use hyde_experiment::{Run, extent, is_over_frequency};
 use hyde_program::Program;
 use hyde_report::{Block, Section};
 use hyde_signal::Table;
+use hyde_study::Project;
 use hyde_study::run_failure::instant;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 /// All of it, record by record, then where the run begins.
-pub(crate) fn of_run(project: &Project, program: &Program, run: &Run) -> Vec<String> {
+pub fn of_run(project: &Project, program: &Program, run: &Run) -> Vec<String> {
     all(project, program, &run.start, run.stop_s)
 }
 
 /// The same of a model that is looked at with its records, but not run as the experiment says.
-pub(crate) fn of_model(project: &Project, program: &Program, parameters: &[f64]) -> Vec<String> {
+pub fn of_model(project: &Project, program: &Program, parameters: &[f64]) -> Vec<String> {
     let tables = hyde_study::tables(&project.records);
     let (start, stop_s) = extent(program, &tables, parameters);
     all(project, program, &start, stop_s)
@@ -69,7 +69,7 @@ fn of_fmus(project: &Project, program: &Program) -> Vec<String> {
             continue;
         }
         let (file, parts) = (&known.fmu.file, parts.join(", "));
-        all.push(match crate::sandbox::is_asked() {
+        all.push(match known.in_own_process {
             true => format!("{parts} runs machine code of `{file}` in a process of its own"),
             false => format!(
                 "{parts} runs machine code of `{file}` in this process; `--sandbox` runs it in one of its own"
@@ -93,7 +93,7 @@ fn of_fmus(project: &Project, program: &Program) -> Vec<String> {
 }
 
 /// One note below the other, for the console.
-pub(crate) fn text(notes: &[String]) -> String {
+pub fn text(notes: &[String]) -> String {
     let mut out = String::new();
     for note in notes {
         for (number, line) in wrapped(note, 74).iter().enumerate() {
@@ -105,7 +105,7 @@ pub(crate) fn text(notes: &[String]) -> String {
 }
 
 /// What was taken for granted of a record, as far as the program reads it.
-pub(crate) fn of_record(program: &Program, name: &str, table: &Table) -> Vec<String> {
+pub fn of_record(program: &Program, name: &str, table: &Table) -> Vec<String> {
     let mut all: Vec<String> = table.notes().iter().map(ToString::to_string).collect();
     let known: BTreeSet<&str> = columns(program)
         .filter(|(record, _)| *record == name)
@@ -197,7 +197,7 @@ fn columns(program: &Program) -> impl Iterator<Item = (&str, &str)> {
 }
 
 /// The section of a page.
-pub(crate) fn section(texts: &[String]) -> Option<Section> {
+pub fn section(texts: &[String]) -> Option<Section> {
     (!texts.is_empty()).then(|| Section {
         heading: "Assumptions".to_owned(),
         blocks: texts.iter().cloned().map(Block::Text).collect(),

@@ -1,18 +1,18 @@
 //! What a run was, in a few lines for people and as JSON for programs.
 
-use crate::project::Project;
-use crate::{assumptions, ledger, sandbox, start};
+use crate::{assumptions, ledger, start};
 use hyde_compiler::Compiled;
 use hyde_experiment::{MeasureValue, Run};
 use hyde_program::Method;
 use hyde_sim::{Event, EventKind, GradientEnd, GradientEndKind};
+use hyde_study::Project;
 use hyde_units::{counted, engineering_as, engineering_difference, significant};
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 use std::time::Duration;
 
 /// The run in a few lines of at most 80 columns.
-pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Duration) -> String {
+pub fn text(project: &Project, compiled: &Compiled, run: &Run, took: Duration) -> String {
     let program = &compiled.program;
     let mut out = String::new();
     let name = project.experiment.as_ref().map_or_else(
@@ -128,7 +128,7 @@ pub(crate) fn text(project: &Project, compiled: &Compiled, run: &Run, took: Dura
 }
 
 /// Why a measure or an expectation has no value, behind a colon; empty of one that has.
-pub(crate) fn why_missing(measure: &MeasureValue) -> String {
+pub fn why_missing(measure: &MeasureValue) -> String {
     let missing = measure.missing.as_ref();
     missing.map_or(String::new(), |missing| format!(": {}", missing.text()))
 }
@@ -144,7 +144,7 @@ fn end_of_gradient(end: &GradientEnd) -> String {
 }
 
 /// The run as JSON: versions, inputs by hash, parameters, statistics, errors, measures.
-pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
+pub fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
     let program = &compiled.program;
     let statistics = &run.results.statistics;
     let parameters: Map<String, Value> = program
@@ -181,7 +181,7 @@ pub(crate) fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         .collect();
     let fmus = project.fmus.iter();
     let fmus: Vec<Value> = fmus
-        .map(|fmu| json!({ "path": fmu.path.to_string_lossy(), "sha256": fmu.hash, "sandbox": sandbox::is_asked() }))
+        .map(|fmu| json!({ "path": fmu.path.to_string_lossy(), "sha256": fmu.hash, "sandbox": fmu.in_own_process }))
         .collect();
     let channels: Vec<Value> = run
         .channels
@@ -308,7 +308,7 @@ fn with_missing((mut entry, measure): (Value, &MeasureValue)) -> Value {
 }
 
 /// The event log as CSV.
-pub(crate) fn events_csv(project: &Project, compiled: &Compiled, events: &[Event]) -> String {
+pub fn events_csv(project: &Project, compiled: &Compiled, events: &[Event]) -> String {
     let mut out = String::from("t [s],what,before,after,cause,source\n");
     for event in events {
         let (what, before, after) = described(compiled, event);
@@ -324,7 +324,7 @@ pub(crate) fn events_csv(project: &Project, compiled: &Compiled, events: &[Event
 }
 
 /// Of an event: whose, and the modes before and after.
-pub(crate) fn described(compiled: &Compiled, event: &Event) -> (String, String, String) {
+pub fn described(compiled: &Compiled, event: &Event) -> (String, String, String) {
     match event.kind {
         EventKind::Transition {
             automaton,

@@ -1,14 +1,12 @@
 //! The figures that an experiment asks for, drawn from the results of its run.
 
 use crate::figures::{drawn_in, shown};
-use crate::files;
 use hyde_experiment::Run;
 use hyde_program::{Constant, Curve, FigureKind, Program};
 use hyde_report::{Figure, Line, circle_plot, time_panel, time_plot, to_png, to_svg, xy_plot};
-use std::path::Path;
 
 /// The figures with their names, as written.
-pub(crate) fn of_run(program: &Program, run: &Run) -> Vec<(String, Figure)> {
+pub fn of_run(program: &Program, run: &Run) -> Vec<(String, Figure)> {
     let figures = program.experiment.figures.iter().enumerate();
     let drawn = figures.map(|(number, asked)| {
         let constant = |which| program.kernels.constant(which, &run.parameters);
@@ -31,14 +29,16 @@ pub(crate) fn of_run(program: &Program, run: &Run) -> Vec<(String, Figure)> {
     drawn.collect()
 }
 
-/// Writes each figure as `NAME.svg` and `NAME.png`.
-pub(crate) fn leave(folder: &Path, figures: &[(String, Figure)]) -> Result<(), String> {
-    for (name, figure) in figures {
-        let file = |ending: &str| folder.join(format!("{name}.{ending}"));
-        files::write(&file("svg"), to_svg(figure).as_bytes())?;
-        files::write(&file("png"), &to_png(figure, 2.0))?;
-    }
-    Ok(())
+/// The files of figures: each as `NAME.svg` and as `NAME.png`.
+#[must_use]
+pub fn files(figures: &[(String, Figure)]) -> Vec<(String, Vec<u8>)> {
+    let both = |(name, figure): &(String, Figure)| {
+        [
+            (format!("{name}.svg"), to_svg(figure).into_bytes()),
+            (format!("{name}.png"), to_png(figure, 2.0)),
+        ]
+    };
+    figures.iter().flat_map(both).collect()
 }
 
 /// The rows of a run within the times that a figure shows.

@@ -1,18 +1,10 @@
 //! About what a model was linearised, and what was assumed there: in words and as JSON.
 
-use crate::args::ModelArgs;
-use crate::exit::Exit;
-use crate::project::Project;
-use crate::project::Told as _;
-use hyde_experiment::{
-    Assumption, Linear, LinearizeError, ModeShape, Pole, Poles, RunError, mode_shape,
-};
-use hyde_program::{Moment, Program};
+use hyde_experiment::{Assumption, Linear, ModeShape, Pole, Poles, mode_shape};
+use hyde_program::Program;
 use hyde_report::{Block, Table};
-use hyde_sim::{Failure, PointTime};
-use hyde_study::run_failure;
-use hyde_study::settings;
-use hyde_units::{Agreement, Dimension, significant};
+use hyde_sim::PointTime;
+use hyde_units::significant;
 use serde_json::{Map, Value, json};
 use std::fmt::Write as _;
 
@@ -21,112 +13,8 @@ const LEAST_SHARE: f64 = 0.05;
 /// Width of a list in a line.
 const WIDTH: usize = 54;
 
-/// `0.3 [s]`, `start` or `steady`.
-pub(crate) fn point_time(text: Option<&str>) -> Result<PointTime, String> {
-    match text.map(str::trim) {
-        None | Some("start") => Ok(PointTime::Start),
-        Some("steady") => Ok(PointTime::Steady),
-        Some(text) => {
-            let help =
-                || format!("`--at {text}`: write `--at '0.3 [s]'`, `--at start` or `--at steady`");
-            let setting = settings::parse(&format!("t={text}")).map_err(|_| help())?;
-            let unit = setting.unit.as_ref();
-            let time = unit.map_or(Dimension::TIME, |unit| unit.unit().dimension);
-            let fits = time.agreement(Dimension::TIME) == Agreement::Same;
-            match fits && setting.value >= 0.0 {
-                true => Ok(PointTime::At(setting.value)),
-                false => Err(help()),
-            }
-        }
-    }
-}
-
-/// Where the experiment says, unless the command line says otherwise; `time` is its time, where that is one.
-pub(crate) fn moment(
-    asked: Option<&str>,
-    at: Moment,
-    time: Option<f64>,
-) -> Result<PointTime, String> {
-    match (asked, at) {
-        (Some(_), _) => point_time(asked),
-        (None, Moment::Start) => Ok(PointTime::Start),
-        (None, Moment::Steady) => Ok(PointTime::Steady),
-        (None, Moment::At) => match time {
-            Some(time) if time >= 0.0 => Ok(PointTime::At(time)),
-            Some(_) | None => Err("`at`: a run has no time below 0".to_owned()),
-        },
-    }
-}
-
-/// `guide=slip`
-pub(crate) fn in_mode(program: &Program, text: &str) -> Result<(usize, usize), String> {
-    let (name, mode) = text
-        .split_once('=')
-        .ok_or_else(|| format!("`--in {text}`: write `NAME=MODE`"))?;
-    let number = program
-        .automata
-        .iter()
-        .position(|automaton| automaton.name == name)
-        .ok_or_else(|| {
-            let known: Vec<&str> = program
-                .automata
-                .iter()
-                .map(|automaton| automaton.name.as_str())
-                .collect();
-            format!(
-                "`{name}` has no modes; modes are in `{}`",
-                known.join("`, `")
-            )
-        })?;
-    let modes = &program.automata[number].modes;
-    let found = modes.iter().position(|known| known == mode);
-    let found = found.ok_or_else(|| {
-        format!(
-            "`{name}` has no mode `{mode}`; it has `{}`",
-            modes.join("`, `")
-        )
-    })?;
-    Ok((number, found))
-}
-
-/// Reports why a run does not come to the operating point.
-pub(crate) fn no_point(
-    project: &mut Project,
-    model: &ModelArgs,
-    program: &Program,
-    failure: Box<Failure>,
-) -> Exit {
-    let (diagnostic, fault) = run_failure::diagnostic(&RunError::Failed(failure), program, None);
-    project.diagnostics.push(diagnostic);
-    project.finish_with_errors(model);
-    fault.into()
-}
-
-/// Why a model could not be linearised.
-pub(crate) fn why_not(error: &LinearizeError) -> String {
-    match error {
-        LinearizeError::NoInput(name) => format!("`{name}` is not a free input"),
-        LinearizeError::TooLarge(n) => {
-            format!("{n} unknowns are too many for a dense linearised system")
-        }
-        LinearizeError::NoCommonPeriod => {
-            "the clocks never tick together again, so the loop has no common period".to_owned()
-        }
-        LinearizeError::LongDelay => {
-            "the held values of a clock change more than a period after their tick".to_owned()
-        }
-        LinearizeError::DelayAndClock => "it has both a `delay` and a clocked part".to_owned(),
-        LinearizeError::Singular => {
-            "the algebraic variables are not determined in these modes".to_owned()
-        }
-        LinearizeError::Failed(failure) => {
-            format!("no operating point was found: {:?}", failure.kind)
-        }
-    }
-}
-
 /// The line that says which pole grows, first of all; none where none does.
-pub(crate) fn unstable(
+pub fn unstable(
     program: &Program,
     parameters: &[f64],
     linear: &Linear,
@@ -185,7 +73,7 @@ fn place(
 }
 
 /// Where the energy of a shape is, the largest shares first: `97 % table.rocking`.
-pub(crate) fn shares(shape: &ModeShape) -> String {
+pub fn shares(shape: &ModeShape) -> String {
     let mut sorted: Vec<_> = shape
         .shares
         .iter()
@@ -208,7 +96,7 @@ pub(crate) fn shares(shape: &ModeShape) -> String {
 }
 
 /// About what it is linearised, with the table of what is assumed there.
-pub(crate) fn text(program: &Program, linear: &Linear, time: PointTime) -> String {
+pub fn text(program: &Program, linear: &Linear, time: PointTime) -> String {
     let mut text = format!("linearised {}\n", place_of(linear, time));
     if linear.assumptions.is_empty() {
         return text;
@@ -222,7 +110,7 @@ pub(crate) fn text(program: &Program, linear: &Linear, time: PointTime) -> Strin
 }
 
 /// The same for a page.
-pub(crate) fn blocks(program: &Program, linear: &Linear, time: PointTime) -> Vec<Block> {
+pub fn blocks(program: &Program, linear: &Linear, time: PointTime) -> Vec<Block> {
     let mut blocks = vec![Block::Text(format!(
         "Linearised {}.",
         place_of(linear, time)
@@ -310,7 +198,7 @@ fn told(program: &Program, linear: &Linear, assumption: &Assumption) -> (String,
 }
 
 /// What is assumed, as JSON.
-pub(crate) fn listed(program: &Program, linear: &Linear) -> Value {
+pub fn listed(program: &Program, linear: &Linear) -> Value {
     let one = |assumption: &Assumption| {
         let (about, assumed) = told(program, linear, assumption);
         let kind = match assumption {
@@ -326,7 +214,7 @@ pub(crate) fn listed(program: &Program, linear: &Linear) -> Value {
 }
 
 /// The same as JSON, with what the poles say of stability.
-pub(crate) fn json(
+pub fn json(
     program: &Program,
     linear: &Linear,
     time: PointTime,

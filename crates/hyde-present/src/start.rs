@@ -6,7 +6,7 @@ use hyde_units::{Dimension, NamedUnit, engineering_as};
 use serde_json::{Value, json};
 
 /// One line for each of which something was said.
-pub(crate) fn lines(program: &Program, yielded: &[Yielded]) -> Vec<String> {
+pub fn lines(program: &Program, yielded: &[Yielded]) -> Vec<String> {
     let line = |found: &Yielded| {
         let unit = unit(program, &found.name);
         let show = |value: f64| engineering_as(value, &unit).trim().to_owned();
@@ -31,7 +31,7 @@ pub(crate) fn lines(program: &Program, yielded: &[Yielded]) -> Vec<String> {
 }
 
 /// The same for programs; SI values.
-pub(crate) fn json(program: &Program, yielded: &[Yielded]) -> Value {
+pub fn json(program: &Program, yielded: &[Yielded]) -> Value {
     let entry = |found: &Yielded| {
         json!({
             "name": found.name,

@@ -21,7 +21,7 @@ const STRETCHES: usize = 20_000;
 const READABLE: std::ops::Range<f64> = 1e-3..1e5;
 
 /// The figures of a run, the most telling first.
-pub(crate) fn of_run(title: &str, program: &Program, run: &Run) -> Vec<Figure> {
+pub fn of_run(title: &str, program: &Program, run: &Run) -> Vec<Figure> {
     let asked = asked_figures::of_run(program, run);
     let mut figures: Vec<Figure> = asked.into_iter().map(|(_, figure)| figure).collect();
     let strip = strip(program, &run.results, run.stop_s);
@@ -48,7 +48,7 @@ pub(crate) fn of_run(title: &str, program: &Program, run: &Run) -> Vec<Figure> {
 }
 
 /// The modes of every automaton over time.
-pub(crate) fn strip(program: &Program, results: &Results, stop_s: f64) -> Option<EventStrip> {
+pub fn strip(program: &Program, results: &Results, stop_s: f64) -> Option<EventStrip> {
     if program.automata.is_empty() {
         return None;
     }
@@ -129,7 +129,7 @@ fn measured_and_simulated(channel: &Channel) -> Panel {
 
 /// The unit that values are drawn in: that of SI, with the prefix that fits, for all that is declared in a multiple of it;
 /// any other as it is declared.
-pub(crate) fn drawn_in(unit: &NamedUnit) -> (String, Unit) {
+pub fn drawn_in(unit: &NamedUnit) -> (String, Unit) {
     // J and N.m, Hz and 1/s are not told from each other by their dimensions.
     let symbol = unit.unit().is_si() && unit.text().chars().all(char::is_alphabetic);
     let usual = NamedUnit::usual(unit.unit().dimension);
@@ -141,7 +141,7 @@ pub(crate) fn drawn_in(unit: &NamedUnit) -> (String, Unit) {
 }
 
 /// The unit that differences of values are drawn in: of temperatures in degC it is K.
-pub(crate) fn difference_in(unit: &NamedUnit) -> (String, Unit) {
+pub fn difference_in(unit: &NamedUnit) -> (String, Unit) {
     match unit.unit().is_absolute() {
         true => drawn_in(&NamedUnit::usual(unit.unit().dimension)),
         false => drawn_in(unit),
@@ -150,7 +150,7 @@ pub(crate) fn difference_in(unit: &NamedUnit) -> (String, Unit) {
 
 /// The unit that an error of this size is shown in, as on the console: that of the channel where it is read easily in it, else
 /// that of SI.
-pub(crate) fn error_in(unit: &NamedUnit, si: f64) -> (String, Unit) {
+pub fn error_in(unit: &NamedUnit, si: f64) -> (String, Unit) {
     let (_, own) = difference_in(unit);
     match READABLE.contains(&own.scale.remove(si).abs()) {
         true => difference_in(unit),
@@ -175,7 +175,7 @@ fn residual(channel: &Channel) -> Panel {
 }
 
 /// An output over time, in the unit that it is drawn in.
-pub(crate) fn curve(name: &str, output: usize, program: &Program, run: &Run) -> Line {
+pub fn curve(name: &str, output: usize, program: &Program, run: &Run) -> Line {
     let (_, unit) = drawn_in(&program.outputs[output].unit);
     let values = run.results.column(output).unwrap_or_default();
     let (time, values) = thinned(&run.results.time, &values, STRETCHES);
@@ -184,6 +184,6 @@ pub(crate) fn curve(name: &str, output: usize, program: &Program, run: &Run) -> 
 }
 
 /// A pure number has no unit on its axis.
-pub(crate) fn shown(unit: &str) -> &str {
+pub fn shown(unit: &str) -> &str {
     if unit == "1" { "" } else { unit }
 }

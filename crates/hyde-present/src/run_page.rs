@@ -1,25 +1,19 @@
 //! The report of a run as one HTML page.
 
-use crate::project::Project;
 use crate::{assumptions, figures, forces, head, start, summary};
 use hyde_compiler::Compiled;
 use hyde_experiment::Run;
 use hyde_program::Method;
 use hyde_report::{
     Block, ChannelError, Event, EventTable, Outcome, Page, Parameter, RunReport, Section, Verdict,
-    to_html,
 };
+use hyde_study::Project;
 use hyde_units::{engineering_as, format_value, significant};
 
 const ESDIRK: &str = "ESDIRK5(4)7L[2]SA2, a Runge-Kutta method";
 
-/// The page as one text.
-pub(crate) fn html(project: &Project, compiled: &Compiled, run: &Run) -> String {
-    to_html(&page(project, compiled, run))
-}
-
-/// The page.
-pub(crate) fn page(project: &Project, compiled: &Compiled, run: &Run) -> Page {
+/// The page of a run; `made` says when it is made.
+pub fn page(project: &Project, compiled: &Compiled, run: &Run, made: &str) -> Page {
     let program = &compiled.program;
     let title = project.experiment.as_ref().map_or_else(
         || program.name.clone(),
@@ -156,7 +150,7 @@ pub(crate) fn page(project: &Project, compiled: &Compiled, run: &Run) -> Page {
     let stop = hyde_units::NamedUnit::usual(hyde_units::Dimension::TIME);
     let mut page = RunReport {
         title: title.clone(),
-        facts: head::facts(project),
+        facts: head::facts(project, made),
         verdicts,
         key_figures,
         channels,

@@ -2,7 +2,7 @@
 
 /// The least and the greatest value of each of so many stretches, in their order, with the first and the last point of all;
 /// every point of a shorter curve.
-pub(crate) fn thinned(time: &[f64], values: &[f64], stretches: usize) -> (Vec<f64>, Vec<f64>) {
+pub fn thinned(time: &[f64], values: &[f64], stretches: usize) -> (Vec<f64>, Vec<f64>) {
     let rows = time.len().min(values.len());
     let each = rows.div_ceil(stretches.max(1));
     if each <= 2 {

@@ -10,13 +10,13 @@ use std::fmt::Write as _;
 const NOTHING: f64 = 1e-12;
 
 /// The ledger of a run, if it was asked for.
-pub(crate) fn of(compiled: &Compiled, run: &Run) -> Option<EnergyLedger> {
+pub fn of(compiled: &Compiled, run: &Run) -> Option<EnergyLedger> {
     let sums = run.results.energies.as_ref()?;
     Some(EnergyLedger::new(&compiled.program.experiment.ledger, sums))
 }
 
 /// The table, of at most 80 columns.
-pub(crate) fn text(ledger: &EnergyLedger) -> String {
+pub fn text(ledger: &EnergyLedger) -> String {
     let mut out = format!(
         "\n  {:<20} {:>10} {:>10} {:>10} {:>10} {:>10}\n",
         "energy [J]", "received", "supplied", "stored", "heat", "remainder"
@@ -81,7 +81,7 @@ pub(crate) fn text(ledger: &EnergyLedger) -> String {
 }
 
 /// The ledger as JSON.
-pub(crate) fn json(ledger: &EnergyLedger) -> Value {
+pub fn json(ledger: &EnergyLedger) -> Value {
     let entries: Vec<Value> = ledger
         .entries
         .iter()

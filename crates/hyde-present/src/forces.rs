@@ -15,7 +15,7 @@ use std::fmt::Write as _;
 const CURVES: usize = 5;
 
 /// The table; its numbers take 44 columns.
-pub(crate) fn text(compiled: &Compiled, run: &Run) -> String {
+pub fn text(compiled: &Compiled, run: &Run) -> String {
     let lines = flows(&compiled.program, &run.results);
     let widest = lines.iter().map(|line| line.name.len()).max();
     let width = widest.unwrap_or(0).clamp(20, 60);
@@ -37,7 +37,7 @@ pub(crate) fn text(compiled: &Compiled, run: &Run) -> String {
 }
 
 /// The table as JSON.
-pub(crate) fn json(compiled: &Compiled, run: &Run) -> Value {
+pub fn json(compiled: &Compiled, run: &Run) -> Value {
     let lines = flows(&compiled.program, &run.results);
     let lines = lines.iter().map(|line| {
         let output = &compiled.program.outputs[line.output];
@@ -50,7 +50,7 @@ pub(crate) fn json(compiled: &Compiled, run: &Run) -> Value {
 }
 
 /// The table and the largest of each unit over time; `None` where nothing is connected.
-pub(crate) fn section(compiled: &Compiled, run: &Run) -> Option<Section> {
+pub fn section(compiled: &Compiled, run: &Run) -> Option<Section> {
     let lines = flows(&compiled.program, &run.results);
     if lines.is_empty() {
         return None;

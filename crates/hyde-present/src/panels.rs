@@ -38,7 +38,7 @@ const QUANTITIES: [(&str, &str); 16] = [
 ];
 
 /// What the values of a dimension are called; nothing where there is no one word for it.
-pub(crate) fn quantity(dimension: Dimension) -> &'static str {
+pub fn quantity(dimension: Dimension) -> &'static str {
     let unit = dimension.usual_unit();
     let known = QUANTITIES.iter().find(|(own, _)| *own == unit);
     known.map_or("", |(_, word)| word)
@@ -66,7 +66,7 @@ struct Curve {
 }
 
 /// The panels of a run.
-pub(crate) fn of_run(program: &Program, run: &Run) -> Vec<Panel> {
+pub fn of_run(program: &Program, run: &Run) -> Vec<Panel> {
     let mut groups: Vec<(String, Vec<Curve>)> = Vec::new();
     for curve in curves(program, run) {
         let (unit, _) = drawn_in(&program.outputs[curve.output].unit);

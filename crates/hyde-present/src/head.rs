@@ -1,25 +1,23 @@
 //! The head of every page: from what, with what and when it was made; and the model in words and as a picture.
 
-use crate::project::Project;
-use chrono::DateTime;
 use hyde_report::{Block, Diagram, DiagramPart, Section};
+use hyde_study::Project;
 use hyde_study::topology::topology;
 use hyde_syntax::Lookup;
 use hyde_syntax::ast::{Experiment, Item};
-use std::time::{SystemTime, UNIX_EPOCH};
 
 /// Digits of the hash of the file that are shown; all are in the JSON file beside the page.
 const DIGITS: usize = 12;
 /// A picture of more parts than these shows nothing.
 const MOST_PARTS: usize = 60;
 
-/// File, model, experiment, version, hash and date.
-pub(crate) fn facts(project: &Project) -> Vec<(String, String)> {
-    facts_of_all(&[project])
+/// File, model, experiment, version, hash and date; `made` says when the page is made.
+pub fn facts(project: &Project, made: &str) -> Vec<(String, String)> {
+    facts_of_all(&[project], made)
 }
 
 /// The same of several experiments of one file.
-pub(crate) fn facts_of_all(projects: &[&Project]) -> Vec<(String, String)> {
+pub fn facts_of_all(projects: &[&Project], made: &str) -> Vec<(String, String)> {
     let Some(first) = projects.first() else {
         return Vec::new();
     };
@@ -40,7 +38,7 @@ pub(crate) fn facts_of_all(projects: &[&Project]) -> Vec<(String, String)> {
     facts.push(("File", format!("{file}, SHA-256 {hash}…")));
     facts.push((
         "Made",
-        format!("{} by Hyde {}", now(), env!("CARGO_PKG_VERSION")),
+        format!("{made} by Hyde {}", env!("CARGO_PKG_VERSION")),
     ));
     let owned = |(name, value): (&str, String)| (name.to_owned(), value);
     facts.into_iter().map(owned).collect()
@@ -58,7 +56,7 @@ fn each_once(texts: impl Iterator<Item = String>) -> Vec<String> {
 }
 
 /// The models of several experiments, each once.
-pub(crate) fn models(projects: &[&Project]) -> Vec<Section> {
+pub fn models(projects: &[&Project]) -> Vec<Section> {
     let mut sections: Vec<Section> = Vec::new();
     let several = projects
         .iter()
@@ -78,7 +76,7 @@ pub(crate) fn models(projects: &[&Project]) -> Vec<Section> {
 }
 
 /// What the model says of itself, and its components with their connections; nothing of a model without either.
-pub(crate) fn model(project: &Project) -> Option<Section> {
+pub fn model(project: &Project) -> Option<Section> {
     let (_, own) = project.file.files.first()?;
     let doc = own.items.iter().find_map(|item| match item {
         Item::Class(class) if class.name.text == project.model => class.doc.clone(),
@@ -110,18 +108,5 @@ fn experiment<'p>(project: &'p Project, name: &str) -> Option<&'p Experiment> {
     own.items.iter().find_map(|item| match item {
         Item::Experiment(experiment) if experiment.name.text == name => Some(experiment),
         Item::Experiment(_) | Item::Class(_) | Item::Type(_) | Item::Study(_) => None,
-    })
-}
-
-/// The present minute in UTC.
-#[allow(clippy::disallowed_methods, reason = "a page says when it was made")]
-fn now() -> String {
-    let since = SystemTime::now().duration_since(UNIX_EPOCH);
-    let seconds = since
-        .ok()
-        .and_then(|since| i64::try_from(since.as_secs()).ok());
-    let date = seconds.and_then(|seconds| DateTime::from_timestamp(seconds, 0));
-    date.map_or(String::new(), |date| {
-        date.naive_utc().format("%Y-%m-%d %H:%M UTC").to_string()
     })
 }

@@ -1,0 +1,28 @@
+//! What a study found, as text of at most 80 columns, as JSON, and as pages with figures: from data to data. Nothing here
+//! knows arguments, files or a terminal: the command line, and whoever else shows results, writes what these functions return.
+//!
+//! It is a crate of its own between the studies and the command line. hyde-study computes and knows no layout; hyde-report
+//! draws and knows no study; this crate knows both, so that text, JSON and page of a study are made of the same data.
+//!
+//! ```text
+//! figures, asked_figures, panels, thinned   the curves of a run
+//! summary, ledger, forces, start            a run as text and JSON, with its energies, its forces, its start
+//! assumptions, assumed                      what was assumed of the data, and where a model was linearised
+//! head, run_page                            the head of every page; the page of a run
+//! lines                                     a text in lines of a width
+//! ```
+//! Start reading at [`summary`].
+
+pub mod asked_figures;
+pub mod assumed;
+pub mod assumptions;
+pub mod figures;
+pub mod forces;
+pub mod head;
+pub mod ledger;
+pub mod lines;
+pub mod panels;
+pub mod run_page;
+pub mod start;
+pub mod summary;
+pub mod thinned;
