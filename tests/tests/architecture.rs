@@ -58,6 +58,8 @@ const EDGES: &[(&str, &[&str])] = &[
             "diag",
             "experiment",
             "fmu-import",
+            "ida",
+            "library",
             "program",
             "signal",
             "sim",

@@ -7,7 +7,7 @@ mod export;
 mod study;
 mod traces;
 
-pub(crate) use batch::{Engine, SweepArgs, TableFormat};
+pub(crate) use batch::{Engine, SweepArgs};
 pub(crate) use editor::{ExplainArgs, FmtArgs, LiveArgs, LspArgs, McpArgs};
 pub(crate) use excite::{Criterion, ExciteArgs, SignalFormat, SignalName};
 pub(crate) use export::{

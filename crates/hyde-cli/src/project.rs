@@ -11,31 +11,22 @@ use hyde_program::Program;
 use hyde_sim::Failure;
 use hyde_study::run_failure;
 pub(crate) use hyde_study::{Aim, Asked, Loaded, Project, Records};
-use hyde_study::{Fault, Refused, settings};
+use hyde_study::{Fault, Refused};
 use serde_json::json;
-use std::path::PathBuf;
 
 /// What the arguments ask for; ends where they cannot be read.
 pub(crate) fn asked(args: &ModelArgs) -> Result<Asked, Exit> {
-    let settings = args.settings.iter().map(|text| settings::parse(text));
-    let records = args.records.iter().map(|text| {
-        let (name, path) = text
-            .split_once('=')
-            .ok_or_else(|| format!("`--record {text}`: write `NAME=PATH`"))?;
-        Ok((name.to_owned(), PathBuf::from(path)))
-    });
-    let complain = |reason: String| complain(args, Exit::CommandLine, &reason);
-    Ok(Asked {
+    let asked = Asked {
         experiment: args.experiment.clone(),
         model: args.model.clone(),
-        settings: settings.collect::<Result<_, String>>().map_err(complain)?,
-        records: records.collect::<Result<_, String>>().map_err(complain)?,
         data: args.data.clone(),
         whole_library: args.whole_library,
         inputs: args.inputs.clone(),
         fmu_host: sandbox::host(),
         ..Asked::of_file(&args.file)
-    })
+    };
+    let asked = asked.with_texts(&args.settings, &args.records);
+    asked.map_err(|reason| complain(args, Exit::CommandLine, &reason))
 }
 
 /// Loads what the arguments name; reports and ends where that has errors.
@@ -158,6 +149,7 @@ impl Told for Project {
 pub(crate) fn refused(args: &ModelArgs, refused: &Refused) -> Exit {
     match refused {
         Refused::Asked(reason) => complain(args, Exit::CommandLine, reason),
+        Refused::Because(reason, fault) => complain(args, (*fault).into(), reason),
         Refused::Model {
             sources,
             diagnostics,

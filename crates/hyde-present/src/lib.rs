@@ -9,6 +9,7 @@
 //! summary, ledger, forces, start            a run as text and JSON, with its energies, its forces, its start
 //! assumptions, assumed                      what was assumed of the data, and where a model was linearised
 //! head, run_page                            the head of every page; the page of a run
+//! sweep                                     the summary of a sweep, and its page
 //! lines                                     a text in lines of a width
 //! ```
 //! Start reading at [`summary`].
@@ -25,4 +26,5 @@ pub mod panels;
 pub mod run_page;
 pub mod start;
 pub mod summary;
+pub mod sweep;
 pub mod thinned;

@@ -173,7 +173,9 @@ pub fn page(project: &Project, compiled: &Compiled, run: &Run, made: &str) -> Pa
         ),
     }
     .page();
-    if let Some(section) = assumptions::section(&assumptions::of_run(project, program, run)) {
+    if let Some(section) =
+        assumptions::section(&hyde_study::assumptions::of_run(project, program, run))
+    {
         page.sections.insert(0, section);
     }
     page.sections.splice(0..0, head::model(project));

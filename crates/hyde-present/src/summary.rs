@@ -71,7 +71,7 @@ pub fn text(project: &Project, compiled: &Compiled, run: &Run, took: Duration) -
     for (cause, time) in &run.results.sliding {
         let _ = writeln!(out, "  {:<24} sliding {} s", cause, significant(*time, 3));
     }
-    out.push_str(&assumptions::text(&assumptions::of_run(
+    out.push_str(&assumptions::text(&hyde_study::assumptions::of_run(
         project, program, run,
     )));
     let end = run.results.gradient.as_ref().and_then(|g| g.end.as_ref());
@@ -166,7 +166,7 @@ pub fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         .records
         .iter()
         .map(|(name, record)| {
-            let assumptions = assumptions::of_record(program, name, &record.table);
+            let assumptions = hyde_study::assumptions::of_record(program, name, &record.table);
             let entry = json!({
                 "path": record.path.to_string_lossy(), "sha256": record.hash, "rows": record.table.rows(),
                 "assumptions": assumptions,
@@ -247,7 +247,7 @@ pub fn json(project: &Project, compiled: &Compiled, run: &Run) -> Value {
         .map(|(cause, time)| (cause.clone(), json!(time)))
         .collect();
     let mut notes = program.notes.clone();
-    notes.extend(assumptions::of_run(project, program, run));
+    notes.extend(hyde_study::assumptions::of_run(project, program, run));
     let mut summary = json!({
         "ok": true,
         "hyde": env!("CARGO_PKG_VERSION"),

@@ -28,7 +28,7 @@ pub(crate) fn asked(reason: &str) -> PyErr {
 /// The error of a study.
 pub(crate) fn refused(refused: &Refused) -> PyErr {
     match refused {
-        Refused::Asked(reason) => asked(reason),
+        Refused::Asked(reason) | Refused::Because(reason, _) => asked(reason),
         Refused::Model {
             sources,
             diagnostics,

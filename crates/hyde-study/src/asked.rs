@@ -2,7 +2,7 @@
 
 use crate::fmus::FmuHost;
 use crate::inputs::{Inputs, Kind};
-use crate::settings::Setting;
+use crate::settings::{self, Setting};
 use crate::world::{Disk, World};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -49,6 +49,23 @@ impl Asked {
             inputs: None,
             fmu_host: None,
         }
+    }
+
+    /// Parameters and records as a user writes them are set: `saddle.M=320 [kg]`, and `strokes=strokes.csv`.
+    ///
+    /// # Errors
+    /// Which text is none, and what to write.
+    pub fn with_texts(mut self, settings: &[String], records: &[String]) -> Result<Self, String> {
+        let settings = settings.iter().map(|text| settings::parse(text));
+        self.settings = settings.collect::<Result<_, String>>()?;
+        let records = records.iter().map(|text| {
+            let (name, path) = text
+                .split_once('=')
+                .ok_or_else(|| format!("`--record {text}`: write `NAME=PATH`"))?;
+            Ok((name.to_owned(), PathBuf::from(path)))
+        });
+        self.records = records.collect::<Result<_, String>>()?;
+        Ok(self)
     }
 
     /// Reads a file of the model: `asker` is the place of the file that names it, if one does.

@@ -16,6 +16,10 @@
 //! known          which effects fit where, and where a law may act      known.rs
 //! operating_point  about which point a model is linearised            operating_point.rs
 //! check          everything in a file compiled, and nothing run         check.rs
+//! assumptions    what was assumed of records, tables and FMUs         assumptions.rs
+//! sweep          the cases of a sweep, solved and gathered             sweep.rs
+//! store          where finished tasks of a long study are kept         store.rs
+//! progress       how far a long study is                               progress.rs
 //! calibration    a calibration with its records and its observers        calibration.rs
 //! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
 //! excitation     what to record next for a calibration                excitation.rs
@@ -28,6 +32,7 @@
 //! Start reading at [`load`] in `project.rs`.
 
 mod asked;
+pub mod assumptions;
 mod calibration;
 mod check;
 mod diagnosis;
@@ -39,6 +44,7 @@ mod known;
 pub mod operating_point;
 mod package;
 pub mod ports;
+mod progress;
 mod project;
 mod record_files;
 pub mod record_settings;
@@ -47,6 +53,8 @@ mod refused;
 pub mod render;
 pub mod run_failure;
 pub mod settings;
+mod store;
+pub mod sweep;
 mod tables;
 pub mod topology;
 pub mod unobservable;
@@ -61,7 +69,9 @@ pub use diagnosis::diagnosis;
 pub use fmus::{FmuHost, NamedFmu};
 pub use inputs::{Content, Inputs, Key, Kind};
 pub use package::{MANIFEST, Manifest, Root, Roots, is_inside, links_out};
+pub use progress::Progress;
 pub use project::{Aim, Loaded, Project, Records, files_of, load};
 pub use records::{Record, headers, read as read_records, tables};
 pub use refused::{Fault, Refused};
+pub use store::Store;
 pub use tables::Table;

@@ -22,6 +22,8 @@ pub enum Fault {
 pub enum Refused {
     /// What was asked cannot be: one sentence.
     Asked(String),
+    /// Something else is at fault, which has no place in a file: one sentence.
+    Because(String, Fault),
     /// The model or its data are at fault, as diagnostics of their files.
     Model {
         /// The files.

@@ -1,6 +1,7 @@
 //! The arguments of batches.
 
 use clap::{Args, ValueEnum};
+use hyde_study::sweep::TableForm;
 use std::path::PathBuf;
 
 #[derive(Clone, Debug, Args)]
@@ -87,4 +88,13 @@ pub(crate) enum TableFormat {
     Parquet,
     /// `cases.csv`, with a header of `name [unit]` columns
     Csv,
+}
+
+impl From<TableFormat> for TableForm {
+    fn from(format: TableFormat) -> Self {
+        match format {
+            TableFormat::Parquet => Self::Parquet,
+            TableFormat::Csv => Self::Csv,
+        }
+    }
 }

@@ -1,9 +1,9 @@
 //! What the arguments of `hyde sweep` ask for: the order, a sweep that the file does not have, and the arguments again, for the
 //! commands that rerun cases.
 
-use super::order::Order;
 use crate::args::SweepArgs;
-use crate::commands::sweep::word;
+use hyde_present::lines::shell_word as word;
+use hyde_study::sweep::Order;
 
 /// Whether the arguments say nothing of what the batch is, as of a folder that knows it.
 pub(crate) fn asked_for_nothing(args: &SweepArgs) -> bool {

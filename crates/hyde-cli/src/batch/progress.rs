@@ -1,30 +1,49 @@
-//! How far a batch is: a bar on a terminal, lines of JSON with `--json`.
+//! How far a long study is: a bar on a terminal, lines of JSON with `--json`.
 
 use crate::project::print_output;
+use hyde_study::Progress;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::json;
 use std::io::IsTerminal as _;
+use std::sync::OnceLock;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::{Duration, Instant};
 
-/// Shows how far a batch is.
-pub(crate) struct Progress {
-    bar: ProgressBar,
+/// Shows how far a study is.
+pub(crate) struct Shown {
     json: bool,
-    total: usize,
-    before: usize,
-    start: Instant,
+    quiet: bool,
+    begun: OnceLock<Begun>,
     failed: AtomicUsize,
 }
 
-impl Progress {
-    /// Of `total` cases `before` were there already.
+/// What is known once work began.
+struct Begun {
+    bar: ProgressBar,
+    total: usize,
+    before: usize,
+    start: Instant,
+}
+
+impl Shown {
+    /// Nothing yet.
+    pub(crate) fn new(json: bool, quiet: bool) -> Self {
+        Self {
+            json,
+            quiet,
+            begun: OnceLock::new(),
+            failed: AtomicUsize::new(0),
+        }
+    }
+}
+
+impl Progress for Shown {
     #[allow(
         clippy::disallowed_methods,
         reason = "the command line tells how long a batch takes"
     )]
-    pub(crate) fn new(total: usize, before: usize, json: bool, quiet: bool) -> Self {
-        let shown = !json && !quiet && std::io::stderr().is_terminal();
+    fn begin(&self, total: usize, before: usize) {
+        let shown = !self.json && !self.quiet && std::io::stderr().is_terminal();
         let bar = if shown {
             ProgressBar::new(total as u64)
         } else {
@@ -34,31 +53,30 @@ impl Progress {
         bar.set_style(
             ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar()),
         );
-        let progress = Self {
+        let start = Instant::now();
+        let begun = Begun {
             bar,
-            json,
             total,
             before,
-            start: Instant::now(),
-            failed: AtomicUsize::new(0),
+            start,
         };
-        if json {
+        if self.begun.set(begun).is_ok() && self.json {
             print_output(&json!({ "event": "start", "cases": total, "done": before }).to_string());
         }
-        progress
     }
 
-    /// Counts a case that failed.
-    pub(crate) fn failed(&self) {
+    fn failed(&self) {
         self.failed.fetch_add(1, Ordering::Relaxed);
     }
 
-    /// Shows that so many cases are on the disk.
-    pub(crate) fn at(&self, done: usize) {
-        let seconds = self.start.elapsed().as_secs_f64();
-        let rate = (done - self.before.min(done)) as f64 / seconds.max(1e-9);
+    fn at(&self, done: usize) {
+        let Some(begun) = self.begun.get() else {
+            return;
+        };
+        let seconds = begun.start.elapsed().as_secs_f64();
+        let rate = (done - begun.before.min(done)) as f64 / seconds.max(1e-9);
         let left = if rate > 0.0 {
-            (self.total - done.min(self.total)) as f64 / rate
+            (begun.total - done.min(begun.total)) as f64 / rate
         } else {
             f64::NAN
         };
@@ -76,13 +94,14 @@ impl Progress {
         } else {
             String::new()
         };
-        self.bar
-            .set_message(format!("{failed} failed, {rate:.0} a second, {left}"));
-        self.bar.set_position(done as u64);
+        let text = format!("{failed} failed, {rate:.0} a second, {left}");
+        begun.bar.set_message(text);
+        begun.bar.set_position(done as u64);
     }
 
-    /// Takes the bar away.
-    pub(crate) fn finish(&self) {
-        self.bar.finish_and_clear();
+    fn finish(&self) {
+        if let Some(begun) = self.begun.get() {
+            begun.bar.finish_and_clear();
+        }
     }
 }

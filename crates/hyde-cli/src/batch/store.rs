@@ -1,6 +1,6 @@
-//! [`Store`]: bytes by key, durable: what batches and other long studies keep finished tasks in.
+//! [`Journals`]: the [`Store`] of a folder: bytes by key, durable.
 //!
-//! - [`Store::open`] a folder with the identity of the study; one of another identity is refused.
+//! - [`Journals::open`] a folder with the identity of the study; one of another identity is refused.
 //! - [`Store::has`] a key? then its task is done and need not be again.
 //! - [`Store::put`] bytes for a key: when it returns they outlive the process, killed however; they outlive the machine once
 //!   [`Store::sync`] has returned after it.
@@ -12,6 +12,7 @@
 
 use crate::files;
 use hyde_experiment::batch::{HEADER_LEN, Identity, Scanned, digest, header, record, scan};
+use hyde_study::Store;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read as _, Seek as _, SeekFrom, Write as _};
@@ -19,7 +20,7 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Bytes by key in a folder.
-pub(crate) struct Store {
+pub(crate) struct Journals {
     folder: PathBuf,
     identity: Identity,
     state: Mutex<State>,
@@ -63,7 +64,7 @@ struct Own {
     dirty: bool,
 }
 
-impl Store {
+impl Journals {
     /// Opens the store of a folder; what is missing is made when something is put in.
     pub(crate) fn open(folder: &Path, identity: Identity) -> Result<Self, String> {
         let mut state = State::default();
@@ -82,18 +83,39 @@ impl Store {
         })
     }
 
-    /// Whether a key has bytes.
-    pub(crate) fn has(&self, key: &str) -> bool {
+    /// Begins this process's journal: a file that nobody else has.
+    fn begin(&self, state: &mut State) -> Result<(), String> {
+        files::make_folder(&self.folder)?;
+        let (mut file, path) = files::make_own(&self.folder, ".journal")?;
+        let header = header(&self.identity);
+        let begun = file.write_all(&header).and_then(|()| file.sync_all());
+        begun.map_err(|error| files::cannot_write(&path, &error))?;
+        files::sync_folder(&self.folder)?;
+        state.own = Some(Own {
+            file,
+            number: state.journals.len(),
+            end: header.len() as u64,
+            dirty: false,
+        });
+        state.journals.push(path);
+        Ok(())
+    }
+
+    fn locked(&self) -> std::sync::MutexGuard<'_, State> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Store for Journals {
+    fn has(&self, key: &str) -> bool {
         self.locked().places.contains_key(&short(key))
     }
 
-    /// How many keys have bytes.
-    pub(crate) fn len(&self) -> usize {
+    fn count(&self) -> usize {
         self.locked().places.len()
     }
 
-    /// Puts bytes in; a key that has some keeps them.
-    pub(crate) fn put(&self, key: &str, bytes: &[u8]) -> Result<(), String> {
+    fn put(&self, key: &str, bytes: &[u8]) -> Result<(), String> {
         let record = record(key, bytes);
         let mut state = self.locked();
         if state.places.contains_key(&short(key)) {
@@ -122,8 +144,7 @@ impl Store {
         Ok(())
     }
 
-    /// Waits until all that was put in before is on the disk, and gives the number of keys of then.
-    pub(crate) fn sync(&self) -> Result<usize, String> {
+    fn sync(&self) -> Result<usize, String> {
         let (file, path, count) = {
             let mut state = self.locked();
             let count = state.places.len();
@@ -147,8 +168,7 @@ impl Store {
         Ok(count)
     }
 
-    /// The bytes of a key, if it has some.
-    pub(crate) fn get(&self, key: &str) -> Result<Option<Vec<u8>>, String> {
+    fn get(&self, key: &str) -> Result<Option<Vec<u8>>, String> {
         let mut state = self.locked();
         let Some(place) = state.places.get(&short(key)).copied() else {
             return Ok(None);
@@ -164,28 +184,6 @@ impl Store {
             .and_then(|_| file.read_exact(&mut bytes))
             .map_err(|error| files::cannot_read(&path, &error))?;
         Ok(Some(bytes))
-    }
-
-    /// Begins this process's journal: a file that nobody else has.
-    fn begin(&self, state: &mut State) -> Result<(), String> {
-        files::make_folder(&self.folder)?;
-        let (mut file, path) = files::make_own(&self.folder, ".journal")?;
-        let header = header(&self.identity);
-        let begun = file.write_all(&header).and_then(|()| file.sync_all());
-        begun.map_err(|error| files::cannot_write(&path, &error))?;
-        files::sync_folder(&self.folder)?;
-        state.own = Some(Own {
-            file,
-            number: state.journals.len(),
-            end: header.len() as u64,
-            dirty: false,
-        });
-        state.journals.push(path);
-        Ok(())
-    }
-
-    fn locked(&self) -> std::sync::MutexGuard<'_, State> {
-        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -256,7 +254,7 @@ mod tests {
     #[test]
     fn what_was_put_in_is_there_for_the_next_process() {
         let folder = TempDir::new().unwrap();
-        let open = || Store::open(folder.path(), digest(&[b"a"])).unwrap();
+        let open = || Journals::open(folder.path(), digest(&[b"a"])).unwrap();
         let (one, two) = (open(), open());
         one.put("b", &[2; 100_000]).unwrap();
         two.put("a", b"from two").unwrap();
@@ -265,7 +263,7 @@ mod tests {
         assert!(one.has("b") && !one.has("a"));
         assert_eq!(one.sync().unwrap(), 2);
         let again = open();
-        assert_eq!(again.len(), 3);
+        assert_eq!(again.count(), 3);
         let get = |key| again.get(key).unwrap();
         assert_eq!(get("a"), Some(b"from two".to_vec()));
         assert_eq!(get("c"), Some(Vec::new()));
@@ -279,7 +277,7 @@ mod tests {
     fn a_record_that_was_cut_off_is_not_there_and_hides_none_before() {
         let folder = TempDir::new().unwrap();
         let identity = digest(&[b"a"]);
-        let store = Store::open(folder.path(), identity).unwrap();
+        let store = Journals::open(folder.path(), identity).unwrap();
         for key in ["a", "b", "c"] {
             store.put(key, key.as_bytes()).unwrap();
         }
@@ -297,20 +295,22 @@ mod tests {
                 .unwrap()
                 .set_len(cut)
                 .unwrap();
-            let store = Store::open(scratch.path(), identity).unwrap();
+            let store = Journals::open(scratch.path(), identity).unwrap();
             let expected = cut.saturating_sub(HEADER_LEN as u64) / one;
-            assert_eq!(store.len() as u64, expected, "cut at {cut}");
+            assert_eq!(store.count() as u64, expected, "cut at {cut}");
         }
     }
 
     #[test]
     fn another_batch_is_refused() {
         let folder = TempDir::new().unwrap();
-        Store::open(folder.path(), digest(&[b"a"]))
+        Journals::open(folder.path(), digest(&[b"a"]))
             .unwrap()
             .put("k", b"v")
             .unwrap();
-        let error = Store::open(folder.path(), digest(&[b"b"])).err().unwrap();
+        let error = Journals::open(folder.path(), digest(&[b"b"]))
+            .err()
+            .unwrap();
         assert!(error.contains("another batch"), "{error}");
     }
 }

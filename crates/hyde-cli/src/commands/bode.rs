@@ -329,7 +329,7 @@ fn asked(args: &BodeArgs, model: &ModelArgs) -> Result<Asked, Exit> {
     let about = (at, &asked_modes[..]);
     let found = margins::all(&name, program, &tables, &p, about, &mut project.diagnostics);
     asked.margins = found.ok_or_else(|| project.finish_with_errors(model))?;
-    asked.notes = assumptions::of_model(&project, program, &p);
+    asked.notes = hyde_study::assumptions::of_model(&project, program, &p);
     asked
         .about
         .extend(asked.notes.iter().cloned().map(Block::Text));

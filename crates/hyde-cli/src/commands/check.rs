@@ -1,8 +1,7 @@
 //! `hyde check`: compiles everything in a file, or in the files of a package, and runs nothing.
 
+use super::sweep::prepared;
 use crate::args::{CheckArgs, ModelArgs};
-use crate::batch::order::Order;
-use crate::batch::prepare::Prepared;
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Project, Records, Told as _, print_output};
@@ -13,6 +12,7 @@ use hyde_present::assumptions;
 use hyde_present::lines::wrapped;
 use hyde_program::Program;
 use hyde_study::Inputs;
+use hyde_study::sweep::Order;
 use hyde_syntax::ast::StudyKind;
 use hyde_units::counted;
 use serde_json::{Value, json};
@@ -74,7 +74,7 @@ impl Found {
         let parameters = hyde_experiment::parameters(program, &tables, &project.set());
         for note in parameters.map_or_else(
             |_| Vec::new(),
-            |parameters| assumptions::of_model(project, program, &parameters),
+            |parameters| hyde_study::assumptions::of_model(project, program, &parameters),
         ) {
             if !self.notes.contains(&note) {
                 self.notes.push(note);
@@ -158,14 +158,9 @@ fn sweeps(args: &ModelArgs, project: &Project) -> Result<Vec<String>, Exit> {
             keep: Vec::new(),
         };
         let inputs = Arc::new(Inputs::recording());
-        match Prepared::new(&order, &inputs, Records::IfThere, (args.json, true)) {
-            Ok(batch) => names.push(format!(
-                "sweep {} ({})",
-                order.sweep,
-                counted(batch.plan.count(), "case")
-            )),
-            Err(Exit::Done) => {}
-            Err(failed) => return Err(failed),
+        if let Some(batch) = prepared(&order, &inputs, Records::IfThere, (args.json, true))? {
+            let cases = counted(batch.plan.count(), "case");
+            names.push(format!("sweep {} ({cases})", order.sweep));
         }
     }
     Ok(names)

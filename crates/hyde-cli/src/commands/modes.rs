@@ -148,7 +148,7 @@ pub(crate) fn found(
     let listed: Vec<Value> = listed
         .map(|(mode, shape)| json(program, &linear, mode, shape.as_ref()))
         .collect();
-    let notes = assumptions::of_model(&project, program, &p);
+    let notes = hyde_study::assumptions::of_model(&project, program, &p);
     let mut json = assumed::json(program, &linear, time, &poles);
     json.insert("notes".to_owned(), notes.clone().into());
     json.insert("modes".to_owned(), listed.into());

@@ -16,7 +16,7 @@ mod text;
 mod work;
 
 use crate::args::{CaseKind, SelftestArgs};
-use crate::batch::store::Store;
+use crate::batch::store::Journals;
 use crate::commands::diagnose;
 use crate::exit::Exit;
 use crate::files;
@@ -31,6 +31,7 @@ use hyde_compiler::{Candidate, DiagnosisPlan};
 use hyde_experiment::batch::{Identity, digest};
 use hyde_signal::Table;
 use hyde_study::Calibration;
+use hyde_study::Store;
 use hyde_units::counted;
 use models::Models;
 use serde_json::json;
@@ -124,7 +125,12 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
                 };
                 let store = store.map_err(refused)?;
                 let quiet = args.study.json || args.study.quiet;
-                match work::outcomes(&axis, all, store.as_ref(), quiet) {
+                match work::outcomes(
+                    &axis,
+                    all,
+                    store.as_ref().map(|own| own as &dyn Store),
+                    quiet,
+                ) {
                     Ok(outcomes) => Ok(outcomes),
                     Err(work::Ended::Store(reason)) => return Err(refused(reason)),
                     Err(work::Ended::Interrupted(done, total)) => {
@@ -276,10 +282,10 @@ fn siteless(
 }
 
 /// The store of a folder; cases of another axis, seed or program are in others beside it.
-fn store(folder: &Path, identity: Identity) -> Result<Store, String> {
+fn store(folder: &Path, identity: Identity) -> Result<Journals, String> {
     files::make_folder(folder)?;
     let own: String = identity.0[..6].iter().map(|b| format!("{b:02x}")).collect();
-    Store::open(&folder.join(format!("journal-{own}")), identity)
+    Journals::open(&folder.join(format!("journal-{own}")), identity)
 }
 
 /// The identity with that of this very program: another one may judge otherwise.

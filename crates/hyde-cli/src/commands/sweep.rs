@@ -1,22 +1,20 @@
 //! `hyde sweep`: the cases of a sweep, solved here or elsewhere, kept as they finish, and made into one data set.
 
-use crate::args::{Engine, RunArgs, SweepArgs};
+use crate::args::{Engine, ModelArgs, RunArgs, SweepArgs};
 use crate::batch::asked::{asked_for_nothing, from_source, ordered, written};
-use crate::batch::merge::merge;
-use crate::batch::order::Order;
-use crate::batch::prepare::Prepared;
+use crate::batch::progress::Shown;
 use crate::batch::slurm::{self, Array};
-use crate::batch::store::Store;
-use crate::batch::tell;
-use crate::batch::work::{Ended, How, Took, solve_missing};
+use crate::batch::store::Journals;
 use crate::commands::run;
 use crate::exit::Exit;
-use crate::files;
-use crate::interruption;
-use crate::project::{Records, print_error, print_output};
-use hyde_experiment::batch::{indices, shards, varied};
-use hyde_study::Inputs;
-use hyde_study::settings::Setting;
+use crate::project::{self, Records, Told as _, print_error, print_output};
+use crate::{files, interruption, sandbox};
+use hyde_experiment::batch::{Summary, indices, shards};
+use hyde_present::lines::shell_word as word;
+use hyde_present::sweep::tell;
+use hyde_study::sweep::{self, Ended, How, Order, Prepared, TableForm, Took, solve_missing};
+use hyde_study::world::Disk;
+use hyde_study::{Asked, Inputs, Store as _};
 use hyde_units::counted;
 use serde_json::json;
 use std::ops::RangeInclusive;
@@ -31,7 +29,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Exit {
 }
 
 fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
-    let kept = Order::is_in(&args.file);
+    let kept = Order::is_in(&Disk, &args.file);
     if files::is_folder(&args.file) && !kept {
         let reason = format!("the folder `{}` contains no batch", args.file.display());
         return Err(complain(args, Exit::CommandLine, &reason));
@@ -44,16 +42,15 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
             );
             return Err(complain(args, Exit::CommandLine, &reason));
         }
-        Order::read(&args.file).map_err(|reason| complain(args, Exit::CommandLine, &reason))?
+        Order::read(&Disk, &args.file)
+            .map_err(|reason| complain(args, Exit::CommandLine, &reason))?
     } else {
         (ordered(args), Inputs::recording_with(written(args)))
     };
-    let batch = Prepared::new(
-        &order,
-        &Arc::new(inputs),
-        Records::Needed,
-        (args.json, args.quiet),
-    )?;
+    let inputs = Arc::new(inputs);
+    let Some(batch) = prepared(&order, &inputs, Records::Needed, (args.json, args.quiet))? else {
+        return Ok(Exit::Done);
+    };
     if let Some(case) = args.case {
         return again(args, batch, case);
     }
@@ -66,21 +63,17 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
         (None, false) => scratch.path().to_path_buf(),
     };
     let failed = |reason: String| complain(args, Exit::CommandLine, &reason);
-    let recorded = batch.args.inputs.clone().unwrap_or_default();
-    order
-        .keep(&folder, &batch.parts, batch.plan.count(), &recorded)
-        .map_err(failed)?;
-    let open = || Store::open(&folder.join("journal"), batch.parts.whole);
+    keep(&order, &batch, &inputs, &folder).map_err(failed)?;
+    let open = || Journals::open(&folder.join("journal"), batch.parts.whole);
     if let Some(count) = args.missing {
-        let missing = missing_shards(&batch, &open().map_err(failed)?, count);
+        let missing = batch.missing_shards(&open().map_err(failed)?, count);
         print_output(&indices(&missing, slurm::MOST).join("\n"));
         return Ok(Exit::Done);
     }
     let how = How {
         jobs: args.jobs.unwrap_or(0),
         interrupted: interruption::interrupted(),
-        json: args.json,
-        quiet: args.quiet || args.shard.is_some(),
+        progress: &Shown::new(args.json, args.quiet || args.shard.is_some()),
     };
     let shared = args.shard.is_some() || args.engine == Engine::Slurm;
     let lock = locked(&folder, shared).map_err(failed)?;
@@ -126,7 +119,7 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
             (Took::default(), open().map_err(failed)?)
         }
     };
-    let summary = merge(&batch, &store, &folder, args.format).map_err(failed)?;
+    let summary = merge(&batch, &store, &folder, args.format.into()).map_err(failed)?;
     let rerun = match (&args.out, kept) {
         (None, false) => from_source(args, &order),
         _ => format!("hyde sweep {}", word(&folder.to_string_lossy())),
@@ -147,15 +140,6 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
         print_output(&tell::text(&batch, &summary, took, &rerun));
     }
     Ok(Exit::Done)
-}
-
-/// A word as a shell reads it, quoted if it has to be.
-pub(crate) fn word(text: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=,:+".contains(c);
-    match text.chars().all(plain) && !text.is_empty() {
-        true => text.to_owned(),
-        false => format!("'{}'", text.replace('\'', "'\\''")),
-    }
 }
 
 /// One process has the folder, or any number of shards do. Where files cannot be locked the journals suffice.
@@ -216,17 +200,7 @@ fn shard_range(text: &str, cases: usize) -> Result<RangeInclusive<usize>, String
         .unwrap_or(empty))
 }
 
-/// The shards of so many that have cases missing.
-fn missing_shards(batch: &Prepared, store: &Store, count: usize) -> Vec<usize> {
-    let list = shards(batch.plan.count(), count);
-    let missing = list
-        .into_iter()
-        .zip(1..)
-        .filter(|(range, _)| range.clone().any(|case| !store.has(&Prepared::key(case))));
-    missing.map(|(_, number)| number).collect()
-}
-
-fn by_slurm(args: &SweepArgs, batch: &Prepared, folder: &Path, how: &How) -> Result<(), Exit> {
+fn by_slurm(args: &SweepArgs, batch: &Prepared, folder: &Path, how: &How<'_>) -> Result<(), Exit> {
     let array = Array {
         folder,
         identity: batch.parts.whole.to_string(),
@@ -235,8 +209,8 @@ fn by_slurm(args: &SweepArgs, batch: &Prepared, folder: &Path, how: &How) -> Res
         options: &args.slurm,
     };
     let missing = || {
-        let store = Store::open(&folder.join("journal"), batch.parts.whole)?;
-        Ok(missing_shards(batch, &store, array.shards))
+        let store = Journals::open(&folder.join("journal"), batch.parts.whole)?;
+        Ok(batch.missing_shards(&store, array.shards))
     };
     let tell = |text: &str| {
         if args.json {
@@ -259,13 +233,13 @@ fn by_slurm(args: &SweepArgs, batch: &Prepared, folder: &Path, how: &How) -> Res
 fn stopped(
     args: &SweepArgs,
     batch: &Prepared,
-    store: Result<Store, String>,
+    store: Result<Journals, String>,
     folder: &Path,
     why: &str,
     exit: Exit,
 ) -> Exit {
-    let done = store.map_or(0, |store| store.len());
-    let kept = if args.out.is_some() || Order::is_in(&args.file) {
+    let done = store.map_or(0, |store| store.count());
+    let kept = if args.out.is_some() || Order::is_in(&Disk, &args.file) {
         format!(
             "; to resume: hyde sweep {}",
             word(&folder.to_string_lossy())
@@ -281,42 +255,76 @@ fn stopped(
 }
 
 /// Runs one case as `hyde run` runs an experiment.
-fn again(args: &SweepArgs, mut batch: Prepared, number: usize) -> Result<Exit, Exit> {
+fn again(args: &SweepArgs, batch: Prepared, number: usize) -> Result<Exit, Exit> {
     if !(1..=batch.plan.count()).contains(&number) {
         let reason = format!("the sweep has cases 1 to {}", batch.plan.count());
         return Err(complain(args, Exit::CommandLine, &reason));
     }
-    let case = batch.plan.case(number);
-    let options = batch.plan.options(&case);
-    let (file, model) = varied(
-        &batch.project.file,
-        &batch.draft,
-        &batch.project.model,
-        &options,
-    );
-    let ready = batch
-        .source()
-        .compile(&options, &batch.plan.settings(&case));
-    batch.project.file = file;
-    batch.project.model = model;
-    if let Ok(ready) = ready {
-        for (name, table) in ready.tables {
-            if let Some(record) = batch.project.records.get_mut(&name) {
-                record.table = table;
-            }
-        }
-    }
-    for (path, value) in batch.plan.settings(&case) {
-        let input = batch.plan.inputs.iter().find(|input| input.name == path);
-        let unit = input.and_then(|input| input.unit.as_ref());
-        let setting = Setting::of(path, value, unit.cloned());
-        batch.project.settings.push(setting);
-    }
+    let model = model_args(&batch.asked.file, (args.json, args.quiet));
     let run_args = RunArgs {
         out: args.out.clone(),
-        ..RunArgs::of_model(&batch.args)
+        ..RunArgs::of_model(&model)
     };
-    Ok(run::run_project(&run_args, batch.project))
+    Ok(run::run_project(&run_args, batch.project_of(number)))
+}
+
+/// Prepares an order; what is wrong with it is printed, and warnings are.
+pub(crate) fn prepared(
+    order: &Order,
+    inputs: &Arc<Inputs>,
+    needed: Records,
+    output: (bool, bool),
+) -> Result<Option<Prepared>, Exit> {
+    let model = model_args(&order.file, output);
+    let base = Asked {
+        inputs: Some(Arc::clone(inputs)),
+        fmu_host: sandbox::host(),
+        ..Asked::of_file(&order.file)
+    };
+    let batch =
+        Prepared::new(order, &base, needed).map_err(|own| project::refused(&model, &own))?;
+    if let Some(batch) = &batch {
+        batch.project.print_warnings(&model);
+    }
+    Ok(batch)
+}
+
+fn model_args(file: &Path, (json, quiet): (bool, bool)) -> ModelArgs {
+    ModelArgs {
+        json,
+        quiet,
+        ..ModelArgs::of_file(file)
+    }
+}
+
+/// Makes a folder the one of this batch.
+fn keep(order: &Order, batch: &Prepared, inputs: &Inputs, folder: &Path) -> Result<(), String> {
+    let identity = (&batch.parts, batch.plan.count());
+    for (path, content) in order.files(&Disk, folder, identity, inputs)? {
+        files::make_folder(path.parent().unwrap_or(folder))?;
+        files::write(&path, &content)?;
+    }
+    Ok(())
+}
+
+/// Makes the data set of a batch whose store has every case. A file is there whole or not at all.
+fn merge(
+    batch: &Prepared,
+    store: &Journals,
+    folder: &Path,
+    form: TableForm,
+) -> Result<Summary, String> {
+    let mut summary = None;
+    files::write_with(&folder.join(form.file("cases")), |file| {
+        summary = Some(sweep::cases(batch, store, form, file)?);
+        Ok(())
+    })?;
+    if !batch.dataset.kept.is_empty() {
+        files::write_with(&folder.join(form.file("trajectories")), |file| {
+            sweep::trajectories(batch, store, form, file)
+        })?;
+    }
+    Ok(summary.unwrap_or_default())
 }
 
 fn complain(args: &SweepArgs, exit: Exit, reason: &str) -> Exit {

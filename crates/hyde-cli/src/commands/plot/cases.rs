@@ -2,11 +2,11 @@
 
 use super::source::{Recorded, Source};
 use crate::args::PlotArgs;
-use crate::batch::order::Order;
-use crate::batch::over_time::{OverTime, in_si};
-use crate::files;
+use hyde_present::sweep::over_time::{OverTime, in_si};
 use hyde_report::{Figure, LineStyle, envelope_panel, time_plot};
 use hyde_signal::{Column, Field, Frame, Table};
+use hyde_study::sweep::{Order, table_in};
+use hyde_study::world::Disk;
 use hyde_units::NamedUnit;
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,7 @@ const LINES: usize = 8;
 
 /// The table of a batch's folder that is meant; `None` of a folder that holds no batch.
 pub(super) fn table_of(folder: &Path, args: &PlotArgs) -> Option<Result<PathBuf, String>> {
-    if !Order::is_in(folder) {
+    if !Order::is_in(&Disk, folder) {
         return None;
     }
     // Numbers over each other are those of the cases, unless cases are named.
@@ -24,9 +24,7 @@ pub(super) fn table_of(folder: &Path, args: &PlotArgs) -> Option<Result<PathBuf,
     } else {
         "trajectories"
     };
-    let forms = ["parquet", "csv"].map(|form| folder.join(format!("{name}.{form}")));
-    let found = forms.into_iter().find(|path| files::is_file(path));
-    Some(found.ok_or_else(|| {
+    Some(table_in(&Disk, folder, name).ok_or_else(|| {
         let folder = folder.display();
         format!(
             "the batch in `{folder}` has no {name}: it is not finished, or keeps nothing over time, `keep x;`; \

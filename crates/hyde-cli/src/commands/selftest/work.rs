@@ -1,12 +1,12 @@
 //! What is missing of a self-test, done on all cores; each outcome is kept as soon as it is there.
 
 use super::kept::{self, Kept};
-use crate::batch::progress::Progress;
-use crate::batch::store::Store;
+use crate::batch::progress::Shown;
 use hyde_calibrate::{Axis, Case, SelftestError, Simulated, try_case};
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_experiment::RunError;
 use hyde_study::unobservable;
+use hyde_study::{Progress as _, Store};
 use hyde_units::significant;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -23,7 +23,7 @@ pub(super) enum Ended {
 pub(super) fn outcomes(
     axis: &Axis<'_>,
     cases: Vec<Case>,
-    store: Option<&Store>,
+    store: Option<&dyn Store>,
     quiet: bool,
 ) -> Result<Vec<(Case, Kept)>, Ended> {
     let total = cases.len();
@@ -39,7 +39,8 @@ pub(super) fn outcomes(
     let known = known.map_err(Ended::Store)?;
     let before = known.iter().flatten().count();
     let done = AtomicUsize::new(before);
-    let progress = Progress::new(total, before, false, quiet);
+    let progress = Shown::new(false, quiet);
+    progress.begin(total, before);
     let pairs: Vec<(Case, Option<Kept>)> = cases.into_iter().zip(known).collect();
     let each = pairs.into_par_iter().with_max_len(1).map(|(case, known)| {
         if let Some(kept) = known {

@@ -2,69 +2,66 @@
 
 use super::order::{Order, Parts};
 use super::variants::{Source, Variants};
-use crate::args::ModelArgs;
-use crate::exit::Exit;
-use crate::project::{self, Asked, Loaded, Project, Records, Told as _, complain, report_errors};
+use crate::settings::Setting;
+use crate::store::Store;
+use crate::{
+    Asked, Fault, Kind, Loaded, Project, Records, Refused, assumptions, is_inside, run_failure,
+};
 use hyde_diag::{Code, Diagnostic};
-use hyde_experiment::batch::{Dataset, Draft, Model, Plan, record_files};
-use hyde_present::assumptions;
-use hyde_study::{Inputs, Kind};
+use hyde_experiment::batch::{Dataset, Draft, Model, Plan, record_files, shards, varied};
 use hyde_syntax::ast::{Study, StudyKind};
 use std::path::Path;
-use std::sync::Arc;
 
 /// A batch that can be solved.
-pub(crate) struct Prepared {
-    pub(crate) args: ModelArgs,
-    pub(crate) asked: Asked,
-    pub(crate) project: Project,
-    pub(crate) draft: Draft,
-    pub(crate) plan: Plan,
-    pub(crate) dataset: Dataset,
-    pub(crate) variants: Variants,
-    pub(crate) parts: Parts,
+pub struct Prepared {
+    /// What was asked, with its files.
+    pub asked: Asked,
+    /// The model and the experiment.
+    pub project: Project,
+    /// The sweep as it is written.
+    pub draft: Draft,
+    /// Its cases.
+    pub plan: Plan,
+    /// The columns of its data set.
+    pub dataset: Dataset,
+    /// The models that were compiled so far.
+    pub variants: Variants,
+    /// Its identity.
+    pub parts: Parts,
     /// What was taken for granted of records and tables.
-    pub(crate) notes: Vec<String>,
+    pub notes: Vec<String>,
 }
 
 impl Prepared {
-    /// Prepares an order. What is wrong with the model or the sweep is reported; a missing record that is not needed ends it
-    /// with nothing said.
-    pub(crate) fn new(
-        order: &Order,
-        inputs: &Arc<Inputs>,
-        needed: Records,
-        (json, quiet): (bool, bool),
-    ) -> Result<Self, Exit> {
-        let mut args = ModelArgs::of_file(&order.file);
-        args.settings.clone_from(&order.settings);
-        args.records.clone_from(&order.records);
-        args.data.clone_from(&order.data);
-        (args.json, args.quiet) = (json, quiet);
-        args.inputs = Some(Arc::clone(inputs));
-        let loaded = project::parsed(&args)?;
+    /// Prepares an order; `base` says where files are and who runs FMUs, and keeps track of the files. `None` where records
+    /// are missing that are not needed.
+    ///
+    /// # Errors
+    /// What is wrong with the order, the model, its data or the sweep.
+    pub fn new(order: &Order, base: &Asked, needed: Records) -> Result<Option<Self>, Refused> {
+        let asked = Asked {
+            file: order.file.clone(),
+            data: order.data.clone(),
+            ..base.clone()
+        };
+        let asked = asked.with_texts(&order.settings, &order.records);
+        let mut asked = asked.map_err(Refused::Asked)?;
+        let loaded = Loaded::of(&asked).map_err(Refused::Asked)?;
         if loaded.diagnostics.has_errors() {
-            return Err(project::refused(&args, &loaded.refused()));
+            return Err(loaded.refused());
         }
-        let study = study(&loaded, &order.sweep);
-        let study = study.map_err(|reason| complain(&args, Exit::CommandLine, &reason))?;
-        args.experiment = Some(study.of.dotted());
-        let asked = project::asked(&args)?;
-        let project = loaded.choose(&asked, needed);
-        let mut project = project.map_err(|reason| complain(&args, Exit::CommandLine, &reason))?;
+        let study = study(&loaded, &order.sweep).map_err(Refused::Asked)?;
+        asked.experiment = Some(study.of.dotted());
+        let mut project = loaded.choose(&asked, needed).map_err(Refused::Asked)?;
         if project.diagnostics.has_errors() {
-            return Err(project.finish_with_errors(&args));
+            return Err(project.refused(Fault::Model));
         }
         if project.experiment.is_none() {
-            return Err(Exit::Done); // Its records are not there, which was to be no error.
+            return Ok(None);
         }
-        let refuse = |mut project: Project, diagnostic: Diagnostic| {
-            project.diagnostics.push(diagnostic);
-            project.finish_with_errors(&args)
-        };
         let mut draft = match Draft::read(&study) {
             Ok(draft) => draft,
-            Err(diagnostic) => return Err(refuse(project, diagnostic)),
+            Err(diagnostic) => return Err(refused(project, diagnostic)),
         };
         draft.keep.extend(order.keep.iter().cloned());
         let source = Source {
@@ -75,23 +72,19 @@ impl Prepared {
         let first = vec![0; draft.choices().count()];
         let ready = match source.compile(&first, &[]) {
             Ok(ready) => ready,
-            Err(diagnostics) => return Err(report_errors(&args, &project.sources, &diagnostics)),
-        };
-        let cases = match &draft.cases {
-            None => None,
-            Some(name) => {
-                Some(table(&asked, name).map_err(|why| complain(&args, Exit::Model, &why))?)
+            Err(diagnostics) => {
+                project.diagnostics = diagnostics;
+                return Err(project.refused(Fault::Model));
             }
         };
+        let at_fault = |reason| Refused::Because(reason, Fault::Model);
+        let cases = draft.cases.as_ref().map(|name| table(&asked, name));
+        let cases = cases.transpose().map_err(at_fault)?;
         let parameters = hyde_experiment::parameters(&ready.program, &ready.tables, &project.set());
-        let parameters = match parameters {
-            Ok(parameters) => parameters,
-            Err(error) => {
-                let (diagnostic, fault) =
-                    hyde_study::run_failure::diagnostic(&error, &ready.program, None);
-                return Err(complain(&args, fault.into(), &diagnostic.message));
-            }
-        };
+        let parameters = parameters.map_err(|error| {
+            let (diagnostic, fault) = run_failure::diagnostic(&error, &ready.program, None);
+            Refused::Because(diagnostic.message, fault)
+        })?;
         let model = Model {
             program: &ready.program,
             parameters: &parameters,
@@ -100,7 +93,7 @@ impl Prepared {
         };
         let plan = match Plan::new(&draft, &model) {
             Ok(plan) => plan,
-            Err(diagnostic) => return Err(refuse(project, diagnostic)),
+            Err(diagnostic) => return Err(refused(project, diagnostic)),
         };
         let dataset = match Dataset::new(&ready.program, &draft.keep) {
             Ok(dataset) => dataset,
@@ -108,10 +101,10 @@ impl Prepared {
                 let diagnostic = Diagnostic::error(Code::BadSweep, format!("`keep {name}`: there is no such variable"))
                     .label(study.name.span, "in this sweep")
                     .help("the results of `hyde run --out DIR` list all variables; `keep guide.*;` keeps those of a component");
-                return Err(refuse(project, diagnostic));
+                return Err(refused(project, diagnostic));
             }
         };
-        read_all_records(&source).map_err(|why| complain(&args, Exit::Model, &why))?;
+        read_all_records(&source).map_err(at_fault)?;
         if dataset.measures.is_empty() && dataset.kept.is_empty() {
             let diagnostic = Diagnostic::warning(
                 Code::BadSweep,
@@ -123,24 +116,63 @@ impl Prepared {
             );
             project.diagnostics.push(diagnostic);
         }
-        project.print_warnings(&args);
-        let parts = order.identity(inputs);
+        let inputs = asked.inputs.clone().unwrap_or_default();
         let notes = assumptions::of_model(&project, &ready.program, &parameters);
-        Ok(Self {
+        Ok(Some(Self {
             variants: Variants::new(&dataset),
-            args,
+            parts: order.identity(&inputs),
             asked,
             project,
             draft,
             plan,
             dataset,
-            parts,
             notes,
-        })
+        }))
+    }
+
+    /// The shards of so many that have cases which a store does not have.
+    #[must_use]
+    pub fn missing_shards(&self, store: &dyn Store, count: usize) -> Vec<usize> {
+        let list = shards(self.plan.count(), count);
+        let missing = list
+            .into_iter()
+            .zip(1..)
+            .filter(|(range, _)| range.clone().any(|case| !store.has(&Self::key(case))));
+        missing.map(|(_, number)| number).collect()
+    }
+
+    /// The project of one case, as a run of its own takes it.
+    #[must_use]
+    pub fn project_of(mut self, number: usize) -> Project {
+        let case = self.plan.case(number);
+        let options = self.plan.options(&case);
+        let (file, model) = varied(
+            &self.project.file,
+            &self.draft,
+            &self.project.model,
+            &options,
+        );
+        let ready = self.source().compile(&options, &self.plan.settings(&case));
+        self.project.file = file;
+        self.project.model = model;
+        if let Ok(ready) = ready {
+            for (name, table) in ready.tables {
+                if let Some(record) = self.project.records.get_mut(&name) {
+                    record.table = table;
+                }
+            }
+        }
+        for (path, value) in self.plan.settings(&case) {
+            let input = self.plan.inputs.iter().find(|input| input.name == path);
+            let unit = input.and_then(|input| input.unit.as_ref());
+            let setting = Setting::of(path, value, unit.cloned());
+            self.project.settings.push(setting);
+        }
+        self.project
     }
 
     /// What its variants are made of.
-    pub(crate) fn source(&self) -> Source<'_> {
+    pub fn source(&self) -> Source<'_> {
         Source {
             project: &self.project,
             asked: &self.asked,
@@ -149,9 +181,15 @@ impl Prepared {
     }
 
     /// The key of a case in a store.
-    pub(crate) fn key(case: usize) -> String {
+    pub fn key(case: usize) -> String {
         format!("{case:010}")
     }
+}
+
+/// The project as a refusal, for one more reason.
+fn refused(mut project: Project, diagnostic: Diagnostic) -> Refused {
+    project.diagnostics.push(diagnostic);
+    project.refused(Fault::Model)
 }
 
 /// The sweep that is meant: the one named, or the file's only one.
@@ -184,7 +222,7 @@ fn study(loaded: &Loaded, name: &str) -> Result<Study, String> {
 
 /// The table of cases: looked for as records are.
 fn table(asked: &Asked, name: &str) -> Result<hyde_signal::Table, String> {
-    if !hyde_study::is_inside(name) {
+    if !is_inside(name) {
         return Err(format!("`{name}` leaves the model's folder"));
     }
     let root = asked

@@ -2,8 +2,8 @@
 //! a thread of its own brings what is written to the disk, while others solve.
 
 use super::prepare::Prepared;
-use super::progress::Progress;
-use super::store::Store;
+use crate::progress::Progress;
+use crate::store::Store;
 use hyde_experiment::Options;
 use hyde_experiment::batch::{Outcome, solve};
 use rayon::iter::{
@@ -21,27 +21,28 @@ const SYNC: Duration = Duration::from_millis(50);
 const TELL: Duration = Duration::from_millis(500);
 
 /// How work is done.
-pub(crate) struct How {
+pub struct How<'p> {
     /// Cases solved at once; 0 is one a core.
-    pub(crate) jobs: usize,
-    pub(crate) interrupted: Arc<AtomicBool>,
-    pub(crate) json: bool,
-    pub(crate) quiet: bool,
+    pub jobs: usize,
+    /// Set by whoever wants it to end early.
+    pub interrupted: Arc<AtomicBool>,
+    /// Hears how far it is.
+    pub progress: &'p dyn Progress,
 }
 
 /// What work took.
 #[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Took {
+pub struct Took {
     /// Cases solved.
-    pub(crate) solved: usize,
+    pub solved: usize,
     /// On the clock.
-    pub(crate) wall: Duration,
+    pub wall: Duration,
     /// In the solutions, of all threads together.
-    pub(crate) solving: Duration,
+    pub solving: Duration,
 }
 
 /// Why work ended before its end.
-pub(crate) enum Ended {
+pub enum Ended {
     /// It was told to.
     Interrupted,
     /// A result could not be kept.
@@ -49,15 +50,18 @@ pub(crate) enum Ended {
 }
 
 /// Solves the cases of a range that the store does not have.
+///
+/// # Errors
+/// It was interrupted, or a result could not be kept.
 #[allow(
     clippy::disallowed_methods,
-    reason = "the command line tells how long a batch takes"
+    reason = "how long a batch took is told beside its data set, and is not part of it"
 )]
-pub(crate) fn solve_missing(
+pub fn solve_missing(
     batch: &Prepared,
-    store: &Store,
+    store: &dyn Store,
     range: RangeInclusive<usize>,
-    how: &How,
+    how: &How<'_>,
 ) -> Result<Took, Ended> {
     let total = range.clone().count();
     let missing: Vec<usize> = range
@@ -70,8 +74,9 @@ pub(crate) fn solve_missing(
         .num_threads(how.jobs)
         .build()
         .map_err(|error| Ended::Store(error.to_string()))?;
-    let others = store.len() - (total - missing.len());
-    let progress = Progress::new(total, total - missing.len(), how.json, how.quiet);
+    let others = store.count() - (total - missing.len());
+    let progress = how.progress;
+    progress.begin(total, total - missing.len());
     let (start, solving) = (Instant::now(), AtomicU64::new(0));
     let (finished, done) = channel::<()>();
     let outcome = std::thread::scope(|scope| {
@@ -120,7 +125,7 @@ pub(crate) fn solve_missing(
 }
 
 /// Solves one case; `None` if it was interrupted. A case that fails has an outcome like others.
-fn solved(batch: &Prepared, case: usize, how: &How) -> Option<Outcome> {
+fn solved(batch: &Prepared, case: usize, how: &How<'_>) -> Option<Outcome> {
     if how.interrupted.load(Ordering::Relaxed) {
         return None;
     }

@@ -1,7 +1,7 @@
 //! Trajectories of a batch: whose rows are where, and all cases as envelopes.
 
+use crate::figures::{drawn_in, shown};
 use hyde_experiment::batch::envelope;
-use hyde_present::figures::{drawn_in, shown};
 use hyde_report::Envelope;
 use hyde_signal::{Field, Frame, Values};
 use hyde_units::{NamedUnit, Unit};
@@ -11,7 +11,7 @@ use std::ops::Range;
 const INSTANTS: usize = 200;
 
 /// What was kept of a batch over time.
-pub(crate) struct OverTime {
+pub struct OverTime {
     frame: Frame,
     time: Vec<f64>,
     cases: Vec<(usize, Range<usize>)>,
@@ -19,7 +19,7 @@ pub(crate) struct OverTime {
 
 impl OverTime {
     /// The trajectories of a table, if it is one of them: `case`, `t` and the variables.
-    pub(crate) fn of(frame: Frame) -> Option<Self> {
+    pub fn of(frame: Frame) -> Option<Self> {
         let named = |at: usize, name: &str| frame.fields.get(at).is_some_and(|f| f.name == name);
         if !named(0, "case") || !named(1, "t") {
             return None;
@@ -36,23 +36,23 @@ impl OverTime {
     }
 
     /// The cases that have rows, with these.
-    pub(crate) fn cases(&self) -> &[(usize, Range<usize>)] {
+    pub fn cases(&self) -> &[(usize, Range<usize>)] {
         &self.cases
     }
 
     /// The instants of all rows in s.
-    pub(crate) fn time(&self) -> &[f64] {
+    pub fn time(&self) -> &[f64] {
         &self.time
     }
 
     /// The variables, each with its values in all rows, SI.
-    pub(crate) fn variables(&self) -> impl Iterator<Item = (&Field, Vec<f64>)> {
+    pub fn variables(&self) -> impl Iterator<Item = (&Field, Vec<f64>)> {
         let columns = self.frame.fields.iter().zip(&self.frame.values).skip(2);
         columns.filter_map(|(field, values)| Some((field, in_si(field, values)?)))
     }
 
     /// Each variable over all cases, or one of them.
-    pub(crate) fn envelopes(&self, only: Option<&str>) -> Vec<Envelope> {
+    pub fn envelopes(&self, only: Option<&str>) -> Vec<Envelope> {
         let mut found = Vec::new();
         for (field, values) in self.variables() {
             if only.is_some_and(|name| name != field.name) {
@@ -78,7 +78,7 @@ impl OverTime {
 }
 
 /// Numbers of cases, which CSV has as doubles.
-pub(crate) fn whole_numbers(values: &Values) -> Vec<usize> {
+pub fn whole_numbers(values: &Values) -> Vec<usize> {
     match values {
         Values::Integers(values) => values
             .iter()
@@ -90,7 +90,7 @@ pub(crate) fn whole_numbers(values: &Values) -> Vec<usize> {
 }
 
 /// The numbers of a column, SI; none of texts.
-pub(crate) fn in_si(field: &Field, values: &Values) -> Option<Vec<f64>> {
+pub fn in_si(field: &Field, values: &Values) -> Option<Vec<f64>> {
     let unit = field.unit.as_ref().map(NamedUnit::unit);
     let to_si = |value: f64| unit.map_or(value, |unit| unit.to_si(value));
     match values {
@@ -101,7 +101,7 @@ pub(crate) fn in_si(field: &Field, values: &Values) -> Option<Vec<f64>> {
 }
 
 /// The unit that the values of a column are drawn in; none of a bare number.
-pub(crate) fn drawn(field: &Field) -> (String, Unit) {
+pub fn drawn(field: &Field) -> (String, Unit) {
     let (name, unit) = field
         .unit
         .as_ref()

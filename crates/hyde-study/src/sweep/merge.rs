@@ -1,23 +1,90 @@
 //! Makes the data set of a batch from its store: one row a case, in their order, whoever solved them and when.
 
 use super::prepare::Prepared;
-use super::store::Store;
-use crate::args::TableFormat;
-use crate::files;
+use crate::store::Store;
 use hyde_experiment::batch::{Gathered, Outcome, ROWS, Summary};
 use hyde_signal::parquet::{Field, Kind, Values, Writer};
 use std::fmt::Write as _;
 use std::io::{BufWriter, Write};
-use std::path::Path;
 
-/// Writes the data set of a batch whose store has every case, and sums it up. A file is there whole or not at all.
-pub(crate) fn merge(
+/// File format of a data set.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TableForm {
+    /// Parquet, with units in the metadata.
+    Parquet,
+    /// CSV, with a header of `name [unit]` columns.
+    Csv,
+}
+
+impl TableForm {
+    /// The file of a table called so: `cases.parquet`.
+    #[must_use]
+    pub fn file(self, table: &str) -> String {
+        match self {
+            Self::Parquet => format!("{table}.parquet"),
+            Self::Csv => format!("{table}.csv"),
+        }
+    }
+}
+
+/// Writes the data set of a batch whose store has every case, and sums it up.
+///
+/// # Errors
+/// The sink cannot be written, or the store cannot be read.
+pub fn cases(
     batch: &Prepared,
-    store: &Store,
-    folder: &Path,
-    format: TableFormat,
-) -> Result<Summary, String> {
-    let mut summary = None;
+    store: &dyn Store,
+    form: TableForm,
+    sink: impl Write + Send,
+) -> std::io::Result<Summary> {
+    let fields = batch.dataset.fields(&batch.plan);
+    let mut out = Table::new(BufWriter::new(sink), form, &fields, &notes(batch))?;
+    let mut gathered = Gathered::default();
+    let mut rows: Vec<(usize, Outcome)> = Vec::with_capacity(ROWS);
+    each(batch, store, |case, outcome| {
+        gathered.add(&batch.plan, case, &outcome);
+        let trajectory = None;
+        rows.push((
+            case,
+            Outcome {
+                trajectory,
+                ..outcome
+            },
+        ));
+        if rows.len() == ROWS {
+            out.rows(&batch.dataset.rows(&batch.plan, &rows))?;
+            rows.clear();
+        }
+        Ok(())
+    })?;
+    if !rows.is_empty() {
+        out.rows(&batch.dataset.rows(&batch.plan, &rows))?;
+    }
+    out.finish()?;
+    Ok(gathered.summary(&batch.dataset))
+}
+
+/// Writes what was kept over time: the rows of each case behind those of the one before, each case a group.
+///
+/// # Errors
+/// The sink cannot be written, or the store cannot be read.
+pub fn trajectories(
+    batch: &Prepared,
+    store: &dyn Store,
+    form: TableForm,
+    sink: impl Write + Send,
+) -> std::io::Result<()> {
+    let fields = batch.dataset.trajectory_fields();
+    let mut out = Table::new(BufWriter::new(sink), form, &fields, &notes(batch))?;
+    each(batch, store, |case, outcome| match outcome.trajectory {
+        Some(trajectory) => out.rows(&batch.dataset.trajectory_rows(case, &trajectory)),
+        None => Ok(()),
+    })?;
+    out.finish()
+}
+
+/// What the metadata of both tables say.
+fn notes(batch: &Prepared) -> Vec<(String, String)> {
     let mut notes = batch.dataset.roles(&batch.plan);
     for (key, value) in [
         ("hyde", env!("CARGO_PKG_VERSION").to_owned()),
@@ -28,70 +95,13 @@ pub(crate) fn merge(
     ] {
         notes.push((key.to_owned(), value));
     }
-    let name = match format {
-        TableFormat::Parquet => "cases.parquet",
-        TableFormat::Csv => "cases.csv",
-    };
-    let fields = batch.dataset.fields(&batch.plan);
-    files::write_with(&folder.join(name), |file| {
-        let mut out = Table::new(BufWriter::new(file), format, &fields, &notes)?;
-        let mut gathered = Gathered::default();
-        let mut rows: Vec<(usize, Outcome)> = Vec::with_capacity(ROWS);
-        each(batch, store, |case, outcome| {
-            gathered.add(&batch.plan, case, &outcome);
-            let trajectory = None;
-            rows.push((
-                case,
-                Outcome {
-                    trajectory,
-                    ..outcome
-                },
-            ));
-            if rows.len() == ROWS {
-                out.rows(&batch.dataset.rows(&batch.plan, &rows))?;
-                rows.clear();
-            }
-            Ok(())
-        })?;
-        if !rows.is_empty() {
-            out.rows(&batch.dataset.rows(&batch.plan, &rows))?;
-        }
-        summary = Some(gathered.summary(&batch.dataset));
-        out.finish()
-    })?;
-    if !batch.dataset.kept.is_empty() {
-        trajectories(batch, store, folder, format, &notes)?;
-    }
-    Ok(summary.unwrap_or_default())
-}
-
-/// What was kept over time: the rows of each case behind those of the one before, each case a group.
-fn trajectories(
-    batch: &Prepared,
-    store: &Store,
-    folder: &Path,
-    format: TableFormat,
-    notes: &[(String, String)],
-) -> Result<(), String> {
-    let name = match format {
-        TableFormat::Parquet => "trajectories.parquet",
-        TableFormat::Csv => "trajectories.csv",
-    };
-    let fields = batch.dataset.trajectory_fields();
-    files::write_with(&folder.join(name), |file| {
-        let mut out = Table::new(BufWriter::new(file), format, &fields, notes)?;
-        each(batch, store, |case, outcome| match outcome.trajectory {
-            Some(trajectory) => out.rows(&batch.dataset.trajectory_rows(case, &trajectory)),
-            None => Ok(()),
-        })?;
-        out.finish()
-    })
+    notes
 }
 
 /// Gives the outcome of each case, in their order.
 fn each(
     batch: &Prepared,
-    store: &Store,
+    store: &dyn Store,
     mut take: impl FnMut(usize, Outcome) -> std::io::Result<()>,
 ) -> std::io::Result<()> {
     for case in 1..=batch.plan.count() {
@@ -115,13 +125,13 @@ enum Table<W: Write + Send> {
 impl<W: Write + Send> Table<W> {
     fn new(
         mut sink: W,
-        format: TableFormat,
+        form: TableForm,
         fields: &[Field],
         notes: &[(String, String)],
     ) -> std::io::Result<Self> {
-        match format {
-            TableFormat::Parquet => Ok(Self::Parquet(Box::new(Writer::new(sink, fields, notes)?))),
-            TableFormat::Csv => {
+        match form {
+            TableForm::Parquet => Ok(Self::Parquet(Box::new(Writer::new(sink, fields, notes)?))),
+            TableForm::Csv => {
                 let names = fields.iter().map(|field| match (&field.unit, field.kind) {
                     (Some(unit), _) => quoted(&format!("{} [{unit}]", field.name)),
                     (None, Kind::Number | Kind::Integer | Kind::Text) => quoted(&field.name),

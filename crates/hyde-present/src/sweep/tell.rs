@@ -1,9 +1,8 @@
 //! What a batch says as a whole, for people and as JSON for programs.
 
-use super::prepare::Prepared;
-use super::work::Took;
+use crate::assumptions;
 use hyde_experiment::batch::{QUANTILES, Summary};
-use hyde_present::assumptions;
+use hyde_study::sweep::{Prepared, Took};
 use hyde_units::{counted, engineering_as, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
@@ -14,7 +13,7 @@ const BESIDE: usize = 4;
 const INPUTS: usize = 12;
 
 /// The summary in a few lines; `rerun` is the command of a case, without its number.
-pub(crate) fn text(batch: &Prepared, summary: &Summary, took: Took, rerun: &str) -> String {
+pub fn text(batch: &Prepared, summary: &Summary, took: Took, rerun: &str) -> String {
     let mut out = String::new();
     let (name, experiment, model) = (
         &batch.draft.name,
@@ -128,7 +127,7 @@ pub(crate) fn text(batch: &Prepared, summary: &Summary, took: Took, rerun: &str)
 }
 
 /// The summary as JSON: nothing in it depends on who solved the cases, or how long that took.
-pub(crate) fn json(batch: &Prepared, summary: &Summary, rerun: &str) -> Value {
+pub fn json(batch: &Prepared, summary: &Summary, rerun: &str) -> Value {
     let command = |case: usize| format!("{rerun} --case {case}");
     let measures: Vec<Value> = summary
         .measures

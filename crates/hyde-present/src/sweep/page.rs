@@ -1,58 +1,42 @@
 //! What the page of a batch shows, from its data set, its trajectories and its summary: no model is needed.
 
-use super::order::Order;
 use super::over_time::{OverTime, drawn, in_si, whole_numbers};
-use crate::clock;
-use crate::commands::sweep::word;
-use crate::files;
-use hyde_present::head;
+use crate::head;
+use crate::lines::shell_word;
 use hyde_report::{
-    BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, FailedCase, Outcome, Section, Verdict,
-    WorstCase,
+    BatchReport, CaseColumn, CaseMeasure, ChoiceColumn, FailedCase, Outcome, Verdict, WorstCase,
 };
 use hyde_signal::{Field, Frame, Values};
-use hyde_study::{Asked, Records};
+use hyde_study::sweep::Finished;
 use hyde_units::{NamedUnit, Unit, counted, engineering_as, significant};
 use serde_json::Value;
-use std::path::Path;
-use std::sync::Arc;
 
 /// The columns of a case behind its inputs and measures: status, code, reason, equation, source, failed_at, steps, events.
 const BEHIND: usize = 8;
 /// Inputs told of a case in words.
 const TOLD: usize = 6;
 
-/// The report of the batch in a folder.
+/// The report of a finished batch; `folder` is where it is, as the user writes it, and `made` says when the page is made.
 ///
 /// # Errors
-/// If the folder has no data set of a batch.
-pub(crate) fn of_folder(folder: &Path) -> Result<BatchReport, String> {
-    if !Order::is_in(folder) {
-        return Err(format!(
-            "`{}` contains no batch: `hyde sweep FILE --out DIR` writes one; the page of a run is `report.html`",
-            folder.display()
-        ));
-    }
-    let again = format!("hyde sweep {}", word(&folder.to_string_lossy()));
-    let frame = table(folder, "cases")?;
-    let summary = files::read_text(&folder.join("summary.json"));
-    let (Some(frame), Ok(summary)) = (frame, summary) else {
-        return Err(format!(
-            "the batch in `{}` is not finished: `{again}` solves the missing cases",
-            folder.display()
-        ));
-    };
-    let summary: Value = serde_json::from_str(&summary)
-        .map_err(|error| format!("`summary.json` of the batch: {error}"))?;
-    let cases = Cases::new(frame, &summary).ok_or_else(|| {
-        format!(
-            "the data set in `{}` is not that of a batch",
-            folder.display()
-        )
-    })?;
+/// Its data set is not that of a batch.
+pub fn report(finished: &Finished, folder: &str, made: &str) -> Result<BatchReport, String> {
+    let again = format!("hyde sweep {}", shell_word(folder));
+    let summary = &finished.summary;
+    let cases = Cases::new(finished.cases.clone(), summary)
+        .ok_or_else(|| format!("the data set in `{folder}` is not that of a batch"))?;
     let text = |key: &str| summary[key].as_str().unwrap_or_default().to_owned();
     let count = |key: &str| summary[key].as_u64().unwrap_or_default();
-    let (mut facts, about) = head(folder, &text("experiment"));
+    let (mut facts, about) = match &finished.project {
+        Some(project) => (
+            head::facts(project, made),
+            head::model(project).into_iter().collect(),
+        ),
+        None => (
+            vec![("Experiment".to_owned(), text("experiment"))],
+            Vec::new(),
+        ),
+    };
     let own = [
         ("Sweep", text("sweep")),
         (
@@ -64,6 +48,7 @@ pub(crate) fn of_folder(folder: &Path) -> Result<BatchReport, String> {
     let own = own.map(|(name, value)| (name.to_owned(), value));
     facts.splice(0..0, own);
     let (inputs, choices) = cases.inputs();
+    let over_time = finished.trajectories.clone().and_then(OverTime::of);
     Ok(BatchReport {
         title: format!(
             "{} of {} of {}",
@@ -73,53 +58,16 @@ pub(crate) fn of_folder(folder: &Path) -> Result<BatchReport, String> {
         ),
         facts,
         about,
-        verdicts: verdicts(&summary),
+        verdicts: verdicts(summary),
         inputs,
         choices,
-        measures: cases.measures(&summary),
+        measures: cases.measures(summary),
         failed: cases.failed.clone(),
-        envelopes: match table(folder, "trajectories")? {
-            Some(frame) => OverTime::of(frame).map_or(Vec::new(), |over| over.envelopes(None)),
-            None => Vec::new(),
-        },
-        worst: cases.worst(&summary, &again),
+        envelopes: over_time.map_or(Vec::new(), |over| over.envelopes(None)),
+        worst: cases.worst(summary, &again),
         failures: cases.failures(&again),
         footer: format!("Hyde {}, {again}", env!("CARGO_PKG_VERSION")),
     })
-}
-
-/// File, model and experiment of a batch, from the copies of the model's files that its folder has.
-fn head(folder: &Path, experiment: &str) -> (Vec<(String, String)>, Vec<Section>) {
-    let loaded = Order::read(folder).ok().and_then(|(order, inputs)| {
-        let asked = Asked {
-            experiment: Some(experiment.to_owned()),
-            data: order.data.clone(),
-            inputs: Some(Arc::new(inputs)),
-            ..Asked::of_file(&order.file)
-        };
-        hyde_study::load(&asked, Records::IfThere).ok()
-    });
-    match loaded {
-        Some(project) => (
-            head::facts(&project, &clock::now()),
-            head::model(&project).into_iter().collect(),
-        ),
-        None => (
-            vec![("Experiment".to_owned(), experiment.to_owned())],
-            Vec::new(),
-        ),
-    }
-}
-
-/// A table of the folder in whichever form it has.
-fn table(folder: &Path, name: &str) -> Result<Option<Frame>, String> {
-    let forms = ["parquet", "csv"].map(|form| folder.join(format!("{name}.{form}")));
-    let Some(path) = forms.iter().find(|path| files::is_file(path)) else {
-        return Ok(None);
-    };
-    let frame = hyde_signal::read_frame(&files::read(path)?);
-    let frame = frame.map_err(|error| format!("`{}`: {error}", path.display()))?;
-    Ok(Some(frame))
 }
 
 fn verdicts(summary: &Value) -> Vec<Verdict> {

@@ -1,6 +1,6 @@
 //! The programs of a batch: one for each variant, compiled when its first case comes and kept for the others.
 
-use crate::project::{Project, Records};
+use crate::{Asked, Project, Records, run_failure};
 use hyde_compiler::{Backend, Form, FreeInputs, Request};
 use hyde_diag::{Diagnostic, Diagnostics, Severity};
 use hyde_experiment::RunError;
@@ -10,19 +10,20 @@ use hyde_experiment::batch::{
 use hyde_program::Program;
 use hyde_signal::Table;
 use hyde_sim::FailureKind;
-use hyde_study::{Asked, run_failure};
 use hyde_syntax::ast::Name;
 use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// A program that can be run, with its records.
-pub(crate) struct Ready {
-    pub(crate) program: Program,
-    pub(crate) tables: BTreeMap<String, Table>,
+pub struct Ready {
+    /// The program.
+    pub program: Program,
+    /// Its records by name.
+    pub tables: BTreeMap<String, Table>,
 }
 
 /// The compiled variants of a batch.
-pub(crate) struct Variants {
+pub struct Variants {
     dataset: Dataset,
     known: Mutex<BTreeMap<Variant, Cell>>,
 }
@@ -32,7 +33,7 @@ type Cell = Arc<OnceLock<Result<(Ready, Wanted), Fault>>>;
 
 impl Variants {
     /// None yet.
-    pub(crate) fn new(dataset: &Dataset) -> Self {
+    pub fn new(dataset: &Dataset) -> Self {
         Self {
             dataset: dataset.clone(),
             known: Mutex::default(),
@@ -40,7 +41,7 @@ impl Variants {
     }
 
     /// Gives the program of a case to `with`, compiled if it is the first of its variant. Others that need it wait.
-    pub(crate) fn with<T>(
+    pub fn with<T>(
         &self,
         model: &Source<'_>,
         plan: &Plan,
@@ -64,19 +65,18 @@ impl Variants {
 }
 
 /// What variants are made of.
-pub(crate) struct Source<'p> {
-    pub(crate) project: &'p Project,
-    pub(crate) asked: &'p Asked,
-    pub(crate) draft: &'p Draft,
+pub struct Source<'p> {
+    /// The model and the experiment.
+    pub project: &'p Project,
+    /// What was asked, with its files.
+    pub asked: &'p Asked,
+    /// The sweep as it is written.
+    pub draft: &'p Draft,
 }
 
 impl Source<'_> {
     /// Compiles a variant: with these options of the choices, and these values of what is structural.
-    pub(crate) fn compile(
-        &self,
-        options: &[usize],
-        set: &[(String, f64)],
-    ) -> Result<Ready, Diagnostics> {
+    pub fn compile(&self, options: &[usize], set: &[(String, f64)]) -> Result<Ready, Diagnostics> {
         let Self {
             project,
             asked,
@@ -109,14 +109,14 @@ impl Source<'_> {
                         });
                     }
                 }
-                hyde_study::read_records(&experiment, &asked, Records::Needed, &mut diagnostics)
+                crate::read_records(&experiment, &asked, Records::Needed, &mut diagnostics)
             });
         let read = match read {
             Some(Ok(read)) if !diagnostics.has_errors() => read,
             Some(Ok(_)) => return Err(diagnostics),
             Some(Err(_)) | None => BTreeMap::new(), // Told when the project was loaded.
         };
-        let headers = hyde_study::headers(&read);
+        let headers = crate::headers(&read);
         let request = Request {
             sources: &project.sources,
             file: &file,
@@ -134,7 +134,7 @@ impl Source<'_> {
                 project.attach_fmus(&mut compiled.program);
                 Ok(Ready {
                     program: compiled.program,
-                    tables: hyde_study::tables(&read),
+                    tables: crate::tables(&read),
                 })
             }
             None => Err(diagnostics),
@@ -150,7 +150,7 @@ impl Source<'_> {
     }
 
     /// A case that failed, as its outcome; `None` if it was interrupted.
-    pub(crate) fn failed(&self, error: &RunError, program: &Program) -> Option<Fault> {
+    pub fn failed(&self, error: &RunError, program: &Program) -> Option<Fault> {
         let time_s = match error {
             RunError::Failed(failure) if failure.kind == FailureKind::Interrupted => return None,
             RunError::Failed(failure) => failure.t,

@@ -1,15 +1,15 @@
 //! [`Order`]: what a batch is asked to be, as its folder keeps it: with the order and the files beside it, any process makes
 //! the same cases, wherever it runs and whatever became of the model's own files.
 
-use crate::files;
+use crate::world::{World, read_text};
+use crate::{Content, Inputs, Key, Kind};
 use hyde_experiment::batch::{Identity, digest};
-use hyde_study::{Content, Inputs, Key, Kind};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The file of an order in its folder.
-pub(crate) const ORDER: &str = "batch.json";
+pub const ORDER: &str = "batch.json";
 /// The folder of the model's files below it.
 const INPUTS: &str = "inputs";
 /// The form of a batch's folder.
@@ -17,17 +17,21 @@ const FORM: u32 = 1;
 
 /// What a batch is asked to be.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Order {
+pub struct Order {
     /// The model's file as printed.
-    pub(crate) file: PathBuf,
+    pub file: PathBuf,
     /// The sweep.
-    pub(crate) sweep: String,
-    /// `--set`, `--record`, `--data`, `--seed` and `--keep` as given.
-    pub(crate) settings: Vec<String>,
-    pub(crate) records: Vec<String>,
-    pub(crate) data: Option<PathBuf>,
-    pub(crate) seed: Option<u64>,
-    pub(crate) keep: Vec<String>,
+    pub sweep: String,
+    /// Parameters that are set in all cases: `saddle.M=320 [kg]`.
+    pub settings: Vec<String>,
+    /// Files of records: `strokes=strokes.csv`.
+    pub records: Vec<String>,
+    /// The folder of the records.
+    pub data: Option<PathBuf>,
+    /// The seed of the random numbers, instead of that of the sweep.
+    pub seed: Option<u64>,
+    /// Variables to keep over time, beside those of the sweep.
+    pub keep: Vec<String>,
 }
 
 /// An order as it is kept.
@@ -53,15 +57,16 @@ struct KeptInput {
 
 /// The identity of a batch and of what it is made of.
 #[derive(Clone, Debug)]
-pub(crate) struct Parts {
-    pub(crate) whole: Identity,
+pub struct Parts {
+    /// That of the batch.
+    pub whole: Identity,
     parts: BTreeMap<String, String>,
 }
 
 impl Order {
     /// Which batch this is: by the texts of the model, the library, the data, the plan and the versions. Where the files lie
     /// does not count, nor how many processes solve it.
-    pub(crate) fn identity(&self, inputs: &Inputs) -> Parts {
+    pub fn identity(&self, inputs: &Inputs) -> Parts {
         let all = inputs.all();
         let of = |kinds: &[Kind]| {
             let chosen = all.iter().filter(|((kind, ..), _)| kinds.contains(kind));
@@ -108,17 +113,17 @@ impl Order {
     }
 
     /// Whether a folder holds a batch.
-    pub(crate) fn is_in(folder: &Path) -> bool {
-        files::is_file(&folder.join(ORDER))
+    pub fn is_in(world: &dyn World, folder: &Path) -> bool {
+        world.is_file(&folder.join(ORDER))
     }
 
     /// The order that a folder holds, with its files.
-    pub(crate) fn read(folder: &Path) -> Result<(Self, Inputs), String> {
-        let kept = kept(folder)?;
+    pub fn read(world: &dyn World, folder: &Path) -> Result<(Self, Inputs), String> {
+        let kept = kept(world, folder)?;
         let mut found: BTreeMap<Key, Content> = BTreeMap::new();
         for input in kept.inputs {
             let path = folder.join(INPUTS).join(&input.sha256);
-            let content = files::read(&path)?;
+            let content = world.read(&path)?;
             if digest(&[&content]).to_string() != input.sha256 {
                 return Err(format!(
                     "`{}` was changed since the batch was made",
@@ -133,18 +138,22 @@ impl Order {
         Ok((kept.order, Inputs::replaying(found)))
     }
 
-    /// Makes a folder the one of this batch; one of another batch is refused, with what differs.
-    pub(crate) fn keep(
+    /// The files that make a folder the one of this batch, to be written in this order: a folder with an order has all that
+    /// the order names. None where the folder is that of this batch already.
+    ///
+    /// # Errors
+    /// The folder is that of another batch: what differs.
+    pub fn files(
         &self,
+        world: &dyn World,
         folder: &Path,
-        parts: &Parts,
-        cases: usize,
+        (parts, cases): (&Parts, usize),
         inputs: &Inputs,
-    ) -> Result<(), String> {
-        if Self::is_in(folder) {
-            let known = kept(folder)?;
+    ) -> Result<Vec<(PathBuf, Vec<u8>)>, String> {
+        if Self::is_in(world, folder) {
+            let known = kept(world, folder)?;
             if known.identity == parts.whole.to_string() {
-                return Ok(());
+                return Ok(Vec::new());
             }
             let differs: Vec<&str> = parts
                 .parts
@@ -158,11 +167,10 @@ impl Order {
                 differs.join(" and the ")
             ));
         }
-        files::make_folder(&folder.join(INPUTS))?;
-        let mut list = Vec::new();
+        let (mut files, mut list) = (Vec::new(), Vec::new());
         for ((kind, asker, name), (place, content)) in inputs.all() {
             let sha256 = digest(&[&content]).to_string();
-            files::write(&folder.join(INPUTS).join(&sha256), &content)?;
+            files.push((folder.join(INPUTS).join(&sha256), content));
             list.push(KeptInput {
                 kind,
                 asker,
@@ -181,14 +189,14 @@ impl Order {
             inputs: list,
         };
         let text = serde_json::to_string_pretty(&kept).map_err(|error| error.to_string())?;
-        // Last: a folder with an order has all that the order names.
-        files::write(&folder.join(ORDER), text.as_bytes())
+        files.push((folder.join(ORDER), text.into_bytes()));
+        Ok(files)
     }
 }
 
-fn kept(folder: &Path) -> Result<Kept, String> {
+fn kept(world: &dyn World, folder: &Path) -> Result<Kept, String> {
     let path = folder.join(ORDER);
-    let kept: Kept = serde_json::from_str(&files::read_text(&path)?)
+    let kept: Kept = serde_json::from_str(&read_text(world, &path)?)
         .map_err(|error| format!("`{}` does not describe a batch: {error}", path.display()))?;
     if kept.form != FORM {
         let (hyde, place) = (&kept.hyde, folder.display());
