@@ -1,9 +1,15 @@
 //! Files: read whole, written whole or not at all.
 
 pub(crate) use hyde_study::world::reason;
-use hyde_study::world::{self, Disk, World as _};
+use hyde_study::world::{self, Disk, World};
 use std::io::{ErrorKind, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The disk, as studies take it.
+pub(crate) fn disk() -> Arc<dyn World> {
+    Arc::new(Disk)
+}
 
 /// Reads a file; the error says which and why.
 pub(crate) fn read(path: &Path) -> Result<Vec<u8>, String> {

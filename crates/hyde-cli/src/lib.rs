@@ -6,16 +6,11 @@
 
 mod args;
 mod batch;
-mod before_after;
 mod clock;
 mod commands;
-mod compared;
-mod diagnosis;
 mod exit;
 mod files;
-mod fitted;
 mod interruption;
-mod left_model;
 mod limits;
 mod live;
 mod output;
@@ -23,7 +18,6 @@ mod pages;
 mod project;
 mod sandbox;
 mod study;
-mod unknown;
 mod watch;
 
 pub use hyde_study::render;

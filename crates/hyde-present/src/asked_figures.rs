@@ -1,9 +1,9 @@
 //! The figures that an experiment asks for, drawn from the results of its run.
 
-use crate::figures::{drawn_in, shown};
 use hyde_experiment::Run;
 use hyde_program::{Constant, Curve, FigureKind, Program};
 use hyde_report::{Figure, Line, circle_plot, time_panel, time_plot, to_png, to_svg, xy_plot};
+use hyde_units::{drawn_in, shown};
 
 /// The figures with their names, as written.
 pub fn of_run(program: &Program, run: &Run) -> Vec<(String, Figure)> {

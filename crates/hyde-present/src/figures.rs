@@ -9,16 +9,13 @@ use hyde_report::{
     EventRow, EventStrip, Figure, Line, LineStyle, Panel, Span, time_panel, time_plot,
 };
 use hyde_sim::{EventKind, Results};
-use hyde_units::{NamedUnit, Unit};
+use hyde_units::{difference_in, drawn_in, shown};
 
 /// Measured channels in one figure.
 const MAX_CHANNELS: usize = 4;
 
 /// Stretches of a long curve of which the extremes are drawn: many for each pixel of the widest figure.
 const STRETCHES: usize = 20_000;
-
-/// Numbers that are read easily.
-const READABLE: std::ops::Range<f64> = 1e-3..1e5;
 
 /// The figures of a run, the most telling first.
 pub fn of_run(title: &str, program: &Program, run: &Run) -> Vec<Figure> {
@@ -127,37 +124,6 @@ fn measured_and_simulated(channel: &Channel) -> Panel {
     time_panel(channel.name.clone(), shown(&unit), lines)
 }
 
-/// The unit that values are drawn in: that of SI, with the prefix that fits, for all that is declared in a multiple of it;
-/// any other as it is declared.
-pub fn drawn_in(unit: &NamedUnit) -> (String, Unit) {
-    // J and N.m, Hz and 1/s are not told from each other by their dimensions.
-    let symbol = unit.unit().is_si() && unit.text().chars().all(char::is_alphabetic);
-    let usual = NamedUnit::usual(unit.unit().dimension);
-    let drawn = match unit.is_multiple_of_si() && !symbol {
-        true => &usual,
-        false => unit,
-    };
-    (drawn.text().to_owned(), drawn.unit())
-}
-
-/// The unit that differences of values are drawn in: of temperatures in degC it is K.
-pub fn difference_in(unit: &NamedUnit) -> (String, Unit) {
-    match unit.unit().is_absolute() {
-        true => drawn_in(&NamedUnit::usual(unit.unit().dimension)),
-        false => drawn_in(unit),
-    }
-}
-
-/// The unit that an error of this size is shown in, as on the console: that of the channel where it is read easily in it, else
-/// that of SI.
-pub fn error_in(unit: &NamedUnit, si: f64) -> (String, Unit) {
-    let (_, own) = difference_in(unit);
-    match READABLE.contains(&own.scale.remove(si).abs()) {
-        true => difference_in(unit),
-        false => drawn_in(&NamedUnit::usual(unit.unit().dimension)),
-    }
-}
-
 /// Measured − simulated.
 fn residual(channel: &Channel) -> Panel {
     let (unit, of) = difference_in(&channel.unit);
@@ -181,9 +147,4 @@ pub fn curve(name: &str, output: usize, program: &Program, run: &Run) -> Line {
     let (time, values) = thinned(&run.results.time, &values, STRETCHES);
     let values = values.into_iter().map(|si| unit.from_si(si)).collect();
     Line::new(name, time, values)
-}
-
-/// A pure number has no unit on its axis.
-pub fn shown(unit: &str) -> &str {
-    if unit == "1" { "" } else { unit }
 }

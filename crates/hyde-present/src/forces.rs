@@ -1,13 +1,13 @@
 //! The forces, torques and currents between components: as a table for people, as JSON for programs, as a section of the
 //! report.
 
-use crate::figures::{curve, drawn_in, shown};
+use crate::figures::curve;
 use crate::panels::quantity;
 use hyde_compiler::Compiled;
 use hyde_experiment::{FlowLine, Run, flows};
 use hyde_program::Program;
 use hyde_report::{Block, Panel, Section, Table, time_panel, time_plot};
-use hyde_units::{engineering_as, significant};
+use hyde_units::{drawn_in, engineering_as, shown, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 

@@ -9,6 +9,8 @@
 //! summary, ledger, forces, start            a run as text and JSON, with its energies, its forces, its start
 //! assumptions, assumed                      what was assumed of the data, and where a model was linearised
 //! head, run_page                            the head of every page; the page of a run
+//! fitted, diagnosed                         a calibration; a diagnosis
+//! comparison, compared, unknown             their parts: errors, measured beside simulated, an effect of no library
 //! sweep                                     the summary of a sweep, and its page
 //! lines                                     a text in lines of a width
 //! ```
@@ -17,7 +19,11 @@
 pub mod asked_figures;
 pub mod assumed;
 pub mod assumptions;
+mod compared;
+pub mod comparison;
+pub mod diagnosed;
 pub mod figures;
+pub mod fitted;
 pub mod forces;
 pub mod head;
 pub mod ledger;
@@ -28,3 +34,4 @@ pub mod start;
 pub mod summary;
 pub mod sweep;
 pub mod thinned;
+pub mod unknown;

@@ -4,12 +4,12 @@
 //! positions before speeds, currents and forces; of the forces between components those of the largest rms. What is only a
 //! number inside a controller comes where nothing else is left.
 
-use crate::figures::{self, drawn_in, shown};
+use crate::figures;
 use hyde_experiment::{Run, flows};
 use hyde_program::{Output, Program};
 use hyde_report::{Panel, time_panel};
 use hyde_signal::Series;
-use hyde_units::Dimension;
+use hyde_units::{Dimension, drawn_in, shown};
 
 /// Panels in a figure, and curves in a panel.
 const PANELS: usize = 6;

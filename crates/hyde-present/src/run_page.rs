@@ -65,10 +65,10 @@ pub fn page(project: &Project, compiled: &Compiled, run: &Run, made: &str) -> Pa
         .channels
         .iter()
         .map(|channel| {
-            let (unit, of) = figures::error_in(&channel.unit, channel.rms);
+            let (unit, of) = hyde_units::error_in(&channel.unit, channel.rms);
             ChannelError {
                 channel: channel.name.clone(),
-                unit: figures::shown(&unit).to_owned(),
+                unit: hyde_units::shown(&unit).to_owned(),
                 rms: of.from_si(channel.rms),
                 relative: channel.relative_percent / 100.0,
                 noise: channel.noise.map(|noise| of.from_si(noise)),
@@ -107,7 +107,7 @@ pub fn page(project: &Project, compiled: &Compiled, run: &Run, made: &str) -> Pa
             Parameter {
                 name: parameter.name.clone(),
                 value: value.join(", "),
-                unit: figures::shown(parameter.unit.text()).to_owned(),
+                unit: hyde_units::shown(parameter.unit.text()).to_owned(),
                 source: if set {
                     "command line".to_owned()
                 } else {

@@ -22,6 +22,11 @@
 //! progress       how far a long study is                               progress.rs
 //! calibration    a calibration with its records and its observers        calibration.rs
 //! diagnosis      a diagnosis with its block and its calibration          diagnosis.rs
+//! comparison     errors before and after, over the noise floor       comparison.rs
+//! fitted         what a calibration found, and its models            fitted.rs
+//! diagnosed      what a diagnosis found, and its model               diagnosed.rs
+//! unknown        an effect that no library has                       unknown.rs
+//! left_model     what stands before a model in a file                left_model.rs
 //! excitation     what to record next for a calibration                excitation.rs
 //! first_model    a first model of an axis, from a trace                  first_model.rs
 //! render         diagnostics as text or JSON                              render.rs
@@ -35,12 +40,16 @@ mod asked;
 pub mod assumptions;
 mod calibration;
 mod check;
+pub mod comparison;
+pub mod diagnosed;
 mod diagnosis;
 pub mod excitation;
 pub mod first_model;
+pub mod fitted;
 mod fmus;
 mod inputs;
 mod known;
+pub mod left_model;
 pub mod operating_point;
 mod package;
 pub mod ports;
@@ -57,6 +66,7 @@ mod store;
 pub mod sweep;
 mod tables;
 pub mod topology;
+pub mod unknown;
 pub mod unobservable;
 pub mod world;
 

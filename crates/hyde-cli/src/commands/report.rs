@@ -9,9 +9,7 @@ use hyde_present::lines::shell_word;
 use hyde_present::sweep::page::report;
 use hyde_report::BatchReport;
 use hyde_study::sweep::{Finished, Unfinished};
-use hyde_study::world::{Disk, World};
 use std::path::Path;
-use std::sync::Arc;
 
 /// Writes the page.
 pub(crate) fn write(args: &ReportArgs) -> Exit {
@@ -35,7 +33,7 @@ pub(crate) fn write(args: &ReportArgs) -> Exit {
 /// The report of the batch in a folder.
 fn page(folder: &Path) -> Result<BatchReport, String> {
     let shown = folder.display();
-    let finished = Finished::read(&(Arc::new(Disk) as Arc<dyn World>), folder);
+    let finished = Finished::read(&files::disk(), folder);
     let finished = finished.map_err(|own| match own {
         Unfinished::NoBatch => format!(
             "`{shown}` contains no batch: `hyde sweep FILE --out DIR` writes one; the page of a run is `report.html`"

@@ -17,13 +17,11 @@ mod work;
 
 use crate::args::{CaseKind, SelftestArgs};
 use crate::batch::store::Journals;
-use crate::commands::diagnose;
 use crate::exit::Exit;
 use crate::files;
 use crate::interruption;
 use crate::project::{Told as _, complain, print_error, print_output};
 use crate::study;
-use crate::unknown;
 use hyde_calibrate::{
     Asked, Axis, Case, Hypothesis, Planting, SelftestError, Size, Tally, Written, cases, tally,
 };
@@ -32,6 +30,8 @@ use hyde_experiment::batch::{Identity, digest};
 use hyde_signal::Table;
 use hyde_study::Calibration;
 use hyde_study::Store;
+use hyde_study::diagnosed;
+use hyde_study::unknown;
 use hyde_units::counted;
 use models::Models;
 use serde_json::json;
@@ -71,7 +71,7 @@ fn tested(args: &SelftestArgs) -> Result<Exit, Exit> {
         .into_iter()
         .filter(|candidate| plan.selects(candidate))
         .collect();
-    let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnose::hypothesis).collect();
+    let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnosed::hypothesis).collect();
     let seed = args.seed.unwrap_or(plan.seed);
     let channels: Vec<String> = {
         let measured = &calibration.compiled.program.experiment.measured;

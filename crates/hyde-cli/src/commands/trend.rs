@@ -232,7 +232,7 @@ fn text(trends: &[Trend], labels: &[String], per: &str) -> String {
         };
         let line = format!(
             "  {:<26} {:>10} {:>10} {:>8} {went}{missing}",
-            crate::before_after::shortened(&trend.name, 26),
+            hyde_present::comparison::shortened(&trend.name, 26),
             significant(first.value, 4),
             significant(last.value, 4),
             trend.unit

@@ -1,10 +1,10 @@
 //! Trajectories of a batch: whose rows are where, and all cases as envelopes.
 
-use crate::figures::{drawn_in, shown};
 use hyde_experiment::batch::envelope;
 use hyde_report::Envelope;
 use hyde_signal::{Field, Frame, Values};
 use hyde_units::{NamedUnit, Unit};
+use hyde_units::{drawn_in, shown};
 use std::ops::Range;
 
 /// Instants of an envelope: one for about three pixels.

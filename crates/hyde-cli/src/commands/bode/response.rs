@@ -3,11 +3,11 @@
 use super::measured::Compared;
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::{BodeError, Linear, Pole, Poles, SteppedOutput, frequency_response_watched};
-use hyde_present::figures::{difference_in, shown};
 use hyde_program::{Bode, Constant, Program};
 use hyde_signal::spectrum::FrequencyResponse;
 use hyde_sim::Reached;
 use hyde_units::significant;
+use hyde_units::{difference_in, shown};
 
 /// From an input to one output.
 pub(crate) struct Response {

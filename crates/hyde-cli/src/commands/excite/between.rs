@@ -2,12 +2,12 @@
 
 use super::Failure;
 use crate::args::{ExciteArgs, ModelArgs};
-use crate::commands::diagnose;
 use crate::project::Told as _;
-use crate::unknown;
 use hyde_calibrate::{Hypothesis, Recording, Separation, separation};
 use hyde_compiler::{Candidate, Form};
+use hyde_study::diagnosed;
 use hyde_study::excitation::{Bench, Failed};
+use hyde_study::unknown;
 use std::collections::BTreeMap;
 
 /// The effects of the model, and the numbers of those to distinguish.
@@ -43,7 +43,7 @@ pub(super) fn of(
     }
     let candidates = bench.project.candidates_or_report(model_args);
     let candidates = candidates.map_err(Failure::Told)?;
-    let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnose::hypothesis).collect();
+    let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnosed::hypothesis).collect();
     let mut numbers = Vec::new();
     for name in &args.between {
         let number = number_of(name, &hypotheses).map_err(Failure::Asked)?;

@@ -3,10 +3,10 @@
 use super::source::Recorded;
 use super::strip;
 use crate::args::PlotArgs;
-use hyde_present::figures::{drawn_in, shown};
 use hyde_report::{Figure, Line, time_panel, time_plot, xy_plot};
 use hyde_signal::{Column, Table};
 use hyde_units::{Agreement, NamedUnit, Unit, significant};
+use hyde_units::{drawn_in, shown};
 use std::ops::Range;
 
 /// Panels over one time, with the events of the first source below.

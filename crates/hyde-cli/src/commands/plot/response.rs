@@ -1,9 +1,9 @@
 //! A frequency response from its table: what `hyde bode --out` leaves, or a measured one in the same columns.
 
 use super::source::Source;
-use hyde_present::figures::shown;
 use hyde_report::{BodeCurve, Figure, LineStyle, bode_plot};
 use hyde_signal::{Frame, Values};
+use hyde_units::shown;
 use hyde_units::{Agreement, Dimension};
 
 /// A response in a file: its curves, and what is said about it.

@@ -2,10 +2,10 @@
 //! effect at a time: these are made once.
 
 use crate::project::Project;
-use crate::unknown;
 use hyde_calibrate::{Built, Written};
 use hyde_compiler::{Additions, Candidate, Form, Header, Request};
 use hyde_diag::Diagnostics;
+use hyde_study::unknown;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 

@@ -2,8 +2,8 @@
 
 use super::Told;
 use super::json::{shown, sums};
-use crate::diagnosis;
 use hyde_calibrate::{Found, Planting, Row};
+use hyde_study::diagnosed::verdict;
 use hyde_units::significant;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -53,7 +53,7 @@ fn line(out: &mut String, told: &Told<'_>, row: &Row) {
     let hypothesis = &told.hypotheses[row.hypothesis];
     let seen = row.detectable.zip(hypothesis.sizes.first());
     let from = seen.map_or_else(String::new, |(value, size)| {
-        diagnosis::number(value, 2, &size.unit)
+        verdict::number(value, 2, &size.unit)
     });
     let hidden = match (row.hidden, row.hidden_wrong) {
         (0, _) => String::new(),

@@ -1,13 +1,13 @@
 //! The curves of a page: what was found over its variable, with what the records say; and channels over frequency.
 
-use super::{Told, named, verdict};
-use crate::before_after::RecordErrors;
+use super::{Diagnosed, named, verdict};
 use crate::compared::judge;
 use hyde_calibrate::{FreeMeasure, LatentForce, Panel, Unknown, Variable};
-use hyde_present::figures::{error_in, shown};
 use hyde_report::{FoundCurve, Response};
 use hyde_signal::spectrum::power_spectral_density;
+use hyde_study::comparison::RecordErrors;
 use hyde_units::significant;
+use hyde_units::{error_in, shown};
 
 /// Samples of a segment of a spectrum at most; and so many segments at least.
 const SEGMENT: usize = 4096;
@@ -18,7 +18,7 @@ const BEYOND: f64 = 2.0;
 const HIGHEST_HZ: f64 = 150.0;
 
 /// Every effect that was found as a curve; of what no effect explains the best function.
-pub(super) fn curves(told: &Told<'_>) -> Vec<FoundCurve> {
+pub(super) fn curves(told: &Diagnosed<'_>) -> Vec<FoundCurve> {
     let each = told.found.findings.iter().zip(&told.curves);
     let found = each.filter_map(|(finding, curve)| {
         let curve = curve.as_ref()?;
@@ -120,7 +120,7 @@ fn percent(part: f64) -> String {
 }
 
 /// The channels of the record that judges, over frequency: the first one held out, if there is one.
-pub(super) fn responses(told: &Told<'_>) -> Vec<Response> {
+pub(super) fn responses(told: &Diagnosed<'_>) -> Vec<Response> {
     let Some(record) = judge(&told.errors) else {
         return Vec::new();
     };

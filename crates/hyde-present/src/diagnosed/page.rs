@@ -1,25 +1,24 @@
 //! The page of a diagnosis.
 
-use super::{Told, found, named, plain, suspicion, verdict};
-use crate::before_after::{self, Change, RecordErrors};
-use crate::clock;
+use super::{Diagnosed, found, named, plain, suspicion, verdict};
+use crate::assumptions;
 use crate::compared;
+use crate::head;
 use hyde_calibrate::{FittedParameter, ResidualMap, Whiteness};
-use hyde_present::assumptions;
-use hyde_present::figures::{drawn_in, error_in, shown};
-use hyde_present::head;
 use hyde_report::{
     ChannelChange, DiagnosisReport, ErrorChange, MovedParameter, RecordChange, Section, TriedEffect,
 };
+use hyde_study::comparison::{self, Change, RecordErrors};
 use hyde_units::{Unit, significant};
+use hyde_units::{drawn_in, error_in, shown};
 
-/// The page as one HTML text.
-pub(crate) fn html(told: &Told<'_>) -> String {
+/// The page as one HTML text; `made` says when it is made.
+pub fn html(told: &Diagnosed<'_>, made: &str) -> String {
     let calibration = told.calibration;
     let measured = &calibration.compiled.program.experiment.measured;
     let report = DiagnosisReport {
         title: format!("{} of {}", told.plan.name, calibration.plan.model),
-        facts: facts(told),
+        facts: facts(told, made),
         about: about(told),
         sentence: verdict::sentence(told),
         plain: plain::paragraph(told),
@@ -49,9 +48,9 @@ pub(crate) fn html(told: &Told<'_>) -> String {
 }
 
 /// File, model, experiment, date, and what was asked.
-fn facts(told: &Told<'_>) -> Vec<(String, String)> {
+fn facts(told: &Diagnosed<'_>, made: &str) -> Vec<(String, String)> {
     let calibration = told.calibration;
-    let mut facts = head::facts(&calibration.project, &clock::now());
+    let mut facts = head::facts(&calibration.project, made);
     let own = |name: &str, value: &str| (name.to_owned(), value.to_owned());
     let asked = format!("{} of calibrate {}", told.plan.name, calibration.plan.name);
     facts.insert(0, own("Diagnosis", &asked));
@@ -60,8 +59,8 @@ fn facts(told: &Told<'_>) -> Vec<(String, String)> {
 }
 
 /// The model in words and as a picture, and what was taken for granted of the records.
-fn about(told: &Told<'_>) -> Vec<Section> {
-    let assumed = before_after::assumptions(told.calibration);
+fn about(told: &Diagnosed<'_>) -> Vec<Section> {
+    let assumed = comparison::assumptions(told.calibration);
     let model = head::model(&told.calibration.project);
     model
         .into_iter()
@@ -69,7 +68,7 @@ fn about(told: &Told<'_>) -> Vec<Section> {
         .collect()
 }
 
-fn effects(told: &Told<'_>) -> Vec<[String; 4]> {
+fn effects(told: &Diagnosed<'_>) -> Vec<[String; 4]> {
     let of = |finding: &hyde_calibrate::Finding| {
         let hypothesis = &told.hypotheses[finding.hypothesis];
         let quantities: Vec<String> = std::iter::once(&finding.size)
@@ -92,7 +91,7 @@ fn effects(told: &Told<'_>) -> Vec<[String; 4]> {
 }
 
 /// The map of what is missing and in no library.
-fn unknown(told: &Told<'_>) -> Vec<[String; 3]> {
+fn unknown(told: &Diagnosed<'_>) -> Vec<[String; 3]> {
     let own = told.found.unknown.iter();
     own.flat_map(|own| {
         let site = &own.map.site;
@@ -110,7 +109,7 @@ fn unknown(told: &Told<'_>) -> Vec<[String; 3]> {
     .collect()
 }
 
-fn errors(told: &Told<'_>, record: &RecordErrors) -> RecordChange {
+fn errors(told: &Diagnosed<'_>, record: &RecordErrors) -> RecordChange {
     let deviations = &told.calibration.observer.deviations;
     let measured = &told.calibration.compiled.program.experiment.measured;
     let channel = |(number, measured): (usize, &hyde_program::Measured)| {
@@ -143,7 +142,7 @@ fn errors(told: &Told<'_>, record: &RecordErrors) -> RecordChange {
     }
 }
 
-fn moved(told: &Told<'_>, old: &FittedParameter, new: &FittedParameter) -> MovedParameter {
+fn moved(told: &Diagnosed<'_>, old: &FittedParameter, new: &FittedParameter) -> MovedParameter {
     let program = &told.calibration.compiled.program;
     let unit = program.parameter(&new.name).map(|(own, _)| &own.unit);
     let (unit, drawn) = unit.map_or((String::new(), Unit::ONE), drawn_in);
@@ -166,7 +165,7 @@ fn moved(told: &Told<'_>, old: &FittedParameter, new: &FittedParameter) -> Moved
 }
 
 /// The maps that say something, so many that a reader looks at them.
-fn maps(told: &Told<'_>) -> Vec<hyde_report::ResidualMap> {
+fn maps(told: &Diagnosed<'_>) -> Vec<hyde_report::ResidualMap> {
     const SHOWN: usize = 12;
     let beyond = |map: &&ResidualMap| map.excess.0.max(map.excess.1) > 1.0;
     let listed = told.maps.iter().filter(beyond).take(SHOWN);
@@ -205,7 +204,7 @@ fn white(own: &Whiteness) -> [String; 5] {
     ]
 }
 
-fn tried(told: &Told<'_>) -> Vec<TriedEffect> {
+fn tried(told: &Diagnosed<'_>) -> Vec<TriedEffect> {
     let of = |tried: super::Tried<'_>| {
         let size = tried.hypothesis.sizes.first();
         let visible = tried

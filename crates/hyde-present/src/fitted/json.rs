@@ -1,12 +1,12 @@
 //! A calibration as JSON; numbers are SI.
 
-use super::{Told, experiment_name, identified, si_unit};
-use crate::before_after;
+use super::{Fitted, experiment_name, identified, si_unit};
+use crate::comparison;
 use hyde_study::Calibration;
 use serde_json::{Value, json};
 
 /// The calibration.
-pub(crate) fn report(told: &Told<'_>) -> Value {
+pub fn report(told: &Fitted<'_>) -> Value {
     let (calibration, fit) = (told.calibration, told.fit);
     let names = |numbers: &[usize]| -> Vec<String> {
         let each = numbers.iter();
@@ -85,7 +85,7 @@ pub(crate) fn report(told: &Told<'_>) -> Value {
 }
 
 /// The experiments with what they weigh by.
-fn experiments(told: &Told<'_>) -> Vec<Value> {
+fn experiments(told: &Fitted<'_>) -> Vec<Value> {
     let each = told.calibration.experiments.iter().zip(told.weights());
     let of = |(own, weight): (&Calibration, super::Weight)| {
         let measured = own.compiled.program.experiment.measured.iter();
@@ -108,10 +108,10 @@ fn experiments(told: &Told<'_>) -> Vec<Value> {
 }
 
 /// The records of all experiments.
-fn records(told: &Told<'_>) -> Vec<Value> {
+fn records(told: &Fitted<'_>) -> Vec<Value> {
     let mut found = Vec::new();
     for (own, errors) in told.calibration.experiments.iter().zip(told.errors) {
-        let Value::Array(records) = before_after::json(errors, own) else {
+        let Value::Array(records) = comparison::json(errors, own) else {
             continue;
         };
         for mut record in records {

@@ -1,16 +1,19 @@
-//! A calibration told: which parameters its records determine, values with intervals, errors before and after, profiles.
+//! What a calibration found, as the data that text, JSON and page are made of.
+//!
+//! ```text
+//! calibrated   what the records determine, the fit, errors before and after, profiles   fitted/calibrated.rs
+//! model        the calibrated models as text                                            fitted/model.rs
+//! ```
 
-pub(crate) mod identified;
-pub(crate) mod json;
-pub(crate) mod model;
-pub(crate) mod page;
-pub(crate) mod plots;
-pub(crate) mod text;
+mod calibrated;
+pub mod model;
 
-use crate::before_after::RecordErrors;
+pub use calibrated::{Calibrated, calibrated, profiled};
+
+use crate::comparison::RecordErrors;
+use crate::{Calibration, JointCalibration, unobservable};
 use hyde_calibrate::{Fit, Identifiability, Profile, UNDECLARED_NOISE};
 use hyde_program::Program;
-use hyde_study::{Calibration, JointCalibration, unobservable};
 use hyde_units::{
     Dimension, NamedUnit, engineering, engineering_as, engineering_difference, significant,
 };
@@ -19,25 +22,30 @@ use hyde_units::{
 const MOVED: f64 = 0.1;
 
 /// A calibration with everything that is told of it.
-pub(crate) struct Told<'a> {
-    pub(crate) calibration: &'a JointCalibration,
-    pub(crate) before: &'a Identifiability,
-    pub(crate) fit: &'a Fit,
+pub struct Fitted<'a> {
+    /// What was calibrated.
+    pub calibration: &'a JointCalibration,
+    /// What the records determine.
+    pub before: &'a Identifiability,
+    /// The fit.
+    pub fit: &'a Fit,
     /// Of each experiment, in the order of its records.
-    pub(crate) errors: &'a [Vec<RecordErrors>],
-    pub(crate) profiles: &'a [Profile],
+    pub errors: &'a [Vec<RecordErrors>],
+    /// The profiles that were asked for.
+    pub profiles: &'a [Profile],
 }
 
 /// What an experiment adds to the sum of squares.
-pub(crate) struct Weight {
-    /// Mean square of its innovations, and how many there are.
-    pub(crate) mean_square: f64,
-    pub(crate) count: usize,
+pub struct Weight {
+    /// Mean square of its innovations.
+    pub mean_square: f64,
+    /// How many there are.
+    pub count: usize,
 }
 
-impl Told<'_> {
+impl Fitted<'_> {
     /// The weights of the experiments; nothing of one whose records are all held out.
-    pub(crate) fn weights(&self) -> Vec<Weight> {
+    pub fn weights(&self) -> Vec<Weight> {
         let each = 0..self.calibration.experiments.len();
         let of = |number: usize| {
             let parts = self.calibration.fitted_parts().zip(&self.fit.parts);
@@ -54,7 +62,7 @@ impl Told<'_> {
     }
 
     /// Why the model does not follow the records, if it does not.
-    pub(crate) fn reasons(&self) -> Vec<String> {
+    pub fn reasons(&self) -> Vec<String> {
         let each = self.fit.causes.iter();
         let causes = each
             .map(|(part, cause)| unobservable::reason(experiment(self.calibration, *part), cause));
@@ -86,7 +94,7 @@ impl Told<'_> {
     }
 
     /// Sentences about the weights, where an experiment weighs otherwise than its noise says.
-    pub(crate) fn doubtful_weights(&self) -> Vec<String> {
+    pub fn doubtful_weights(&self) -> Vec<String> {
         let weights = self.weights();
         let least = weights.iter().filter(|own| own.count > 0);
         let least = least
@@ -128,14 +136,14 @@ impl Told<'_> {
 }
 
 /// The experiment of a fitted part.
-pub(crate) fn experiment(calibration: &JointCalibration, part: usize) -> &Calibration {
+pub fn experiment(calibration: &JointCalibration, part: usize) -> &Calibration {
     let part = calibration.fitted_parts().nth(part);
     let number = part.map_or(0, |part| calibration.parts[part].experiment);
     &calibration.experiments[number]
 }
 
 /// The name of an experiment.
-pub(crate) fn experiment_name(calibration: &Calibration) -> &str {
+pub fn experiment_name(calibration: &Calibration) -> &str {
     calibration.project.experiment.as_deref().unwrap_or("")
 }
 
@@ -149,21 +157,21 @@ fn program_of(calibration: &JointCalibration, number: usize) -> Option<&Program>
 }
 
 /// The unit of a number.
-pub(crate) fn unit(calibration: &JointCalibration, number: usize) -> Option<&NamedUnit> {
+pub fn unit(calibration: &JointCalibration, number: usize) -> Option<&NamedUnit> {
     let name = &calibration.numbers[number].varied.name;
     let (parameter, _) = program_of(calibration, number)?.parameter(name)?;
     Some(&parameter.unit)
 }
 
 /// The SI unit of a number, as files have it.
-pub(crate) fn si_unit(calibration: &JointCalibration, number: usize) -> Option<String> {
+pub fn si_unit(calibration: &JointCalibration, number: usize) -> Option<String> {
     let name = &calibration.numbers[number].varied.name;
     let (parameter, _) = program_of(calibration, number)?.parameter(name)?;
     Some(parameter.dimension.usual_unit())
 }
 
 /// A value of a number, in its unit.
-pub(crate) fn shown(calibration: &JointCalibration, number: usize, value: f64) -> String {
+pub fn shown(calibration: &JointCalibration, number: usize, value: f64) -> String {
     match unit(calibration, number) {
         Some(unit) => engineering_as(value, unit),
         None => significant(value, 5),
@@ -171,7 +179,7 @@ pub(crate) fn shown(calibration: &JointCalibration, number: usize, value: f64) -
 }
 
 /// A difference of two values of a number, in its unit.
-pub(crate) fn shown_difference(calibration: &JointCalibration, number: usize, by: f64) -> String {
+pub fn shown_difference(calibration: &JointCalibration, number: usize, by: f64) -> String {
     match unit(calibration, number) {
         Some(unit) => engineering_difference(by, unit),
         None => significant(by, 5),
@@ -179,7 +187,7 @@ pub(crate) fn shown_difference(calibration: &JointCalibration, number: usize, by
 }
 
 /// Names as a sentence has them.
-pub(crate) fn named(calibration: &JointCalibration, numbers: &[usize]) -> String {
+pub fn named(calibration: &JointCalibration, numbers: &[usize]) -> String {
     let each = numbers.iter();
     let each = each.map(|&number| format!("`{}`", calibration.numbers[number].name()));
     each.collect::<Vec<_>>().join(", ")

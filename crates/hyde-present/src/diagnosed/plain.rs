@@ -1,13 +1,12 @@
 //! A diagnosis in plain words: what is missing, where, how large, how sure that is, what else it may be, what to record next.
 
-use super::{Told, named, verdict};
-use crate::before_after::{self, Change, RecordErrors};
-use crate::unknown;
+use super::{Diagnosed, named, verdict};
 use hyde_calibrate::{Finding, Quantity, Verdict};
+use hyde_study::comparison::{self, Change, RecordErrors};
 use hyde_units::{engineering_difference, significant};
 
 /// The paragraph.
-pub(super) fn paragraph(told: &Told<'_>) -> String {
+pub(super) fn paragraph(told: &Diagnosed<'_>) -> String {
     let mut sentences = Vec::new();
     for finding in &told.found.findings {
         sentences.extend(what(told, finding));
@@ -22,7 +21,11 @@ pub(super) fn paragraph(told: &Told<'_>) -> String {
         }
         Verdict::Unknown if told.found.findings.is_empty() => {
             sentences.push("The records contain something that no candidate explains.".to_owned());
-            let like = told.found.unknown.as_ref().and_then(unknown::most_like);
+            let like = told
+                .found
+                .unknown
+                .as_ref()
+                .and_then(hyde_study::unknown::most_like);
             sentences.extend(like.map(|like| format!("It most resembles {like}.")));
         }
         Verdict::Unknown | Verdict::Effect | Verdict::OneOf => {}
@@ -36,7 +39,7 @@ pub(super) fn paragraph(told: &Told<'_>) -> String {
 }
 
 /// What it is, where it acts, how large it is.
-fn what(told: &Told<'_>, finding: &Finding) -> Vec<String> {
+fn what(told: &Diagnosed<'_>, finding: &Finding) -> Vec<String> {
     let hypothesis = &told.hypotheses[finding.hypothesis];
     let doc = told.candidates.get(finding.hypothesis);
     let doc = doc.map_or("", |own| own.doc.as_str());
@@ -69,13 +72,13 @@ fn what(told: &Told<'_>, finding: &Finding) -> Vec<String> {
 }
 
 /// What the errors say of it, and the interval.
-fn sure(told: &Told<'_>) -> Vec<String> {
+fn sure(told: &Diagnosed<'_>) -> Vec<String> {
     let held_out = told.errors.iter().any(|record| record.holdout);
     let where_ = match held_out {
         true => "on records that were held out of the fit",
         false => "on the fitted records, because no record was held out",
     };
-    let Some((before, after)) = before_after::chi(&told.errors, held_out) else {
+    let Some((before, after)) = comparison::chi(&told.errors, held_out) else {
         return Vec::new();
     };
     let mut said = Vec::new();
@@ -110,13 +113,13 @@ fn sure(told: &Told<'_>) -> Vec<String> {
 }
 
 /// The channel whose free run, or windows, changed most.
-fn largest_change(told: &Told<'_>, held_out: bool) -> Option<String> {
+fn largest_change(told: &Diagnosed<'_>, held_out: bool) -> Option<String> {
     let measured = &told.calibration.compiled.program.experiment.measured;
     let shown = || told.errors.iter().filter(|own| own.holdout == held_out);
     let of = |number: usize| -> Option<(&'static str, Change)> {
-        let free = before_after::over(shown(), |record| record.free(number));
+        let free = comparison::over(shown(), |record| record.free(number));
         let windows = || {
-            before_after::over(shown(), |record: &RecordErrors| {
+            comparison::over(shown(), |record: &RecordErrors| {
                 Some(record.windows(number))
             })
         };
@@ -144,7 +147,7 @@ fn largest_change(told: &Told<'_>, held_out: bool) -> Option<String> {
 }
 
 /// The alternatives, or what came nearest.
-fn else_it_may_be(told: &Told<'_>) -> String {
+fn else_it_may_be(told: &Diagnosed<'_>) -> String {
     let others = others(told);
     if !others.is_empty() {
         return format!(
@@ -158,7 +161,7 @@ fn else_it_may_be(told: &Told<'_>) -> String {
     }
 }
 
-fn others(told: &Told<'_>) -> Vec<String> {
+fn others(told: &Diagnosed<'_>) -> Vec<String> {
     let findings = told.found.findings.iter();
     let others = findings.flat_map(|finding| &finding.alternatives);
     others
@@ -167,7 +170,7 @@ fn others(told: &Told<'_>) -> Vec<String> {
 }
 
 /// Of what is not there, the best known bound.
-fn smallest(told: &Told<'_>) -> Option<String> {
+fn smallest(told: &Diagnosed<'_>) -> Option<String> {
     let tried = told.tried();
     let first = tried.first()?;
     let size = first.hypothesis.sizes.first()?;
@@ -180,7 +183,7 @@ fn smallest(told: &Told<'_>) -> Option<String> {
 }
 
 /// What to record next.
-fn next(told: &Told<'_>) -> String {
+fn next(told: &Diagnosed<'_>) -> String {
     let excite = |more: &str| {
         let file = told.calibration.project.sources.iter().next();
         let file = file.map_or("FILE", |(_, source)| source.name.as_str());

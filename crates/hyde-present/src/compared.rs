@@ -1,9 +1,9 @@
 //! Measured beside simulated: the channels of a record in its free run, before and after, below each the errors.
 
-use crate::before_after::RecordErrors;
-use hyde_present::figures::{difference_in, drawn_in, error_in, shown};
 use hyde_program::Measured;
 use hyde_report::{Figure, Line, LineStyle, time_panel, time_plot};
+use hyde_study::comparison::RecordErrors;
+use hyde_units::{difference_in, drawn_in, error_in, shown};
 
 /// Channels in the figure.
 const MOST: usize = 4;

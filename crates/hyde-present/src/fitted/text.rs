@@ -1,9 +1,10 @@
 //! A calibration in lines of at most 80 columns.
 
-use super::{Told, experiment_name, named, shown, shown_difference};
-use crate::before_after::{self, shortened};
-use crate::diagnosis::{suspicion, wrapped};
+use super::{Fitted, experiment_name, named, shown, shown_difference};
+use crate::comparison::{self, shortened};
+use crate::diagnosed::wrapped;
 use hyde_calibrate::{FittedParameter, Profile};
+use hyde_study::diagnosed::suspicion;
 use hyde_units::{counted, engineering_difference, significant};
 use std::fmt::Write as _;
 
@@ -11,7 +12,7 @@ use std::fmt::Write as _;
 const COLUMNS: usize = 10;
 
 /// The calibration.
-pub(crate) fn text(told: &Told<'_>, correlation: bool) -> String {
+pub fn text(told: &Fitted<'_>, correlation: bool) -> String {
     let (calibration, fit) = (told.calibration, told.fit);
     let mut out = String::new();
     let end = match fit.converged {
@@ -86,19 +87,19 @@ pub(crate) fn text(told: &Told<'_>, correlation: bool) -> String {
                 own.project.model
             );
         }
-        out.push_str(&before_after::text(errors, own));
+        out.push_str(&comparison::text(errors, own));
     }
     out
 }
 
-fn row(told: &Told<'_>, number: usize, name: &str, parameter: &FittedParameter) -> String {
+fn row(told: &Fitted<'_>, number: usize, name: &str, parameter: &FittedParameter) -> String {
     let value = |value: f64| shown(told.calibration, number, value);
     let half = (parameter.interval.1 - parameter.interval.0) / 2.0;
     let line = format!(
         "  {name:<24} {:>13} {:>13} {:>7}  {}",
         value(parameter.nominal),
         value(parameter.value),
-        before_after::spread(half, parameter.value, |half| {
+        comparison::spread(half, parameter.value, |half| {
             shown_difference(told.calibration, number, half)
         }),
         suspicion(parameter)
@@ -107,7 +108,7 @@ fn row(told: &Told<'_>, number: usize, name: &str, parameter: &FittedParameter) 
 }
 
 /// The correlations: a line a parameter, in blocks of columns.
-fn correlations(out: &mut String, told: &Told<'_>) {
+fn correlations(out: &mut String, told: &Fitted<'_>) {
     let all = &told.fit.correlation;
     for first in (0..all.len()).step_by(COLUMNS) {
         let columns = first..all.len().min(first + COLUMNS);
@@ -135,7 +136,7 @@ fn correlations(out: &mut String, told: &Told<'_>) {
 }
 
 /// The interval of a profile.
-fn profiled(out: &mut String, told: &Told<'_>, profile: &Profile) {
+fn profiled(out: &mut String, told: &Fitted<'_>, profile: &Profile) {
     let number = profile.parameter;
     let name = told.calibration.numbers[number].name();
     let sentence = interval(told, profile);
@@ -144,7 +145,7 @@ fn profiled(out: &mut String, told: &Told<'_>, profile: &Profile) {
 }
 
 /// The interval of a profile in words.
-pub(crate) fn interval(told: &Told<'_>, profile: &Profile) -> String {
+pub fn interval(told: &Fitted<'_>, profile: &Profile) -> String {
     let number = profile.parameter;
     let value = |value: f64| shown(told.calibration, number, value);
     let best = told.fit.parameters[number].value;
@@ -183,7 +184,7 @@ fn end(profile: &Profile, last: bool) -> f64 {
 }
 
 /// By what each of several experiments weighs.
-fn weights(out: &mut String, told: &Told<'_>) {
+fn weights(out: &mut String, told: &Fitted<'_>) {
     let calibration = told.calibration;
     if calibration.experiments.len() < 2 {
         return;
@@ -211,7 +212,7 @@ fn weights(out: &mut String, told: &Told<'_>) {
 }
 
 /// The declared noise of the channels of an experiment.
-pub(crate) fn noise(own: &hyde_study::Calibration) -> String {
+pub fn noise(own: &hyde_study::Calibration) -> String {
     let measured = own.compiled.program.experiment.measured.iter();
     let each = measured.zip(&own.observer.noise);
     let each = each.map(|(channel, noise)| engineering_difference(*noise, &channel.unit));

@@ -1,15 +1,15 @@
 //! The plots of a calibration: profiles over a parameter, and correlations as a field of dots.
 
-use super::{Told, unit};
+use super::{Fitted, unit};
 use hyde_calibrate::{LIMIT, Profile};
-use hyde_present::figures::{drawn_in, shown};
 use hyde_report::{Axis, Direction, Figure, Line, LineStyle, Panel, Reference};
+use hyde_units::{drawn_in, shown};
 
 /// A change of the sum of squares above this is not drawn.
 const HIGHEST: f64 = 8.0;
 
 /// The profile of a parameter, beside the parabola of its curvature.
-pub(crate) fn profile(told: &Told<'_>, profile: &Profile) -> Figure {
+pub fn profile(told: &Fitted<'_>, profile: &Profile) -> Figure {
     let number = profile.parameter;
     let parameter = &told.fit.parameters[number];
     let (text, of) = match unit(told.calibration, number) {
@@ -68,7 +68,7 @@ pub(crate) fn profile(told: &Told<'_>, profile: &Profile) -> Figure {
 }
 
 /// The correlations: strong ones are dark.
-pub(crate) fn correlation(told: &Told<'_>) -> Figure {
+pub fn correlation(told: &Fitted<'_>) -> Figure {
     let all = &told.fit.correlation;
     let of_sign = |label: &str, sign: f64| {
         let (mut x, mut y, mut weight) = (Vec::new(), Vec::new(), Vec::new());

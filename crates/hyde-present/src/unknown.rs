@@ -1,115 +1,15 @@
-//! What is missing and in no library: the sites where a law may act, written effects compiled, and what is told of them.
+//! What is missing and in no library, as text and as JSON.
 
-use crate::diagnosis::wrapped;
-use hyde_calibrate::{
-    Built, Diagnosis, FoundLaw, Kind, LawVariable, Map, Panel, Site, Summand, Unknown, Written,
-};
-use hyde_compiler::{Additions, Candidate, Request};
-use hyde_diag::{Diagnostics, Severity};
-use hyde_units::{NamedUnit, significant};
+use crate::diagnosed::wrapped;
+use hyde_calibrate::{Diagnosis, FoundLaw, Kind, Map, Panel, Summand, Unknown};
+use hyde_study::unknown::most_like;
+use hyde_units::significant;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
-/// A site of a model where a law may act, as a diagnosis takes it.
-pub(crate) fn site(declared: hyde_compiler::LawSite) -> Site {
-    let over = declared.over.map(|own| LawVariable {
-        unit: match own.derivative {
-            true => NamedUnit::usual(own.dimension()),
-            false => own.quantity.unit.clone(),
-        },
-        name: own.name,
-        derivative: own.derivative,
-    });
-    Site {
-        kind: Kind::new(
-            declared.host,
-            declared.form,
-            declared.target,
-            declared.dimension,
-            over,
-        ),
-        path: declared.path,
-        aliases: declared.aliases,
-    }
-}
-
-/// Puts candidates, by number, and written effects on the model.
-pub(crate) fn built(
-    request: &Request<'_>,
-    candidates: &[Candidate],
-    known: &[usize],
-    written: &[Written],
-) -> Option<Built> {
-    put(request, candidates, known, written, &mut Diagnostics::new())
-}
-
-fn put(
-    request: &Request<'_>,
-    candidates: &[Candidate],
-    known: &[usize],
-    written: &[Written],
-    diagnostics: &mut Diagnostics,
-) -> Option<Built> {
-    let texts = written.iter().map(|one| one.text.as_str());
-    let (sources, file) = hyde_compiler::with_written(request.sources, request.file, texts)?;
-    let own = file.files.first()?.0;
-    let mut additions = Additions::kept();
-    let mut paths: Vec<String> = known
-        .iter()
-        .map(|&number| additions.put(own, &candidates[number]))
-        .collect();
-    paths.extend(
-        written
-            .iter()
-            .map(|one| additions.put(own, &candidate(one))),
-    );
-    let request = Request {
-        sources: &sources,
-        file: &file,
-        ..*request
-    };
-    let compiled = hyde_compiler::compile_with(&request, &additions, diagnostics)?;
-    Some(Built {
-        program: compiled.program,
-        paths,
-    })
-}
-
-/// Why a candidate cannot be put on the model, in the compiler's words.
-pub(crate) fn hindrance(request: &Request<'_>, candidates: &[Candidate], number: usize) -> String {
-    let mut diagnostics = Diagnostics::new();
-    put(request, candidates, &[number], &[], &mut diagnostics);
-    let error = diagnostics
-        .iter()
-        .find(|own| own.severity == Severity::Error);
-    error.map_or_else(
-        || "the model with it cannot be run".to_owned(),
-        |error| error.message.clone(),
-    )
-}
-
-/// A written effect as what a search puts on a model.
-pub(crate) fn candidate(written: &Written) -> Candidate {
-    Candidate {
-        effect: written.name.clone(),
-        package: String::new(),
-        host: String::new(),
-        host_package: String::new(),
-        doc: String::new(),
-        site: written.site.clone(),
-        aliases: Vec::new(),
-        instance: written.name.clone(),
-        sizes: Vec::new(),
-        shapes: Vec::new(),
-        signature: Vec::new(),
-        confounds: Vec::new(),
-        replaces: Vec::new(),
-    }
-}
-
 /// The effect written, where it was seen, and the map, in lines.
-pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
+pub fn text(unknown: &Unknown, found: &Diagnosis) -> String {
     let mut out = String::new();
     match &unknown.found {
         Some(own) => {
@@ -176,7 +76,7 @@ pub(crate) fn text(unknown: &Unknown, found: &Diagnosis) -> String {
 }
 
 /// The row of a map for waves too short for its panels.
-pub(crate) fn wave(map: &Map) -> String {
+pub fn wave(map: &Map) -> String {
     let [place, speed] = map.site.kind.variables();
     format!("wave over {place}, or {speed} times a wave")
 }
@@ -189,18 +89,8 @@ fn no_law(found: &Diagnosis) -> &'static str {
     }
 }
 
-/// `a force at table.a that goes with speed`: the place that gains most, and the variable, if it gains more than by chance.
-pub(crate) fn most_like(unknown: &Unknown) -> Option<String> {
-    let map = &unknown.map;
-    let told = map.panels.iter().filter(|panel| panel.gain > panel.band);
-    let best = told.max_by(|a, b| a.gain.total_cmp(&b.gain))?;
-    let (what, path) = (map.site.kind.what(), &map.site.path);
-    let variable = best.variable.name(&map.site.kind);
-    Some(format!("{what} at {path} that depends on {variable}"))
-}
-
 /// The same as JSON; numbers are SI.
-pub(crate) fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
+pub fn report(unknown: &Unknown, found: &Diagnosis) -> Value {
     let panel = |panel: &Panel, kind: &Kind| {
         json!({
             "variable": panel.variable.name(kind),

@@ -4,25 +4,23 @@
 //! `hyde check` and `hyde test` of the folder stay in order. Elsewhere nothing could be imported, and the file begins with
 //! the text of the user's.
 
-use crate::files;
-use crate::project::Project;
+use crate::world::World;
+use crate::{Project, Roots};
 use hyde_diag::{Diagnostics, Sources};
-use hyde_study::Roots;
-use hyde_study::world::{Disk, World};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 /// What stands before a new model.
-pub(crate) struct Head {
+pub struct Head {
     /// The text, without an end of line.
-    pub(crate) text: String,
+    pub text: String,
     /// It imports the user's package.
-    pub(crate) imports: bool,
+    pub imports: bool,
 }
 
 /// Refuses a folder below those of a manifest whose name no package can have.
-pub(crate) fn check_folder(folder: &Path) -> Result<(), String> {
-    let place = place(folder, "m");
+pub fn check_folder(world: &Arc<dyn World>, folder: &Path) -> Result<(), String> {
+    let place = place(world, folder, "m");
     let is_word = |part: &str| {
         let first = part
             .chars()
@@ -41,7 +39,13 @@ pub(crate) fn check_folder(folder: &Path) -> Result<(), String> {
 }
 
 /// What stands before a model in the file `stem.hyde` of a folder that is there.
-pub(crate) fn head(project: &Project, user: &Path, folder: &Path, stem: &str) -> Head {
+pub fn head(
+    world: &Arc<dyn World>,
+    project: &Project,
+    user: &Path,
+    folder: &Path,
+    stem: &str,
+) -> Head {
     let Some((own, tree)) = project.file.files.first() else {
         return Head {
             text: String::new(),
@@ -49,12 +53,12 @@ pub(crate) fn head(project: &Project, user: &Path, folder: &Path, stem: &str) ->
         };
     };
     let text = project.sources.get(*own).text.trim_end();
-    let beside = place(user.parent().unwrap_or(Path::new("")), stem);
+    let beside = place(world, user.parent().unwrap_or(Path::new("")), stem);
     let whole = |text: String| Head {
         text,
         imports: false,
     };
-    match (place(folder, stem), &tree.package) {
+    match (place(world, folder, stem), &tree.package) {
         (Some(place), Some((package, _))) if beside.is_some_and(|own| own.root == place.root) => {
             let each = tree.imports.iter();
             let imports = each.map(|import| {
@@ -91,20 +95,14 @@ struct Place {
 }
 
 /// The place of a file in a folder, which need not be there yet; `None` below no manifest.
-fn place(folder: &Path, stem: &str) -> Option<Place> {
-    let above = folder.ancestors().find(|above| files::is_folder(above));
+fn place(world: &Arc<dyn World>, folder: &Path, stem: &str) -> Option<Place> {
+    let above = folder.ancestors().find(|above| world.is_folder(above));
     let above = above.filter(|above| !above.as_os_str().is_empty());
-    let there = files::real(above.unwrap_or(Path::new(".")))?;
+    let there = world.real(above.unwrap_or(Path::new(".")))?;
     let rest = folder.strip_prefix(above.unwrap_or(Path::new(""))).ok()?;
     let file = there.join(rest).join(format!("{stem}.hyde"));
     let marker = there.join(format!("{stem}.hyde"));
-    let world: Arc<dyn World> = Arc::new(Disk);
-    let roots = Roots::of(
-        &world,
-        &marker,
-        &mut Sources::new(),
-        &mut Diagnostics::new(),
-    );
+    let roots = Roots::of(world, &marker, &mut Sources::new(), &mut Diagnostics::new());
     let name = roots.name_at(&file)?;
     let root = roots.roots.into_iter().next()?;
     Some(Place {

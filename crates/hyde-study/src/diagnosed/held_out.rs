@@ -6,10 +6,10 @@
 //! that one goes without which fewest records are worse.
 
 use super::verdict;
-use crate::before_after::{self, Change, RecordErrors};
+use crate::Calibration;
+use crate::comparison::{self, Change, RecordErrors};
 use hyde_calibrate::{Diagnosis, FoundModel, Hypothesis, Inquiry, Model, Quantity, Unsupported};
 use hyde_compiler::Candidate;
-use hyde_study::Calibration;
 use hyde_units::engineering;
 
 /// An error grew if its square did by so many standard deviations of its mean over parts of the record.
@@ -21,27 +21,33 @@ const ABOVE_FLOOR: f64 = 0.05;
 const PARTS: usize = 20;
 
 /// An error of a record held out that a finding made larger.
-pub(crate) struct Worse {
-    pub(crate) record: String,
-    pub(crate) channel: String,
+pub struct Worse {
+    /// Its record.
+    pub record: String,
+    /// Its channel.
+    pub channel: String,
     /// The measure, as text and JSON call it.
-    pub(crate) measure: &'static str,
-    pub(crate) change: Change,
+    pub measure: &'static str,
+    /// The error before and after.
+    pub change: Change,
     unit: hyde_units::Dimension,
 }
 
 /// A finding that does not hold on the records held out.
-pub(crate) struct Refused {
+pub struct Refused {
     /// Its name, with its size as it was found.
-    pub(crate) effect: String,
-    pub(crate) site: String,
-    pub(crate) size: Quantity,
-    pub(crate) worse: Vec<Worse>,
+    pub effect: String,
+    /// Where it acts.
+    pub site: String,
+    /// Its size as it was found.
+    pub size: Quantity,
+    /// The errors that it made larger.
+    pub worse: Vec<Worse>,
 }
 
 impl Refused {
     /// A sentence, without the stop at its end.
-    pub(crate) fn sentence(&self) -> String {
+    pub fn sentence(&self) -> String {
         let each: Vec<String> = self.worse.iter().map(Worse::text).collect();
         format!(
             "{} at {} ({}) fits the fitted records but is rejected because it makes held-out records worse: {}",
@@ -69,7 +75,7 @@ impl Worse {
 
 /// Drops findings until no record held out gets worse by those that are left: the errors of what is left, and what was
 /// dropped.
-pub(crate) fn agreed(
+pub fn agreed(
     calibration: &Calibration,
     candidates: &[Candidate],
     inquiry: &Inquiry<'_>,
@@ -133,9 +139,9 @@ fn errors(
     before.extend(varied.map(|(varied, &value)| (varied.name.clone(), value)));
     let mut after = project.set();
     after.extend(model.values());
-    let plain = before_after::closed(project, candidates, &[], &[], &before);
-    let with_effects = before_after::closed(project, candidates, &known, &written, &after);
-    before_after::errors(
+    let plain = comparison::closed(project, candidates, &[], &[], &before);
+    let with_effects = comparison::closed(project, candidates, &known, &written, &after);
+    comparison::errors(
         calibration,
         found.observer.as_ref().unwrap_or(&calibration.observer),
         (!numbers.is_empty()).then_some(Model {

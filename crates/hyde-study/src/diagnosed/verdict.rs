@@ -1,14 +1,13 @@
 //! The verdict in one sentence, and its doubt.
 
-use super::{Refused, Told, named};
-use crate::before_after::{self, RecordErrors};
+use super::{Diagnosed, Refused, named};
+use crate::comparison::{self, RecordErrors};
+use crate::unobservable::reason;
 use hyde_calibrate::{Finding, Frozen, Quantity, Verdict};
-use hyde_present::figures::{drawn_in, shown};
-use hyde_study::unobservable::reason;
-use hyde_units::{NamedUnit, significant};
+use hyde_units::{NamedUnit, drawn_in, shown, significant};
 
 /// One sentence, without the stop at its end.
-pub(super) fn sentence(told: &Told<'_>) -> String {
+pub fn sentence(told: &Diagnosed<'_>) -> String {
     let names: Vec<String> = told
         .found
         .findings
@@ -54,13 +53,13 @@ pub(super) fn sentence(told: &Told<'_>) -> String {
 }
 
 /// `Stribeck at guide (dF = 12.1 ± 0.3 N)`
-fn sized(told: &Told<'_>, finding: &Finding) -> String {
+fn sized(told: &Diagnosed<'_>, finding: &Finding) -> String {
     let hypothesis = &told.hypotheses[finding.hypothesis];
     format!("{} ({})", named(hypothesis), quantity(&finding.size))
 }
 
 /// `dF = 12.1 ± 0.3 N`
-pub(super) fn quantity(quantity: &Quantity) -> String {
+pub fn quantity(quantity: &Quantity) -> String {
     let half = (quantity.interval.1 - quantity.interval.0) / 2.0;
     let (_, of) = drawn_in(&quantity.unit);
     format!(
@@ -72,16 +71,16 @@ pub(super) fn quantity(quantity: &Quantity) -> String {
 }
 
 /// A value in the unit that it is shown in: `0.012 m`, `6 bar`.
-pub(crate) fn number(si: f64, digits: usize, unit: &NamedUnit) -> String {
+pub fn number(si: f64, digits: usize, unit: &NamedUnit) -> String {
     let (unit, of) = drawn_in(unit);
     let text = format!("{} {}", significant(of.from_si(si), digits), shown(&unit));
     text.trim_end().to_owned()
 }
 
 /// What the verdict stands on.
-pub(super) fn grounds(told: &Told<'_>) -> Vec<String> {
-    let held_out = before_after::chi(&told.errors, true);
-    let seen = before_after::chi(&told.errors, false);
+pub fn grounds(told: &Diagnosed<'_>) -> Vec<String> {
+    let held_out = comparison::chi(&told.errors, true);
+    let seen = comparison::chi(&told.errors, false);
     let Some((before, after)) = held_out.or(seen) else {
         return Vec::new();
     };
@@ -110,13 +109,13 @@ pub(super) fn grounds(told: &Told<'_>) -> Vec<String> {
 }
 
 /// What speaks against the verdict.
-pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
+pub fn doubts(told: &Diagnosed<'_>) -> Vec<String> {
     let mut doubts: Vec<String> = told.refused.iter().map(Refused::sentence).collect();
     doubts.extend(told.found.frozen.iter().map(|own| frozen(told, own)));
     let causes = told.causes.iter();
     doubts.extend(causes.map(|cause| reason(told.calibration, cause)));
-    let held_out = before_after::chi(&told.errors, true);
-    let seen = before_after::chi(&told.errors, false);
+    let held_out = comparison::chi(&told.errors, true);
+    let seen = comparison::chi(&told.errors, false);
     if let Some((before, after)) = held_out.or(seen) {
         if after > before && !told.found.findings.is_empty() {
             doubts.push("the held-out records do not confirm it".to_owned());
@@ -188,7 +187,7 @@ pub(super) fn doubts(told: &Told<'_>) -> Vec<String> {
 }
 
 /// A reading that was held.
-fn frozen(told: &Told<'_>, own: &Frozen) -> String {
+fn frozen(told: &Diagnosed<'_>, own: &Frozen) -> String {
     let (from, to) = own.time_s;
     format!(
         "{} of {} is constant from {} to {} s and then jumps: the sensor or its cable froze, not the drive",
@@ -200,7 +199,7 @@ fn frozen(told: &Told<'_>, own: &Frozen) -> String {
 }
 
 /// An alternative, and the experiment that would tell.
-pub(super) fn alternative(told: &Told<'_>, other: &hyde_calibrate::Alternative) -> String {
+pub fn alternative(told: &Diagnosed<'_>, other: &hyde_calibrate::Alternative) -> String {
     let name = named(&told.hypotheses[other.hypothesis]);
     match &other.experiment {
         Some(experiment) => format!(
@@ -241,7 +240,7 @@ fn beyond_the_fitted(errors: &[RecordErrors]) -> Option<String> {
 const NEARLY_ALL: f64 = 99.0;
 
 /// Of the round that took in the last effect, the hypothesis that came nearest to it.
-pub(super) fn next_best(told: &Told<'_>) -> Option<String> {
+pub fn next_best(told: &Diagnosed<'_>) -> Option<String> {
     let finding = told.found.findings.last()?;
     let round = told.found.rounds.get(finding.round)?;
     let mut trials = round.trials.iter();

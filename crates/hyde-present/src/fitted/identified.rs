@@ -1,13 +1,13 @@
 //! Which parameters the records determine, in sentences that say what to do.
 
 use super::named;
-use crate::diagnosis::wrapped;
+use crate::diagnosed::wrapped;
 use hyde_calibrate::Identifiability;
 use hyde_study::JointCalibration;
 use std::fmt::Write as _;
 
 /// What is not determined, a sentence each; nothing where all is.
-pub(crate) fn sentences(calibration: &JointCalibration, before: &Identifiability) -> Vec<String> {
+pub fn sentences(calibration: &JointCalibration, before: &Identifiability) -> Vec<String> {
     let mut found = Vec::new();
     if !before.unmoved.is_empty() {
         found.push(format!(
@@ -52,7 +52,7 @@ fn combinations(count: usize) -> String {
 }
 
 /// The sentences in lines of at most 80 columns, under a heading; empty where there is none.
-pub(crate) fn text(calibration: &JointCalibration, before: &Identifiability) -> String {
+pub fn text(calibration: &JointCalibration, before: &Identifiability) -> String {
     let sentences = sentences(calibration, before);
     let mut out = String::new();
     if sentences.is_empty() {

@@ -1,13 +1,13 @@
 //! `report.json`, as book/src/report.schema.json says. Numbers are SI.
 
-use super::{Told, suspicion, verdict};
-use crate::before_after;
+use super::{Diagnosed, suspicion, verdict};
+use crate::comparison;
 use crate::unknown;
 use hyde_calibrate::{CurvePoint, FittedParameter, FoundCurve, Quantity, Verdict};
 use serde_json::{Map, Value, json};
 
 /// The whole report.
-pub(crate) fn json(told: &Told<'_>) -> Value {
+pub fn json(told: &Diagnosed<'_>) -> Value {
     let verdict = match told.found.verdict {
         Verdict::None => "none",
         Verdict::Effect => "effect",
@@ -34,7 +34,7 @@ pub(crate) fn json(told: &Told<'_>) -> Value {
             .unknown
             .as_ref()
             .map(|own| unknown::report(own, told.found)),
-        "records": before_after::json(&told.errors, told.calibration),
+        "records": comparison::json(&told.errors, told.calibration),
         "parameters": parameters(told),
         "maps": maps(told),
         "whiteness": whiteness(told),
@@ -45,7 +45,7 @@ pub(crate) fn json(told: &Told<'_>) -> Value {
 }
 
 /// What the records held out do not bear out.
-fn refused(told: &Told<'_>) -> Value {
+fn refused(told: &Diagnosed<'_>) -> Value {
     let each = told.refused.iter().map(|own| {
         let worse = own.worse.iter().map(|worse| {
             json!({
@@ -68,7 +68,7 @@ fn refused(told: &Told<'_>) -> Value {
 }
 
 /// Readings that were held for a while.
-fn frozen(told: &Told<'_>) -> Value {
+fn frozen(told: &Diagnosed<'_>) -> Value {
     let each = told.found.frozen.iter().map(|own| {
         json!({
             "channel": told.found.channel(own),
@@ -99,7 +99,7 @@ fn curve(own: &FoundCurve) -> Value {
     })
 }
 
-fn effects(told: &Told<'_>) -> Value {
+fn effects(told: &Diagnosed<'_>) -> Value {
     let curves = told.curves.iter().map(Option::as_ref);
     let curves = curves.chain(std::iter::repeat(None));
     let findings = told.found.findings.iter().zip(curves);
@@ -145,7 +145,7 @@ fn quantity(own: &Quantity) -> Value {
     json!({ "value": own.value, "unit": own.unit.si().text(), "interval": [own.interval.0, own.interval.1] })
 }
 
-fn parameters(told: &Told<'_>) -> Value {
+fn parameters(told: &Diagnosed<'_>) -> Value {
     let program = &told.calibration.compiled.program;
     let each = told.parameters.iter().map(|(old, new)| {
         let of = |own: &FittedParameter| {
@@ -173,7 +173,7 @@ fn parameters(told: &Told<'_>) -> Value {
     Value::Array(each.collect())
 }
 
-fn maps(told: &Told<'_>) -> Value {
+fn maps(told: &Diagnosed<'_>) -> Value {
     let each = told.maps.iter().map(|map| {
         json!({
             "channel": map.channel,
@@ -189,7 +189,7 @@ fn maps(told: &Told<'_>) -> Value {
     Value::Array(each.collect())
 }
 
-fn whiteness(told: &Told<'_>) -> Value {
+fn whiteness(told: &Diagnosed<'_>) -> Value {
     let each = told.whiteness.iter().map(|own| {
         let cross = own.cross.as_ref().map(|(channel, rows, correlation)| {
             json!({ "channel": channel, "rows_later": rows, "correlation": correlation })
@@ -204,7 +204,7 @@ fn whiteness(told: &Told<'_>) -> Value {
     Value::Array(each.collect())
 }
 
-fn rejected(told: &Told<'_>) -> Value {
+fn rejected(told: &Diagnosed<'_>) -> Value {
     let each = told.tried().into_iter().map(|tried| {
         let size = tried.hypothesis.sizes.first();
         let seen =

@@ -1,38 +1,40 @@
 //! Errors before and after a calibration or a diagnosis, record by record and channel by channel, over the noise floor (L1).
 
-use crate::diagnosis::wrapped;
-use crate::project::Project;
+use crate::Calibration;
+use crate::Project;
+use crate::assumptions::of_record;
 use crate::unknown;
 use hyde_calibrate::{FreeMeasure, Measures, Model, Observer, Recording, Unsupported, Written};
 use hyde_compiler::{Additions, Candidate, Form, Request};
 use hyde_diag::Diagnostics;
 use hyde_program::Program;
-use hyde_study::Calibration;
-use hyde_study::assumptions::of_record;
-use hyde_units::{Dimension, NamedUnit, engineering, engineering_difference, significant};
-use serde_json::{Value, json};
+use hyde_units::{Dimension, engineering, significant};
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 
 /// A record with its errors.
-pub(crate) struct RecordErrors {
+pub struct RecordErrors {
     /// Nothing was fitted to it.
-    pub(crate) holdout: bool,
-    pub(crate) before: Measures,
-    pub(crate) after: Measures,
+    pub holdout: bool,
+    /// Its measures before.
+    pub before: Measures,
+    /// Its measures after.
+    pub after: Measures,
 }
 
 /// One measure of one channel: before and after, SI, and what would be left if the model were the axis.
 #[derive(Clone, Copy)]
-pub(crate) struct Change {
-    pub(crate) before: f64,
-    pub(crate) after: f64,
-    pub(crate) floor: f64,
+pub struct Change {
+    /// Before.
+    pub before: f64,
+    /// After.
+    pub after: f64,
+    /// If the model were the axis.
+    pub floor: f64,
 }
 
 impl RecordErrors {
     /// Innovations of a channel.
-    pub(crate) fn innovations(&self, channel: usize, deviations: &[f64]) -> Change {
+    pub fn innovations(&self, channel: usize, deviations: &[f64]) -> Change {
         Change {
             before: self.before.innovations[channel].rms,
             after: self.after.innovations[channel].rms,
@@ -41,7 +43,7 @@ impl RecordErrors {
     }
 
     /// Open-loop windows of a channel.
-    pub(crate) fn windows(&self, channel: usize) -> Change {
+    pub fn windows(&self, channel: usize) -> Change {
         Change {
             before: self.before.windows.total(channel),
             after: self.after.windows.total(channel),
@@ -50,7 +52,7 @@ impl RecordErrors {
     }
 
     /// The free run of a channel; `None` where either has none.
-    pub(crate) fn free(&self, channel: usize) -> Option<Change> {
+    pub fn free(&self, channel: usize) -> Option<Change> {
         let of = |measures: &Measures| -> Option<FreeMeasure> {
             measures.free.as_ref().ok()?.get(channel).cloned()
         };
@@ -63,7 +65,7 @@ impl RecordErrors {
     }
 
     /// Why there is no free run, if there is none.
-    pub(crate) fn no_free_run(&self) -> Option<&str> {
+    pub fn no_free_run(&self) -> Option<&str> {
         let each = [&self.before, &self.after];
         each.into_iter()
             .find_map(|measures| measures.free.as_ref().err())
@@ -73,7 +75,7 @@ impl RecordErrors {
 
 /// The program of a project with its loop closed, candidates, by number, and written effects put on, and the same with
 /// quantisers shifted; `None` where that has errors. What of the values (by name, SI) shapes the equations is set.
-pub(crate) fn closed(
+pub fn closed(
     project: &Project,
     candidates: &[Candidate],
     known: &[usize],
@@ -82,7 +84,7 @@ pub(crate) fn closed(
 ) -> Option<(Program, Program)> {
     let all = project.set().into_iter().chain(values.iter().cloned());
     let settings: BTreeMap<String, f64> = all.collect();
-    let headers = hyde_study::headers(&project.records);
+    let headers = crate::headers(&project.records);
     let texts = written.iter().map(|one| one.text.as_str());
     let (sources, file) = hyde_compiler::with_written(&project.sources, &project.file, texts)?;
     let own = file.files.first()?.0;
@@ -108,7 +110,7 @@ pub(crate) fn closed(
 
 /// The errors of two models by an observer on all records of a calibration, of one model where nothing changed; those held out are read
 /// here and nowhere before.
-pub(crate) fn errors(
+pub fn errors(
     calibration: &Calibration,
     observer: &Observer,
     before: Option<Model<'_>>,
@@ -122,7 +124,7 @@ pub(crate) fn errors(
 }
 
 /// The same on some records, held out or not.
-pub(crate) fn errors_on(
+pub fn errors_on(
     recordings: &[Recording],
     holdout: bool,
     observer: &Observer,
@@ -145,7 +147,7 @@ pub(crate) fn errors_on(
 }
 
 /// The mean square of innovations over all channels of several records: before and after.
-pub(crate) fn chi(records: &[RecordErrors], holdout: bool) -> Option<(f64, f64)> {
+pub fn chi(records: &[RecordErrors], holdout: bool) -> Option<(f64, f64)> {
     let (mut sums, mut count) = ((0.0, 0.0), 0.0);
     for record in records.iter().filter(|record| record.holdout == holdout) {
         let readings = record.before.whitened.count() as f64;
@@ -157,7 +159,7 @@ pub(crate) fn chi(records: &[RecordErrors], holdout: bool) -> Option<(f64, f64)>
 }
 
 /// One measure of a channel over several records, by the mean of squares.
-pub(crate) fn over<'r>(
+pub fn over<'r>(
     records: impl Iterator<Item = &'r RecordErrors>,
     of: impl Fn(&RecordErrors) -> Option<Change>,
 ) -> Option<Change> {
@@ -181,12 +183,12 @@ pub(crate) fn over<'r>(
 }
 
 /// The records of a calibration in the order of their errors.
-fn recordings(calibration: &Calibration) -> impl Iterator<Item = &Recording> {
+pub fn recordings(calibration: &Calibration) -> impl Iterator<Item = &Recording> {
     calibration.fitted.iter().chain(&calibration.holdout)
 }
 
 /// What was taken for granted of all records: each with the files of which it is true.
-pub(crate) fn assumptions(calibration: &Calibration) -> Vec<String> {
+pub fn assumptions(calibration: &Calibration) -> Vec<String> {
     let count = recordings(calibration).count();
     let mut found: Vec<(String, Vec<&str>)> = Vec::new();
     for recording in recordings(calibration) {
@@ -210,7 +212,7 @@ pub(crate) fn assumptions(calibration: &Calibration) -> Vec<String> {
 
 /// What was taken for granted of a record's files, and what its observer takes otherwise than it is written: that it begins
 /// elsewhere than the model, and other rows.
-fn told(calibration: &Calibration, recording: &Recording) -> Vec<String> {
+pub fn told(calibration: &Calibration, recording: &Recording) -> Vec<String> {
     let program = &calibration.compiled.program;
     let tables = recording.tables.iter();
     let mut found: Vec<String> = tables
@@ -297,156 +299,4 @@ fn linearised(observer: &Observer) -> Option<String> {
             each.join(", ")
         )
     })
-}
-
-/// The errors as JSON; numbers are SI.
-pub(crate) fn json(records: &[RecordErrors], calibration: &Calibration) -> Value {
-    let measured = &calibration.compiled.program.experiment.measured;
-    let deviations = &calibration.observer.deviations;
-    let change = |change: Change| {
-        json!({
-            "before": change.before,
-            "after": change.after,
-            "floor": change.floor,
-            "before_over_floor": change.before / change.floor,
-            "after_over_floor": change.after / change.floor,
-        })
-    };
-    let of_record = |(record, recording): (&RecordErrors, &Recording)| {
-        let channels: Vec<Value> = measured
-            .iter()
-            .enumerate()
-            .map(|(number, measured)| {
-                let (before, after) = (
-                    &record.before.innovations[number],
-                    &record.after.innovations[number],
-                );
-                json!({
-                    "channel": measured.name,
-                    "unit": measured.unit.unit().dimension.usual_unit(),
-                    "noise": record.after.noise[number],
-                    "chi": { "before": before.chi, "after": after.chi },
-                    "correlation": { "before": before.correlation, "after": after.correlation },
-                    "innovations": change(record.innovations(number, deviations)),
-                    "windows": change(record.windows(number)),
-                    "free_run": record.free(number).map(change),
-                })
-            })
-            .collect();
-        json!({
-            "record": record.after.record,
-            "holdout": record.holdout,
-            "chi": { "before": record.before.chi, "after": record.after.chi },
-            "no_free_run": record.no_free_run(),
-            "assumptions": told(calibration, recording),
-            "begins": recording.beginning.iter().cloned().collect::<BTreeMap<String, f64>>(),
-            "resampled": recording.uneven.as_ref().map(|own| json!({
-                "record": own.record,
-                "closest_s": own.spacing_s.0,
-                "widest_s": own.spacing_s.1,
-                "from_s": own.from_s,
-                "every_s": own.step_s,
-            })),
-            "channels": channels,
-        })
-    };
-    let pairs = records.iter().zip(recordings(calibration));
-    Value::Array(pairs.map(of_record).collect())
-}
-
-/// The errors in lines of at most 80 columns.
-pub(crate) fn text(records: &[RecordErrors], calibration: &Calibration) -> String {
-    let measured = &calibration.compiled.program.experiment.measured;
-    let deviations = &calibration.observer.deviations;
-    let mut out = String::new();
-    let _ = writeln!(
-        out,
-        "  {:<32} {:>9} {:>9}   1 is noise",
-        "mean square of innovations", "before", "after"
-    );
-    for record in records {
-        let name = match record.holdout {
-            true => format!("{} (held out)", record.after.record),
-            false => record.after.record.clone(),
-        };
-        let _ = writeln!(
-            out,
-            "  {:<32} {:>9} {:>9}",
-            shortened(&name, 32),
-            significant(record.before.chi, 4),
-            significant(record.after.chi, 4)
-        );
-    }
-    for sentence in assumptions(calibration) {
-        wrapped(&mut out, "  -", &sentence);
-    }
-    let held_out = records.iter().any(|record| record.holdout);
-    let shown = || {
-        records
-            .iter()
-            .filter(move |record| record.holdout == held_out)
-    };
-    let where_ = if held_out { ", held out" } else { "" };
-    let table =
-        |out: &mut String, title: &str, of: &dyn Fn(&RecordErrors, usize) -> Option<Change>| {
-            let _ = writeln!(
-                out,
-                "\n  {:<32} {:>11} {:>11}   rel. to noise floor",
-                format!("{title}{where_}"),
-                "before",
-                "after"
-            );
-            for (number, channel) in measured.iter().enumerate() {
-                let Some(change) = over(shown(), |record| of(record, number)) else {
-                    continue;
-                };
-                let _ = writeln!(out, "{}", line(&channel.name, change, &channel.unit));
-            }
-        };
-    table(&mut out, "rms of innovations", &|record, number| {
-        Some(record.innovations(number, deviations))
-    });
-    table(&mut out, "rms of 100 ms windows", &|record, number| {
-        Some(record.windows(number))
-    });
-    match shown().find_map(RecordErrors::no_free_run) {
-        None => table(&mut out, "rms of the free run", &RecordErrors::free),
-        Some(reason) => {
-            let _ = writeln!(out, "\n  there is no free run: {reason}");
-        }
-    }
-    out
-}
-
-fn line(name: &str, change: Change, unit: &NamedUnit) -> String {
-    let times = |value: f64| significant(value / change.floor, 3);
-    format!(
-        "  {:<32} {:>11} {:>11}   {} -> {}",
-        shortened(name, 32),
-        engineering_difference(change.before, unit),
-        engineering_difference(change.after, unit),
-        times(change.before),
-        times(change.after)
-    )
-}
-
-/// Half an interval as a part of the value, or as it is where it is wider than the value.
-pub(crate) fn spread(half: f64, value: f64, number: impl Fn(f64) -> String) -> String {
-    if half < value.abs() {
-        format!("{} %", significant(100.0 * half / value.abs(), 2))
-    } else {
-        number(half)
-    }
-}
-
-/// A name with its middle left out where it is too long.
-pub(crate) fn shortened(name: &str, width: usize) -> String {
-    let letters: Vec<char> = name.chars().collect();
-    if letters.len() <= width {
-        return name.to_owned();
-    }
-    let head = (width - 1) / 2;
-    let tail = letters.len() - (width - 1 - head);
-    let part = |list: &[char]| list.iter().collect::<String>();
-    format!("{}…{}", part(&letters[..head]), part(&letters[tail..]))
 }

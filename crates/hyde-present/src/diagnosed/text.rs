@@ -1,11 +1,11 @@
 //! The diagnosis on a terminal: lines of at most 80 columns, in the order of the page.
 
-use super::{Told, named, suspicion, verdict};
-use crate::before_after;
+use super::{Diagnosed, named, suspicion, verdict};
+use crate::comparison;
 use crate::unknown;
 use hyde_calibrate::ResidualMap;
-use hyde_present::figures::{drawn_in, shown};
 use hyde_units::{Unit, significant};
+use hyde_units::{drawn_in, shown};
 use std::fmt::Write as _;
 
 /// Columns of a terminal.
@@ -16,7 +16,7 @@ const TRIED: usize = 12;
 const MAPS: usize = 6;
 
 /// The whole text.
-pub(crate) fn text(told: &Told<'_>) -> String {
+pub fn text(told: &Diagnosed<'_>) -> String {
     let mut out = String::new();
     wrapped(
         &mut out,
@@ -31,14 +31,14 @@ pub(crate) fn text(told: &Told<'_>) -> String {
         out.push_str(&unknown::text(own, told.found));
     }
     out.push('\n');
-    out.push_str(&before_after::text(&told.errors, told.calibration));
+    out.push_str(&comparison::text(&told.errors, told.calibration));
     left(&mut out, told);
     parameters(&mut out, told);
     tried(&mut out, told);
     out
 }
 
-fn findings(out: &mut String, told: &Told<'_>) {
+fn findings(out: &mut String, told: &Diagnosed<'_>) {
     for finding in &told.found.findings {
         let _ = writeln!(out, "\n  {}", named(&told.hypotheses[finding.hypothesis]));
         for quantity in std::iter::once(&finding.size).chain(&finding.shapes) {
@@ -51,7 +51,7 @@ fn findings(out: &mut String, told: &Told<'_>) {
 }
 
 /// What is left depends on: the maps that leave their band.
-fn left(out: &mut String, told: &Told<'_>) {
+fn left(out: &mut String, told: &Diagnosed<'_>) {
     let beyond = |map: &&ResidualMap| map.excess.0.max(map.excess.1) > 1.0;
     let shown: Vec<&ResidualMap> = told.maps.iter().filter(beyond).take(MAPS).collect();
     if shown.is_empty() {
@@ -68,14 +68,14 @@ fn left(out: &mut String, told: &Told<'_>) {
         let _ = writeln!(
             out,
             "  {:<40} {:>8} {:>8}",
-            before_after::shortened(&name, 40),
+            comparison::shortened(&name, 40),
             significant(map.excess.0, 2),
             significant(map.excess.1, 2)
         );
     }
 }
 
-fn parameters(out: &mut String, told: &Told<'_>) {
+fn parameters(out: &mut String, told: &Diagnosed<'_>) {
     let program = &told.calibration.compiled.program;
     let _ = writeln!(
         out,
@@ -90,11 +90,11 @@ fn parameters(out: &mut String, told: &Told<'_>) {
         let value = of.from_si(new.value);
         let line = format!(
             "  {:<18} {:>10} {:>10} {:>10} {:>8} {unit}",
-            before_after::shortened(&new.name, 18),
+            comparison::shortened(&new.name, 18),
             significant(of.from_si(new.nominal), 4),
             significant(of.from_si(old.value), 4),
             significant(value, 4),
-            before_after::spread(half, value, |half| significant(half, 2)),
+            comparison::spread(half, value, |half| significant(half, 2)),
         );
         let _ = writeln!(out, "{}", line.trim_end());
         if !suspicion(new).is_empty() {
@@ -103,7 +103,7 @@ fn parameters(out: &mut String, told: &Told<'_>) {
     }
 }
 
-fn tried(out: &mut String, told: &Told<'_>) {
+fn tried(out: &mut String, told: &Diagnosed<'_>) {
     let all = told.tried();
     if all.is_empty() {
         return;
@@ -122,7 +122,7 @@ fn tried(out: &mut String, told: &Told<'_>) {
             .map(|(value, size)| verdict::number(value, 2, &size.unit));
         let line = format!(
             "  {:<25} {:>9} {:>9}  {:<20} {}",
-            before_after::shortened(&named(tried.hypothesis), 25),
+            comparison::shortened(&named(tried.hypothesis), 25),
             significant(tried.score.gain(), 3),
             tried
                 .trial
@@ -142,7 +142,7 @@ fn tried(out: &mut String, told: &Told<'_>) {
 }
 
 /// A paragraph within the width, its later lines as far in as its first words.
-pub(crate) fn wrapped(out: &mut String, head: &str, words: &str) {
+pub fn wrapped(out: &mut String, head: &str, words: &str) {
     let indent = " ".repeat(if head.starts_with(' ') { head.len() } else { 2 });
     let mut line = head.trim_end().to_owned();
     let mut fresh = true;

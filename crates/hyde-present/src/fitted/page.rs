@@ -1,19 +1,17 @@
 //! The page of a calibration.
 
 use super::text::{interval, noise};
-use super::{Told, experiment_name, identified, plots, shown, shown_difference};
-use crate::before_after;
-use crate::clock;
+use super::{Fitted, experiment_name, identified, plots, shown, shown_difference};
+use crate::assumptions;
 use crate::compared;
-use crate::diagnosis::suspicion;
-use crate::project::Project;
-use hyde_present::assumptions;
-use hyde_present::head;
+use crate::head;
 use hyde_report::{Block, Page, Section, Table};
+use hyde_study::Project;
+use hyde_study::diagnosed::suspicion;
 use hyde_units::significant;
 
-/// The page as one HTML text.
-pub(crate) fn html(told: &Told<'_>) -> String {
+/// The page as one HTML text; `made` says when it is made.
+pub fn html(told: &Fitted<'_>, made: &str) -> String {
     let calibration = told.calibration;
     let plan = &calibration.plan;
     let fact = |name: &str, value: String| (name.to_owned(), value);
@@ -23,9 +21,9 @@ pub(crate) fn html(told: &Told<'_>) -> String {
         .map(|own| &own.project)
         .collect();
     let mut facts = vec![fact("Calibration", plan.name.clone())];
-    facts.extend(head::facts_of_all(&projects, &clock::now()));
+    facts.extend(head::facts_of_all(&projects, made));
     let each = calibration.experiments.iter();
-    let assumed: Vec<String> = each.flat_map(before_after::assumptions).collect();
+    let assumed: Vec<String> = each.flat_map(hyde_study::comparison::assumptions).collect();
     let sections = [
         ("Measured and simulated", measured_and_simulated(told)),
         ("Before the fit", before(told)),
@@ -55,7 +53,7 @@ pub(crate) fn html(told: &Told<'_>) -> String {
 }
 
 /// Of each experiment the record that judges.
-fn measured_and_simulated(told: &Told<'_>) -> Vec<Block> {
+fn measured_and_simulated(told: &Fitted<'_>) -> Vec<Block> {
     let each = told.calibration.experiments.iter().zip(told.errors);
     let figures = each.filter_map(|(own, errors)| {
         let measured = &own.compiled.program.experiment.measured;
@@ -64,7 +62,7 @@ fn measured_and_simulated(told: &Told<'_>) -> Vec<Block> {
     figures.map(Block::Figure).collect()
 }
 
-fn before(told: &Told<'_>) -> Vec<Block> {
+fn before(told: &Fitted<'_>) -> Vec<Block> {
     let mut sentences = identified::sentences(told.calibration, told.before);
     if sentences.is_empty() {
         sentences.push("The records determine every parameter.".to_owned());
@@ -72,7 +70,7 @@ fn before(told: &Told<'_>) -> Vec<Block> {
     sentences.into_iter().map(Block::Text).collect()
 }
 
-fn parameters(told: &Told<'_>) -> Vec<Block> {
+fn parameters(told: &Fitted<'_>) -> Vec<Block> {
     let fit = told.fit;
     let mut blocks: Vec<Block> = told.reasons().into_iter().map(Block::Text).collect();
     blocks.extend(told.calibration.notes.iter().cloned().map(Block::Text));
@@ -95,7 +93,7 @@ fn parameters(told: &Told<'_>) -> Vec<Block> {
     blocks
 }
 
-fn correlation(told: &Told<'_>) -> Vec<Block> {
+fn correlation(told: &Fitted<'_>) -> Vec<Block> {
     let all = &told.fit.correlation;
     if all.len() < 2 {
         return Vec::new();
@@ -118,7 +116,7 @@ fn correlation(told: &Told<'_>) -> Vec<Block> {
     vec![Block::Figure(plots::correlation(told)), Block::Table(table)]
 }
 
-fn profiles(told: &Told<'_>) -> Vec<Block> {
+fn profiles(told: &Fitted<'_>) -> Vec<Block> {
     let each = told.profiles.iter();
     each.flat_map(|profile| {
         let name = told.calibration.numbers[profile.parameter].name();
@@ -130,7 +128,7 @@ fn profiles(told: &Told<'_>) -> Vec<Block> {
     .collect()
 }
 
-fn experiments(told: &Told<'_>) -> Vec<Block> {
+fn experiments(told: &Fitted<'_>) -> Vec<Block> {
     if told.calibration.experiments.len() < 2 {
         return Vec::new();
     }
@@ -153,7 +151,7 @@ fn experiments(told: &Told<'_>) -> Vec<Block> {
     [Block::Table(table)].into_iter().chain(sentences).collect()
 }
 
-fn records(told: &Told<'_>) -> Vec<Block> {
+fn records(told: &Fitted<'_>) -> Vec<Block> {
     let heads = ["experiment", "record", "", ">before", ">after"];
     let mut table = Table::with_columns(&heads);
     for (own, errors) in told.calibration.experiments.iter().zip(told.errors) {

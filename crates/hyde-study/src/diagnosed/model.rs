@@ -1,13 +1,13 @@
 //! The model that has what was missing, its parameters calibrated with it.
 
-use super::{Told, named};
+use super::{Diagnosed, named};
 use crate::unknown;
 use hyde_compiler::{Calibrated, Candidate, Found, Written, write_back};
 use hyde_units::NamedUnit;
 
 /// The user's file with the new model and its experiment behind.
 pub(super) fn written(
-    told: &Told<'_>,
+    told: &Diagnosed<'_>,
     candidates: &[Candidate],
     own: &[&hyde_calibrate::Written],
 ) -> Written {

@@ -1,82 +1,78 @@
-//! What a diagnosis tells, in one order: on the terminal, as JSON, as a page; and the model that has what was missing.
+//! What a diagnosis found, as the data that text, JSON and page are made of.
 //!
 //! ```text
-//! held out     what the records held out do not bear out          diagnosis/held_out.rs
-//! verdict      one sentence, and what is doubtful about it        diagnosis/verdict.rs
-//! terminal     80 columns                                         diagnosis/text.rs
-//! JSON         `report.json`: book/src/report.schema.json         diagnosis/json.rs
-//! page         `report.html`                                      diagnosis/page.rs, diagnosis/found.rs
-//! plain words  its paragraph                                      diagnosis/plain.rs
-//! model        the old text with a new model behind               diagnosis/model.rs
+//! search       looks for what is missing                          diagnosed/search.rs
+//! held out     what the held-out records do not confirm           diagnosed/held_out.rs
+//! verdict      one sentence, and what is doubtful about it        diagnosed/verdict.rs
+//! model        the old text with a new model behind               diagnosed/model.rs
 //! ```
 
-mod found;
 mod held_out;
-mod json;
 mod model;
-mod page;
-mod plain;
-mod text;
-mod verdict;
+mod search;
+pub mod verdict;
 
-pub(crate) use held_out::{Refused, agreed};
-pub(crate) use json::json;
-pub(crate) use page::html;
-pub(crate) use text::{text, wrapped};
-pub(crate) use verdict::number;
+pub use held_out::{Refused, Worse, agreed};
+pub use search::{hypothesis, search};
 
-use crate::before_after::RecordErrors;
-use crate::project::Project;
+use crate::Calibration;
+use crate::Project;
+use crate::comparison::RecordErrors;
 use crate::unknown;
 use hyde_calibrate::{
     Cause, Diagnosis, FittedParameter, FoundCurve, Hypothesis, Innovations, Rejection, ResidualMap,
     Score, Trial, Whiteness, fitted_parameters, residual_maps, whiteness,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Written};
-use hyde_study::Calibration;
 use std::collections::BTreeMap;
 
 /// A diagnosis with all that is told of it.
-pub(crate) struct Told<'a> {
-    pub(crate) plan: &'a DiagnosisPlan,
-    pub(crate) calibration: &'a Calibration,
-    pub(crate) hypotheses: &'a [Hypothesis],
+pub struct Diagnosed<'a> {
+    /// What was asked.
+    pub plan: &'a DiagnosisPlan,
+    /// The calibration that it stands on.
+    pub calibration: &'a Calibration,
+    /// What was tried, by number.
+    pub hypotheses: &'a [Hypothesis],
     /// What the hypotheses are made of; a law has none.
-    pub(crate) candidates: &'a [Candidate],
-    pub(crate) found: &'a Diagnosis,
+    pub candidates: &'a [Candidate],
+    /// What the search found.
+    pub found: &'a Diagnosis,
     /// Errors of the calibrated model without effects and with them.
-    pub(crate) errors: Vec<RecordErrors>,
+    pub errors: Vec<RecordErrors>,
     /// What was found and does not hold on the records held out.
-    pub(crate) refused: Vec<Refused>,
+    pub refused: Vec<Refused>,
     /// Each parameter of the model: calibrated without effects, and with them.
-    pub(crate) parameters: Vec<(FittedParameter, FittedParameter)>,
+    pub parameters: Vec<(FittedParameter, FittedParameter)>,
     /// What innovations depend on in the records fitted, and whether they are white.
-    pub(crate) maps: Vec<ResidualMap>,
-    pub(crate) whiteness: Vec<Whiteness>,
+    pub maps: Vec<ResidualMap>,
+    /// Whether the innovations are white, channel by channel.
+    pub whiteness: Vec<Whiteness>,
     /// Each finding as a curve, where it is one; nothing where only a terminal is told.
-    pub(crate) curves: Vec<Option<FoundCurve>>,
+    pub curves: Vec<Option<FoundCurve>>,
     /// Why the calibrated model does not follow the records, if it does not.
-    pub(crate) causes: Vec<Cause>,
+    pub causes: Vec<Cause>,
     /// Hypotheses that could not be put on the model, each with the reason.
-    pub(crate) hindered: Vec<(usize, String)>,
+    pub hindered: Vec<(usize, String)>,
     /// Hypotheses that were found first and dropped.
-    pub(crate) barred: Vec<usize>,
+    pub barred: Vec<usize>,
     /// The model that has what was missing.
-    pub(crate) written: Written,
+    pub written: Written,
 }
 
 /// A hypothesis that was tried and not taken in.
-pub(crate) struct Tried<'a> {
-    pub(crate) hypothesis: &'a Hypothesis,
+pub struct Tried<'a> {
+    /// The hypothesis.
+    pub hypothesis: &'a Hypothesis,
     /// In the last round: what the scan promised.
-    pub(crate) score: &'a Score,
+    pub score: &'a Score,
     /// Its fit, if it was worth one: that of the last round that had one.
-    pub(crate) trial: Option<&'a Trial>,
+    pub trial: Option<&'a Trial>,
 }
 
-impl<'a> Told<'a> {
+impl<'a> Diagnosed<'a> {
     /// Looks at what is left and writes the model.
-    pub(crate) fn new(
+    pub fn new(
         plan: &'a DiagnosisPlan,
         calibration: &'a Calibration,
         candidates: &'a [Candidate],
@@ -133,7 +129,7 @@ impl<'a> Told<'a> {
     }
 
     /// What was written behind the text of the user's file.
-    pub(crate) fn new_text(&self) -> &str {
+    pub fn new_text(&self) -> &str {
         let project = &self.calibration.project;
         let own = project.file.files.first();
         let own = own.map_or(0, |(file, _)| {
@@ -143,7 +139,7 @@ impl<'a> Told<'a> {
     }
 
     /// What was tried and not taken in, the best first.
-    pub(crate) fn tried(&self) -> Vec<Tried<'a>> {
+    pub fn tried(&self) -> Vec<Tried<'a>> {
         let taken = |number: usize| {
             let mut findings = self.found.findings.iter();
             findings.any(|finding| finding.hypothesis == number)
@@ -173,7 +169,7 @@ fn hindered(
     found: &Diagnosis,
 ) -> Vec<(usize, String)> {
     let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
-    let headers = hyde_study::headers(&project.records);
+    let headers = crate::headers(&project.records);
     let request = project.request(&settings, &headers, Form::Observed);
     let scores = || {
         found
@@ -191,7 +187,7 @@ fn hindered(
 
 impl Tried<'_> {
     /// Why it was not taken in.
-    pub(crate) fn reason(&self) -> &'static str {
+    pub fn reason(&self) -> &'static str {
         match self.trial {
             None => "predicted too small",
             Some(trial) => trial.rejected.map_or("smaller improvement", reason),
@@ -200,7 +196,7 @@ impl Tried<'_> {
 }
 
 /// `Stribeck at guide`
-pub(crate) fn named(hypothesis: &Hypothesis) -> String {
+pub fn named(hypothesis: &Hypothesis) -> String {
     format!("{} at {}", hypothesis.effect, hypothesis.site)
 }
 
@@ -217,7 +213,7 @@ fn reason(rejection: Rejection) -> &'static str {
 }
 
 /// What a parameter is suspected of.
-pub(crate) fn suspicion(parameter: &FittedParameter) -> &'static str {
+pub fn suspicion(parameter: &FittedParameter) -> &'static str {
     if parameter.at_bound {
         "AT ITS BOUND"
     } else if parameter.left_range {

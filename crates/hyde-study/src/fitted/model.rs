@@ -1,12 +1,12 @@
 //! The calibrated models as text: shared values in one, and one on top of it for each set of values that some records have.
 
 use super::si_unit;
+use crate::JointCalibration;
 use hyde_calibrate::Fit;
-use hyde_study::JointCalibration;
 use std::fmt::Write as _;
 
 /// The name of the file's first model, and of the file.
-pub(crate) fn name(calibration: &JointCalibration) -> String {
+pub fn name(calibration: &JointCalibration) -> String {
     of_model(&calibration.plan.model)
 }
 
@@ -15,7 +15,7 @@ fn of_model(model: &str) -> String {
 }
 
 /// The models.
-pub(crate) fn text(calibration: &JointCalibration, fit: &Fit) -> String {
+pub fn text(calibration: &JointCalibration, fit: &Fit) -> String {
     let mut out = Vec::new();
     let mut used: Vec<String> = Vec::new();
     for model in &calibration.plan.models {
@@ -80,7 +80,7 @@ fn called(
 }
 
 /// A text as a part of a name.
-pub(crate) fn word(text: &str) -> String {
+pub fn word(text: &str) -> String {
     let letters = match text.strip_prefix('-') {
         Some(rest) => format!("minus_{rest}"),
         None => text.to_owned(),
