@@ -14,7 +14,6 @@ mod interruption;
 mod limits;
 mod live;
 mod output;
-mod pages;
 mod project;
 mod sandbox;
 mod study;

@@ -11,6 +11,7 @@
 //! head, run_page                            the head of every page; the page of a run
 //! fitted, diagnosed                         a calibration; a diagnosis
 //! comparison, compared, unknown             their parts: errors, measured beside simulated, an effect of no library
+//! package_pages                             the documentation of packages
 //! sweep                                     the summary of a sweep, and its page
 //! lines                                     a text in lines of a width
 //! ```
@@ -28,6 +29,7 @@ pub mod forces;
 pub mod head;
 pub mod ledger;
 pub mod lines;
+pub mod package_pages;
 pub mod panels;
 pub mod run_page;
 pub mod start;

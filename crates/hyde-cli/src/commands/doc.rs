@@ -3,7 +3,7 @@
 use crate::args::{DocArgs, ModelArgs};
 use crate::exit::Exit;
 use crate::files;
-use crate::pages::{Library, pages};
+use hyde_present::package_pages::{Library, pages};
 use crate::project::{complain, print_output, report_errors};
 use hyde_diag::{Diagnostics, FileId, Sources};
 use hyde_study::world::{Disk, World};

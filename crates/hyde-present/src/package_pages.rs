@@ -12,23 +12,23 @@ use std::sync::Arc;
 
 /// Packages that are documented together.
 #[derive(Default)]
-pub(crate) struct Library {
+pub struct Library {
     /// Heading of the index.
-    pub(crate) title: String,
+    pub title: String,
     /// What it is.
-    pub(crate) text: String,
+    pub text: String,
     /// What else there is to say of it: version, licence.
-    pub(crate) facts: Vec<(&'static str, String)>,
+    pub facts: Vec<(&'static str, String)>,
     /// The texts.
-    pub(crate) sources: Sources,
+    pub sources: Sources,
     /// The packages, those with a page first; of the others only the names are known.
-    pub(crate) files: Vec<(FileId, Arc<ast::File>)>,
+    pub files: Vec<(FileId, Arc<ast::File>)>,
     /// How many have a page.
-    pub(crate) documented: usize,
+    pub documented: usize,
 }
 
 /// Every page with the name of its file; the index first.
-pub(crate) fn pages(library: &Library) -> Vec<(String, String)> {
+pub fn pages(library: &Library) -> Vec<(String, String)> {
     let links = Links::new(library);
     let mut found = vec![("index.html".to_owned(), index(library))];
     for number in 0..library.documented {
