@@ -4,9 +4,8 @@ use crate::args::{ModelArgs, StudyArgs};
 use crate::exit::Exit;
 use crate::project::{self, Asked, Loaded, Told as _, complain};
 use hyde_compiler::DiagnosisPlan;
-use hyde_study::excitation::Bench;
-use hyde_study::{Calibration, JointCalibration, Refused};
-use hyde_units::NamedUnit;
+use hyde_study::excitation::{self, Comparison, Options, Wished};
+use hyde_study::{Calibration, JointCalibration, Project, Refused};
 
 /// Loads the calibration that the arguments name.
 pub(crate) fn calibration(args: &StudyArgs) -> Result<JointCalibration, Exit> {
@@ -37,19 +36,16 @@ pub(crate) fn diagnosis(args: &StudyArgs) -> Result<(DiagnosisPlan, Calibration)
     Ok((plan, calibration))
 }
 
-/// Loads the model of a calibration, for records that are to be designed.
-pub(crate) fn bench(
+/// Compares signals on the model of a calibration.
+pub(crate) fn comparison(
     model_args: &ModelArgs,
     study: Option<&str>,
-    step_s: f64,
-    column: Option<&str>,
-    unit: &NamedUnit,
-) -> Result<Bench, Exit> {
-    let bench = loaded(model_args, |loaded, asked| {
-        hyde_study::excitation::bench(loaded, asked, study, step_s, column, unit)
-    })?;
-    bench.project.print_warnings(model_args);
-    Ok(bench)
+    options: (&Options, Wished),
+) -> Result<Comparison, Exit> {
+    loaded(model_args, |loaded, asked| {
+        let ready = |project: &Project| project.print_warnings(model_args);
+        excitation::compared(loaded, asked, study, options, ready)
+    })
 }
 
 /// What is made of the file that the arguments name, parsed once.

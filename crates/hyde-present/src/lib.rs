@@ -12,6 +12,7 @@
 //! fitted, diagnosed                         a calibration; a diagnosis
 //! comparison, compared, unknown             their parts: errors, measured beside simulated, an effect of no library
 //! package_pages                             the documentation of packages
+//! excitation                                what to record next
 //! sweep                                     the summary of a sweep, and its page
 //! lines                                     a text in lines of a width
 //! ```
@@ -23,6 +24,7 @@ pub mod assumptions;
 mod compared;
 pub mod comparison;
 pub mod diagnosed;
+pub mod excitation;
 pub mod figures;
 pub mod fitted;
 pub mod forces;

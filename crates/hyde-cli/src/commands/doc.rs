@@ -3,9 +3,9 @@
 use crate::args::{DocArgs, ModelArgs};
 use crate::exit::Exit;
 use crate::files;
-use hyde_present::package_pages::{Library, pages};
 use crate::project::{complain, print_output, report_errors};
 use hyde_diag::{Diagnostics, FileId, Sources};
+use hyde_present::package_pages::{Library, pages};
 use hyde_study::world::{Disk, World};
 use hyde_study::{MANIFEST, Manifest, Roots};
 use hyde_syntax::ast;

@@ -1,46 +1,20 @@
 //! `hyde excite`: what to record next.
-//!
-//! ```text
-//! quantity     a number with a unit, as an option has it            excite/quantity.rs
-//! wish         what the options ask for, and what is assumed        excite/wish.rs
-//! refused      why there is no such signal, and what to write       excite/refused.rs
-//! text         a design on the console and as JSON                  excite/text.rs
-//! compared     signals compared on a model                          excite/compared.rs
-//! between      effects that a record is to distinguish              excite/between.rs
-//! table        the comparison on the console and as JSON            excite/table.rs
-//! ```
 
-mod between;
-mod compared;
-mod quantity;
-mod refused;
-mod table;
-mod text;
-mod wish;
-
-use crate::args::{ExciteArgs, SignalFormat};
+use crate::args::{Criterion, ExciteArgs, ModelArgs, SignalFormat, SignalName};
 use crate::exit::Exit;
-use crate::files;
-use crate::project::print_output;
-use hyde_signal::excite::{Bounds, Design, design, g_code, twincat};
-use hyde_units::{NamedUnit, significant};
-use std::fmt::Write as _;
+use crate::project::{complain, print_output};
+use crate::{files, study};
+use hyde_present::excitation::file::{SignalForm, content};
+use hyde_present::excitation::{table, text};
+use hyde_signal::excite::{Design, Shape, design};
+use hyde_study::excitation::{self, Options, refused, wished};
 use std::path::Path;
-use wish::Asked;
-
-/// Why there is no signal.
-enum Failure {
-    /// The options ask for what cannot be.
-    Asked(String),
-    /// The model is at fault, and that is reported.
-    Told(Exit),
-}
 
 /// Designs a signal, tells and writes it.
 pub(crate) fn excite(args: &ExciteArgs) -> Exit {
     let found = match args.file {
         Some(_) => of_model(args),
-        None => designed(args).map_err(Failure::Asked),
+        None => designed(args),
     };
     match found {
         Ok(told) => {
@@ -49,16 +23,16 @@ pub(crate) fn excite(args: &ExciteArgs) -> Exit {
             }
             Exit::Done
         }
-        Err(Failure::Asked(reason)) => compared::report(args, &reason),
-        Err(Failure::Told(exit)) => exit,
+        Err(exit) => exit,
     }
 }
 
 /// A signal of one kind.
-fn designed(args: &ExciteArgs) -> Result<String, String> {
-    let asked = wish::of(args)?;
-    let design = design(&asked.wish).map_err(|own| refused::reason(&own, &asked.wish))?;
-    leave(args, &asked, &design)?;
+fn designed(args: &ExciteArgs) -> Result<String, Exit> {
+    let wrong = |reason: String| complain(&model_args(args), Exit::CommandLine, &reason);
+    let asked = wished(&options(args)).map_err(wrong)?;
+    let design = design(&asked.wish).map_err(|own| wrong(refused::reason(&own, &asked.wish)))?;
+    leave(args, &asked.column, &design).map_err(wrong)?;
     Ok(match (args.json, args.quiet) {
         (true, _) => format!("{:#}", text::json(&asked, &design)),
         (false, true) => String::new(),
@@ -67,25 +41,33 @@ fn designed(args: &ExciteArgs) -> Result<String, String> {
 }
 
 /// The best signal for a model.
-fn of_model(args: &ExciteArgs) -> Result<String, Failure> {
-    let mut found = compared::compared(args)?;
-    found.asked.column.clone_from(&found.bench.column.1);
+fn of_model(args: &ExciteArgs) -> Result<String, Exit> {
+    let model = model_args(args);
+    let wrong = |reason: String| complain(&model, Exit::CommandLine, &reason);
+    let options = options(args);
+    let wished = wished(&options).map_err(wrong)?;
+    let mut found = study::comparison(&model, args.study.as_deref(), (&options, wished))?;
+    found.wished.column.clone_from(&found.bench.column.1);
     let best = &found.all[found.best];
-    leave(args, &found.asked, &best.design).map_err(Failure::Asked)?;
+    leave(args, &found.wished.column, &best.design).map_err(wrong)?;
     Ok(match (args.json, args.quiet) {
         (true, _) => format!("{:#}", table::json(&found)),
         (false, true) => String::new(),
-        (false, false) => table::text(args, &found),
+        (false, false) => table::text(&found, options.criterion, args.out.as_deref()),
     })
 }
 
 /// Writes the file, if one is asked for.
-fn leave(args: &ExciteArgs, asked: &Asked, design: &Design) -> Result<(), String> {
+fn leave(args: &ExciteArgs, column: &str, design: &Design) -> Result<(), String> {
     let Some(path) = &args.out else {
         return Ok(());
     };
-    let content = content(args, asked, design, format_of(args, path))?;
-    files::write(path, content.as_bytes())
+    let form = match format_of(args, path) {
+        SignalFormat::Csv => SignalForm::Csv,
+        SignalFormat::Twincat => SignalForm::Twincat,
+        SignalFormat::Gcode => SignalForm::Gcode(args.axis),
+    };
+    files::write(path, content(column, design, form)?.as_bytes())
 }
 
 fn format_of(args: &ExciteArgs, path: &Path) -> SignalFormat {
@@ -98,47 +80,51 @@ fn format_of(args: &ExciteArgs, path: &Path) -> SignalFormat {
     args.format.unwrap_or(by_ending)
 }
 
-/// The content of the file.
-fn content(
-    args: &ExciteArgs,
-    asked: &Asked,
-    design: &Design,
-    format: SignalFormat,
-) -> Result<String, String> {
-    if format == SignalFormat::Csv {
-        return Ok(csv(&asked.column, design));
+/// The model's file with what is set.
+fn model_args(args: &ExciteArgs) -> ModelArgs {
+    let file = args.file.clone().unwrap_or_default();
+    ModelArgs {
+        settings: args.settings.clone(),
+        json: args.json,
+        quiet: args.quiet,
+        whole_library: !args.between.is_empty(),
+        ..ModelArgs::of_file(&file)
     }
-    if matches!(design.wish.bounds, Bounds::Effort(_)) {
-        return Err(format!(
-            "a controller takes positions, and this signal is in {}\n  help: write a CSV file, `--format csv`, or limit a motion with `--travel`",
-            design.wish.unit
-        ));
-    }
-    if format == SignalFormat::Twincat {
-        return Ok(twincat(design));
-    }
-    if !args.axis.is_ascii_alphabetic() {
-        return Err(format!(
-            "`--axis {}` is not a letter\n  help: write the letter of the axis, `--axis X`",
-            args.axis
-        ));
-    }
-    let is_turned = design.wish.unit.unit().dimension == hyde_units::Dimension::ANGLE;
-    let unit = if is_turned { "deg" } else { "mm" };
-    let unit = NamedUnit::parse(unit).map_err(|error| error.to_string())?;
-    Ok(g_code(
-        design,
-        args.axis.to_ascii_uppercase(),
-        unit.unit().from_si(1.0),
-    ))
 }
 
-/// The signal as a record.
-fn csv(column: &str, design: &Design) -> String {
-    let mut out = format!("t [s],{column} [{}]\n", design.wish.unit);
-    for row in 0..design.rows() {
-        let time = significant(design.time(row), 12);
-        let _ = writeln!(out, "{time},{}", design.cell(row));
+fn options(args: &ExciteArgs) -> Options {
+    let limits = &args.limits;
+    let motion = [
+        &limits.travel,
+        &limits.speed,
+        &limits.acceleration,
+        &limits.jerk,
+    ];
+    let shape = |name: &SignalName| match name {
+        SignalName::Multisine => Shape::Multisine,
+        SignalName::Chirp => Shape::Chirp,
+        SignalName::Jogs => Shape::Jogs,
+        SignalName::Reversals => Shape::Reversals,
+    };
+    Options {
+        of_model: args.file.is_some(),
+        signal: args.signal.iter().map(shape).collect(),
+        criterion: match args.criterion {
+            Criterion::D => excitation::Criterion::D,
+            Criterion::A => excitation::Criterion::A,
+        },
+        between: args.between.clone(),
+        size: args.size,
+        motion: motion.map(Clone::clone),
+        effort: limits.effort.clone(),
+        band: args.band.clone(),
+        duration: args.duration.clone(),
+        every: args.every.clone(),
+        start: args.start.clone(),
+        speeds: args.speeds,
+        places: args.places,
+        reversal: args.reversal.clone(),
+        column: args.column.clone(),
+        unit: args.unit.clone(),
     }
-    out
 }

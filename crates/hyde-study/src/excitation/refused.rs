@@ -4,7 +4,7 @@ use hyde_signal::excite::{Bounds, Impossible, Quantity, Shape, Wish};
 use hyde_units::significant;
 
 /// The reason and the advice, in lines.
-pub(super) fn reason(impossible: &Impossible, wish: &Wish) -> String {
+pub fn reason(impossible: &Impossible, wish: &Wish) -> String {
     let shape = wish.shape;
     let (message, help) = match *impossible {
         Impossible::Band(from, to) => (
@@ -102,7 +102,7 @@ pub(super) fn reason(impossible: &Impossible, wish: &Wish) -> String {
 }
 
 /// What is limited, in words.
-pub(super) fn name(quantity: Quantity) -> &'static str {
+pub fn name(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Travel => "travel",
         Quantity::Speed => "speed",

@@ -1,13 +1,11 @@
 //! Effects that a record is to distinguish: those named by `--between`.
 
-use super::Failure;
-use crate::args::{ExciteArgs, ModelArgs};
-use crate::project::Told as _;
+use super::options::Options;
+use crate::diagnosed;
+use crate::excitation::{Bench, Failed};
+use crate::unknown;
 use hyde_calibrate::{Hypothesis, Recording, Separation, separation};
 use hyde_compiler::{Candidate, Form};
-use hyde_study::diagnosed;
-use hyde_study::excitation::{Bench, Failed};
-use hyde_study::unknown;
 use std::collections::BTreeMap;
 
 /// The effects of the model, and the numbers of those to distinguish.
@@ -18,50 +16,39 @@ pub(super) struct Effects {
 }
 
 /// How far effects are apart.
-pub(super) struct Apart {
+pub struct Apart {
     /// The least gain of an effect over another one, as a part of its threshold.
-    pub(super) least: f64,
+    pub least: f64,
     /// Names and gains.
-    pub(super) names: Vec<String>,
-    pub(super) separation: Separation,
+    pub names: Vec<String>,
+    /// All gains.
+    pub separation: Separation,
 }
 
-/// The effects that are named; `None` if none is.
-pub(super) fn of(
-    args: &ExciteArgs,
-    model_args: &ModelArgs,
-    bench: &mut Bench,
-) -> Result<Option<Effects>, Failure> {
-    if args.between.is_empty() {
-        return Ok(None);
-    }
-    if !(args.size > 0.0 && args.size <= 1.0) {
-        return Err(Failure::Asked(format!(
-            "`--size {}` is not a part of a range\n  help: write a number above 0 and up to 1, `--size 0.1`",
-            args.size
-        )));
-    }
-    let candidates = bench.project.candidates_or_report(model_args);
-    let candidates = candidates.map_err(Failure::Told)?;
+/// The effects that are named, by the candidates of the model.
+///
+/// # Errors
+/// A name is not one effect of the model, or there is one only.
+pub(super) fn of(options: &Options, candidates: Vec<Candidate>) -> Result<Effects, String> {
     let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnosed::hypothesis).collect();
     let mut numbers = Vec::new();
-    for name in &args.between {
-        let number = number_of(name, &hypotheses).map_err(Failure::Asked)?;
+    for name in &options.between {
+        let number = number_of(name, &hypotheses)?;
         if !numbers.contains(&number) {
             numbers.push(number);
         }
     }
     if numbers.len() < 2 {
-        return Err(Failure::Asked(
+        return Err(
             "one effect has nothing to be distinguished from\n  help: write two or more, `--between Backlash@nut,Cogging@motor.shaft`"
                 .to_owned(),
-        ));
+        );
     }
-    Ok(Some(Effects {
+    Ok(Effects {
         candidates,
         hypotheses,
         numbers,
-    }))
+    })
 }
 
 /// The number of an effect, with its site after `@` if there are several.
@@ -106,7 +93,7 @@ pub(super) fn apart(
 ) -> Result<Option<Apart>, Failed> {
     let project = &bench.project;
     let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
-    let headers = hyde_study::headers(&project.records);
+    let headers = crate::headers(&project.records);
     let request = project.request(&settings, &headers, Form::Observed);
     let author = |known: &[usize], written: &[hyde_calibrate::Written]| {
         unknown::built(&request, &effects.candidates, known, written)

@@ -1,60 +1,80 @@
 //! Signals compared by what they would tell about the parameters of a model, or about effects.
 
+use super::bench::{Bench, Failed, bench};
 use super::between::{self, Apart};
-use super::wish::{self, Asked};
-use super::{Failure, refused};
-use crate::args::{Criterion, ExciteArgs, ModelArgs};
-use crate::project::{Told as _, complain};
-use crate::study;
+use super::candidates::{Candidate, candidates};
+use super::held::Room;
+use super::options::{Criterion, Options};
+use super::refused;
+use super::wish::{self, Wished};
+use crate::{Asked, Fault, Loaded, Project, Refused};
 use hyde_calibrate::{Information, Recording};
 use hyde_signal::excite::{Bounds, Design};
-use hyde_study::excitation::{Bench, Candidate, Failed, Room, candidates};
 use hyde_units::NamedUnit;
 
 /// A signal with what it would tell.
-pub(super) struct Compared {
-    pub(super) name: String,
-    pub(super) design: Design,
+pub struct Compared {
+    /// Its name.
+    pub name: String,
+    /// The signal.
+    pub design: Design,
     /// The part of its size that the travel leaves, of an effort.
-    pub(super) part: f64,
-    pub(super) information: Information,
+    pub part: f64,
+    /// What it would tell about the parameters.
+    pub information: Information,
     /// How far effects are apart, if that is asked.
-    pub(super) apart: Option<Apart>,
+    pub apart: Option<Apart>,
 }
 
 /// All signals, and the one that is chosen.
-pub(super) struct Comparison {
-    pub(super) bench: Bench,
-    pub(super) asked: Asked,
-    pub(super) all: Vec<Compared>,
-    pub(super) best: usize,
+pub struct Comparison {
+    /// The model.
+    pub bench: Bench,
+    /// What was asked for.
+    pub wished: Wished,
+    /// All signals.
+    pub all: Vec<Compared>,
+    /// The number of the chosen one.
+    pub best: usize,
     /// Signals that cannot be made or recorded, with the reason.
-    pub(super) unmade: Vec<(String, String)>,
+    pub unmade: Vec<(String, String)>,
 }
 
-/// Compares the signals that the options allow.
-pub(super) fn compared(args: &ExciteArgs) -> Result<Comparison, Failure> {
-    let model_args = model_args(args);
-    let asked = wish::of(args).map_err(Failure::Asked)?;
-    let wish = &asked.wish;
-    let column = args.column.as_deref();
-    let bench = study::bench(
-        &model_args,
-        args.study.as_deref(),
-        wish.step_s,
-        column,
-        &wish.unit,
-    );
-    let mut bench = bench.map_err(Failure::Told)?;
-    let effects = between::of(args, &model_args, &mut bench)?;
-    let kinds: Vec<_> = args.signal.iter().map(|name| wish::shape(*name)).collect();
-    let (made, unmade) = candidates(wish, &kinds);
+/// Compares the signals that the options allow on the model of a calibration. `ready` gets the model before it is run.
+///
+/// # Errors
+/// The model or the options are at fault, or no signal is possible.
+pub fn compared(
+    loaded: Loaded,
+    asked: &Asked,
+    study: Option<&str>,
+    (options, wished): (&Options, Wished),
+    ready: impl FnOnce(&Project),
+) -> Result<Comparison, Refused> {
+    let wish = &wished.wish;
+    let column = options.column.as_deref();
+    let mut bench = bench(loaded, asked, study, wish.step_s, column, &wish.unit)?;
+    ready(&bench.project);
+    let effects = match options.between.is_empty() {
+        true => None,
+        false if !(options.size > 0.0 && options.size <= 1.0) => {
+            return Err(Refused::Asked(format!(
+                "`--size {}` is not a part of a range\n  help: write a number above 0 and up to 1, `--size 0.1`",
+                options.size
+            )));
+        }
+        false => match bench.project.candidates() {
+            Some(candidates) => Some(between::of(options, candidates).map_err(Refused::Asked)?),
+            None => return Err(bench.project.refused(Fault::Model)),
+        },
+    };
+    let (made, unmade) = candidates(wish, &options.signal);
     let mut unmade: Vec<(String, String)> = unmade
         .into_iter()
         .map(|own| (own.name, refused::reason(&own.reason, &own.wish)))
         .collect();
     let (mut all, mut first) = (Vec::new(), None);
-    let room = room(args, &asked).map_err(Failure::Asked)?;
+    let room = room(options, &wished).map_err(Refused::Asked)?;
     for candidate in made {
         let name = candidate.name.clone();
         let found = of_candidate(room.as_ref(), &bench, candidate).and_then(|found| {
@@ -62,7 +82,7 @@ pub(super) fn compared(args: &ExciteArgs) -> Result<Comparison, Failure> {
                 return Ok(Err("no size of it keeps the travel and the speed"));
             };
             if let Some(effects) = &effects {
-                match between::apart(&bench, effects, recording, args.size)? {
+                match between::apart(&bench, effects, recording, options.size)? {
                     Some(apart) => own.apart = Some(apart),
                     None => {
                         return Ok(Err("a model with one of the effects cannot be observed"));
@@ -81,7 +101,7 @@ pub(super) fn compared(args: &ExciteArgs) -> Result<Comparison, Failure> {
             }
         }
     }
-    let value = |own: &Compared| match (&own.apart, args.criterion) {
+    let value = |own: &Compared| match (&own.apart, options.criterion) {
         (Some(apart), _) => -apart.least,
         (None, Criterion::D) => own.information.volume,
         (None, Criterion::A) => own.information.spread,
@@ -89,37 +109,25 @@ pub(super) fn compared(args: &ExciteArgs) -> Result<Comparison, Failure> {
     let best = (0..all.len()).min_by(|&i, &j| value(&all[i]).total_cmp(&value(&all[j])));
     if let (None, Some(diagnostic)) = (best, first) {
         bench.project.diagnostics.push(diagnostic);
-        return Err(Failure::Told(bench.project.finish_with_errors(&model_args)));
+        return Err(bench.project.refused(Fault::Model));
     }
     let Some(best) = best else {
         let reasons = unmade
             .iter()
             .map(|(name, reason)| format!("  {name}: {reason}"));
         let reasons: Vec<String> = reasons.collect();
-        return Err(Failure::Asked(format!(
+        return Err(Refused::Asked(format!(
             "no signal can be designed\n{}",
             reasons.join("\n")
         )));
     };
     Ok(Comparison {
         bench,
-        asked,
+        wished,
         all,
         best,
         unmade,
     })
-}
-
-/// The model's file with what is set.
-fn model_args(args: &ExciteArgs) -> ModelArgs {
-    let file = args.file.clone().unwrap_or_default();
-    ModelArgs {
-        settings: args.settings.clone(),
-        json: args.json,
-        quiet: args.quiet,
-        whole_library: !args.between.is_empty(),
-        ..ModelArgs::of_file(&file)
-    }
 }
 
 /// One signal: made small enough, simulated, observed; `None` if no size of it is small enough.
@@ -149,12 +157,12 @@ fn of_candidate(
 }
 
 /// The travel and the speed that an effort leaves the axis, if they are limited.
-fn room(args: &ExciteArgs, asked: &Asked) -> Result<Option<Room>, String> {
-    if matches!(asked.wish.bounds, Bounds::Motion(_)) {
+fn room(options: &Options, wished: &Wished) -> Result<Option<Room>, String> {
+    if matches!(wished.wish.bounds, Bounds::Motion(_)) {
         return Ok(None);
     }
-    let travel = wish::limit(args, 0)?;
-    let speed = wish::limit(args, 1)?;
+    let travel = wish::limit(options, 0)?;
+    let speed = wish::limit(options, 1)?;
     let unit = match (&travel, &speed) {
         (None, None) => return Ok(None),
         (Some(travel), _) => travel.unit.clone(),
@@ -168,9 +176,4 @@ fn room(args: &ExciteArgs, asked: &Asked) -> Result<Option<Room>, String> {
         travel: travel.map(|own| own.value),
         speed: speed.map(|own| own.value),
     }))
-}
-
-/// Reports why there is no comparison.
-pub(super) fn report(args: &ExciteArgs, reason: &str) -> crate::exit::Exit {
-    complain(&model_args(args), crate::exit::Exit::CommandLine, reason)
 }

@@ -6,8 +6,9 @@ use hyde_units::{Agreement, NamedUnit};
 #[derive(Clone, Debug)]
 pub(super) struct Quantity {
     /// SI.
-    pub(super) value: f64,
-    pub(super) unit: NamedUnit,
+    pub value: f64,
+    /// The unit.
+    pub unit: NamedUnit,
 }
 
 /// Reads an option whose unit is of the dimension of one of some units.

@@ -1,17 +1,17 @@
 //! A design on the console and as JSON.
 
-use super::refused::name;
-use super::wish::Asked;
 use hyde_signal::excite::{Bounds, Design, Quantity};
+use hyde_study::excitation::Wished;
+use hyde_study::excitation::refused::name;
 use hyde_units::{NamedUnit, counted, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// In lines of at most 80 columns, under its name among others if it has been compared with them.
-pub(super) fn text(
+pub fn text(
     known_as: Option<&str>,
-    asked: &Asked,
+    wished: &Wished,
     design: &Design,
     out: Option<&Path>,
 ) -> String {
@@ -78,9 +78,9 @@ pub(super) fn text(
             name(quantity)
         );
     }
-    if !asked.assumed.is_empty() {
+    if !wished.assumed.is_empty() {
         text.push_str("  assumed, as no option says otherwise:\n");
-        for option in &asked.assumed {
+        for option in &wished.assumed {
             let _ = writeln!(text, "    {option}");
         }
     }
@@ -91,7 +91,7 @@ pub(super) fn text(
 }
 
 /// Numbers are SI.
-pub(super) fn json(asked: &Asked, design: &Design) -> Value {
+pub fn json(wished: &Wished, design: &Design) -> Value {
     let wish = &design.wish;
     let peaks: Vec<Value> = design
         .peaks
@@ -113,7 +113,7 @@ pub(super) fn json(asked: &Asked, design: &Design) -> Value {
     json!({
         "ok": true,
         "signal": wish.shape.to_string(),
-        "column": asked.column,
+        "column": wished.column,
         "unit": wish.unit.text(),
         "duration_s": wish.duration_s,
         "step_s": wish.step_s,
@@ -125,7 +125,7 @@ pub(super) fn json(asked: &Asked, design: &Design) -> Value {
         })),
         "moves": moves,
         "speed_limited_by": design.slowed_by.map(name),
-        "assumed": asked.assumed,
+        "assumed": wished.assumed,
     })
 }
 

@@ -1,16 +1,18 @@
 //! What the options ask for: limits, band, times; and what is assumed of those that are missing.
 
+use super::options::Options;
 use super::quantity::{self, Quantity, quantity};
-use crate::args::{ExciteArgs, SignalName};
 use hyde_signal::excite::{Bounds, Limits, Shape, Wish};
 use hyde_units::{Agreement, Dimension, NamedUnit};
 
 /// What is asked for.
-pub(super) struct Asked {
-    pub(super) wish: Wish,
-    pub(super) column: String,
+pub struct Wished {
+    /// The signal.
+    pub wish: Wish,
+    /// The name of its column.
+    pub column: String,
     /// What is assumed, in the words of the command line.
-    pub(super) assumed: Vec<String>,
+    pub assumed: Vec<String>,
 }
 
 /// Limits of an axis that slides and of one that turns, where none is given: those of the library's `Stroke`.
@@ -26,9 +28,12 @@ const BAND_HZ: (f64, f64) = (1.0, 100.0);
 const SAMPLES_OF_A_SINE: f64 = 10.0;
 
 /// What the options ask for.
-pub(super) fn of(args: &ExciteArgs) -> Result<Asked, String> {
+///
+/// # Errors
+/// What cannot be, with what to write instead.
+pub fn of(options: &Options) -> Result<Wished, String> {
     let mut assumed = Vec::new();
-    let (bounds, unit) = bounds(args, &mut assumed)?;
+    let (bounds, unit) = bounds(options, &mut assumed)?;
     let mut time = |name: &str, given: &Option<String>, usual: &str| {
         let text = or_assumed(name, given.as_ref(), usual, &mut assumed);
         let found = quantity(name, &text, &["s"])?;
@@ -39,16 +44,13 @@ pub(super) fn of(args: &ExciteArgs) -> Result<Asked, String> {
             )),
         }
     };
-    let duration_s = time("duration", &args.duration, DURATION)?;
-    let step_s = time("every", &args.every, EVERY)?;
+    let duration_s = time("duration", &options.duration, DURATION)?;
+    let step_s = time("every", &options.every, EVERY)?;
     // With a model all kinds are compared, and the wish is for each of them.
-    let shape = args
-        .signal
-        .first()
-        .map_or(Shape::Multisine, |name| shape(*name));
-    let compared = args.file.is_some();
+    let shape = options.signal.first().copied().unwrap_or(Shape::Multisine);
+    let compared = options.of_model;
     let banded = matches!(shape, Shape::Multisine | Shape::Chirp);
-    let band_hz = match &args.band {
+    let band_hz = match &options.band {
         Some(text) => quantity::band(text)?,
         None => {
             let from = BAND_HZ.0.max(4.0 / duration_s);
@@ -71,8 +73,8 @@ pub(super) fn of(args: &ExciteArgs) -> Result<Asked, String> {
         text.map(|text| quantity(option, text, &[unit.text()]))
             .transpose()
     };
-    let start = own("start", &args.start)?.map_or(0.0, |found| found.value);
-    let reversal = match (own("reversal", &args.reversal)?, bounds) {
+    let start = own("start", &options.start)?.map_or(0.0, |found| found.value);
+    let reversal = match (own("reversal", &options.reversal)?, bounds) {
         (Some(found), _) => found.value,
         (None, Bounds::Motion(limits)) => {
             let size = 1e-3 * limits.travel;
@@ -95,16 +97,16 @@ pub(super) fn of(args: &ExciteArgs) -> Result<Asked, String> {
         Bounds::Motion(_) => "r",
         Bounds::Effort(_) => "u",
     };
-    let column = args.column.clone().unwrap_or_else(|| usual.to_owned());
+    let column = options.column.clone().unwrap_or_else(|| usual.to_owned());
     if column.is_empty() || column.contains(['"', ',', '\n', '[', ']']) {
         return Err(format!(
             "`--column '{column}'` cannot be the name of a column\n  help: write letters and digits, `--column r`"
         ));
     }
-    if args.start.is_none() && matches!(bounds, Bounds::Motion(_)) {
+    if options.start.is_none() && matches!(bounds, Bounds::Motion(_)) {
         assumed.push(format!("--start '0 [{unit}]'"));
     }
-    Ok(Asked {
+    Ok(Wished {
         wish: Wish {
             shape,
             bounds,
@@ -113,8 +115,8 @@ pub(super) fn of(args: &ExciteArgs) -> Result<Asked, String> {
             step_s,
             start,
             unit,
-            speeds: args.speeds,
-            places: args.places,
+            speeds: options.speeds,
+            places: options.places,
             reversal,
         },
         column,
@@ -123,23 +125,25 @@ pub(super) fn of(args: &ExciteArgs) -> Result<Asked, String> {
 }
 
 /// The limits, and the unit of the column.
-fn bounds(args: &ExciteArgs, assumed: &mut Vec<String>) -> Result<(Bounds, NamedUnit), String> {
-    let given = &args.limits;
-    if let Some(text) = &given.effort {
+fn bounds(options: &Options, assumed: &mut Vec<String>) -> Result<(Bounds, NamedUnit), String> {
+    if let Some(text) = &options.effort {
         let Quantity { value, unit } = quantity("effort", text, &EFFORTS)?;
         positive("effort", text, value, "10 [A]")?;
-        if let (None, Some(name)) = (&args.file, (0..4).find(|&n| option(args, n).is_some())) {
+        if let (false, Some(name)) = (
+            options.of_model,
+            (0..4).find(|&n| option(options, n).is_some()),
+        ) {
             return Err(format!(
                 "`--{}` cannot be used with the limit of an effort: only a model says how far that moves the axis\n  help: name the file of a model, or leave one of them out",
                 NAMES[name]
             ));
         }
-        let unit = unit_of(args, unit)?;
+        let unit = unit_of(options, unit)?;
         return Ok((Bounds::Effort(value), unit));
     }
     let mut found: [Option<Quantity>; 4] = [None, None, None, None];
     for (number, own) in found.iter_mut().enumerate() {
-        *own = limit(args, number)?;
+        *own = limit(options, number)?;
     }
     // An axis slides if no limit says that it turns.
     let turned = |number: usize| Some(turns(&found[number].as_ref()?.unit, number));
@@ -180,7 +184,7 @@ fn bounds(args: &ExciteArgs, assumed: &mut Vec<String>) -> Result<(Bounds, Named
         Some(travel) => travel.unit.clone(),
         None => named(if is_turned { "deg" } else { "mm" })?,
     };
-    let unit = unit_of(args, own)?;
+    let unit = unit_of(options, own)?;
     let limits = Limits {
         travel,
         speed,
@@ -191,15 +195,8 @@ fn bounds(args: &ExciteArgs, assumed: &mut Vec<String>) -> Result<(Bounds, Named
 }
 
 /// The text of a limit of a motion: travel, speed, acceleration, jerk.
-fn option(args: &ExciteArgs, number: usize) -> Option<&String> {
-    let given = &args.limits;
-    let all = [
-        &given.travel,
-        &given.speed,
-        &given.acceleration,
-        &given.jerk,
-    ];
-    all[number].as_ref()
+fn option(options: &Options, number: usize) -> Option<&String> {
+    options.motion[number].as_ref()
 }
 
 /// The units of such a limit: of an axis that slides, and of one that turns.
@@ -209,8 +206,8 @@ fn units(number: usize) -> [String; 2] {
 }
 
 /// Such a limit, if it is given.
-pub(super) fn limit(args: &ExciteArgs, number: usize) -> Result<Option<Quantity>, String> {
-    let Some(text) = option(args, number) else {
+pub(super) fn limit(options: &Options, number: usize) -> Result<Option<Quantity>, String> {
+    let Some(text) = option(options, number) else {
         return Ok(None);
     };
     let [slides, turns] = units(number);
@@ -238,8 +235,8 @@ fn positive(name: &str, text: &str, value: f64, usual: &str) -> Result<(), Strin
 }
 
 /// The unit of the column: that which is given, if it is of the same dimension.
-fn unit_of(args: &ExciteArgs, usual: NamedUnit) -> Result<NamedUnit, String> {
-    let Some(text) = &args.unit else {
+fn unit_of(options: &Options, usual: NamedUnit) -> Result<NamedUnit, String> {
+    let Some(text) = &options.unit else {
         return Ok(usual);
     };
     let dimension = |unit: &NamedUnit| -> Dimension { unit.unit().dimension };
@@ -267,14 +264,4 @@ fn or_assumed(
         assumed.push(format!("--{name} '{usual}'"));
         usual.to_owned()
     })
-}
-
-/// The kind of an option.
-pub(super) fn shape(name: SignalName) -> Shape {
-    match name {
-        SignalName::Multisine => Shape::Multisine,
-        SignalName::Chirp => Shape::Chirp,
-        SignalName::Jogs => Shape::Jogs,
-        SignalName::Reversals => Shape::Reversals,
-    }
 }

@@ -1,25 +1,25 @@
 //! The comparison of signals on the console and as JSON.
 
-use super::compared::{Compared, Comparison};
 use super::text;
-use crate::args::{Criterion, ExciteArgs};
+use crate::lines::wrapped;
 use hyde_calibrate::UNKNOWN;
-use hyde_present::lines::wrapped;
+use hyde_study::excitation::{Compared, Comparison, Criterion};
 use hyde_units::{counted, engineering_as, engineering_difference, significant};
 use serde_json::{Value, json};
 use std::fmt::Write as _;
+use std::path::Path;
 
 /// In lines of at most 80 columns.
-pub(super) fn text(args: &ExciteArgs, found: &Comparison) -> String {
+pub fn text(found: &Comparison, criterion: Criterion, path: Option<&Path>) -> String {
     let Comparison {
         bench,
-        asked,
+        wished,
         all,
         best,
         unmade,
     } = found;
     let best = &all[*best];
-    let by = match (&best.apart, args.criterion) {
+    let by = match (&best.apart, criterion) {
         (Some(_), _) => "by what distinguishes the effects",
         (None, Criterion::D) => "by volume",
         (None, Criterion::A) => "by spread",
@@ -28,7 +28,7 @@ pub(super) fn text(args: &ExciteArgs, found: &Comparison) -> String {
         "{} of {}: {} of `{}`, {} compared {by}\n\n  {:<36} {:>9} {:>9}",
         bench.plan.name,
         bench.plan.model,
-        significant(asked.wish.duration_s, 6) + " s",
+        significant(wished.wish.duration_s, 6) + " s",
         bench.column.1,
         counted(all.len(), "signal"),
         "signal",
@@ -131,13 +131,13 @@ pub(super) fn text(args: &ExciteArgs, found: &Comparison) -> String {
     let _ = write!(
         out,
         "\n{}",
-        text::text(Some(&best.name), asked, &best.design, args.out.as_deref())
+        text::text(Some(&best.name), wished, &best.design, path)
     );
     out
 }
 
 /// Numbers are SI.
-pub(super) fn json(found: &Comparison) -> Value {
+pub fn json(found: &Comparison) -> Value {
     let best = &found.all[found.best];
     let signals: Vec<Value> = found.all.iter().map(of_signal).collect();
     let unmade: Vec<Value> = found
@@ -157,7 +157,7 @@ pub(super) fn json(found: &Comparison) -> Value {
             })
         })
         .collect();
-    let mut all = text::json(&found.asked, &best.design);
+    let mut all = text::json(&found.wished, &best.design);
     all["signal"] = json!(best.name);
     all["calibration"] = json!(found.bench.plan.name);
     all["model"] = json!(found.bench.plan.model);
