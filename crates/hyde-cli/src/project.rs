@@ -31,16 +31,20 @@ pub(crate) fn asked(args: &ModelArgs) -> Result<Asked, Exit> {
 
 /// Loads what the arguments name; reports and ends where that has errors.
 pub(crate) fn load(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
-    let project = load_silently(args, needed)?;
+    chosen(args, parsed(args)?, needed)
+}
+
+/// What the arguments name in their file, which is parsed; reports and ends where that has errors.
+pub(crate) fn chosen(args: &ModelArgs, loaded: Loaded, needed: Records) -> Result<Project, Exit> {
+    let project = chosen_silently(args, loaded, needed)?;
     if project.diagnostics.has_errors() {
         return Err(project.finish_with_errors(args));
     }
     Ok(project)
 }
 
-/// Loads what the arguments name. What is wrong in the files stays in the project's diagnostics.
-pub(crate) fn load_silently(args: &ModelArgs, needed: Records) -> Result<Project, Exit> {
-    let project = hyde_study::load(&asked(args)?, needed);
+fn chosen_silently(args: &ModelArgs, loaded: Loaded, needed: Records) -> Result<Project, Exit> {
+    let project = loaded.choose(&asked(args)?, needed);
     let project = project.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
     if !project.fmus.is_empty() && !sandbox::is_asked() {
         output::keep_own();

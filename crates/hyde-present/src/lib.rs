@@ -13,6 +13,7 @@
 //! comparison, compared, unknown             their parts: errors, measured beside simulated, an effect of no library
 //! package_pages                             the documentation of packages
 //! excitation                                what to record next
+//! bode                                      frequency responses and margins
 //! sweep                                     the summary of a sweep, and its page
 //! lines                                     a text in lines of a width
 //! ```
@@ -21,6 +22,7 @@
 pub mod asked_figures;
 pub mod assumed;
 pub mod assumptions;
+pub mod bode;
 mod compared;
 pub mod comparison;
 pub mod diagnosed;

@@ -17,6 +17,7 @@
 //! operating_point  about which point a model is linearised            operating_point.rs
 //! check          everything in a file compiled, and nothing run         check.rs
 //! assumptions    what was assumed of records, tables and FMUs         assumptions.rs
+//! responses      frequency responses and stability margins            responses.rs
 //! sweep          the cases of a sweep, solved and gathered             sweep.rs
 //! store          where finished tasks of a long study are kept         store.rs
 //! progress       how far a long study is                               progress.rs
@@ -60,6 +61,7 @@ pub mod record_settings;
 mod records;
 mod refused;
 pub mod render;
+pub mod responses;
 pub mod run_failure;
 pub mod settings;
 mod store;

@@ -1,17 +1,9 @@
 //! The page of `hyde bode`: responses, margins, and about what they are linearised.
 
-use super::{Asked, Response, draw, margins, open_loop};
-use crate::files;
-use hyde_report::{Block, Figure, Page, Section, to_html};
-use std::path::Path;
-
-/// Leaves `bode.html`; gives back its name.
-pub(super) fn leave(folder: &Path, title: &str, all: &[Asked]) -> Result<String, String> {
-    files::make_folder(folder)?;
-    let path = folder.join("bode.html");
-    files::write(&path, to_html(&page(title, all)).as_bytes())?;
-    Ok(path.display().to_string())
-}
+use super::{draw, margins, open_loop};
+use crate::{assumed, head};
+use hyde_report::{Block, Figure, Page, Section};
+use hyde_study::responses::{Response, Responses};
 
 /// A figure with a caption for its title, which would stand in the table of contents.
 fn plain(figure: Figure, caption: &str) -> Block {
@@ -22,10 +14,11 @@ fn plain(figure: Figure, caption: &str) -> Block {
     Block::Figure(figure.with_caption(caption))
 }
 
-fn page(title: &str, all: &[Asked]) -> Page {
+/// The page; `made` says when it is made.
+pub(super) fn page(title: &str, all: &[Responses], made: &str) -> Page {
     let every: Vec<&Response> = all
         .iter()
-        .flat_map(|asked| asked.bodes.iter().flatten())
+        .flat_map(|asked| asked.bodes.iter().flat_map(|bode| &bode.responses))
         .collect();
     let mut sections = Vec::new();
     let mut drawn: Vec<(&str, &str)> = Vec::new();
@@ -52,11 +45,13 @@ fn page(title: &str, all: &[Asked]) -> Page {
         sections.push((format!("Margins at {}", one.signal), blocks));
     }
     let mut about: Vec<Block> = Vec::new();
-    let of_loops = all.iter().flat_map(|asked| &asked.margins);
-    let of_loops = of_loops.flat_map(|one| &one.about);
-    for block in all.iter().flat_map(|asked| &asked.about).chain(of_loops) {
-        if !about.contains(block) {
-            about.push(block.clone());
+    for block in all
+        .iter()
+        .flat_map(of_models)
+        .chain(all.iter().flat_map(of_loops))
+    {
+        if !about.contains(&block) {
+            about.push(block);
         }
     }
     sections.push(("Linear model".to_owned(), about));
@@ -65,10 +60,30 @@ fn page(title: &str, all: &[Asked]) -> Page {
         .filter(|(_, blocks)| !blocks.is_empty());
     Page {
         title: title.to_owned(),
-        facts: all.first().map_or(Vec::new(), |asked| asked.facts.clone()),
+        facts: all
+            .first()
+            .map_or(Vec::new(), |asked| head::facts(&asked.project, made)),
         sections: sections
             .map(|(heading, blocks)| Section { heading, blocks })
             .collect(),
         footer: format!("Hyde {}", env!("CARGO_PKG_VERSION")),
     }
+}
+
+/// About what the responses of an experiment are linearised, and what was assumed.
+fn of_models(asked: &Responses) -> Vec<Block> {
+    let program = &asked.compiled.program;
+    let bodes = asked.bodes.iter();
+    let about = bodes.flat_map(|bode| assumed::blocks(program, &bode.linear, bode.time));
+    let notes = asked.notes.iter().cloned().map(Block::Text);
+    about.chain(notes).collect()
+}
+
+/// The same of its loops.
+fn of_loops(asked: &Responses) -> Vec<Block> {
+    let program = &asked.compiled.program;
+    let margins = asked.margins.iter();
+    margins
+        .flat_map(|one| assumed::blocks(program, &one.linear, one.time))
+        .collect()
 }

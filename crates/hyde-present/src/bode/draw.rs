@@ -1,37 +1,16 @@
 //! The figure of a response, with those of other experiments, and its numbers as CSV.
 
-use super::response::Response;
-use crate::files;
-use hyde_report::{BodeCurve, Figure, LineStyle, bode_plot, to_png, to_svg};
+use super::{drawn as per, measured};
+use hyde_report::{BodeCurve, Figure, LineStyle, bode_plot};
+use hyde_study::responses::Response;
 use hyde_units::significant;
 use std::fmt::Write as _;
-use std::path::Path;
-
-/// Draws responses of one output together and leaves SVG, PNG and CSV; `stem` is the name of the files.
-pub(crate) fn leave(
-    folder: &Path,
-    stem: &str,
-    title: &str,
-    responses: &[&Response],
-) -> Result<(), String> {
-    let figure = drawn(title, responses);
-    files::make_folder(folder)?;
-    files::write(
-        &folder.join(format!("{stem}.svg")),
-        to_svg(&figure).as_bytes(),
-    )?;
-    files::write(&folder.join(format!("{stem}.png")), &to_png(&figure, 2.0))?;
-    files::write(
-        &folder.join(format!("{stem}.csv")),
-        csv(responses).as_bytes(),
-    )
-}
 
 /// Below this coherence nothing of the input is seen in the output: left out of magnitude and phase.
 const LEAST: f64 = 0.02;
 
 /// The figure of them.
-pub(crate) fn drawn(title: &str, responses: &[&Response]) -> Figure {
+pub(super) fn drawn(title: &str, responses: &[&Response]) -> Figure {
     let mut experiments: Vec<&str> = Vec::new();
     for response in responses {
         if !experiments.contains(&response.experiment.as_str()) {
@@ -56,7 +35,7 @@ pub(crate) fn drawn(title: &str, responses: &[&Response]) -> Figure {
         let colour = place.filter(|_| several);
         // What was measured lies below the model.
         for one in &response.measured {
-            curves.extend(one.curves(&label, colour));
+            curves.extend(measured::curves(one, &label, colour));
         }
         // Several amplitudes, or swept and stepped, have one linearised model.
         if !linear.iter().any(|other| same_linear(other, response)) {
@@ -101,11 +80,12 @@ pub(crate) fn drawn(title: &str, responses: &[&Response]) -> Figure {
     let Some(first) = responses.first() else {
         return bode_plot(title, ("", ""), &curves, &[]);
     };
+    let (unit, factor) = per(first);
     for curve in &mut curves {
         let values = curve.response.iter_mut();
-        values.for_each(|(re, im)| (*re, *im) = (*re * first.factor, *im * first.factor));
+        values.for_each(|(re, im)| (*re, *im) = (*re * factor, *im * factor));
         let noise = curve.deviation.iter_mut().flatten();
-        noise.for_each(|value| *value *= first.factor);
+        noise.for_each(|value| *value *= factor);
     }
     let band = (
         first.frequency[0],
@@ -117,7 +97,7 @@ pub(crate) fn drawn(title: &str, responses: &[&Response]) -> Figure {
         .filter(|(f, damping)| *damping < 0.1 && (band.0..=band.1).contains(f))
         .map(|(f, _)| (*f, format!("{} Hz", significant(*f, 3))))
         .collect();
-    bode_plot(title, (&first.output, &first.unit), &curves, &resonances)
+    bode_plot(title, (&first.output, &unit), &curves, &resonances)
 }
 
 fn same_linear(one: &Response, other: &Response) -> bool {
@@ -138,7 +118,7 @@ fn seen(values: impl Iterator<Item = (f64, f64)>, coherence: &[f64]) -> Vec<(f64
 }
 
 /// One line a frequency; of a stepped sine with the amplitude of its input, SI, and the distortion.
-fn csv(responses: &[&Response]) -> String {
+pub(super) fn csv(responses: &[&Response]) -> String {
     let mut csv = String::from("experiment,kind,f [Hz],re,im,coherence,amplitude,distortion\n");
     for response in responses {
         let experiment = &response.experiment;
@@ -156,7 +136,7 @@ fn csv(responses: &[&Response]) -> String {
             }
         }
         for one in &response.measured {
-            csv.push_str(&one.csv(experiment));
+            csv.push_str(&measured::csv(one, experiment));
         }
         for (f, amplitude, found) in &response.stepped {
             let (re, im) = (found.response.re, found.response.im);

@@ -1,45 +1,12 @@
 //! The figures of a cut loop, and its numbers as CSV.
 
-use super::margins::OfLoop;
-use crate::files;
-use hyde_report::{
-    BodeCurve, Figure, LineStyle, OpenLoop, bode_plot, nichols_plot, nyquist_plot, to_png, to_svg,
-};
+use hyde_report::{BodeCurve, Figure, LineStyle, OpenLoop, bode_plot, nichols_plot, nyquist_plot};
+use hyde_study::responses::OfLoop;
 use hyde_units::significant;
 use std::fmt::Write as _;
-use std::path::Path;
-
-/// Leaves the Bode, Nyquist and Nichols plots of the open loop as SVG and PNG, and CSV; gives back the figures' names.
-/// `suffix` is put behind their stems.
-pub(crate) fn leave(
-    folder: &Path,
-    suffix: &str,
-    title: &str,
-    of: &OfLoop,
-) -> Result<Vec<String>, String> {
-    files::make_folder(folder)?;
-    let figures = figures(title, of);
-    let mut names = Vec::new();
-    for (stem, figure) in &figures {
-        let svg = folder.join(format!("{stem}{suffix}.svg"));
-        files::write(&svg, to_svg(figure).as_bytes())?;
-        let png = folder.join(format!("{stem}{suffix}.png"));
-        files::write(&png, &to_png(figure, 2.0))?;
-        names.push(svg.display().to_string());
-    }
-    let mut csv = String::from("f [Hz],re,im\n");
-    for (f, l) in &of.found.open_loop {
-        let _ = writeln!(csv, "{f},{},{}", l.re, l.im);
-    }
-    files::write(
-        &folder.join(format!("open-loop{suffix}.csv")),
-        csv.as_bytes(),
-    )?;
-    Ok(names)
-}
 
 /// The figures of the open loop, with the stems of their files.
-pub(crate) fn figures(title: &str, of: &OfLoop) -> [(&'static str, Figure); 3] {
+pub(super) fn figures(title: &str, of: &OfLoop) -> [(&'static str, Figure); 3] {
     let title = format!("{title}: loop cut at {}", of.signal);
     let curve = open_loop(of);
     [
@@ -83,4 +50,13 @@ fn bode(title: &str, of: &OfLoop, curve: &OpenLoop) -> Figure {
         colour: None,
     }];
     bode_plot(title, ("L", ""), &curves, &crossovers)
+}
+
+/// The numbers of the open loop.
+pub(super) fn csv(of: &OfLoop) -> String {
+    let mut csv = String::from("f [Hz],re,im\n");
+    for (f, l) in &of.found.open_loop {
+        let _ = writeln!(csv, "{f},{},{}", l.re, l.im);
+    }
+    csv
 }

@@ -1,19 +1,19 @@
 //! What is seen in a magnitude: peaks, how far a mode stands out, and where two responses part.
 
-use super::response::Response;
+use hyde_study::responses::Response;
 use hyde_units::significant;
 
 /// Responses that differ by less, in dB, are not told apart.
 const APART: f64 = 3.0;
 
 /// Magnitudes in dB.
-pub(crate) fn decibels(response: &[(f64, f64)]) -> Vec<f64> {
+pub(super) fn decibels(response: &[(f64, f64)]) -> Vec<f64> {
     let gain = |(re, im): &(f64, f64)| 20.0 * re.hypot(*im).log10();
     response.iter().map(gain).collect()
 }
 
 /// At which outputs a mode is seen: by how much each response stands out there.
-pub(crate) fn where_seen(frequency_hz: f64, responses: &[Response]) -> String {
+pub(super) fn where_seen(frequency_hz: f64, responses: &[Response]) -> String {
     let seen: Vec<String> = responses
         .iter()
         .filter_map(|response| {
@@ -42,7 +42,7 @@ fn prominence(at: f64, frequency: &[f64], response: &[(f64, f64)]) -> Option<f64
 }
 
 /// `peaks at 26.5 Hz, 43.1 Hz`
-pub(crate) fn peaks_told(response: &Response) -> String {
+pub(super) fn peaks_told(response: &Response) -> String {
     let list: Vec<String> = peaks(&response.frequency, &response.linear)
         .iter()
         .map(|f| format!("{} Hz", significant(*f, 3)))
@@ -77,14 +77,14 @@ fn peaks(frequency: &[f64], response: &[(f64, f64)]) -> Vec<f64> {
 }
 
 /// Where another linearised response parts from the first.
-pub(crate) fn apart(first: &Response, other: &Response) -> String {
+pub(super) fn apart(first: &Response, other: &Response) -> String {
     let own = first.frequency.iter().zip(decibels(&first.linear));
     let differences = own.filter_map(|(f, own)| Some((*f, at(*f, other)? - own)));
     told(&first.experiment, &differences.collect::<Vec<_>>())
 }
 
 /// Where the stepped sine parts from the linearised response.
-pub(crate) fn stepped_apart(response: &Response) -> String {
+pub(super) fn stepped_apart(response: &Response) -> String {
     let stepped = response.stepped.iter().filter_map(|(f, _, found)| {
         let gain = 20.0 * found.response.norm().log10();
         Some((*f, gain - at(*f, response)?))

@@ -1,184 +1,15 @@
-//! The stability margins of the loops that an experiment cuts: computed, told, as JSON.
+//! The stability margins of the loops that an experiment cuts, as text and as JSON.
 
-use crate::project::Project;
-use hyde_diag::{Code, Diagnostic, Diagnostics};
-use hyde_experiment::{
-    About, CutError, DelayMargin, Margins, Pole, linearize_about, margins, poles,
-};
-use hyde_present::assumed;
-use hyde_program::{Constant, Cut, Program};
-use hyde_report::Block;
-use hyde_signal::Table;
-use hyde_study::operating_point;
-use hyde_syntax::ast::Item;
+use crate::assumed;
+use hyde_experiment::{DelayMargin, Margins, Pole};
+use hyde_program::Program;
+use hyde_study::responses::OfLoop;
 use hyde_units::significant;
 use serde_json::{Value, json};
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::sync::Arc;
-
-/// Crossovers listed in the text, of each kind; JSON has all.
-const LISTED: usize = 8;
-
-/// A loop that is cut.
-pub(crate) struct OfLoop {
-    /// The experiment.
-    pub(crate) experiment: String,
-    /// The signal, as it is written.
-    pub(crate) signal: String,
-    /// Its margins.
-    pub(crate) found: Margins,
-    /// Poles of the closed loop that grow.
-    pub(crate) unstable: Vec<Pole>,
-    /// About what it is linearised, with what is assumed there; and that as JSON.
-    pub(crate) point: String,
-    pub(crate) about: Vec<Block>,
-    assumptions: Value,
-    /// The band was asked for.
-    given: bool,
-}
-
-/// Puts `margins of SIGNAL;` into the experiment, as if it were written there.
-pub(crate) fn add_cuts(project: &mut Project, signals: &[String]) {
-    for signal in signals {
-        let text = format!("experiment cut of Model\n  margins of {signal};\nend cut;\n");
-        let file = project.sources.add("--cut", &text);
-        let tree = hyde_syntax::parse(&project.sources, file, &mut project.diagnostics);
-        let items = tree.items.into_iter().filter_map(|item| match item {
-            Item::Experiment(experiment) => Some(experiment.items),
-            Item::Class(_) | Item::Type(_) | Item::Study(_) => None,
-        });
-        let added: Vec<_> = items.flatten().collect();
-        let own = project.file.files.iter_mut().take(1);
-        for item in own.flat_map(|(_, tree)| &mut Arc::make_mut(tree).items) {
-            if let Item::Experiment(experiment) = item
-                && Some(&experiment.name.text) == project.experiment.as_ref()
-            {
-                experiment.items.extend(added.iter().cloned());
-            }
-        }
-    }
-}
-
-/// The margins of every loop that the program cuts; why there are none, where there are not.
-pub(crate) fn all(
-    experiment: &str,
-    program: &Program,
-    tables: &BTreeMap<String, Table>,
-    p: &[f64],
-    asked: (Option<&str>, &[(usize, usize)]),
-    diagnostics: &mut Diagnostics,
-) -> Option<Vec<OfLoop>> {
-    let cuts = program.experiment.cuts.iter().enumerate();
-    let found: Vec<Option<OfLoop>> = cuts
-        .map(|(number, cut)| {
-            let of = one(experiment, program, (number, cut), tables, p, asked);
-            of.map_err(|diagnostic| diagnostics.push(*diagnostic)).ok()
-        })
-        .collect();
-    found.into_iter().collect()
-}
-
-fn one(
-    experiment: &str,
-    program: &Program,
-    (number, cut): (usize, &Cut),
-    tables: &BTreeMap<String, Table>,
-    p: &[f64],
-    (asked, modes): (Option<&str>, &[(usize, usize)]),
-) -> Result<OfLoop, Box<Diagnostic>> {
-    if program.experiment.differentiated.contains(&cut.input) {
-        let message = format!(
-            "the loop needs the derivative of `{}` by the time, which a test signal does not have",
-            cut.signal
-        );
-        let help = "open the loop at another signal: at the output of the controller, or before the differentiation";
-        let diagnostic = Diagnostic::error(Code::CannotCut, message);
-        let diagnostic = diagnostic.label(cut.origin.span, "differentiated by what reads it");
-        return Err(Box::new(diagnostic.help(help)));
-    }
-    let input = std::slice::from_ref(&cut.input);
-    let constant = |which| program.kernels.constant(which, p);
-    let time = operating_point::moment(asked, cut.at, constant(Constant::CutAt(number)));
-    let time = time.map_err(|reason| {
-        let diagnostic = Diagnostic::error(Code::NoResponse, reason);
-        Box::new(diagnostic.label(cut.origin.span, "linearised there"))
-    })?;
-    let about = About {
-        time,
-        modes: &[modes, &cut.modes].concat(),
-        open: false,
-    };
-    let linear = linearize_about(program, tables, p, input, about).map_err(|error| {
-        let diagnostic = Diagnostic::error(Code::NoResponse, operating_point::why_not(&error));
-        Box::new(diagnostic.label(cut.origin.span, "the loop has no response here"))
-    })?;
-    let band = constant(Constant::SearchedFrom(number)).zip(constant(Constant::SearchedTo(number)));
-    let found = margins(program, &linear, cut, band).map_err(|error| refused(cut, error))?;
-    Ok(OfLoop {
-        experiment: experiment.to_owned(),
-        signal: cut.signal.clone(),
-        unstable: poles(&linear).unstable(),
-        point: assumed::text(program, &linear, about.time),
-        about: assumed::blocks(program, &linear, about.time),
-        assumptions: assumed::listed(program, &linear),
-        found,
-        given: band.is_some(),
-    })
-}
-
-fn refused(cut: &Cut, error: CutError) -> Box<Diagnostic> {
-    let signal = &cut.signal;
-    let (code, message, label, help) = match error {
-        CutError::SampledLoop => (
-            Code::CannotCut,
-            format!(
-                "`{signal}` is continuous, but clocks close its loop: it has no single open-loop response"
-            ),
-            "continuous, in a sampled loop",
-            "cut where the loop is sampled: at a clocked variable, or at a signal that is `hold(…)` of one",
-        ),
-        CutError::SlowerClock => (
-            Code::CannotCut,
-            format!(
-                "`{signal}` is in a loop with a slower clock: its response differs from tick to tick"
-            ),
-            "sampled faster than its loop",
-            "cut at a signal of the slowest clock of the loop, or open the outer loop: set its gain to 0",
-        ),
-        CutError::Reversed => (
-            Code::CannotCut,
-            format!(
-                "the equation of `{signal}` does not determine it: other equations do, so its direction is not defined"
-            ),
-            "no signal with a direction",
-            "cut at a signal of the loop: an input, an output or a clocked variable; or let the loop read one: `Angle measured = rotor.phi;`",
-        ),
-        CutError::NotHeld => (
-            Code::CannotCut,
-            format!("no clocked part is held: `{signal}` drives nothing"),
-            "in no loop",
-            "cut at a signal whose value the model reads",
-        ),
-        CutError::EmptyBand => (
-            Code::NoResponse,
-            "the band of frequencies is empty".to_owned(),
-            "nothing to search",
-            "write `over 1 .. 500 [Hz]`, of a sampled loop below half its rate",
-        ),
-        CutError::Singular(f) => (
-            Code::NoResponse,
-            format!("the loop is singular at {} Hz", significant(f, 3)),
-            "no response there",
-            "search beside it: `over 1 .. 500 [Hz]`",
-        ),
-    };
-    let diagnostic = Diagnostic::error(code, message);
-    Box::new(diagnostic.label(cut.origin.span, label).help(help))
-}
 
 /// What was found, as text of 80 columns.
-pub(crate) fn text(of: &OfLoop) -> String {
+pub(super) fn text(of: &OfLoop) -> String {
     let found = &of.found;
     let mut text = format!("margins at {}\n", of.signal);
     for pole in &of.unstable {
@@ -232,7 +63,7 @@ pub(crate) fn text(of: &OfLoop) -> String {
         let _ = writeln!(text, "{}", line.trim_end());
     }
     text.push_str(&others(found.phase_crossovers.len()));
-    for line in assumed(of) {
+    for line in stands_on(of) {
         let _ = writeln!(text, "  {line}");
     }
     text
@@ -308,7 +139,7 @@ fn peak((value, f): (f64, f64)) -> (String, String) {
 }
 
 /// What the numbers stand on.
-fn assumed(of: &OfLoop) -> Vec<String> {
+fn stands_on(of: &OfLoop) -> Vec<String> {
     let found = &of.found;
     let mut lines = vec![
         "L is taken with negative feedback: -1 is critical. The loop is cut where the".to_owned(),
@@ -374,7 +205,7 @@ fn time(seconds: f64) -> String {
 }
 
 /// The same as JSON.
-pub(crate) fn json(of: &OfLoop) -> Value {
+pub(super) fn json(program: &Program, of: &OfLoop) -> Value {
     let found = &of.found;
     let stable = of.unstable.is_empty();
     let valid = stable && found.in_loop;
@@ -422,13 +253,13 @@ pub(crate) fn json(of: &OfLoop) -> Value {
         .unzip();
     json!({
         "experiment": of.experiment, "signal": of.signal, "stable": stable, "in_loop": found.in_loop,
-        "unstable_poles": unstable, "assumptions": of.assumptions, "period_s": found.period_s, "band_hz": found.band_hz,
+        "unstable_poles": unstable, "assumptions": assumed::listed(program, &of.linear), "period_s": found.period_s, "band_hz": found.band_hz,
         "gain_margin": factor(found.gain_margin()), "gain_reduction": factor(found.gain_reduction()),
         "phase_margin": phase.map(|(angle, f)| json!({ "deg": angle.to_degrees(), "frequency_hz": f })),
         "delay_margin": delay,
         "sensitivity_peak": peak(found.sensitivity_peak), "complementary_peak": peak(found.complementary_peak),
         "gain_crossovers": gains, "phase_crossovers": phases,
-        "assumed": assumed(of).join(" "),
+        "assumed": stands_on(of).join(" "),
         "frequency_hz": frequencies, "open_loop_re_im": open,
     })
 }
@@ -436,3 +267,6 @@ pub(crate) fn json(of: &OfLoop) -> Value {
 fn finite(f: f64) -> Option<f64> {
     f.is_finite().then_some(f)
 }
+
+/// Crossovers listed in the text, of each kind; JSON has all.
+const LISTED: usize = 8;

@@ -6,51 +6,48 @@ use hyde_experiment::{BodeError, Linear, Pole, Poles, SteppedOutput, frequency_r
 use hyde_program::{Bode, Constant, Program};
 use hyde_signal::spectrum::FrequencyResponse;
 use hyde_sim::Reached;
-use hyde_units::significant;
-use hyde_units::{difference_in, shown};
+use hyde_units::{NamedUnit, significant};
 
 /// From an input to one output.
-pub(crate) struct Response {
+pub struct Response {
     /// The experiment.
-    pub(crate) experiment: String,
+    pub experiment: String,
     /// The input.
-    pub(crate) input: String,
+    pub input: String,
     /// The output, as it is written.
-    pub(crate) output: String,
-    /// Output per input, as it is drawn.
-    pub(crate) unit: String,
-    /// Drawn value = SI value times this.
-    pub(crate) factor: f64,
+    pub output: String,
+    /// The unit of the output, and that of the input if it is known.
+    pub units: (NamedUnit, Option<NamedUnit>),
     /// Frequencies of the linearised response in Hz.
-    pub(crate) frequency: Vec<f64>,
+    pub frequency: Vec<f64>,
     /// Its real and imaginary parts, SI.
-    pub(crate) linear: Vec<(f64, f64)>,
+    pub linear: Vec<(f64, f64)>,
     /// Frequencies in Hz and dampings of the modes that swing.
-    pub(crate) resonances: Vec<(f64, f64)>,
+    pub resonances: Vec<(f64, f64)>,
     /// By the sweep of the stimulus.
-    pub(crate) swept: Option<FrequencyResponse>,
+    pub swept: Option<FrequencyResponse>,
     /// Measured on the machine.
-    pub(crate) measured: Vec<Compared>,
+    pub measured: Vec<Compared>,
     /// By stepped sines: frequency, amplitude of the input, what came out.
-    pub(crate) stepped: Vec<(f64, f64, SteppedOutput)>,
+    pub stepped: Vec<(f64, f64, SteppedOutput)>,
 }
 
 /// The band of a response in Hz.
-pub(crate) fn band(program: &Program, number: usize, p: &[f64]) -> Option<(f64, f64)> {
+pub(super) fn band(program: &Program, number: usize, p: &[f64]) -> Option<(f64, f64)> {
     let from = program.kernels.constant(Constant::BandFrom(number), p)?;
     let to = program.kernels.constant(Constant::BandTo(number), p)?;
     (from > 0.0 && to > from).then_some((from, to))
 }
 
 /// So many frequencies from one end of a band to the other, evenly along their logarithm.
-pub(crate) fn frequencies(band: (f64, f64), count: usize) -> Vec<f64> {
+pub(super) fn frequencies(band: (f64, f64), count: usize) -> Vec<f64> {
     let count = count.max(2);
     let at = |k: usize| band.0 * (band.1 / band.0).powf(k as f64 / (count - 1) as f64);
     (0..count).map(at).collect()
 }
 
 /// The linearised responses of an experiment's request, one an output; why there are none, where there are not.
-pub(crate) fn linearised(
+pub(super) fn linearised(
     experiment: &str,
     program: &Program,
     (bode, frequency): (&Bode, &[f64]),
@@ -68,6 +65,9 @@ pub(crate) fn linearised(
         BodeError::Singular(f) => format!("the system is singular at {} Hz", significant(f, 3)),
     })?;
     let resonances = resonances(system, poles, frequency);
+    let mut parameters = program.parameters.iter();
+    let of_input = parameters.find(|parameter| parameter.name == bode.input);
+    let of_input = of_input.map(|parameter| parameter.unit.clone());
     let responses = bode
         .outputs
         .iter()
@@ -76,8 +76,7 @@ pub(crate) fn linearised(
             experiment: experiment.to_owned(),
             input: bode.input.clone(),
             output: name.clone(),
-            unit: unit(program, bode, *output).0,
-            factor: unit(program, bode, *output).1,
+            units: (program.outputs[*output].unit.clone(), of_input.clone()),
             frequency: frequency.to_vec(),
             linear: response
                 .into_iter()
@@ -92,7 +91,7 @@ pub(crate) fn linearised(
 }
 
 /// The equations differentiate the input, of which the linearised system knows the value alone.
-pub(crate) fn no_rate(bode: &Bode) -> Diagnostic {
+pub(super) fn no_rate(bode: &Bode) -> Diagnostic {
     let message = format!(
         "the equations need the time derivative of `{}`, so its response is not defined",
         bode.input
@@ -117,20 +116,4 @@ fn resonances(system: &Linear, poles: &Poles, frequency: &[f64]) -> Vec<(f64, f6
     found
         .map(|pole| (pole.mode().frequency_hz, pole.mode().damping))
         .collect()
-}
-
-/// The unit of an output over that of the input, for people, with how many of it one of SI is.
-fn unit(program: &Program, bode: &Bode, output: usize) -> (String, f64) {
-    let mut parameters = program.parameters.iter();
-    let Some(input) = parameters.find(|parameter| parameter.name == bode.input) else {
-        return (String::new(), 1.0);
-    };
-    let (of, drawn) = difference_in(&program.outputs[output].unit);
-    let (per, given) = difference_in(&input.unit);
-    let text = match (shown(&of), shown(&per)) {
-        (of, "") => of.to_owned(),
-        ("", per) => format!("1/{per}"),
-        (of, per) => format!("{of} per {per}"),
-    };
-    (text, given.to_si(drawn.from_si(1.0)))
 }
