@@ -8,7 +8,6 @@ use hyde_compiler::{Candidate, Compiled, LawSite};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_experiment::RunError;
 use hyde_program::Program;
-use hyde_sim::Failure;
 use hyde_study::run_failure;
 pub(crate) use hyde_study::{Aim, Asked, Loaded, Project, Records};
 use hyde_study::{Fault, Refused};
@@ -101,16 +100,6 @@ pub(crate) trait Told {
 
     /// Reports why a model cannot be given its parameters.
     fn report_refused(&mut self, args: &ModelArgs, program: &Program, error: &RunError) -> Exit;
-
-    /// Reports why a run does not come to the operating point.
-    fn report_no_point(
-        &mut self,
-        args: &ModelArgs,
-        program: &Program,
-        failure: Box<Failure>,
-    ) -> Exit {
-        self.report_refused(args, program, &RunError::Failed(failure))
-    }
 }
 
 impl Told for Project {

@@ -14,6 +14,7 @@
 //! package_pages                             the documentation of packages
 //! excitation                                what to record next
 //! bode                                      frequency responses and margins
+//! modes, state_space                        natural frequencies; a linearised model as matrices
 //! sweep                                     the summary of a sweep, and its page
 //! lines                                     a text in lines of a width
 //! ```
@@ -33,10 +34,12 @@ pub mod forces;
 pub mod head;
 pub mod ledger;
 pub mod lines;
+pub mod modes;
 pub mod package_pages;
 pub mod panels;
 pub mod run_page;
 pub mod start;
+pub mod state_space;
 pub mod summary;
 pub mod sweep;
 pub mod thinned;

@@ -18,6 +18,8 @@
 //! check          everything in a file compiled, and nothing run         check.rs
 //! assumptions    what was assumed of records, tables and FMUs         assumptions.rs
 //! responses      frequency responses and stability margins            responses.rs
+//! modes          natural frequencies, and parameters from them         modes.rs
+//! state_space    the linearised model as matrices                      state_space.rs
 //! sweep          the cases of a sweep, solved and gathered             sweep.rs
 //! store          where finished tasks of a long study are kept         store.rs
 //! progress       how far a long study is                               progress.rs
@@ -51,6 +53,7 @@ mod fmus;
 mod inputs;
 mod known;
 pub mod left_model;
+pub mod modes;
 pub mod operating_point;
 mod package;
 pub mod ports;
@@ -64,6 +67,7 @@ pub mod render;
 pub mod responses;
 pub mod run_failure;
 pub mod settings;
+pub mod state_space;
 mod store;
 pub mod sweep;
 mod tables;

@@ -1,11 +1,11 @@
 //! The natural frequencies of the model with what the sliders say, about the point that its experiment names.
 
-use crate::commands::modes::asked_point;
 use hyde_experiment::{About, linearize_about, mode_shape, poles};
 use hyde_present::assumed;
 use hyde_program::Program;
 use hyde_report::{Block, Page, Section, Table};
 use hyde_signal::Table as Record;
+use hyde_study::modes::asked_point;
 use hyde_study::operating_point;
 use hyde_units::significant;
 use std::collections::BTreeMap;

@@ -1,18 +1,20 @@
 //! A state space as a script for Octave and MATLAB.
 
-use super::Found;
+use super::about;
 use super::content::{groups, times, unit};
 use super::python::number;
+use hyde_study::state_space::Found;
 use std::fmt::Write as _;
 
-pub(super) fn text(found: &Found) -> String {
+/// The file for Octave and MATLAB.
+pub fn text(found: &Found) -> String {
     let mut text = format!(
         "% The linearised system of {}, written by Hyde {}: `sys` needs the package control of\n\
          % Octave or the Control System Toolbox of MATLAB.\n%\n",
-        found.name,
+        found.name(),
         env!("CARGO_PKG_VERSION")
     );
-    for line in found.about.trim_end().lines() {
+    for line in about(found).trim_end().lines() {
         let _ = writeln!(text, "% {line}");
     }
     text.push_str("% Values are deviations from the operating point, in SI units; the values there are in *_values.\n\n");

@@ -1,32 +1,29 @@
-//! The page of `hyde modes`: the modes of each experiment, and about what it is linearised.
+//! The page of natural frequencies: the modes of each experiment, and about what it is linearised.
 
-use super::Found;
-use crate::files;
-use hyde_present::assumed;
-use hyde_report::{Block, Figure, Outcome, Page, Section, Table, Verdict, to_html};
+use super::{blocks, unstable};
+use crate::{assumed, head};
+use hyde_report::{Block, Figure, Outcome, Page, Section, Table, Verdict};
+use hyde_study::modes::Modes;
 use hyde_units::significant;
-use std::path::Path;
 
-/// Leaves `modes.html`, with the figure of the modes over a parameter if there is one; gives back its name.
-pub(super) fn leave(folder: &Path, over: Option<Figure>, all: &[Found]) -> Result<String, String> {
-    files::make_folder(folder)?;
-    let path = folder.join("modes.html");
+/// The page, with the figure of the modes over a parameter if there is one; `made` says when it is made.
+#[must_use]
+pub fn page(over: Option<Figure>, all: &[Modes], made: &str) -> Page {
     let over = over.map(|figure| Section {
         heading: "Over a parameter".to_owned(),
         blocks: vec![Block::Figure(figure)],
     });
-    let page = Page {
+    let first = all.first();
+    Page {
         title: "Natural frequencies".to_owned(),
-        facts: all.first().map_or(Vec::new(), |found| found.facts.clone()),
+        facts: first.map_or(Vec::new(), |own| head::facts(&own.prepared.project, made)),
         sections: over.into_iter().chain(all.iter().map(section)).collect(),
         footer: format!("Hyde {}", env!("CARGO_PKG_VERSION")),
-    };
-    files::write(&path, to_html(&page).as_bytes())?;
-    Ok(path.display().to_string())
+    }
 }
 
-fn section(found: &Found) -> Section {
-    let grows = found.unstable.iter().map(|text| {
+fn section(found: &Modes) -> Section {
+    let grows = unstable(found).into_iter().map(|text| {
         Block::Verdicts(vec![Verdict {
             outcome: Outcome::Failed,
             text: text.trim_end().to_owned(),
@@ -42,11 +39,9 @@ fn section(found: &Found) -> Section {
         rows: found.modes.iter().enumerate().map(row).collect(),
         ..Table::with_columns(&[">f [Hz]", ">damping", "energy"])
     };
-    let told = found
-        .blocks
-        .iter()
-        .filter(|block| **block != Block::Text(String::new()));
-    let blocks = grows.chain([Block::Table(table)]).chain(told.cloned());
+    let told = blocks(found).into_iter();
+    let told = told.filter(|block| *block != Block::Text(String::new()));
+    let blocks = grows.chain([Block::Table(table)]).chain(told);
     Section {
         heading: found.name.clone(),
         blocks: blocks.collect(),

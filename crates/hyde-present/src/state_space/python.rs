@@ -1,15 +1,17 @@
 //! A state space as a Python file that makes a system of python-control.
 
-use super::Found;
+use super::about;
 use super::content::{groups, times, unit};
+use hyde_study::state_space::Found;
 use std::fmt::Write as _;
 
-pub(super) fn text(found: &Found) -> String {
+/// The file for python-control.
+pub fn text(found: &Found) -> String {
     let mut text = format!(
         "\"\"\"The linearised system of {}, written by Hyde {}: `system` is a StateSpace of python-control.\n\n{}\n",
-        found.name,
+        found.name(),
         env!("CARGO_PKG_VERSION"),
-        found.about.trim_end().replace('\\', "/").replace('"', "'")
+        about(found).trim_end().replace('\\', "/").replace('"', "'")
     );
     text.push_str(
         "Values are deviations from the operating point, in SI units; the values there are in `*_values`.\n\"\"\"\n\n",
@@ -52,7 +54,7 @@ fn list(texts: impl Iterator<Item = String>) -> String {
 }
 
 /// A number with all its digits.
-pub(super) fn number(value: f64) -> String {
+pub fn number(value: f64) -> String {
     // No negative zero.
     format!("{:?}", value + 0.0)
 }

@@ -1,13 +1,14 @@
 //! A state space as data: a MAT file of level 5, and JSON.
 
-use super::Found;
+use super::about;
 use hyde_experiment::StateSpaceSignal;
 use hyde_signal::mat::Level5;
+use hyde_study::state_space::Found;
 use serde_json::{Value, json};
 
 /// The variables `A`, `B`, `C`, `D`, `dt`, names, units and values at the operating point.
-pub(super) fn mat(found: &Found) -> Vec<u8> {
-    let mut file = Level5::new(&format!("{}, Hyde", found.name));
+pub fn mat(found: &Found) -> Vec<u8> {
+    let mut file = Level5::new(&format!("{}, Hyde", found.name()));
     let columns = [
         found.system.states.len(),
         found.system.inputs.len(),
@@ -30,11 +31,11 @@ pub(super) fn mat(found: &Found) -> Vec<u8> {
         file = file.texts(&format!("{name}_units"), &units);
         file = file.numbers(&format!("{name}_values"), values.len(), 1, &values);
     }
-    file.text("about", found.about.trim_end()).into_bytes()
+    file.text("about", about(found).trim_end()).into_bytes()
 }
 
 /// The same as JSON, matrices by rows.
-pub(super) fn json(found: &Found) -> Value {
+pub fn json(found: &Found) -> Value {
     let mut value = names(found);
     for (name, rows) in found.system.matrices() {
         value[name] = rows.into();
@@ -43,9 +44,9 @@ pub(super) fn json(found: &Found) -> Value {
 }
 
 /// All but the matrices.
-pub(super) fn names(found: &Found) -> Value {
+pub fn names(found: &Found) -> Value {
     let (period, first) = times(found);
-    let mut value = json!({ "of": found.name, "dt": period, "t0": first, "about": found.about });
+    let mut value = json!({ "of": found.name(), "dt": period, "t0": first, "about": about(found) });
     for (name, signals) in groups(found) {
         let listed = signals
             .iter()
@@ -56,13 +57,13 @@ pub(super) fn names(found: &Found) -> Value {
 }
 
 /// The sample time, 0 of a continuous system, and the first instant, in s.
-pub(super) fn times(found: &Found) -> (f64, f64) {
+pub fn times(found: &Found) -> (f64, f64) {
     let sampled = found.system.sampled;
     sampled.map_or((0.0, 0.0), |times| (times.period_s, times.first_s))
 }
 
 /// States, inputs and outputs.
-pub(super) fn groups(found: &Found) -> [(&'static str, &[StateSpaceSignal]); 3] {
+pub fn groups(found: &Found) -> [(&'static str, &[StateSpaceSignal]); 3] {
     let system = &found.system;
     [
         ("state", &system.states),
@@ -72,6 +73,6 @@ pub(super) fn groups(found: &Found) -> [(&'static str, &[StateSpaceSignal]); 3] 
 }
 
 /// The unit for people; `1` of a bare number, `?` where it is not known.
-pub(super) fn unit(signal: &StateSpaceSignal) -> String {
+pub fn unit(signal: &StateSpaceSignal) -> String {
     signal.unit.clone().unwrap_or_else(|| "?".to_owned())
 }

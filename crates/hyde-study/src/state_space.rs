@@ -1,0 +1,163 @@
+//! [`state_space`]: the linearised model as matrices with names.
+
+use crate::modes::Prepared;
+use crate::ports::{chosen_outputs, is_input};
+use crate::{Fault, Refused, operating_point};
+use hyde_diag::{Code, Diagnostic};
+use hyde_experiment::{About, Linear, LinearizeError, Poles, StateSpace, linearize_about, poles};
+use hyde_program::Program;
+
+/// A state space with what it is about.
+pub struct Found {
+    /// The model, and about what it is linearised.
+    pub prepared: Prepared,
+    /// The linearised model.
+    pub linear: Linear,
+    /// Its poles.
+    pub poles: Poles,
+    /// The matrices.
+    pub system: StateSpace,
+    /// It is that of the plant alone.
+    pub open: bool,
+}
+
+impl Found {
+    /// The model, and the experiment.
+    #[must_use]
+    pub fn name(&self) -> String {
+        let program = &self.prepared.compiled.program;
+        match &self.prepared.project.experiment {
+            Some(experiment) => format!("{} of {}", experiment, program.name),
+            None => program.name.clone(),
+        }
+    }
+}
+
+/// Makes the state space from the inputs to the outputs that are named, from all to all if none is; `open` of the plant alone.
+///
+/// # Errors
+/// There is no such input or output, or no state space: why.
+pub fn state_space(
+    mut prepared: Prepared,
+    (input, output): (&[String], &[String]),
+    open: bool,
+) -> Result<Found, Refused> {
+    let program = &prepared.compiled.program;
+    let inputs = inputs(program, input).map_err(Refused::Asked)?;
+    let outputs = chosen_outputs(program, output).map_err(Refused::Asked)?;
+    let outputs: Vec<usize> = match output.is_empty() {
+        true => outputs.into_iter().collect(),
+        // In the order in which they are named.
+        false => output.iter().filter_map(|n| program.output(n)).collect(),
+    };
+    let refused = |mut prepared: Prepared, diagnostic: Diagnostic| {
+        prepared.project.diagnostics.push(diagnostic);
+        prepared.project.refused(Fault::Model)
+    };
+    if let Some(input) = inputs
+        .iter()
+        .find(|input| program.experiment.differentiated.contains(input))
+    {
+        let diagnostic = differentiated(program, input);
+        return Err(refused(prepared, diagnostic));
+    }
+    let about = About {
+        time: prepared.time,
+        modes: &prepared.chosen,
+        open,
+    };
+    let (tables, p) = (&prepared.tables, &prepared.parameters);
+    let linear = match linearize_about(program, tables, p, &inputs, about) {
+        Ok(linear) => linear,
+        Err(LinearizeError::Failed(failure)) => return Err(prepared.no_point(failure)),
+        Err(error) => {
+            return Err(match no_system(program, &error) {
+                Some(diagnostic) => refused(prepared, diagnostic),
+                None => Refused::Asked(format!(
+                    "there is no state space: {}",
+                    operating_point::why_not(&error)
+                )),
+            });
+        }
+    };
+    let system = hyde_experiment::state_space(program, p, &linear, (&inputs, &outputs));
+    let Some(system) = system else {
+        let diagnostic = delayed(program);
+        prepared.project.diagnostics.push(diagnostic);
+        return Err(prepared.project.refused(Fault::Model));
+    };
+    Ok(Found {
+        poles: poles(&linear),
+        prepared,
+        linear,
+        system,
+        open,
+    })
+}
+
+/// The inputs that are asked for, or all.
+fn inputs(program: &Program, asked: &[String]) -> Result<Vec<String>, String> {
+    let all = program.parameters.iter();
+    let all = all.filter(|parameter| is_input(program, parameter));
+    let all: Vec<String> = all.map(|parameter| parameter.name.clone()).collect();
+    if asked.is_empty() {
+        return Ok(all);
+    }
+    match asked.iter().find(|name| !all.contains(name)) {
+        None => Ok(asked.to_vec()),
+        Some(other) if all.is_empty() => Err(format!(
+            "the model has no free input `{other}`: it has none; declare one, `input Force F;`"
+        )),
+        Some(other) => Err(format!(
+            "the model has no free input `{other}`; its inputs are `{}`",
+            all.join("`, `")
+        )),
+    }
+}
+
+fn differentiated(program: &Program, input: &str) -> Diagnostic {
+    let message = format!(
+        "the equations need the time derivative of `{input}`, so a state space has no such input"
+    );
+    let parameter = program.parameter(input);
+    let diagnostic = Diagnostic::error(Code::CannotExport, message);
+    let diagnostic = match parameter {
+        Some((parameter, _)) => {
+            diagnostic.label(parameter.origin.span, "differentiated in the model")
+        }
+        None => diagnostic,
+    };
+    diagnostic.help("name the other inputs with `--input`, or use that derivative as the input: for a prescribed motion the acceleration, with speed and position as its integrals")
+}
+
+fn delayed(program: &Program) -> Diagnostic {
+    let message =
+        "a model with a `delay` has infinitely many states, and a state space finitely many";
+    let diagnostic = Diagnostic::error(Code::CannotExport, message);
+    let diagnostic = match program.delays.first() {
+        Some(delay) => diagnostic.label(delay.origin.span, "delayed here"),
+        None => diagnostic,
+    };
+    diagnostic.help("`hyde bode` has the exact response; for a state space write the delay as a rational function, or inside a `clocked` part as values of earlier ticks")
+}
+
+/// Why there is no linearised model, where that has a place in the file.
+fn no_system(program: &Program, error: &LinearizeError) -> Option<Diagnostic> {
+    match error {
+        LinearizeError::DelayAndClock => Some(delayed(program)),
+        LinearizeError::NoCommonPeriod | LinearizeError::LongDelay => {
+            let reason = operating_point::why_not(error);
+            let diagnostic = Diagnostic::error(Code::CannotExport, reason);
+            let diagnostic = match program.clocks.first() {
+                Some(clock) => diagnostic.label(clock.origin.span, "a clock of the loop"),
+                None => diagnostic,
+            };
+            let help = "choose periods that are multiples of one another and delays below a period, or export the plant alone with `--open`";
+            Some(diagnostic.help(help))
+        }
+        LinearizeError::NoInput(_)
+        | LinearizeError::TooLarge(_)
+        | LinearizeError::Singular
+        | LinearizeError::Failed(_) => None,
+    }
+}
