@@ -15,6 +15,7 @@
 //! excitation                                what to record next
 //! bode                                      frequency responses and margins
 //! modes, state_space                        natural frequencies; a linearised model as matrices
+//! budget, selftest, trend                   shares of imperfections; what verdicts are worth; how sizes went
 //! sweep                                     the summary of a sweep, and its page
 //! lines                                     a text in lines of a width
 //! ```
@@ -24,6 +25,7 @@ pub mod asked_figures;
 pub mod assumed;
 pub mod assumptions;
 pub mod bode;
+pub mod budget;
 mod compared;
 pub mod comparison;
 pub mod diagnosed;
@@ -38,9 +40,11 @@ pub mod modes;
 pub mod package_pages;
 pub mod panels;
 pub mod run_page;
+pub mod selftest;
 pub mod start;
 pub mod state_space;
 pub mod summary;
 pub mod sweep;
 pub mod thinned;
+pub mod trend;
 pub mod unknown;

@@ -20,6 +20,9 @@
 //! responses      frequency responses and stability margins            responses.rs
 //! modes          natural frequencies, and parameters from them         modes.rs
 //! state_space    the linearised model as matrices                      state_space.rs
+//! budget         which imperfection contributes how much             budget.rs
+//! selftest       what the verdicts of a diagnosis are worth          selftest.rs
+//! trend          how sizes went from one diagnosis to the next       trend.rs
 //! sweep          the cases of a sweep, solved and gathered             sweep.rs
 //! store          where finished tasks of a long study are kept         store.rs
 //! progress       how far a long study is                               progress.rs
@@ -41,6 +44,7 @@
 
 mod asked;
 pub mod assumptions;
+pub mod budget;
 mod calibration;
 mod check;
 pub mod comparison;
@@ -66,12 +70,14 @@ mod refused;
 pub mod render;
 pub mod responses;
 pub mod run_failure;
+pub mod selftest;
 pub mod settings;
 pub mod state_space;
 mod store;
 pub mod sweep;
 mod tables;
 pub mod topology;
+pub mod trend;
 pub mod unknown;
 pub mod unobservable;
 pub mod world;

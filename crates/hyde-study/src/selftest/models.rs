@@ -1,11 +1,11 @@
 //! [`Models`]: programs of an axis with effects put on. Every diagnosis of a self-test asks for the same observed ones, one
 //! effect at a time: these are made once.
 
-use crate::project::Project;
+use crate::Project;
+use crate::unknown;
 use hyde_calibrate::{Built, Written};
 use hyde_compiler::{Additions, Candidate, Form, Header, Request};
 use hyde_diag::Diagnostics;
-use hyde_study::unknown;
 use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
@@ -23,7 +23,7 @@ pub(super) struct Models<'a> {
 impl<'a> Models<'a> {
     pub(super) fn new(project: &'a Project, candidates: &'a [Candidate]) -> Self {
         Self {
-            headers: hyde_study::headers(&project.records),
+            headers: crate::headers(&project.records),
             observed: Mutex::default(),
             project,
             candidates,

@@ -1,30 +1,22 @@
 //! What is missing of a self-test, done on all cores; each outcome is kept as soon as it is there.
 
+use super::Ended;
 use super::kept::{self, Kept};
-use crate::batch::progress::Shown;
+use crate::unobservable;
+use crate::{Progress, Store};
 use hyde_calibrate::{Axis, Case, SelftestError, Simulated, try_case};
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_experiment::RunError;
-use hyde_study::unobservable;
-use hyde_study::{Progress as _, Store};
 use hyde_units::significant;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
-
-/// Why work ended before its end.
-pub(super) enum Ended {
-    /// It was told to, after so many of so many cases.
-    Interrupted(usize, usize),
-    /// A result could not be kept.
-    Store(String),
-}
 
 /// The outcomes of all cases, in their order; those that the store has are taken from there.
 pub(super) fn outcomes(
     axis: &Axis<'_>,
     cases: Vec<Case>,
     store: Option<&dyn Store>,
-    quiet: bool,
+    progress: &dyn Progress,
 ) -> Result<Vec<(Case, Kept)>, Ended> {
     let total = cases.len();
     let known: Result<Vec<Option<Kept>>, String> = cases
@@ -36,10 +28,9 @@ pub(super) fn outcomes(
             },
         )
         .collect();
-    let known = known.map_err(Ended::Store)?;
+    let known = known.map_err(Ended::Asked)?;
     let before = known.iter().flatten().count();
     let done = AtomicUsize::new(before);
-    let progress = Shown::new(false, quiet);
     progress.begin(total, before);
     let pairs: Vec<(Case, Option<Kept>)> = cases.into_iter().zip(known).collect();
     let each = pairs.into_par_iter().with_max_len(1).map(|(case, known)| {
@@ -48,7 +39,7 @@ pub(super) fn outcomes(
         }
         let kept: Kept = match try_case(axis, &case) {
             Ok(outcome) => Ok(outcome),
-            Err(SelftestError::Interrupted) => return Err(Ended::Interrupted(0, 0)),
+            Err(SelftestError::Interrupted) => return Err(Ended::Interrupted(None)),
             Err(error) => {
                 progress.failed();
                 Err(reason(&error))
@@ -56,7 +47,7 @@ pub(super) fn outcomes(
         };
         if let Some(store) = store {
             let put = store.put(&case.key, &kept::encoded(&kept));
-            put.and_then(|()| store.sync()).map_err(Ended::Store)?;
+            put.and_then(|()| store.sync()).map_err(Ended::Asked)?;
         }
         progress.at(done.fetch_add(1, Ordering::Relaxed) + 1);
         Ok((case, kept))
@@ -64,8 +55,8 @@ pub(super) fn outcomes(
     let found: Result<Vec<_>, Ended> = each.collect();
     progress.finish();
     found.map_err(|ended| match ended {
-        Ended::Interrupted(..) => Ended::Interrupted(done.load(Ordering::Relaxed), total),
-        Ended::Store(reason) => Ended::Store(reason),
+        Ended::Interrupted(_) => Ended::Interrupted(Some((done.load(Ordering::Relaxed), total))),
+        other => other,
     })
 }
 

@@ -1,12 +1,12 @@
 //! A self-test as JSON; numbers are SI.
 
-use super::Told;
-use super::kept::{Kept, word};
 use hyde_calibrate::{Case, Found, Planting, Size};
+use hyde_study::selftest::Tested;
+use hyde_study::selftest::{Kept, word};
 use serde_json::{Value, json};
 
 /// The report.
-pub(super) fn report(told: &Told<'_>) -> Value {
+pub fn report(told: &Tested<'_>) -> Value {
     let hypotheses: Vec<Value> = (0..told.hypotheses.len()).map(|n| named(told, n)).collect();
     let table = told.table;
     let rows: Vec<Value> = table
@@ -64,7 +64,7 @@ pub(super) fn report(told: &Told<'_>) -> Value {
 }
 
 /// Planted cases that show, and those of them that are named right.
-pub(super) fn sums(told: &Told<'_>) -> (usize, usize) {
+pub(super) fn sums(told: &Tested<'_>) -> (usize, usize) {
     let rows = told.table.rows.iter();
     rows.fold((0, 0), |(v, r), row| (v + row.visible, r + row.right))
 }
@@ -78,7 +78,7 @@ pub(super) fn shown(size: Size) -> String {
 }
 
 /// What is claimed; a law of its own has no name.
-fn claimed(told: &Told<'_>, found: Found) -> Value {
+fn claimed(told: &Tested<'_>, found: Found) -> Value {
     match found {
         Found::Nothing => json!("nothing"),
         Found::Law => json!("law"),
@@ -86,12 +86,12 @@ fn claimed(told: &Told<'_>, found: Found) -> Value {
     }
 }
 
-fn named(told: &Told<'_>, number: usize) -> Value {
+fn named(told: &Tested<'_>, number: usize) -> Value {
     let hypothesis = &told.hypotheses[number];
     json!({ "effect": hypothesis.effect, "site": hypothesis.site })
 }
 
-fn case(told: &Told<'_>, case: &Case, kept: &Kept) -> Value {
+fn case(told: &Tested<'_>, case: &Case, kept: &Kept) -> Value {
     let planted = match case.kind {
         Planting::Planted(number, _) | Planting::OpenSet(number, _) => Some(number),
         Planting::Empty | Planting::Parameter(_) | Planting::Sensor(..) => None,

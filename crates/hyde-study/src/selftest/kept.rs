@@ -4,7 +4,7 @@ use hyde_calibrate::{Claim, Outcome, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// An outcome, or why there is none.
-pub(super) type Kept = Result<Outcome, String>;
+pub type Kept = Result<Outcome, String>;
 
 #[derive(Serialize, Deserialize)]
 enum Stored {
@@ -27,7 +27,7 @@ struct StoredOutcome {
 }
 
 /// The word of a verdict, as reports have it.
-pub(super) fn word(verdict: Verdict) -> &'static str {
+pub fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::None => "none",
         Verdict::Effect => "effect",

@@ -1,9 +1,9 @@
 //! A self-test in lines of at most 80 columns.
 
-use super::Told;
 use super::json::{shown, sums};
 use hyde_calibrate::{Found, Planting, Row};
 use hyde_study::diagnosed::verdict;
+use hyde_study::selftest::Tested;
 use hyde_units::significant;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -12,7 +12,7 @@ use std::fmt::Write as _;
 const WIDTH: usize = 80;
 
 /// The tables.
-pub(super) fn text(told: &Told<'_>) -> String {
+pub fn text(told: &Tested<'_>) -> String {
     let mut out = String::new();
     let sizes: Vec<String> = told.asked.sizes.iter().map(|&size| shown(size)).collect();
     let _ = writeln!(
@@ -49,7 +49,7 @@ pub(super) fn text(told: &Told<'_>) -> String {
     out
 }
 
-fn line(out: &mut String, told: &Told<'_>, row: &Row) {
+fn line(out: &mut String, told: &Tested<'_>, row: &Row) {
     let hypothesis = &told.hypotheses[row.hypothesis];
     let seen = row.detectable.zip(hypothesis.sizes.first());
     let from = seen.map_or_else(String::new, |(value, size)| {
@@ -87,7 +87,7 @@ fn line(out: &mut String, told: &Told<'_>, row: &Row) {
     };
 }
 
-fn controls(out: &mut String, told: &Told<'_>) {
+fn controls(out: &mut String, told: &Tested<'_>) {
     let table = told.table;
     let lines = [
         ("nothing planted: verdict `none`", table.empty),
@@ -123,7 +123,7 @@ fn controls(out: &mut String, told: &Told<'_>) {
 }
 
 /// What could not be planted or found, and why.
-fn refused(out: &mut String, told: &Told<'_>) {
+fn refused(out: &mut String, told: &Tested<'_>) {
     let mut reasons: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for (case, kept) in told.outcomes {
         let (Planting::Planted(number, _) | Planting::OpenSet(number, _), Err(reason)) =
@@ -151,7 +151,7 @@ fn refused(out: &mut String, told: &Told<'_>) {
     }
 }
 
-fn found_name(told: &Told<'_>, found: Found) -> String {
+fn found_name(told: &Tested<'_>, found: Found) -> String {
     match found {
         Found::Nothing => "nothing".to_owned(),
         Found::Law => "a new law".to_owned(),
@@ -159,7 +159,7 @@ fn found_name(told: &Told<'_>, found: Found) -> String {
     }
 }
 
-fn named(told: &Told<'_>, number: usize) -> String {
+fn named(told: &Tested<'_>, number: usize) -> String {
     let hypothesis = &told.hypotheses[number];
     format!("{} at {}", hypothesis.effect, hypothesis.site)
 }

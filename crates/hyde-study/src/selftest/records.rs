@@ -1,25 +1,23 @@
 //! The simulated records of a case as files, to run its diagnosis on and to look at.
 
-use super::work;
-use crate::files;
+use super::{Ended, work};
+use crate::Calibration;
 use hyde_calibrate::{Axis, Case, tables_of};
 use hyde_signal::Table;
-use hyde_study::Calibration;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
-use std::path::Path;
 
-/// Leaves them in a folder, named as the files that their stimuli come from.
-pub(super) fn leave(
+/// The files, named as those that their stimuli come from.
+pub(super) fn files(
     axis: &Axis<'_>,
     case: &Case,
     calibration: &Calibration,
-    folder: &Path,
-) -> Result<(), String> {
+) -> Result<Vec<(String, String)>, Ended> {
     let all = || calibration.fitted.iter().chain(&calibration.holdout);
     let records: Vec<BTreeMap<String, Table>> = all().map(|r| r.tables.clone()).collect();
-    let made = tables_of(axis, case, &records).map_err(|error| work::reason(&error))?;
-    files::make_folder(folder)?;
+    let made = tables_of(axis, case, &records);
+    let made = made.map_err(|error| Ended::Asked(work::reason(&error)))?;
+    let mut files = Vec::new();
     for (recording, tables) in all().zip(made) {
         let several = tables.len() > 1;
         for (record, table) in tables {
@@ -27,10 +25,10 @@ pub(super) fn leave(
                 true => format!("{record}-{}", recording.name),
                 false => recording.name.clone(),
             };
-            files::write(&folder.join(name), csv(&table).as_bytes())?;
+            files.push((name, csv(&table)));
         }
     }
-    Ok(())
+    Ok(files)
 }
 
 /// A table in the units of its columns.
