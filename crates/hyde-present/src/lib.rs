@@ -16,6 +16,7 @@
 //! bode                                      frequency responses and margins
 //! modes, state_space                        natural frequencies; a linearised model as matrices
 //! budget, selftest, trend                   shares of imperfections; what verdicts are worth; how sizes went
+//! look                                      what is in traces
 //! sweep                                     the summary of a sweep, and its page
 //! lines                                     a text in lines of a width
 //! ```
@@ -36,6 +37,7 @@ pub mod forces;
 pub mod head;
 pub mod ledger;
 pub mod lines;
+pub mod look;
 pub mod modes;
 pub mod package_pages;
 pub mod panels;

@@ -23,6 +23,7 @@
 //! budget         which imperfection contributes how much             budget.rs
 //! selftest       what the verdicts of a diagnosis are worth          selftest.rs
 //! trend          how sizes went from one diagnosis to the next       trend.rs
+//! traces         what is in a trace, before any model reads it        traces.rs
 //! sweep          the cases of a sweep, solved and gathered             sweep.rs
 //! store          where finished tasks of a long study are kept         store.rs
 //! progress       how far a long study is                               progress.rs
@@ -77,6 +78,7 @@ mod store;
 pub mod sweep;
 mod tables;
 pub mod topology;
+pub mod traces;
 pub mod trend;
 pub mod unknown;
 pub mod unobservable;

@@ -1,12 +1,14 @@
 //! `hyde new`: a first model of an axis.
 
-use super::look::seen_of;
+use super::look::print_unread;
 use crate::args::{NewArgs, TemplateName};
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{print_error, print_output};
 use hyde_study::first_model::{FirstModel, Template, Trace, Wish, first_model};
 use hyde_study::settings;
+use hyde_study::traces::seen;
+use hyde_study::world::Disk;
 use hyde_units::NamedUnit;
 use std::path::{Path, PathBuf};
 
@@ -89,8 +91,8 @@ fn folder(args: &NewArgs) -> PathBuf {
 /// A trace as the model will read it.
 fn trace(text: &str, folder: &Path) -> Result<Trace, Failed> {
     let look = |text: &str| {
-        seen_of(text).map_err(|failed| {
-            failed.print();
+        seen(&Disk, text).map_err(|failed| {
+            print_unread(&failed);
             (Exit::Model, String::new())
         })
     };

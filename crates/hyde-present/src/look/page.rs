@@ -1,29 +1,25 @@
 //! The page of `hyde look`: a section a file, with a picture of every channel.
 
+use super::layout_of;
 use super::text::{delayed, limit, of_channel, of_clock, samples};
-use super::{Seen, layout_of};
-use crate::files;
-use hyde_present::thinned::thinned;
-use hyde_report::{Axis, Block, Figure, Line, Page, Panel, Section, Table, to_html};
+use crate::thinned::thinned;
+use hyde_report::{Axis, Block, Figure, Line, Page, Panel, Section, Table};
 use hyde_signal::look::Channel;
+use hyde_study::traces::Seen;
 use hyde_units::significant;
-use std::path::Path;
 
 /// So many points of a channel are drawn: the least and the greatest value of each stretch.
 const POINTS: usize = 600;
 
-/// Leaves `look.html`; gives back its path.
-pub(super) fn leave(folder: &Path, all: &[Seen]) -> Result<String, String> {
-    files::make_folder(folder)?;
-    let path = folder.join("look.html");
-    let page = Page {
+/// The page.
+#[must_use]
+pub fn page(all: &[Seen]) -> Page {
+    Page {
         title: "Traces".to_owned(),
         facts: Vec::new(),
         sections: all.iter().map(section).collect(),
         footer: format!("Hyde {}", env!("CARGO_PKG_VERSION")),
-    };
-    files::write(&path, to_html(&page).as_bytes())?;
-    Ok(path.display().to_string())
+    }
 }
 
 fn section(seen: &Seen) -> Section {

@@ -1,9 +1,10 @@
 //! What `hyde look` prints: a screen a file, 80 columns wide.
 
-use super::{Seen, layout_of};
-use hyde_present::lines::wrapped;
+use super::layout_of;
+use crate::lines::wrapped;
 use hyde_signal::Unusable;
 use hyde_signal::look::{Channel, Clock};
+use hyde_study::traces::Seen;
 use hyde_units::{counted, significant};
 use std::fmt::Write as _;
 
@@ -16,7 +17,7 @@ pub(super) fn limit(column: &Unusable) -> &'static str {
 }
 
 /// One file.
-pub(super) fn screen(seen: &Seen) -> String {
+pub fn screen(seen: &Seen) -> String {
     let look = &seen.look;
     let mut out = String::new();
     let name = seen.given.path.display();

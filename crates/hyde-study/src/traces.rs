@@ -1,0 +1,91 @@
+//! [`seen`]: what is in a trace, before any model reads it.
+
+use crate::record_settings::{self, Given, RECORD};
+use crate::world::World;
+use hyde_signal::Table;
+use hyde_signal::look::{Look, look as look_at};
+
+/// A file that was looked at.
+pub struct Seen {
+    /// Which file, and how it is read.
+    pub given: Given,
+    /// Its columns.
+    pub table: Table,
+    /// What is in them.
+    pub look: Look,
+}
+
+/// A file that cannot be read: its name, what is wrong, and the repair.
+pub struct Unread {
+    /// Its name.
+    pub file: String,
+    /// What is wrong.
+    pub message: String,
+    /// What to do.
+    pub help: Option<String>,
+}
+
+/// Reads a file and looks at it; how it is to be read may follow its name.
+///
+/// # Errors
+/// It cannot be read.
+pub fn seen(world: &dyn World, file: &str) -> Result<Seen, Unread> {
+    let wrong = |message: String, help| Unread {
+        file: file.to_owned(),
+        message,
+        help,
+    };
+    let given = Given::of(world, RECORD, file).map_err(|reason| wrong(reason, None))?;
+    let content = world
+        .read(&given.path)
+        .map_err(|reason| wrong(reason, None))?;
+    let table = record_settings::alone(world, &given, &content)
+        .map_err(|(message, help)| wrong(message, help))?;
+    let look = look_at(&table);
+    Ok(Seen { given, table, look })
+}
+
+impl Seen {
+    /// The line that declares the record in an experiment.
+    #[must_use]
+    pub fn line(&self) -> String {
+        let file = self.given.path.file_name().unwrap_or_default();
+        let file = file.to_string_lossy();
+        format!("record {RECORD} = {file:?} {}", self.settings())
+            .trim_end()
+            .to_owned()
+    }
+
+    /// How the file is to be read: as was said, with the units that follow from other channels.
+    pub fn settings(&self) -> String {
+        let units: Vec<String> = self
+            .look
+            .channels
+            .iter()
+            .filter_map(|channel| {
+                let (unit, _) = channel.guessed.as_ref()?;
+                Some(format!("column = {:?} in [{unit}]", channel.name))
+            })
+            .collect();
+        match (self.given.text.as_str(), units.is_empty()) {
+            (text, true) => text.to_owned(),
+            ("", false) => format!("({})", units.join(", ")),
+            (text, false) => match text.split_once(')') {
+                Some((inner, rest)) if text.starts_with('(') => {
+                    format!("{inner}, {}){rest}", units.join(", "))
+                }
+                _ => format!("({}) {text}", units.join(", ")),
+            },
+        }
+    }
+
+    /// The channels whose unit nobody says and nothing tells.
+    #[must_use]
+    pub fn without_units(&self) -> Vec<&str> {
+        let all = self.look.channels.iter();
+        let bare = all.filter(|c| c.unit.is_none() && c.guessed.is_none());
+        bare.filter(|c| c.shown.role != hyde_signal::look::Role::State)
+            .map(|c| c.name.as_str())
+            .collect()
+    }
+}
