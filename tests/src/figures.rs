@@ -6,6 +6,7 @@ mod bench;
 mod cases;
 mod clif_growth;
 mod clock;
+mod command_line;
 mod command_start;
 mod compile;
 mod demo;
@@ -51,6 +52,8 @@ pub const FIGURES: &[Figure] = &[
     residual_cost::FIGURE,
     start::FIGURE,
     command_start::FIGURE,
+    command_line::LINES,
+    command_line::PARSES,
     stick::FIGURE,
     emps::FORCE,
     emps::VELOCITY,

@@ -9,6 +9,7 @@ mod known;
 mod library_trees;
 mod load;
 mod named;
+mod parses;
 mod pipeline;
 mod states;
 mod write_back;
@@ -28,6 +29,7 @@ pub use known::{
     law_sites, meaning,
 };
 pub use load::{File, Find, Packages, Place, check_name, load};
+pub use parses::parses;
 pub use pipeline::{Compiled, Request, analyze, compile, compile_unless, compile_with};
 pub use states::States;
 pub use write_back::{Calibrated, Found, Written, write_back};

@@ -1,5 +1,6 @@
 //! The library parsed: its texts never change, so that a process parses each of them once and not at every load.
 
+use crate::parses::counted;
 use hyde_diag::{Diagnostics, FileId, Sources};
 use hyde_library::Package;
 use hyde_syntax::ast::{self, Item};
@@ -22,7 +23,7 @@ pub(crate) fn tree(package: Package, sources: &Sources, id: FileId) -> Arc<ast::
         return tree;
     }
     // The library has no errors: a test of its own compiles all of it.
-    let tree = Arc::new(hyde_syntax::parse(sources, id, &mut Diagnostics::new()));
+    let tree = Arc::new(counted(sources, id, &mut Diagnostics::new()));
     let mut trees = TREES.lock().unwrap_or_else(PoisonError::into_inner);
     trees.insert(package.name, (id, Arc::clone(&tree)));
     tree
@@ -50,7 +51,7 @@ fn names() -> &'static [Names] {
             .map(|package| {
                 let mut sources = Sources::new();
                 let id = sources.add(package.name, package.text);
-                let tree = hyde_syntax::parse(&sources, id, &mut Diagnostics::new());
+                let tree = counted(&sources, id, &mut Diagnostics::new());
                 let names = tree.items.iter().filter_map(|item| match item {
                     Item::Class(class) => Some((class.name.text.clone(), true)),
                     Item::Type(item) => Some((item.name.text.clone(), false)),

@@ -2,6 +2,7 @@
 
 use crate::library_trees;
 use crate::named::{packages_named, tables_named, words_named};
+use crate::parses::counted;
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use hyde_flatten::{FmuInterface, TableFile};
 use hyde_library::Package;
@@ -60,7 +61,7 @@ pub fn load(
     diagnostics: &mut Diagnostics,
 ) -> File {
     let id = sources.add(name, text);
-    let tree = hyde_syntax::parse(sources, id, diagnostics);
+    let tree = counted(sources, id, diagnostics);
     let mut files = vec![(id, Arc::new(tree))];
     let own = files[0].1.package.as_ref();
     let mut known: Vec<String> = own.map(|(path, _)| path.dotted()).into_iter().collect();
@@ -83,7 +84,7 @@ pub fn load(
             let tree = match found.of_library {
                 Some(package) => library_trees::tree(package, sources, id),
                 None => {
-                    let tree = hyde_syntax::parse(sources, id, diagnostics);
+                    let tree = counted(sources, id, diagnostics);
                     check_name(sources, id, &tree, &name, diagnostics);
                     Arc::new(tree)
                 }

@@ -15,6 +15,14 @@ fn main() -> ExitCode {
     if names.first().is_some_and(|name| hyde_cli::has(name)) {
         return hyde_cli::main(std::env::args_os());
     }
+    if names.first().is_some_and(|name| name == "--parses") {
+        // The command line behind it, and how often it parsed the file that it parsed most often.
+        let program = std::env::args_os().take(1);
+        let code = hyde_cli::main(program.chain(std::env::args_os().skip(2)));
+        let most = hyde_compiler::parses().into_values().max();
+        println!("{}", most.unwrap_or(0));
+        return code;
+    }
     let mut session = Session::new(hyde_tests::data());
     if let Some(at) = names.iter().position(|name| name == "--seed") {
         let Some(seed) = names.get(at + 1).and_then(|seed| seed.parse().ok()) else {
