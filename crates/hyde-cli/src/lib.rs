@@ -11,7 +11,6 @@ mod commands;
 mod exit;
 mod files;
 mod interruption;
-mod limits;
 mod live;
 mod output;
 mod project;

@@ -17,6 +17,7 @@
 //! modes, state_space                        natural frequencies; a linearised model as matrices
 //! budget, selftest, trend                   shares of imperfections; what verdicts are worth; how sizes went
 //! look                                      what is in traces
+//! experiment_tests                          the tests of experiments
 //! sweep                                     the summary of a sweep, and its page
 //! lines                                     a text in lines of a width
 //! ```
@@ -31,6 +32,7 @@ mod compared;
 pub mod comparison;
 pub mod diagnosed;
 pub mod excitation;
+pub mod experiment_tests;
 pub mod figures;
 pub mod fitted;
 pub mod forces;

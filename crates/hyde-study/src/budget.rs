@@ -1,14 +1,12 @@
 //! [`budget`]: which imperfection of a model contributes how much to the measures of an experiment.
 
 use crate::asked::Asked;
-use crate::{Aim, Fault, Loaded, Project, Records, Refused, run_failure};
-use hyde_compiler::{Compiled, changed, ideals};
-use hyde_experiment::{BudgetOf, Options, Run};
-use hyde_sim::Reached;
+use crate::runs::{How, project_of, solved};
+use crate::{Fault, Loaded, Project, Refused};
+use hyde_compiler::{changed, ideals};
+use hyde_experiment::BudgetOf;
 use hyde_syntax::ast::{Experiment, Ideal};
 use hyde_units::NamedUnit;
-use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
 
 /// What came out.
 pub struct Budget {
@@ -28,14 +26,6 @@ pub struct NoBudget {
     pub of: Option<String>,
 }
 
-/// How it is done.
-pub struct How {
-    /// Set by whoever wants it to end early.
-    pub interrupted: Arc<AtomicBool>,
-    /// How far the present run is.
-    pub reached: Arc<Reached>,
-}
-
 /// The measures of one run, in their order.
 type Measures = Vec<(String, NamedUnit, f64)>;
 
@@ -51,7 +41,7 @@ pub fn budget(
     ready: impl FnOnce(&Project),
 ) -> Result<Budget, NoBudget> {
     let first = |refused: Refused| NoBudget { refused, of: None };
-    let load = || loaded_project(loaded, asked);
+    let load = || project_of(loaded, asked);
     let project = load().map_err(first)?;
     let experiment = of_experiment(&project).map_err(|reason| first(Refused::Asked(reason)))?;
     let model = project.model.clone();
@@ -98,15 +88,6 @@ pub fn budget(
         measures: measures.collect(),
         ideals,
     })
-}
-
-fn loaded_project(loaded: &Loaded, asked: &Asked) -> Result<Project, Refused> {
-    let project = loaded.clone().choose(asked, Records::Needed);
-    let project = project.map_err(Refused::Asked)?;
-    match project.diagnostics.has_errors() {
-        true => Err(project.refused(Fault::Model)),
-        false => Ok(project),
-    }
 }
 
 /// The experiment, if it has a budget and nothing set from outside is part of it.
@@ -163,39 +144,4 @@ fn measures(
     Ok(measures
         .map(|(measure, known)| (measure.name.clone(), known.unit.clone(), measure.value))
         .collect())
-}
-
-fn solved(
-    mut project: Project,
-    how: &How,
-    ready: impl FnOnce(&Project),
-) -> Result<(Compiled, Run), Refused> {
-    let compiled = match project.compile(Aim::Run) {
-        Ok(compiled) => compiled,
-        Err(fault) => return Err(project.refused(fault)),
-    };
-    ready(&project);
-    let options = Options {
-        set: project.set(),
-        interrupted: how.interrupted.clone(),
-        reached: how.reached.clone(),
-        ..Options::default()
-    };
-    let tables = crate::tables(&project.records);
-    match hyde_experiment::run(&compiled.program, &tables, &options) {
-        Ok(run) => Ok((compiled, run)),
-        Err(error) => {
-            let name = project.experiment.as_deref();
-            let (diagnostic, fault) = {
-                let mut all = project.file.experiments();
-                let experiment = all.find(|known| name == Some(known.name.text.as_str()));
-                run_failure::diagnostic(&error, &compiled.program, experiment)
-            };
-            if fault == Fault::Interrupted {
-                return Err(Refused::Because(diagnostic.message, fault));
-            }
-            project.diagnostics.push(diagnostic);
-            Err(project.refused(fault))
-        }
-    }
 }

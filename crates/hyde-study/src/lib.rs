@@ -24,6 +24,8 @@
 //! selftest       what the verdicts of a diagnosis are worth          selftest.rs
 //! trend          how sizes went from one diagnosis to the next       trend.rs
 //! traces         what is in a trace, before any model reads it        traces.rs
+//! runs           the runs that other studies need                      runs.rs
+//! experiment_tests  what experiments expect, whether effects vanish     experiment_tests.rs
 //! sweep          the cases of a sweep, solved and gathered             sweep.rs
 //! store          where finished tasks of a long study are kept         store.rs
 //! progress       how far a long study is                               progress.rs
@@ -52,6 +54,7 @@ pub mod comparison;
 pub mod diagnosed;
 mod diagnosis;
 pub mod excitation;
+pub mod experiment_tests;
 pub mod first_model;
 pub mod fitted;
 mod fmus;
@@ -71,6 +74,7 @@ mod refused;
 pub mod render;
 pub mod responses;
 pub mod run_failure;
+pub mod runs;
 pub mod selftest;
 pub mod settings;
 pub mod state_space;

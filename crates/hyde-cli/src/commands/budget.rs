@@ -1,14 +1,13 @@
 //! `hyde budget`: which imperfection of a model contributes how much to the measures of an experiment.
 
 use super::run::watch;
+use super::test::how;
 use crate::args::BudgetArgs;
 use crate::exit::Exit;
 use crate::files;
-use crate::interruption::interrupted;
 use crate::project::{self, Project, Told as _, complain, print_error, print_output};
 use hyde_present::budget::{csv, json, text};
-use hyde_study::budget::{Budget, How, budget as made};
-use std::sync::Arc;
+use hyde_study::budget::{Budget, budget as made};
 
 /// Runs the experiment as it is, with all ideal, without each imperfection and with it alone, and prints what every measure is made of.
 pub(crate) fn budget(args: &BudgetArgs) -> Exit {
@@ -21,10 +20,7 @@ pub(crate) fn budget(args: &BudgetArgs) -> Exit {
 fn told(args: &BudgetArgs) -> Result<(), Exit> {
     let model = &args.model;
     let (asked, loaded) = (project::asked(model)?, project::parsed(model)?);
-    let how = How {
-        interrupted: interrupted(),
-        reached: Arc::default(),
-    };
+    let how = how();
     let watch = watch(model.json || model.quiet, &how.reached);
     let ready = |project: &Project| project.print_warnings(model);
     let found = made(&loaded, &asked, &how, ready);

@@ -1,13 +1,15 @@
 //! `hyde effects FILE --check`: the limit test of every size of the effects on the models of a file's experiments (E3).
 //!
-//! [`crate::limits`] does it, as for `hyde test`; here the sizes that are 0 are tested too, at a tenth of their range.
+//! [`hyde_study::experiment_tests`] does it, as for `hyde test`; here the sizes that are 0 are tested too, at a tenth of their range.
 
-use super::{check, run};
+use super::check;
+use super::test::how;
 use crate::args::ModelArgs;
-use crate::commands::test::{Tested, Verdict, run_args, table};
 use crate::exit::Exit;
-use crate::limits::{self, Neutral};
-use crate::project::{complain, print_output};
+use crate::project::{self, complain, print_output};
+use hyde_present::experiment_tests::table;
+use hyde_study::experiment_tests::{Neutral, Tested, Verdict, limit, sizes};
+use hyde_study::runs::{project_of, solved};
 use serde_json::json;
 use std::collections::BTreeSet;
 
@@ -52,11 +54,14 @@ fn tested(args: &ModelArgs) -> Result<(Vec<Tested>, Vec<String>), Exit> {
             let reason = "the file has no experiment: an effect is tested on a model that moves";
             return Err(complain(args, Exit::CommandLine, reason));
         }
-        let (project, compiled, run, _) = run::solved(&run_args(&one, None))?;
+        let (loaded, asked, how) = (project::parsed(&one)?, project::asked(&one)?, how());
+        let refused = |own| project::refused(&one, &own);
+        let project = project_of(&loaded, &asked).map_err(refused)?;
         known = project.file.effects().map(str::to_owned).collect();
-        for size in limits::sizes(&compiled.program, &run, Neutral::AtATenth) {
+        let (compiled, run) = solved(project, &how, |_| {}).map_err(refused)?;
+        for size in sizes(&compiled.program, &run, Neutral::AtATenth) {
             used.extend(size.path.rsplit('.').nth(1).map(str::to_owned));
-            tests.push(limits::tested(&one, &size)?);
+            tests.push(limit(&loaded, &asked, &size, &how).map_err(|own| refused(*own))?);
         }
     }
     known.retain(|name| !used.contains(name));

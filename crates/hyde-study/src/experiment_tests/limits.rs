@@ -3,14 +3,16 @@
 //! Tested on the model of an experiment, `model B = A with E(size = …) on site;`, at the size written there, or at the tenth
 //! or hundredth of it at which the events still come in the order of the plain model.
 
-use crate::args::ModelArgs;
-use crate::commands::run::solved;
-use crate::commands::test::{Tested, Verdict, percent, run_args};
-use crate::exit::Exit;
+use super::{Tested, Verdict};
+use crate::asked::Asked;
+use crate::runs::{How, project_of, solved};
+use crate::settings::Setting;
+use crate::{Loaded, Refused};
 use hyde_compiler::Compiled;
 use hyde_experiment::{Answer, LIMIT_LEFT, LIMIT_PART, Run, limit};
 use hyde_program::Program;
 use hyde_sim::EventKind;
+use hyde_units::{NamedUnit, significant};
 
 /// What the runs err by of the largest value, and the tolerance of their steps, whose errors add up: a thousandth of a small
 /// effect is to stand above it.
@@ -22,17 +24,17 @@ const AWAY: f64 = 0.01;
 const PARTS: [f64; 3] = [1.0, 0.1, 0.01];
 
 /// A size of an effect on the model of an experiment.
-pub(crate) struct Size {
+pub struct Size {
     /// Full name of the parameter.
-    pub(crate) path: String,
+    pub path: String,
     /// Its value there, SI, and the unit of that.
     value: f64,
-    unit: String,
+    unit: NamedUnit,
 }
 
 /// Which sizes are tested.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Neutral {
+pub enum Neutral {
     /// Those that the model gives a value.
     LeftOut,
     /// All; those at zero with a tenth of their range.
@@ -40,7 +42,7 @@ pub(crate) enum Neutral {
 }
 
 /// The sizes of the effects on the model of an experiment.
-pub(crate) fn sizes(program: &Program, run: &Run, neutral: Neutral) -> Vec<Size> {
+pub fn sizes(program: &Program, run: &Run, neutral: Neutral) -> Vec<Size> {
     let sizes = program.parameters.iter().filter(|p| p.is_size);
     sizes
         .filter_map(|parameter| {
@@ -55,27 +57,35 @@ pub(crate) fn sizes(program: &Program, run: &Run, neutral: Neutral) -> Vec<Size>
             };
             Some(Size {
                 value,
-                unit: parameter.dimension.usual_unit(),
+                unit: NamedUnit::usual(parameter.dimension),
                 path: parameter.name.clone(),
             })
         })
         .collect()
 }
 
-/// Tests one size: runs without it, with a thousandth of it, and with it.
-pub(crate) fn tested(args: &ModelArgs, size: &Size) -> Result<Tested, Exit> {
-    let name = format!(
-        "{}: {}",
-        args.experiment.as_deref().unwrap_or_default(),
-        size.path
-    );
+/// Tests one size of an experiment: runs without it, with a thousandth of it, and with it.
+///
+/// # Errors
+/// A run cannot be done.
+pub fn tested(
+    loaded: &Loaded,
+    asked: &Asked,
+    size: &Size,
+    how: &How,
+) -> Result<Tested, Box<Refused>> {
+    let experiment = asked.experiment.as_deref().unwrap_or_default();
+    let name = format!("{experiment}: {}", size.path);
+    let how = How {
+        rtol: Some(RTOL),
+        ..how.clone()
+    };
     let at = |value: f64| {
-        let mut args = args.clone();
-        let unit = if value == 0.0 { "" } else { &size.unit };
-        args.settings
-            .push(format!("{}={value:e} [{unit}]", size.path).replace(" []", ""));
-        let (_, compiled, run, _) = solved(&run_args(&args, Some(RTOL)))?;
-        Ok::<_, Exit>((compiled, run))
+        let mut project = project_of(loaded, asked).map_err(Box::new)?;
+        let unit = (value != 0.0).then(|| size.unit.clone());
+        let setting = Setting::of(size.path.clone(), value, unit);
+        project.settings.push(setting);
+        solved(project, &how, |_| {}).map_err(Box::new)
     };
     let skipped = |found: &str| Tested {
         name: name.clone(),
@@ -150,4 +160,9 @@ fn order((_, run): &(Compiled, Run)) -> Vec<(usize, usize, usize)> {
             ),
         })
         .collect()
+}
+
+/// A part as percent, for people.
+fn percent(part: f64) -> String {
+    format!("{} %", significant(100.0 * part, 3))
 }
