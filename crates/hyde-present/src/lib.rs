@@ -1,5 +1,6 @@
 //! What a study found, as text of at most 80 columns, as JSON, and as pages with figures: from data to data. Nothing here
-//! knows arguments, files or a terminal: the command line, and whoever else shows results, writes what these functions return.
+//! knows arguments or a terminal, and nothing is written here: the command line, and whoever else shows results, writes what
+//! these functions return.
 //!
 //! It is a crate of its own between the studies and the command line. hyde-study computes and knows no layout; hyde-report
 //! draws and knows no study; this crate knows both, so that text, JSON and page of a study are made of the same data.
@@ -18,6 +19,7 @@
 //! budget, selftest, trend                   shares of imperfections; what verdicts are worth; how sizes went
 //! look                                      what is in traces
 //! experiment_tests                          the tests of experiments
+//! plot                                      columns of files as a figure
 //! sweep                                     the summary of a sweep, and its page
 //! lines                                     a text in lines of a width
 //! ```
@@ -43,6 +45,7 @@ pub mod look;
 pub mod modes;
 pub mod package_pages;
 pub mod panels;
+pub mod plot;
 pub mod run_page;
 pub mod selftest;
 pub mod start;

@@ -1,15 +1,10 @@
 //! `hyde plot`: columns of results or of a record, a frequency response, or a batch, as a figure.
 
-mod cases;
-mod curves;
-mod response;
-mod source;
-mod strip;
-
 use crate::args::PlotArgs;
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{print_error, print_output};
+use hyde_present::plot::{Options, figure};
 use hyde_report::{Figure, to_png, to_svg};
 
 /// CSS pixels to the millimetre, and to the inch.
@@ -44,9 +39,9 @@ fn content(args: &PlotArgs) -> Result<Vec<u8>, String> {
         }
     }
     match ending {
-        Some("svg") => Ok(to_svg(&sized(args, figure(args)?)).into_bytes()),
+        Some("svg") => Ok(to_svg(&sized(args, drawn(args)?)).into_bytes()),
         Some("png") => Ok(to_png(
-            &sized(args, figure(args)?),
+            &sized(args, drawn(args)?),
             args.dpi / PIXELS_AN_INCH,
         )),
         Some(_) | None => Err(format!(
@@ -54,36 +49,6 @@ fn content(args: &PlotArgs) -> Result<Vec<u8>, String> {
             args.out.display()
         )),
     }
-}
-
-fn figure(args: &PlotArgs) -> Result<Figure, String> {
-    let sources = source::read(args)?;
-    let title = args.title.as_deref();
-    let responses: Vec<_> = sources.iter().filter_map(response::of).collect();
-    let figure = if responses.len() == sources.len() {
-        let part = args.from.is_some() || args.to.is_some();
-        if args.xy || !args.panels.is_empty() || part {
-            return Err(
-                "a frequency response is always plotted completely: leave out the columns and times".to_owned(),
-            );
-        }
-        response::figure(title, &responses)
-    } else if let [batch] = sources.as_slice()
-        && let Some(figure) = cases::envelopes(args, batch)
-    {
-        figure?
-    } else {
-        let recorded = source::over_time(args, &sources)?;
-        curves::check_window(args, &recorded)?;
-        match args.xy {
-            true => curves::over_each_other(args, &recorded)?,
-            false => curves::over_time(args, &recorded)?,
-        }
-    };
-    Ok(Figure {
-        title: title.map(str::to_owned),
-        ..figure
-    })
 }
 
 /// The figure in the size asked for.
@@ -98,4 +63,29 @@ fn sized(args: &PlotArgs, mut figure: Figure) -> Figure {
         }
     }
     figure
+}
+
+/// The figure; what is assumed of its files is printed.
+fn drawn(args: &PlotArgs) -> Result<Figure, String> {
+    let mut notes = Vec::new();
+    let figure = figure(&options(args), &mut notes);
+    notes.iter().for_each(|note| print_error(note));
+    figure
+}
+
+fn options(args: &PlotArgs) -> Options {
+    Options {
+        world: files::disk(),
+        results: args.results.clone(),
+        with: args.with.clone(),
+        panels: args.panels.clone(),
+        xy: args.xy,
+        equal: args.equal,
+        cases: args.cases.clone(),
+        modes: args.modes.clone(),
+        title: args.title.clone(),
+        from: args.from,
+        to: args.to,
+        every: args.every,
+    }
 }

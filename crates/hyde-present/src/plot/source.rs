@@ -1,11 +1,10 @@
 //! What is plotted: the files, whatever form they have.
 
+use super::Options;
 use super::cases;
-use crate::args::PlotArgs;
-use crate::files;
-use crate::project::print_error;
 use hyde_report::LineStyle;
 use hyde_signal::{Column, Frame, Layout, Table};
+use hyde_study::world::below;
 use hyde_units::NamedUnit;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -31,11 +30,11 @@ pub(super) struct Recorded {
 }
 
 /// Reads the results, and those to be put beside them.
-pub(super) fn read(args: &PlotArgs) -> Result<Vec<Source>, String> {
+pub(super) fn read(options: &Options) -> Result<Vec<Source>, String> {
     let mut sources = Vec::new();
-    for asked in std::iter::once(&args.results).chain(&args.with) {
-        let path = file_of(asked, args)?;
-        let named = if files::is_folder(asked) {
+    for asked in std::iter::once(&options.results).chain(&options.with) {
+        let path = file_of(asked, options)?;
+        let named = if options.world.is_folder(asked) {
             asked.file_name()
         } else {
             asked.file_stem()
@@ -44,7 +43,7 @@ pub(super) fn read(args: &PlotArgs) -> Result<Vec<Source>, String> {
             || asked.display().to_string(),
             |name| name.to_string_lossy().into_owned(),
         );
-        let bytes = files::read(&path)?;
+        let bytes = options.world.read(&path)?;
         sources.push(Source { name, path, bytes });
     }
     Ok(sources)
@@ -58,16 +57,20 @@ impl Source {
 }
 
 /// The sources as columns over time.
-pub(super) fn over_time(args: &PlotArgs, sources: &[Source]) -> Result<Vec<Recorded>, String> {
-    let recorded = |(place, source): (usize, &Source)| {
-        if let Some(cases) = cases::of(source, args) {
+pub(super) fn over_time(
+    options: &Options,
+    sources: &[Source],
+    notes: &mut Vec<String>,
+) -> Result<Vec<Recorded>, String> {
+    let mut recorded = |(place, source): (usize, &Source)| {
+        if let Some(cases) = cases::of(source, options) {
             return cases;
         }
         let table = match source.path.extension().and_then(|ending| ending.to_str()) {
-            Some("json") => from_json(&source.bytes, args.every),
+            Some("json") => from_json(&source.bytes, options.every),
             Some(_) | None => {
                 let layout = Layout {
-                    every_s: args.every,
+                    every_s: options.every,
                     ..Layout::default()
                 };
                 let table = hyde_signal::read(&source.bytes, &layout);
@@ -79,7 +82,7 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Source]) -> Result<Vec<Recor
                         "note: `{name}` is plotted from its first sample on, at {}",
                         origin.text
                     );
-                    print_error(&text);
+                    notes.push(text);
                 }
                 table.map_err(|error| format!("{error}; {}", error.repair("file")))
             }
@@ -100,24 +103,24 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Source]) -> Result<Vec<Recor
         }])
     };
     let all: Result<Vec<Vec<Recorded>>, String> =
-        sources.iter().enumerate().map(recorded).collect();
+        sources.iter().enumerate().map(&mut recorded).collect();
     Ok(all?.into_iter().flatten().collect())
 }
 
 /// The file itself, or that of the results in a folder.
-fn file_of(asked: &Path, args: &PlotArgs) -> Result<PathBuf, String> {
-    if !files::is_folder(asked) {
+fn file_of(asked: &Path, options: &Options) -> Result<PathBuf, String> {
+    if !options.world.is_folder(asked) {
         return Ok(asked.to_path_buf());
     }
-    if let Some(table) = cases::table_of(asked, args) {
+    if let Some(table) = cases::table_of(asked, options) {
         return table;
     }
     let mut there = RESULTS.iter().map(|name| asked.join(name));
-    if let Some(found) = there.find(|path| files::is_file(path)) {
+    if let Some(found) = there.find(|path| options.world.is_file(path)) {
         return Ok(found);
     }
-    let mut known: Vec<PathBuf> = files::below(asked, "csv", "");
-    known.extend(files::below(asked, "parquet", ""));
+    let mut known: Vec<PathBuf> = below(options.world.as_ref(), asked, "csv", "");
+    known.extend(below(options.world.as_ref(), asked, "parquet", ""));
     let list: Vec<String> = known
         .iter()
         .take(6)

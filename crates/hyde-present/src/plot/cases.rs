@@ -1,12 +1,11 @@
 //! What a batch left: cases over time, each a line of its own or all as an envelope, and their numbers over each other.
 
+use super::Options;
 use super::source::{Recorded, Source};
-use crate::args::PlotArgs;
-use hyde_present::sweep::over_time::{OverTime, in_si};
+use crate::sweep::over_time::{OverTime, in_si};
 use hyde_report::{Figure, LineStyle, envelope_panel, time_plot};
 use hyde_signal::{Column, Field, Frame, Table};
 use hyde_study::sweep::{Order, table_in};
-use hyde_study::world::Disk;
 use hyde_units::NamedUnit;
 use std::path::{Path, PathBuf};
 
@@ -14,17 +13,17 @@ use std::path::{Path, PathBuf};
 const LINES: usize = 8;
 
 /// The table of a batch's folder that is meant; `None` of a folder that holds no batch.
-pub(super) fn table_of(folder: &Path, args: &PlotArgs) -> Option<Result<PathBuf, String>> {
-    if !Order::is_in(&Disk, folder) {
+pub(super) fn table_of(folder: &Path, options: &Options) -> Option<Result<PathBuf, String>> {
+    if !Order::is_in(options.world.as_ref(), folder) {
         return None;
     }
     // Numbers over each other are those of the cases, unless cases are named.
-    let name = if args.xy && args.cases.is_empty() {
+    let name = if options.xy && options.cases.is_empty() {
         "cases"
     } else {
         "trajectories"
     };
-    Some(table_in(&Disk, folder, name).ok_or_else(|| {
+    Some(table_in(options.world.as_ref(), folder, name).ok_or_else(|| {
         let folder = folder.display();
         format!(
             "the batch in `{folder}` has no {name}: it is not finished, or keeps nothing over time, `keep x;`; \
@@ -34,32 +33,32 @@ pub(super) fn table_of(folder: &Path, args: &PlotArgs) -> Option<Result<PathBuf,
 }
 
 /// The cases of a table of a batch, each as results of its own, or their numbers; `None` if the table is no batch's.
-pub(super) fn of(source: &Source, args: &PlotArgs) -> Option<Result<Vec<Recorded>, String>> {
+pub(super) fn of(source: &Source, options: &Options) -> Option<Result<Vec<Recorded>, String>> {
     let frame = source.frame()?;
     if frame.fields.first()?.name != "case" {
         return None;
     }
     Some(match OverTime::of(frame.clone()) {
-        Some(over) => lines(&over, source, args),
+        Some(over) => lines(&over, source, options),
         None => points(&frame, source).map(|points| vec![points]),
     })
 }
 
 /// All cases of the source as envelopes, one a panel; `None` if they are to be lines, or are not over time.
-pub(super) fn envelopes(args: &PlotArgs, source: &Source) -> Option<Result<Figure, String>> {
+pub(super) fn envelopes(options: &Options, source: &Source) -> Option<Result<Figure, String>> {
     let over = OverTime::of(source.frame()?)?;
-    if !args.cases.is_empty() || args.xy || over.cases().len() <= LINES {
+    if !options.cases.is_empty() || options.xy || over.cases().len() <= LINES {
         return None;
     }
-    if args.from.is_some() || args.to.is_some() {
+    if options.from.is_some() || options.to.is_some() {
         let reason = "quantiles of many cases are plotted over their whole time: `--cases 3,7` plots lines within `--from` and `--to`";
         return Some(Err(reason.to_owned()));
     }
-    let names: Vec<String> = if args.panels.is_empty() {
+    let names: Vec<String> = if options.panels.is_empty() {
         let names = over.variables().map(|(field, _)| field.name.clone());
         names.take(4).collect()
     } else {
-        args.panels.clone()
+        options.panels.clone()
     };
     let mut panels = Vec::new();
     for name in &names {
@@ -78,12 +77,12 @@ pub(super) fn envelopes(args: &PlotArgs, source: &Source) -> Option<Result<Figur
     Some(Ok(time_plot("", panels, None)))
 }
 
-fn lines(over: &OverTime, source: &Source, args: &PlotArgs) -> Result<Vec<Recorded>, String> {
+fn lines(over: &OverTime, source: &Source, options: &Options) -> Result<Vec<Recorded>, String> {
     let known = |case: &usize| over.cases().iter().find(|(number, _)| number == case);
-    let wanted: Vec<usize> = if args.cases.is_empty() {
+    let wanted: Vec<usize> = if options.cases.is_empty() {
         over.cases().iter().map(|(number, _)| *number).collect()
     } else {
-        args.cases.clone()
+        options.cases.clone()
     };
     let variables: Vec<(&Field, Vec<f64>)> = over.variables().collect();
     let mut found = Vec::new();

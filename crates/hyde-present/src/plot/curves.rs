@@ -1,8 +1,8 @@
 //! Columns over time, panel by panel, and one over another.
 
+use super::Options;
 use super::source::Recorded;
 use super::strip;
-use crate::args::PlotArgs;
 use hyde_report::{Figure, Line, time_panel, time_plot, xy_plot};
 use hyde_signal::{Column, Table};
 use hyde_units::{Agreement, NamedUnit, Unit, significant};
@@ -10,14 +10,14 @@ use hyde_units::{drawn_in, shown};
 use std::ops::Range;
 
 /// Panels over one time, with the events of the first source below.
-pub(super) fn over_time(args: &PlotArgs, sources: &[Recorded]) -> Result<Figure, String> {
+pub(super) fn over_time(options: &Options, sources: &[Recorded]) -> Result<Figure, String> {
     let Some(first) = sources.first() else {
         return Err("nothing to plot".to_owned());
     };
-    let panels = if args.panels.is_empty() {
+    let panels = if options.panels.is_empty() {
         choice(&first.table)
     } else {
-        args.panels.clone()
+        options.panels.clone()
     };
     let mut drawn = Vec::new();
     for panel in &panels {
@@ -32,7 +32,7 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Recorded]) -> Result<Figure,
         let (unit, of) = one_unit(all.iter().map(|(.., column)| *column))?;
         let line = |(label, source, column): (String, &Recorded, &Column)| {
             let time = source.table.holding(column.name()).time();
-            let rows = window(args, time);
+            let rows = window(options, time);
             let x = time[rows.clone()].to_vec();
             let y = column.values()[rows].iter().map(|si| of.from_si(*si));
             Line::new(label, x, y.collect()).with_style(source.style)
@@ -40,19 +40,24 @@ pub(super) fn over_time(args: &PlotArgs, sources: &[Recorded]) -> Result<Figure,
         let lines = all.into_iter().map(line).collect();
         drawn.push(time_panel(axis_label(&names), shown(&unit), lines));
     }
-    let rows = window(args, first.table.time());
+    let rows = window(options, first.table.time());
     let ends = first.table.time().get(rows).unwrap_or_default();
     let strip = match ends {
-        [from, .., to] => strip::beside(&first.path, (*from, *to), &args.modes)?,
+        [from, .., to] => strip::beside(
+            options.world.as_ref(),
+            &first.path,
+            (*from, *to),
+            &options.modes,
+        )?,
         _ => None,
     };
     Ok(time_plot("", drawn, strip))
 }
 
 /// Panels whose columns are pairs, y over x.
-pub(super) fn over_each_other(args: &PlotArgs, sources: &[Recorded]) -> Result<Figure, String> {
+pub(super) fn over_each_other(options: &Options, sources: &[Recorded]) -> Result<Figure, String> {
     let mut panels = Vec::new();
-    for panel in &args.panels {
+    for panel in &options.panels {
         let names = listed(panel);
         let pairs: Vec<(&str, &str)> = names
             .chunks_exact(2)
@@ -77,7 +82,7 @@ pub(super) fn over_each_other(args: &PlotArgs, sources: &[Recorded]) -> Result<F
         let (x_unit, x_of) = one_unit(all.iter().map(|(_, _, x, _)| *x))?;
         let (y_unit, y_of) = one_unit(all.iter().map(|(.., y)| *y))?;
         let line = |(label, source, x, y): (String, &Recorded, &Column, &Column)| {
-            let rows = window(args, source.table.holding(y.name()).time());
+            let rows = window(options, source.table.holding(y.name()).time());
             let values = |column: &Column, of: Unit| {
                 let values = column.values()[rows.clone()].iter();
                 values.map(|si| of.from_si(*si)).collect()
@@ -94,7 +99,7 @@ pub(super) fn over_each_other(args: &PlotArgs, sources: &[Recorded]) -> Result<F
         return Err("which columns? write pairs, `y,x`".to_owned());
     }
     for panel in &mut panels {
-        panel.equal_scales = args.equal;
+        panel.equal_scales = options.equal;
     }
     let alone = panels.len() == 1;
     Ok(Figure {
@@ -160,9 +165,9 @@ fn label(name: &str, names: usize, source: &str, sources: usize) -> String {
 }
 
 /// Refuses a window in which there is nothing: the figure would be empty.
-pub(super) fn check_window(args: &PlotArgs, sources: &[Recorded]) -> Result<(), String> {
+pub(super) fn check_window(options: &Options, sources: &[Recorded]) -> Result<(), String> {
     let times = || sources.iter().map(|source| source.table.time());
-    if sources.is_empty() || times().any(|time| !window(args, time).is_empty()) {
+    if sources.is_empty() || times().any(|time| !window(options, time).is_empty()) {
         return Ok(());
     }
     let firsts = times().filter_map(|time| time.first().copied());
@@ -175,11 +180,11 @@ pub(super) fn check_window(args: &PlotArgs, sources: &[Recorded]) -> Result<(), 
 }
 
 /// The rows within `--from` and `--to`.
-fn window(args: &PlotArgs, time: &[f64]) -> Range<usize> {
-    let from = args
+fn window(options: &Options, time: &[f64]) -> Range<usize> {
+    let from = options
         .from
         .map_or(0, |from| time.partition_point(|&t| t < from));
-    let to = args
+    let to = options
         .to
         .map_or(time.len(), |to| time.partition_point(|&t| t <= to));
     from..to.max(from)

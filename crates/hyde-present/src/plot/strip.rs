@@ -1,7 +1,7 @@
 //! The strip under a plot over time, from the files that a run left beside its results.
 
-use crate::files;
 use hyde_report::{EventRow, EventStrip, Span};
+use hyde_study::world::{World, read_text};
 use serde_json::Value;
 use std::path::Path;
 
@@ -11,11 +11,12 @@ const ROWS: usize = 12;
 /// The modes over time, from the event log and the summary beside the results, and ticks where a `when` or an `if` took
 /// place. None without a log. With names, the modes of these only.
 pub(super) fn beside(
+    world: &dyn World,
     results: &Path,
     (first, last): (f64, f64),
     names: &[String],
 ) -> Result<Option<EventStrip>, String> {
-    let log = files::read(&results.with_file_name("events.csv")).ok();
+    let log = world.read(&results.with_file_name("events.csv")).ok();
     let Some(log) = log.and_then(|log| hyde_signal::read_frame(&log).ok()) else {
         return Ok(None);
     };
@@ -40,7 +41,7 @@ pub(super) fn beside(
             automata[known].changes.push((*t, after[row].clone()));
         }
     }
-    for (name, mode) in unchanged(&results.with_file_name("summary.json")) {
+    for (name, mode) in unchanged(world, &results.with_file_name("summary.json")) {
         if automata.iter().all(|known| known.name != name) {
             automata.push(Automaton::new(&name, &mode));
         }
@@ -121,8 +122,8 @@ impl Automaton {
 }
 
 /// The automata that were in one mode all the time, which the log does not have.
-fn unchanged(summary: &Path) -> Vec<(String, String)> {
-    let text = files::read_text(summary).unwrap_or_default();
+fn unchanged(world: &dyn World, summary: &Path) -> Vec<(String, String)> {
+    let text = read_text(world, summary).unwrap_or_default();
     let summary: Value = serde_json::from_str(&text).unwrap_or_default();
     let mut found = Vec::new();
     for (name, modes) in summary["mode_seconds"].as_object().into_iter().flatten() {
