@@ -1,8 +1,9 @@
 //! The `hyde` command. This crate alone reads the arguments, prints, and writes files; what a command computes is a function
-//! of `hyde-study`.
+//! of `hyde-study`, and the text, the JSON and the pages of it are made by `hyde-present`.
 //!
-//! Each command is a file in `commands/`; what they share is printing what is wrong with a model and its records (`project`,
-//! `study`), rendering diagnostics (`render`), and writing files whole or not at all (`files`).
+//! Each command is a file in `commands/`: it makes data of its arguments, calls a study, prints what is made of its result, and
+//! leaves the files. They share printing what is wrong with a model and its records (`project`, `study`), rendering
+//! diagnostics (`render`), and writing files whole or not at all (`files`).
 
 mod args;
 mod batch;

@@ -80,7 +80,7 @@ pub fn text(
             }
         }
         if let Some(path) = path {
-            let stem = match every.iter().all(|other| is_same(other)) {
+            let stem = match every.iter().all(is_same) {
                 true => "bode".to_owned(),
                 false => format!("bode-{}", file_name(&first.output)),
             };

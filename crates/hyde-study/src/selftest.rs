@@ -202,7 +202,10 @@ fn on_axis<T>(
     );
     let axis = axis.map_err(|error| match error {
         SelftestError::Interrupted => Ended::Interrupted(None),
-        error => Ended::Cannot(Box::new(work::cannot(&error, plan.span))),
+        SelftestError::Simulation(_)
+        | SelftestError::Model
+        | SelftestError::Record(_)
+        | SelftestError::Unsupported(_) => Ended::Cannot(Box::new(work::cannot(&error, plan.span))),
     })?;
     let ready = Ready {
         plan,

@@ -56,7 +56,7 @@ pub(super) fn outcomes(
     progress.finish();
     found.map_err(|ended| match ended {
         Ended::Interrupted(_) => Ended::Interrupted(Some((done.load(Ordering::Relaxed), total))),
-        other => other,
+        other @ (Ended::Asked(_) | Ended::Cannot(_)) => other,
     })
 }
 
