@@ -55,7 +55,7 @@ pub enum Ended {
 /// It was interrupted, or a result could not be kept.
 #[allow(
     clippy::disallowed_methods,
-    reason = "how long a batch took is told beside its data set, and is not part of it"
+    reason = "the time that a batch took is printed, and is not part of its data set"
 )]
 pub fn solve_missing(
     batch: &Prepared,
