@@ -87,6 +87,9 @@ pub fn screen(seen: &Seen) -> String {
             &format!("{}: {}", limit(unusable), unusable.fault.message),
         );
     }
+    if let Some(first) = look.unusable.first() {
+        paragraph(&mut out, &format!("help: {}", first.fault.repair));
+    }
     for note in &look.notes {
         paragraph(&mut out, &format!("note: {note}"));
     }
