@@ -8,6 +8,11 @@ mod page;
 mod seen;
 mod stepped;
 
+pub use draw::drawn as response_figure;
+pub use margins::text as margins_text;
+pub use measured::table as errors_table;
+pub use open_loop::figures as open_loop_figures;
+
 use crate::{assumed, assumptions, summary};
 use hyde_report::{Figure, to_html, to_png, to_svg};
 use hyde_study::responses::{Compared, OfBode, Response, Responses};

@@ -8,9 +8,9 @@
 //! margins    the margins of loops that are cut                     responses/margins.rs
 //! ```
 
-mod margins;
-mod measured;
-mod response;
+pub mod margins;
+pub mod measured;
+pub mod response;
 mod stepped;
 
 pub use margins::{OfLoop, add_cuts};

@@ -1,6 +1,6 @@
 //! The model of a page: loaded and compiled when its files change, run with what the sliders say.
 
-use super::frequencies;
+use super::frequencies::Frequencies;
 use super::sliders::sliders;
 use super::watched::Watched;
 use crate::clock;
@@ -9,7 +9,7 @@ use hyde_compiler::{Compiled, NewValue, write_values};
 use hyde_diag::Diagnostics;
 use hyde_experiment::{Options, RunError};
 use hyde_present::run_page;
-use hyde_report::to_body;
+use hyde_report::{Page, Section, to_body};
 use hyde_signal::Table;
 use hyde_study::settings::Setting;
 use hyde_study::{Aim, Asked, Inputs, Project, Records, run_failure};
@@ -34,8 +34,8 @@ pub(crate) struct Session {
 struct Ready {
     project: Project,
     compiled: Compiled,
-    /// The same for its linearised system; nothing where the model has none.
-    linear: Option<Compiled>,
+    /// The same for its linearised system, or why there is none.
+    linear: Result<Frequencies, String>,
     tables: BTreeMap<String, Table>,
     /// What was set when the command was called.
     set: Vec<Setting>,
@@ -78,7 +78,7 @@ impl Session {
         match compiled {
             Some(compiled) => {
                 let tables = hyde_study::tables(&project.records);
-                let linear = project.compile(Aim::Linearize).ok();
+                let linear = Frequencies::of(&self.asked, &project);
                 project.diagnostics = Diagnostics::new();
                 self.ready = Some(Ready {
                     set: project.settings.clone(),
@@ -174,8 +174,9 @@ impl Session {
         let answer = match run {
             Ok(run) => {
                 let page = run_page::page(&ready.project, &ready.compiled, &run, &clock::now());
-                let body = to_body(&page);
-                json!({ "ok": true, "body": body, "took_ms": took, "partial": partial })
+                let (first, rest) = parts(page);
+                let (body, rest) = (to_body(&first), to_body(&rest));
+                json!({ "ok": true, "body": body, "rest": rest, "took_ms": took, "partial": partial })
             }
             Err(error) => json!({ "ok": false, "error": ready.told(&error) }),
         };
@@ -183,14 +184,11 @@ impl Session {
         answer
     }
 
-    /// The natural frequencies with these values.
+    /// Natural frequencies, frequency responses and margins with these values.
     pub(super) fn frequencies(&self, moved: &Moved) -> Value {
-        let found = self.ready.as_ref().and_then(|ready| {
-            let program = &ready.linear.as_ref()?.program;
-            let settings = ready.settings(moved).ok()?.into_iter();
-            let set: Vec<_> = settings.map(|own| (own.path, own.value)).collect();
-            let all = hyde_experiment::parameters(program, &ready.tables, &set).ok()?;
-            Some(frequencies::page(program, &ready.tables, &all))
+        let found = self.ready.as_ref().map(|ready| {
+            let linear = ready.linear.as_ref().map_err(String::clone)?;
+            linear.page(&ready.settings(moved)?)
         });
         match found {
             Some(Ok(page)) => json!({ "ok": true, "body": to_body(&page) }),
@@ -244,6 +242,32 @@ impl Session {
         files::write(&self.asked.file, new.as_bytes())?;
         Ok(notes)
     }
+}
+
+/// The sections of a run that stand beside its frequencies: what came out, and the curves with their modes.
+const FIRST: [&str; 5] = [
+    "Incomplete",
+    "Verdict",
+    "Key figures",
+    "Measured against simulated",
+    "Figures",
+];
+
+/// What stands beside the frequencies, and what follows both: the events first, what no slider changes last.
+fn parts(page: Page) -> (Page, Page) {
+    let is_first = |section: &Section| FIRST.contains(&section.heading.as_str());
+    let (first, mut rest): (Vec<Section>, Vec<Section>) =
+        page.sections.into_iter().partition(is_first);
+    rest.sort_by_key(|section| match section.heading.as_str() {
+        "Events" => 0,
+        "Model" => 2,
+        _ => 1,
+    });
+    let of = |sections| Page {
+        sections,
+        ..Page::default()
+    };
+    (of(first), of(rest))
 }
 
 /// A flag that is set after a time.

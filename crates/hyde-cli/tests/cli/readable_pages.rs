@@ -8,7 +8,7 @@ use serde_json::json;
 const PHONE: u32 = 390;
 const PAPER: u32 = 672;
 
-/// What reaches beyond the right edge and is in nothing that scrolls: its first words.
+/// What reaches beyond the right edge and is in nothing that scrolls, nor out of sight for good: its first words.
 const CUT_OFF: &str = "JSON.stringify([...document.querySelectorAll('body *')].filter(own => \
     own.getBoundingClientRect().right > innerWidth + 1 && \
     (matchMedia('print').matches || !own.closest('.scroll') && !own.closest('pre')) && !own.closest('svg *')) \
@@ -35,6 +35,11 @@ pub(crate) fn is_readable(page: &str) {
     };
     let mut browser = Browser::open(name, &Folder::new(), &format!("file://{page}"));
     browser.wait("document.readyState == 'complete' && document.querySelector('footer') != null");
+    shows_well(&mut browser, page);
+}
+
+/// Looks at the page that a browser shows, on every medium.
+pub(crate) fn shows_well(browser: &mut Browser, page: &str) {
     for (width, media, colours) in [
         (PHONE, "screen", "light"),
         (PHONE, "screen", "dark"),

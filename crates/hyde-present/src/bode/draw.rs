@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 const LEAST: f64 = 0.02;
 
 /// The figure of them.
-pub(super) fn drawn(title: &str, responses: &[&Response]) -> Figure {
+pub fn drawn(title: &str, responses: &[&Response]) -> Figure {
     let mut experiments: Vec<&str> = Vec::new();
     for response in responses {
         if !experiments.contains(&response.experiment.as_str()) {

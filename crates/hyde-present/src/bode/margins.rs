@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::fmt::Write as _;
 
 /// What was found, as text of 80 columns.
-pub(super) fn text(of: &OfLoop) -> String {
+pub fn text(of: &OfLoop) -> String {
     let found = &of.found;
     let mut text = format!("margins at {}\n", of.signal);
     for pole in &of.unstable {

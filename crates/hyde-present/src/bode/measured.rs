@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use std::fmt::Write as _;
 
 /// The table of errors, a line a response; empty without any. What is not known of any has no column.
-pub(super) fn table(all: &[&Compared]) -> String {
+pub fn table(all: &[&Compared]) -> String {
     if all.is_empty() {
         return String::new();
     }

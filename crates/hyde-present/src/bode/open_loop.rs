@@ -6,7 +6,7 @@ use hyde_units::significant;
 use std::fmt::Write as _;
 
 /// The figures of the open loop, with the stems of their files.
-pub(super) fn figures(title: &str, of: &OfLoop) -> [(&'static str, Figure); 3] {
+pub fn figures(title: &str, of: &OfLoop) -> [(&'static str, Figure); 3] {
     let title = format!("{title}: loop cut at {}", of.signal);
     let curve = open_loop(of);
     [

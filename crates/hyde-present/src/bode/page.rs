@@ -3,6 +3,7 @@
 use super::{draw, margins, open_loop};
 use crate::{assumed, head};
 use hyde_report::{Block, Figure, Page, Section};
+use hyde_study::Project;
 use hyde_study::responses::{Response, Responses};
 
 /// A figure with a caption for its title, which would stand in the table of contents.
@@ -41,7 +42,8 @@ pub(super) fn page(title: &str, all: &[Responses], made: &str) -> Page {
     for one in all.iter().flat_map(|asked| &asked.margins) {
         let mut blocks = vec![Block::Code(margins::text(one))];
         let figures = open_loop::figures("", one).into_iter();
-        blocks.extend(figures.map(|(name, figure)| plain(figure, name)));
+        let figures = figures.zip(["Open loop", "Nyquist plot", "Nichols plot"]);
+        blocks.extend(figures.map(|((_, figure), caption)| plain(figure, caption)));
         sections.push((format!("Margins at {}", one.signal), blocks));
     }
     let mut about: Vec<Block> = Vec::new();
@@ -58,14 +60,15 @@ pub(super) fn page(title: &str, all: &[Responses], made: &str) -> Page {
     let sections = sections
         .into_iter()
         .filter(|(_, blocks)| !blocks.is_empty());
+    let sections = sections.map(|(heading, blocks)| Section { heading, blocks });
+    let projects: Vec<&Project> = all.iter().map(|asked| &asked.project).collect();
+    let models = head::models(&projects);
     Page {
         title: title.to_owned(),
         facts: all
             .first()
             .map_or(Vec::new(), |asked| head::facts(&asked.project, made)),
-        sections: sections
-            .map(|(heading, blocks)| Section { heading, blocks })
-            .collect(),
+        sections: models.into_iter().chain(sections).collect(),
         footer: format!("Hyde {}", env!("CARGO_PKG_VERSION")),
     }
 }

@@ -3,6 +3,7 @@
 use super::{blocks, unstable};
 use crate::{assumed, head};
 use hyde_report::{Block, Figure, Outcome, Page, Section, Table, Verdict};
+use hyde_study::Project;
 use hyde_study::modes::Modes;
 use hyde_units::significant;
 
@@ -13,11 +14,16 @@ pub fn page(over: Option<Figure>, all: &[Modes], made: &str) -> Page {
         heading: "Over a parameter".to_owned(),
         blocks: vec![Block::Figure(figure)],
     });
+    let projects: Vec<&Project> = all.iter().map(|own| &own.prepared.project).collect();
     let first = all.first();
     Page {
         title: "Natural frequencies".to_owned(),
         facts: first.map_or(Vec::new(), |own| head::facts(&own.prepared.project, made)),
-        sections: over.into_iter().chain(all.iter().map(section)).collect(),
+        sections: head::models(&projects)
+            .into_iter()
+            .chain(over)
+            .chain(all.iter().map(section))
+            .collect(),
         footer: format!("Hyde {}", env!("CARGO_PKG_VERSION")),
     }
 }

@@ -53,7 +53,7 @@ pub fn add_cuts(project: &mut Project, signals: &[String]) {
 }
 
 /// The margins of every loop that the program cuts; why there are none, where there are not.
-pub(super) fn all(
+pub fn all(
     experiment: &str,
     program: &Program,
     tables: &BTreeMap<String, Table>,

@@ -26,7 +26,7 @@ pub struct Compared {
 }
 
 /// All measured responses of an experiment, those of a `bode` with a band within it.
-pub(super) fn curves(
+pub fn curves(
     program: &Program,
     tables: &BTreeMap<String, Table>,
     p: &[f64],
@@ -53,11 +53,7 @@ pub(super) fn curves(
 }
 
 /// From the lowest to the highest line measured of a `bode`.
-pub(super) fn band(
-    program: &Program,
-    number: usize,
-    curves: &[MeasuredCurve],
-) -> Option<(f64, f64)> {
+pub fn band(program: &Program, number: usize, curves: &[MeasuredCurve]) -> Option<(f64, f64)> {
     let responses = &program.experiment.measured_responses;
     let own = responses
         .iter()
@@ -70,7 +66,7 @@ pub(super) fn band(
 }
 
 /// What was measured of a `bode` beside its linearised system and the run.
-pub(super) fn compared(
+pub fn compared(
     program: &Program,
     number: usize,
     curves: &[MeasuredCurve],

@@ -33,21 +33,21 @@ pub struct Response {
 }
 
 /// The band of a response in Hz.
-pub(super) fn band(program: &Program, number: usize, p: &[f64]) -> Option<(f64, f64)> {
+pub fn band(program: &Program, number: usize, p: &[f64]) -> Option<(f64, f64)> {
     let from = program.kernels.constant(Constant::BandFrom(number), p)?;
     let to = program.kernels.constant(Constant::BandTo(number), p)?;
     (from > 0.0 && to > from).then_some((from, to))
 }
 
 /// So many frequencies from one end of a band to the other, evenly along their logarithm.
-pub(super) fn frequencies(band: (f64, f64), count: usize) -> Vec<f64> {
+pub fn frequencies(band: (f64, f64), count: usize) -> Vec<f64> {
     let count = count.max(2);
     let at = |k: usize| band.0 * (band.1 / band.0).powf(k as f64 / (count - 1) as f64);
     (0..count).map(at).collect()
 }
 
 /// The linearised responses of an experiment's request, one an output; why there are none, where there are not.
-pub(super) fn linearised(
+pub fn linearised(
     experiment: &str,
     program: &Program,
     (bode, frequency): (&Bode, &[f64]),
@@ -91,7 +91,7 @@ pub(super) fn linearised(
 }
 
 /// The equations differentiate the input, of which the linearised system knows the value alone.
-pub(super) fn no_rate(bode: &Bode) -> Diagnostic {
+pub fn no_rate(bode: &Bode) -> Diagnostic {
     let message = format!(
         "the equations need the time derivative of `{}`, so its response is not defined",
         bode.input

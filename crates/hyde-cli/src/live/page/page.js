@@ -1,6 +1,8 @@
 "use strict";
 // Sliders of parameters beside the result of a run. One request is under way at a time, the newest values follow it.
 
+// So many sliders are seen at once.
+const FEW = 10;
 const at = (id) => document.getElementById(id);
 let sliders = [];
 let wanted = false;
@@ -34,6 +36,7 @@ function show(id, text) {
 function shown(found, start) {
   if (found.ok) {
     at("result").innerHTML = found.body;
+    at("rest").innerHTML = found.rest;
     at("result").classList.remove("old");
     show("error", "");
     const all = Math.round(performance.now() - start);
@@ -66,9 +69,11 @@ async function run() {
     }
   }
   // What takes longer follows the curves, unless something newer is wanted.
+  at("frequencies").classList.add("old");
   const found = await post("frequencies", moved()).catch(() => ({}));
   if (found.ok) at("frequencies").innerHTML = found.body;
-  else at("frequencies").textContent = found.error || "";
+  else at("frequencies").replaceChildren(...(found.error ? [element("pre", {}, found.error)] : []));
+  at("frequencies").classList.remove("old");
   running = false;
   if (wanted) return run();
   document.body.dataset.runs = String(Number(document.body.dataset.runs || 0) + 1);
@@ -124,6 +129,12 @@ function slider(facts, kept) {
   return own;
 }
 
+// Shows the sliders whose names have the text that is looked for.
+function filter() {
+  const text = at("wanted").value.trim().toLowerCase();
+  for (const own of sliders) own.box.hidden = !own.name.toLowerCase().includes(text);
+}
+
 async function load() {
   const kept = moved();
   const state = await (await fetch("state")).json();
@@ -145,9 +156,12 @@ async function load() {
   }
   at("sliders").replaceChildren(...sliders.map((own) => own.box));
   for (const own of sliders) set(own, own.now, null);
+  at("filter").hidden = sliders.length <= FEW;
+  filter();
   await run();
 }
 
+at("wanted").addEventListener("input", filter);
 at("sliders").addEventListener("submit", (event) => event.preventDefault());
 at("reset").addEventListener("click", () => {
   for (const own of sliders) set(own, own.value, null);

@@ -87,10 +87,14 @@ impl Browser {
 
     /// Presses a key, with Shift or without.
     pub(crate) fn key(&mut self, key: &str, shift: bool) {
-        let code = json!({ "ArrowRight": 39 })[key].clone();
+        let code = json!({ "ArrowRight": 39, "Tab": 9, "Enter": 13 })[key].clone();
         for kind in ["keyDown", "keyUp"] {
-            let params = json!({ "type": kind, "key": key, "code": key,
+            let mut params = json!({ "type": kind, "key": key, "code": key,
                 "windowsVirtualKeyCode": code, "modifiers": if shift { 8 } else { 0 } });
+            // A button is pressed by the character.
+            if key == "Enter" && kind == "keyDown" {
+                params["text"] = json!("\r");
+            }
             self.call("Input.dispatchKeyEvent", params);
         }
     }
