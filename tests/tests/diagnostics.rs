@@ -98,14 +98,54 @@ fn a_failed_assert_tells_the_value_that_broke_it() {
     assert!(said.contains("`s` is 0.6 m there"), "{said}");
 }
 
+#[test]
+fn a_solver_that_gives_up_tells_the_terms_of_its_equation() {
+    let path = folder().join("E0701_runs_away.hyde");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let output = hyde(&text, &path, &folder(), false);
+    let said = String::from_utf8_lossy(&output.stderr);
+    // der(v) = v^2: the value of `name`, and its term of the left side minus the right side.
+    let told = |name: &str| {
+        let line = said
+            .lines()
+            .find(|line| line.contains(&format!("note: `{name}` is ")));
+        let line = line.unwrap_or_else(|| panic!("{name}: {said}"));
+        let mut numbers = line.split(' ').filter_map(|word| word.parse::<f64>().ok());
+        (numbers.next().unwrap(), numbers.next().unwrap())
+    };
+    let ((v, square), (rate, own)) = (told("v"), told("der(v)"));
+    assert!((square + v * v).abs() < 1e-2 * v * v, "{said}");
+    assert!((own - rate).abs() < 1e-2 * rate, "{said}");
+    assert!((rate - v * v).abs() < 1e-2 * rate, "{said}");
+}
+
+#[test]
+fn a_singular_start_tells_the_null_space_of_its_equations() {
+    let path = folder().join("E0603_force_on_a_massless_rail.hyde");
+    let text = std::fs::read_to_string(&path).unwrap();
+    let output = hyde(&text, &path, &folder(), false);
+    let said = String::from_utf8_lossy(&output.stderr);
+    // A rail without a mass may have any velocity, which is the rate of its place.
+    let told =
+        "a change of `der(motor.a.s)` by 1, `guide.v` by 1 leaves these equations as they are";
+    assert!(said.contains(told), "{said}");
+}
+
 /// A run that fails near a singularity ends where rounding lets it: what it says of that place is left out.
 fn without_rounding(shown: &str) -> String {
-    let line = |line: &str| match (line.find("` is "), line.ends_with(" there")) {
-        (Some(at), true) => format!("{}` is … there\n", &line[..at]),
+    let line = |line: &str| match (line.find("` is "), line.split_once(" there")) {
+        (Some(at), Some((_, ""))) => format!("{}` is … there\n", &line[..at]),
+        (Some(at), Some((_, rest))) if rest.starts_with(", a term of ") => {
+            format!("{}` is … there, a term of …\n", &line[..at])
+        }
         _ => {
-            let figure = ["even with a step of ", "advanced it by only "]
-                .into_iter()
-                .find_map(|before| Some((line.split_once(before)?.0, before)));
+            let figure = [
+                "even with a step of ",
+                "advanced it by only ",
+                "sides of this equation differ by ",
+            ]
+            .into_iter()
+            .find_map(|before| Some((line.split_once(before)?.0, before)));
             match figure {
                 Some((start, before)) => format!("{start}{before}…\n"),
                 None => format!("{line}\n"),

@@ -73,6 +73,8 @@ pub struct Failure {
     /// The equation to look at: the one without a value, or farthest from satisfied, its residual measured by what a
     /// change of the unknowns within tolerance would make of it.
     pub equation: Option<usize>,
+    /// The residual of that equation in the last attempt.
+    pub residual: Option<f64>,
     /// The root function without a value.
     pub root: Option<usize>,
     /// The name of IDA's return code.

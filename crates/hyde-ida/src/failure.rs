@@ -26,6 +26,7 @@ pub(crate) fn accept(flag: c_int, context: &Context, t: f64) -> Result<(), Error
         step_s: 0.0,
         unknown: None,
         equation: None,
+        residual: None,
         root: None,
         flag: name(flag),
         message,
@@ -47,6 +48,7 @@ impl<S: System> Ida<S> {
             step_s: self.memory.read(sys::IDAGetCurrentStep),
             unknown: None,
             equation: None,
+            residual: None,
             root: None,
             flag: name(flag),
             message: self.context.take_messages(),
@@ -76,6 +78,15 @@ impl<S: System> Ida<S> {
             }
             (FailureKind::RootFunction, Some(Fault::Roots { root })) => failure.root = root,
             _ => {}
+        }
+        if matches!(
+            failure.kind,
+            FailureKind::Convergence | FailureKind::InitialConditions
+        ) {
+            let last = self.last_residual();
+            failure.residual = failure
+                .equation
+                .and_then(|row| last.and_then(|own| own.get(row).copied()));
         }
         failure
     }

@@ -146,9 +146,9 @@ impl Consistent {
             singular: Vec::new(),
             at_start,
         };
-        let mut failure = Failure::new(kind, t).at_row(state.program, worst, y);
-        failure.residual = Some(self.residual[worst]);
-        Err(failure)
+        let failure = Failure::new(kind, t).at_row(state.program, worst, y);
+        let left = Some(self.residual[worst]);
+        Err(failure.with_equation(state, (t, y, yp), worst, left))
     }
 
     /// The derivatives along the flow of y (all of it) and of the states' y', after [`Consistent::solve`] at the point.

@@ -1,5 +1,6 @@
 //! [`Failure`]: why a run could not go on, in the words of the model.
 
+use crate::failed_equation::Reading;
 use crate::results::Results;
 use crate::state::State;
 use hyde_diag::Origin;
@@ -80,6 +81,11 @@ pub struct Failure {
     pub unknowns: Vec<(String, f64)>,
     /// The residual of the first of these equations, in SI units of its sides, where it could not be made 0.
     pub residual: Option<f64>,
+    /// What stands in that equation, the largest part first.
+    pub terms: Vec<Reading>,
+    /// Changes of unknowns and rates that together leave the equations as they are, the null space of their Jacobian: name and change, SI,
+    /// the largest 1.
+    pub null_space: Vec<(String, f64)>,
     /// The automata with the modes they are in, where that matters: name and mode.
     pub modes: Vec<(String, String)>,
     /// Everything up to the failure.
@@ -94,6 +100,8 @@ impl Failure {
             origins: Vec::new(),
             unknowns: Vec::new(),
             residual: None,
+            terms: Vec::new(),
+            null_space: Vec::new(),
             modes: Vec::new(),
             results: Results::default(),
         })

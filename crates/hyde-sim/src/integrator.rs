@@ -246,8 +246,26 @@ impl<'a> Integrator<'a> {
         state.put_on_surfaces(*t, y, yp);
     }
 
+    /// A failure with what stands in the equation of a row at the present point.
+    pub(crate) fn with_equation(&mut self, failure: Box<Failure>, row: usize) -> Box<Failure> {
+        let Self {
+            solver, t, y, yp, ..
+        } = self;
+        failure.with_equation(solver.state_mut(), (*t, y, yp), row, None)
+    }
+
+    /// A failure with the values that conditions read at the present point.
+    pub(crate) fn with_values(&mut self, failure: Box<Failure>, of: &[String]) -> Box<Failure> {
+        let Self {
+            solver, t, y, yp, ..
+        } = self;
+        of.iter().fold(failure, |failure, condition| {
+            failure.with_values(solver.state_mut(), (*t, y, yp), condition)
+        })
+    }
+
     /// What the solver says, with the equation and the unknown it stumbled over.
-    fn failure(&self, error: &Error) -> Box<Failure> {
+    fn failure(&mut self, error: &Error) -> Box<Failure> {
         let program = self.state().program;
         let Error::Failed(failed) = error else {
             return Failure::new(FailureKind::Solver(error.to_string()), self.t);
@@ -280,6 +298,9 @@ impl<'a> Integrator<'a> {
         // Without an equation of its own the unknown leads to the one that it was matched to.
         if let Some(row) = failed.equation.or(failed.unknown) {
             failure = failure.at_row(program, row, &self.y);
+            let Self { solver, y, yp, .. } = self;
+            let at = (failed.t, y.as_slice(), yp.as_slice());
+            failure = failure.with_equation(solver.state_mut(), at, row, failed.residual);
         }
         if let Some(unknown) = failed.unknown {
             failure = failure.at_unknown(program, unknown, &self.y);

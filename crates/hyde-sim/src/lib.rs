@@ -22,6 +22,7 @@ mod creeping;
 mod delays;
 mod edges;
 mod events;
+mod failed_equation;
 mod failure;
 mod first_step;
 mod foreign;
@@ -56,6 +57,7 @@ mod state;
 mod surfaces;
 mod time_spent;
 
+pub use failed_equation::Reading;
 pub use failure::{Failure, FailureKind};
 pub use inputs::InputError;
 pub use known_start::{KnownStart, known_start};

@@ -260,13 +260,19 @@ impl<S: System> RungeKutta<S> {
     }
 
     fn failure(&self, obstacle: Option<Obstacle>, step_s: f64) -> Error {
+        let left = match obstacle {
+            Some(Obstacle::Convergence(_, left)) => left,
+            Some(_) | None => None,
+        };
         let (kind, unknown, equation) = match obstacle {
             Some(Obstacle::Residual(equation)) => (FailureKind::Residual, None, equation),
             Some(Obstacle::Jacobian) => (FailureKind::Jacobian, None, None),
             Some(Obstacle::Singular(unknown)) => {
                 (FailureKind::SingularJacobian, Some(unknown), None)
             }
-            Some(Obstacle::Convergence(unknown)) => (FailureKind::Convergence, Some(unknown), None),
+            Some(Obstacle::Convergence(unknown, _)) => {
+                (FailureKind::Convergence, Some(unknown), None)
+            }
             Some(Obstacle::Error(unknown)) => (FailureKind::ErrorTest, Some(unknown), None),
             None => (FailureKind::ErrorTest, None, None),
         };
@@ -276,6 +282,7 @@ impl<S: System> RungeKutta<S> {
             step_s,
             unknown,
             equation,
+            residual: left,
             root: None,
             flag: "",
             message: String::new(),

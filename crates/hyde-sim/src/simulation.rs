@@ -365,7 +365,10 @@ impl<'a> Simulation<'a> {
         let most = jumps.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
         let failure = Failure::new(kind, self.integrator.t);
         match most {
-            Some((row, _)) => failure.at_row(self.program, row, &self.integrator.y),
+            Some((row, _)) => {
+                let failure = failure.at_row(self.program, row, &self.integrator.y);
+                self.integrator.with_equation(failure, row)
+            }
             None => failure,
         }
     }
@@ -384,7 +387,13 @@ impl<'a> Simulation<'a> {
                 failure.at_origin(&event.origin)
             }
         });
-        Err(failure)
+        let causes: Vec<String> = events
+            .iter()
+            .rev()
+            .take(4)
+            .map(|own| own.cause.clone())
+            .collect();
+        Err(self.integrator.with_values(failure, &causes))
     }
 
     fn close(&mut self) {

@@ -24,7 +24,8 @@ pub(crate) fn failure(
     y: &[f64],
     at_start: bool,
 ) -> Box<Failure> {
-    let (rows, columns) = dependent(state, matrix).unwrap_or((vec![stopped], vec![stopped]));
+    let (rows, open) = dependent(state, matrix).unwrap_or((vec![stopped], vec![(stopped, 1.0)]));
+    let columns: Vec<usize> = open.iter().map(|(column, _)| *column).collect();
     // The rates of states follow from the algebraic variables that are open.
     let algebraic = columns.iter().copied();
     let algebraic: Vec<usize> = algebraic
@@ -43,6 +44,10 @@ pub(crate) fn failure(
         at_start,
     };
     let mut failure = Failure::new(kind, t).in_modes(state);
+    let named = open
+        .iter()
+        .map(|&(column, change)| (solved_for(state, column), change));
+    failure.null_space = named.collect();
     for row in rows {
         if let Some(block) = state.program.block(row) {
             failure.origins.extend(block.origins.iter().cloned());
@@ -54,13 +59,25 @@ pub(crate) fn failure(
     failure
 }
 
+/// What the equations are solved for in a column: the rate of a state, else the unknown.
+fn solved_for(state: &State<'_>, column: usize) -> String {
+    let name = state.program.unknown_name(column);
+    match state.differential[column] {
+        true => format!("der({name})"),
+        false => name,
+    }
+}
+
 /// Whether the matrix is singular to rounding.
 pub(crate) fn is_singular(state: &State<'_>, matrix: &[f64]) -> bool {
     dependent(state, matrix).is_some()
 }
 
-/// The rows that combine to zero, and the columns that do; `None` if there are none, or the system is large.
-fn dependent(state: &State<'_>, matrix: &[f64]) -> Option<(Vec<usize>, Vec<usize>)> {
+/// The rows that combine to zero, and the columns that do with their factors, the largest 1.
+type Dependent = (Vec<usize>, Vec<(usize, f64)>);
+
+/// What depends on each other in a matrix; `None` if nothing does, or the system is large.
+fn dependent(state: &State<'_>, matrix: &[f64]) -> Option<Dependent> {
     let n = state.program.n_unknowns;
     if n == 0 || n > MAX_UNKNOWNS || matrix.iter().any(|value| !value.is_finite()) {
         return None;
@@ -81,10 +98,12 @@ fn dependent(state: &State<'_>, matrix: &[f64]) -> Option<(Vec<usize>, Vec<usize
             row /= most;
         }
     }
-    for mut column in dense.column_iter_mut() {
+    let mut scales = vec![1.0; n];
+    for (mut column, scale) in dense.column_iter_mut().zip(&mut scales) {
         let most = column.amax();
         if most > 0.0 {
             column /= most;
+            *scale = most;
         }
     }
     let svd = dense.svd(true, true);
@@ -100,6 +119,16 @@ fn dependent(state: &State<'_>, matrix: &[f64]) -> Option<(Vec<usize>, Vec<usize
             .collect()
     };
     let rows = taking_part(svd.u?.column(least).iter().copied().collect());
-    let columns = taking_part(svd.v_t?.row(least).iter().copied().collect());
-    Some((rows, columns))
+    let factors: Vec<f64> = svd.v_t?.row(least).iter().copied().collect();
+    let columns = taking_part(factors.clone());
+    let change = |column: &usize| factors[*column] / scales[*column];
+    let largest = columns.iter().map(change);
+    let largest = largest.fold(
+        0.0,
+        |most: f64, own| if own.abs() > most.abs() { own } else { most },
+    );
+    let open = columns
+        .iter()
+        .map(|column| (*column, change(column) / largest));
+    Some((rows, open.collect()))
 }

@@ -431,7 +431,7 @@ impl Instant<'_, '_> {
     }
 
     /// The failure of a switch that both sides lead to and that cannot slide.
-    fn cannot_slide(&self, slide: &Slide, why: &'static str) -> Box<Failure> {
+    fn cannot_slide(&mut self, slide: &Slide, why: &'static str) -> Box<Failure> {
         let relations = &self.state.program.relations;
         let mut causes = Vec::new();
         for (relation, _) in &slide.relations {
@@ -440,13 +440,17 @@ impl Instant<'_, '_> {
                 causes.push(text.clone());
             }
         }
-        let failure = Failure::new(FailureKind::CannotSlide(causes, why), self.t);
-        slide
+        let failure = Failure::new(FailureKind::CannotSlide(causes.clone(), why), self.t);
+        let failure = slide
             .relations
             .iter()
             .fold(failure, |failure, (relation, _)| {
                 failure.at_origin(&relations[*relation].origin)
-            })
+            });
+        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        causes.iter().fold(failure, |failure, cause| {
+            failure.with_values(self.state, at, cause)
+        })
     }
 }
 

@@ -4,9 +4,10 @@ use crate::fmus;
 use crate::refused::Fault;
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::RunError;
-use hyde_program::Program;
-use hyde_sim::{Failure, FailureKind};
+use hyde_program::{Output, Program};
+use hyde_sim::{Failure, FailureKind, Reading};
 use hyde_syntax::ast::Experiment;
+use hyde_units::{Dimension, NamedUnit};
 
 /// What to do about a row whose value is not allowed.
 pub const ROW_HELP: &str = "correct the file, or convert its numbers: `stimulus on = file.on > 2.5 [V];`, or declare the input as `Real`";
@@ -192,6 +193,30 @@ fn ends_before_start(
 /// A time in s with all digits that tell it from others.
 pub fn instant(time_s: f64) -> String {
     format!("{} s", hyde_units::significant(time_s, 10))
+}
+
+/// What an equation reads where it failed: `der(v)` is 9.81 m/s2 there, a term of 24.5 in this equation.
+fn term_told(term: &Reading, program: &Program) -> String {
+    let output = program.output(&term.name);
+    let output = output.map(|number| &program.outputs[number]);
+    let rate = |own: &Output| NamedUnit::usual(own.dimension.divide(Dimension::TIME));
+    let value = match (output, term.is_rate) {
+        (Some(own), false) => hyde_units::engineering_as(term.value, &own.unit),
+        (Some(own), true) => hyde_units::engineering_as(term.value, &rate(own)),
+        (None, _) => hyde_units::significant(term.value, 6),
+    };
+    let (name, value) = (&term.name, value.trim_end());
+    let name = match term.is_rate {
+        true => format!("`der({name})`"),
+        false => format!("`{name}`"),
+    };
+    match term.part.is_finite() {
+        true => {
+            let part = hyde_units::significant(term.part, 3);
+            format!("{name} is {value} there, a term of {part} in this equation (SI units)")
+        }
+        false => format!("{name} is {value} there"),
+    }
 }
 
 fn failed(failure: &Failure, program: &Program) -> Diagnostic {
@@ -380,13 +405,30 @@ fn failed(failure: &Failure, program: &Program) -> Diagnostic {
         };
         diagnostic = diagnostic.label(origin.span, text);
     }
-    for (name, value) in &failure.unknowns {
+    let is_term = |name: &str| {
+        let mut terms = failure.terms.iter();
+        terms.any(|term| term.name == name && !term.is_rate)
+    };
+    let others = failure.unknowns.iter();
+    for (name, value) in others.filter(|(name, _)| !is_term(name)) {
         let output = program.output(name).map(|number| &program.outputs[number]);
         let value = match output {
             Some(output) => hyde_units::engineering_as(*value, &output.unit),
             None => hyde_units::significant(*value, 6),
         };
         diagnostic = diagnostic.note(format!("`{name}` is {} there", value.trim_end()));
+    }
+    for term in &failure.terms {
+        diagnostic = diagnostic.note(term_told(term, program));
+    }
+    if failure.null_space.len() > 1 {
+        let changes = failure.null_space.iter().take(6);
+        let changes = changes
+            .map(|(name, change)| format!("`{name}` by {}", hyde_units::significant(*change, 3)));
+        diagnostic = diagnostic.note(format!(
+            "a change of {} leaves these equations as they are (null space of the Jacobian, SI units)",
+            changes.collect::<Vec<_>>().join(", ")
+        ));
     }
     if let Some(residual) = failure.residual.filter(|own| own.is_finite()) {
         let residual = hyde_units::significant(residual.abs(), 3);

@@ -44,21 +44,23 @@ impl Instant<'_, '_> {
     }
 
     /// The strokes that follow take no time, and the condition, true all the while, would not become true any more.
-    pub(super) fn struck_without_end(&self, condition: &str) -> Box<Failure> {
+    pub(super) fn struck_without_end(&mut self, condition: &str) -> Box<Failure> {
         let kind = FailureKind::Zeno {
             cause: condition.to_owned(),
             sum_s: self.t,
         };
         let failure = Failure::new(kind, self.t);
         let mut relations = self.state.program.relations.iter();
-        match relations.find(|relation| relation.text == condition) {
+        let failure = match relations.find(|relation| relation.text == condition) {
             Some(relation) => failure.at_origin(&relation.origin),
             None => failure,
-        }
+        };
+        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        failure.with_values(self.state, at, condition)
     }
 
     /// Rounds that do not end: strokes of one condition alone, or conditions that make each other true.
-    pub(super) fn without_end(&self, causes: &[String], struck: bool) -> Box<Failure> {
+    pub(super) fn without_end(&mut self, causes: &[String], struck: bool) -> Box<Failure> {
         match causes.first() {
             Some(cause) if struck && causes.iter().all(|other| other == cause) => {
                 self.struck_without_end(cause)
@@ -76,7 +78,7 @@ impl Instant<'_, '_> {
             .collect()
     }
 
-    pub(super) fn chattering(&self, causes: &[String]) -> Box<Failure> {
+    pub(super) fn chattering(&mut self, causes: &[String]) -> Box<Failure> {
         let program = self.state.program;
         let mut distinct: Vec<String> = Vec::new();
         for cause in causes.iter().rev() {
@@ -94,6 +96,10 @@ impl Instant<'_, '_> {
             if !failure.origins.contains(&reaction.origin) {
                 failure = failure.at_origin(&reaction.origin);
             }
+        }
+        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        for condition in &distinct {
+            failure = failure.with_values(self.state, at, condition);
         }
         failure
     }

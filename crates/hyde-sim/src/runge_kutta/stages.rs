@@ -37,8 +37,8 @@ pub(super) enum Obstacle {
     Jacobian,
     /// The matrix has no pivot for an unknown.
     Singular(usize),
-    /// Newton's method does not converge; the unknown corrected most.
-    Convergence(usize),
+    /// Newton's method does not converge; the unknown corrected most, and the residual of its equation, if it is known.
+    Convergence(usize, Option<f64>),
     /// The estimated error is too large; the unknown with the largest.
     Error(usize),
 }
@@ -105,7 +105,7 @@ impl<S: System> RungeKutta<S> {
                 return Ok(());
             }
         }
-        Err(Obstacle::Convergence(self.most_corrected()))
+        Err(Obstacle::Convergence(self.most_corrected(), None))
     }
 
     /// What the earlier stages say of a stage, and a first guess: a slope that goes on as in the first two.
@@ -166,7 +166,18 @@ impl<S: System> RungeKutta<S> {
             }
             last = size;
         }
-        Err(Obstacle::Convergence(self.most_corrected()))
+        // What the equation of that unknown leaves where the iteration ends.
+        let unknown = self.most_corrected();
+        let Self {
+            system,
+            stage,
+            slopes,
+            correction,
+            ..
+        } = self;
+        let left = system.residual(t, stage, &slopes[i], correction);
+        let left = left.ok().map(|()| correction[unknown]);
+        Err(Obstacle::Convergence(unknown, left))
     }
 
     /// The root mean square of the estimated errors that count, and the unknown with the largest.
