@@ -105,6 +105,11 @@ pub(crate) fn complete(analysis: &Analysis, byte: usize) -> Vec<CompletionItem> 
             return place.units(before, &open);
         }
     }
+    if rest.trim_end().ends_with("extends") {
+        let mut classes = place.names();
+        classes.retain(|own| own.kind == Some(CompletionItemKind::CLASS));
+        return classes;
+    }
     let mut items = Vec::new();
     if let Some((at, '(')) = open.last().copied()
         && rest.trim_end().ends_with(['(', ','])

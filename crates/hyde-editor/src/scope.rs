@@ -234,7 +234,14 @@ impl<'a> Files<'a> {
                     let change = changes.iter().find(own)?;
                     self.class(file, change.redeclare.as_ref()?)
                 });
-                let class = other.or_else(|| self.class(definition.file, &declaration.type_name));
+                // A quantity has no members, also where there is a component of its name: `input Force F`.
+                let is_part = || {
+                    let declared = self.declared(definition.file, declaration);
+                    let is_type = declared.is_some_and(|own| matches!(own.thing, Thing::Type(_)));
+                    !is_type || declaration.prefixes.is_empty() && declarator.binding.is_none()
+                };
+                let own = || self.class(definition.file, &declaration.type_name);
+                let class = other.or_else(|| is_part().then(own).flatten());
                 class.map(|(file, class)| Inside::Class(file, class))
             }
             Thing::Class(class) => Some(Inside::Class(definition.file, class)),

@@ -117,6 +117,10 @@ fn completion_offers_what_fits() {
     for own in ["push.a", "body.a", "guide.a"] {
         assert!(all.contains(&own.to_owned()), "{own}: {all:?}");
     }
+    // The input is a quantity, though there is a component `Force`.
+    assert!(!all.iter().any(|own| own.starts_with("F.")), "{all:?}");
+    let classes = labels(&mut client, "end Slide;\n", "model More\n  extends ");
+    assert!(classes.contains(&"Guide".to_owned()) && !classes.contains(&"sqrt".to_owned()));
     let others = labels(&mut client, "equation\n", "  connect(body.a, ");
     assert!(
         others.contains(&"guide.a".to_owned()) && !others.contains(&"body.a".to_owned()),
