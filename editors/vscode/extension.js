@@ -1,7 +1,7 @@
 // Starts `hyde lsp` for model files. The lenses over experiments are commands of the server.
 "use strict";
 
-const { commands, window, workspace } = require("vscode");
+const { commands, Uri, ViewColumn, window, workspace } = require("vscode");
 const { LanguageClient } = require("vscode-languageclient/node");
 
 let client;
@@ -10,10 +10,32 @@ function path() {
   return workspace.getConfiguration("hyde").get("path", "hyde");
 }
 
+// The views of the pages of results, by the page.
+const views = new Map();
+
+// The page of a result is shown in a view beside the text, in the one that has it already if there is one. It has its styles
+// and pictures inside, and no scripts.
+async function showPage(params, next) {
+  const uri = Uri.parse(params.uri);
+  if (uri.scheme !== "file" || !uri.path.endsWith(".html")) return next(params);
+  const html = new TextDecoder().decode(await workspace.fs.readFile(uri));
+  const title = /<title>([^<]*)<\/title>/.exec(html)?.[1] ?? "Hyde";
+  const known = views.get(params.uri);
+  const place = { viewColumn: ViewColumn.Beside, preserveFocus: true };
+  const view = known ?? window.createWebviewPanel("hyde.page", title, place, { enableFindWidget: true });
+  if (known) known.reveal(undefined, true);
+  else view.onDidDispose(() => views.delete(params.uri));
+  views.set(params.uri, view);
+  view.title = title;
+  view.webview.html = html;
+  return { success: true };
+}
+
 async function start() {
   const run = { command: path(), args: ["lsp"] };
   client = new LanguageClient("hyde", "Hyde", { run, debug: run }, {
     documentSelector: [{ language: "hyde" }],
+    middleware: { window: { showDocument: showPage } },
     synchronize: { fileEvents: workspace.createFileSystemWatcher("**/*.{hyde,csv,toml}") },
   });
   try {
