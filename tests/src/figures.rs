@@ -26,6 +26,7 @@ mod linear;
 mod live;
 mod long_run;
 mod lsp;
+mod lsp_fuzz;
 mod mode_error;
 mod msl;
 mod paper_rows;
@@ -115,6 +116,7 @@ pub const FIGURES: &[Figure] = &[
     lsp::COMPLETION,
     lsp::HOVER,
     lsp::MEMORY,
+    lsp_fuzz::FINDINGS,
     selftest::FALSE_ALARMS,
     selftest::TOP1,
     selftest::FALSE_ALARMS_RACK,

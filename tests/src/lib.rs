@@ -8,6 +8,7 @@ mod cluster;
 mod data;
 pub mod differential;
 pub mod editor;
+pub mod edits;
 pub mod events;
 mod example;
 pub mod figures;
