@@ -183,7 +183,7 @@ fn everything_follows_a_slider_that_the_keyboard_moves() {
     for (before, after) in before.iter().zip(&after) {
         assert_ne!(before, after);
     }
-    let error = [&before[2], &after[2]].map(|value| number(value));
+    let error = [&before[2], &after[2]].map(number);
     assert!(
         error[1] < 0.02 * error[0],
         "the mass of the record: {error:?}"
