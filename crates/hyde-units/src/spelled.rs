@@ -74,6 +74,7 @@ mod tests {
             ("pulses", "counts"),
             ("mm", "mm"),
             ("KN", "kN"),
+            ("Rpm", "rpm"),
         ] {
             assert_eq!(parse_spelled(spelled).unwrap().text(), unit, "{spelled}");
         }
@@ -93,7 +94,7 @@ mod tests {
     #[test]
     fn what_may_mean_two_things_is_no_unit() {
         for text in [
-            "G", "Arms", "mpa", "LSB", "raw", "V rms", "Grad", "oz", "x", "", "metres2s",
+            "Nn", "G", "Arms", "mpa", "LSB", "raw", "V rms", "Grad", "oz", "x", "", "metres2s",
         ] {
             assert!(parse_spelled(text).is_err(), "{text}");
         }

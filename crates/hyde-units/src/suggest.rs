@@ -55,15 +55,25 @@ pub(crate) fn meant(symbol: &str) -> Option<String> {
         return Some((*product).to_owned());
     }
     let several = symbol.chars().count() > 1;
-    let candidates = meant_by_word(symbol).unwrap_or_else(|| match several {
-        true => other_case(symbol),
-        false => Vec::new(),
-    });
+    let candidates =
+        meant_by_word(symbol).unwrap_or_else(|| match several && has_lost_case(symbol) {
+            true => other_case(symbol),
+            false => Vec::new(),
+        });
     match candidates.as_slice() {
         [one] => Some(one.clone()),
         [] if several => split(symbol),
         _ => None,
     }
+}
+
+/// Whether a symbol is written in capitals, or in small letters, throughout, or begins as a sentence does: `RPM`, `hz`, `Rpm`.
+fn has_lost_case(symbol: &str) -> bool {
+    let mut letters = symbol.chars();
+    let first = letters.next().is_some_and(char::is_uppercase);
+    let capitals = letters.clone().all(char::is_uppercase);
+    let small = letters.clone().all(char::is_lowercase);
+    first && capitals || small && (!first || letters.count() > 1)
 }
 
 /// Products whose letters would also match something less likely: `nm`, `N.ms`.

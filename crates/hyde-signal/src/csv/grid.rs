@@ -26,6 +26,8 @@ pub(super) struct Grid<'a> {
     pub(super) lines_above: u64,
     /// What separates the cells.
     pub(super) separator: u8,
+    /// Whether a last column for remarks was left out, which rows need not have.
+    pub(super) remarks: bool,
     /// The time between rows that a line above them says.
     pub(super) period: Option<Period>,
     /// What kind of layout it is.
@@ -76,6 +78,7 @@ impl<'a> Grid<'a> {
                 rows,
                 lines_above: head.first.number - 1,
                 separator,
+                remarks: false,
                 period: None,
                 kind: Kind::Groups,
                 notes,
@@ -161,6 +164,7 @@ impl<'a> Grid<'a> {
             rows,
             lines_above: end.number,
             separator,
+            remarks: false,
             period,
             kind: if above > 0 { Kind::Preamble } else { kind },
             notes,
@@ -224,6 +228,7 @@ impl<'a> Grid<'a> {
             rows,
             lines_above: head.first.number - 1,
             separator,
+            remarks: false,
             period: period(&head.above, head.separator),
             kind: Kind::Numbers,
             notes,
@@ -259,6 +264,7 @@ impl<'a> Grid<'a> {
         };
         let line = head.above[names];
         let mut columns = headings(&head.separator.split(line.text), &mut notes);
+        let remarks = columns.len() > head.width;
         columns.truncate(head.width);
         let number = head.above[last].number;
         if let Some(units) = units {
@@ -290,6 +296,7 @@ impl<'a> Grid<'a> {
             rows,
             lines_above: head.first.number - 1,
             separator,
+            remarks,
             period: period(&facts, head.separator),
             kind: Kind::Preamble,
             notes,
@@ -313,6 +320,7 @@ impl<'a> Grid<'a> {
             rows: Cow::Borrowed(&text[first.end..]),
             lines_above: first.number,
             separator,
+            remarks: false,
             period: None,
             kind: Kind::Plain,
             notes: Vec::new(),

@@ -175,7 +175,8 @@ pub(super) fn plain(cell: &str) -> Cow<'_, str> {
 }
 
 /// A number without the signs between its thousands, with a point, and whether its decimal sign is a comma: `1.234,5`,
-/// `1'234.5`, `1 234`, `1.234.567`. One point or comma alone may be the decimal sign, and is not taken for another one.
+/// `1'234.5`, `1 234`. Points alone, or commas alone, may be decimal signs that were written wrongly, and are not taken for
+/// others.
 fn without_groups(cell: &str) -> Option<(String, Option<bool>)> {
     let is_group = |c: char| matches!(c, '.' | ',' | '\'' | '’' | ' ' | '\u{a0}' | '\u{202f}');
     let digits = cell.trim_start_matches(['+', '-', '−']);
@@ -196,7 +197,7 @@ fn without_groups(cell: &str) -> Option<(String, Option<bool>)> {
         && others
             .iter()
             .all(|group| group.len() == 3 && all_digits(group));
-    let doubtful = decimal.is_none() && others.len() < 2 && matches!(sign, '.' | ',');
+    let doubtful = decimal.is_none() && matches!(sign, '.' | ',');
     if !even || doubtful || !all_digits(decimals) {
         return None;
     }
@@ -263,7 +264,6 @@ mod tests {
             ("1'234.5", 1234.5),
             ("1 234 567", 1_234_567.0),
             ("1\u{202f}234,25", 1234.25),
-            ("1.234.567", 1_234_567.0),
             ("12.345.678,9", 12_345_678.9),
         ] {
             let mut numbers = Numbers::of(None);
@@ -278,6 +278,7 @@ mod tests {
             "2024.05.06",
             "1 2",
             "12:30",
+            "1.234.567",
             "1.234.56",
             ".234,5",
         ] {

@@ -76,6 +76,7 @@ pub(super) fn of(text: &str) -> Result<Option<Grid<'_>>, ReadError> {
         rows: Cow::Owned(rows),
         lines_above: above,
         separator: b'\t',
+        remarks: false,
         period: period(&head[..at], Separator::Byte(b';')),
         kind: Kind::Pairs,
         notes,

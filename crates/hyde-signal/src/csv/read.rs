@@ -37,7 +37,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     };
     let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
     let mut columns = Columns::of(&grid.headings, &groups, layout.decimal);
-    let mut positions = Vec::new();
+    let (mut positions, mut width) = (Vec::new(), None);
     while rows.advance()? {
         if rows.is_end_mark() {
             break;
@@ -49,7 +49,8 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
             )));
             break;
         }
-        check_row(&rows, &grid.headings, groups.len() > 1)?;
+        let width = *width.get_or_insert(rows.count());
+        check_row(&rows, &grid, width, groups.len() > 1)?;
         columns.push(&rows, &grid.headings)?;
         positions.push(rows.position());
     }
@@ -164,11 +165,19 @@ fn is_cut_off(rows: &Rows<'_>, before: Option<&u64>, columns: usize) -> bool {
     rows.count() < columns || (shorter && is_number(last))
 }
 
-/// A row has a cell a column; those behind them are empty.
-fn check_row(rows: &Rows<'_>, headings: &[Heading], may_end: bool) -> Result<(), ReadError> {
+/// A row has a cell a column, and an empty one behind them if the first one, with `width` cells, has: a row that lost a cell
+/// would have one less. Behind them may be a column for remarks.
+fn check_row(
+    rows: &Rows<'_>,
+    grid: &Grid<'_>,
+    width: usize,
+    may_end: bool,
+) -> Result<(), ReadError> {
+    let headings = &grid.headings;
     let (found, expected) = (rows.count(), headings.len());
     let beyond = rows.cells().skip(expected).any(|cell| !cell.is_empty());
-    if (found < expected && !may_end) || beyond {
+    let ends_otherwise = (found > expected) != (width > expected) && !grid.remarks;
+    if ((found < expected || ends_otherwise) && !may_end) || beyond {
         let line = rows.line();
         return Err(ReadError::Ragged {
             line,
