@@ -7,13 +7,11 @@
 //! ```
 #![no_main]
 
-use hyde_diag::Code;
-use hyde_editor::{Host, Order, Outcome, serve};
+use hyde_editor::{Nobody, serve};
 use hyde_study::world::{Buffers, World};
 use libfuzzer_sys::fuzz_target;
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
 use serde_json::{Value, json};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -38,22 +36,6 @@ const REQUESTS: [&str; 15] = [
 const PATIENCE: Duration = Duration::from_secs(20);
 /// Messages of one session.
 const MOST: i32 = 24;
-
-struct Nobody;
-
-impl Host for Nobody {
-    fn library_file(&self, _: &str, _: &str) -> Option<PathBuf> {
-        None
-    }
-
-    fn explanation(&self, code: Code) -> String {
-        code.title().to_owned()
-    }
-
-    fn start(&self, _: Order, done: Box<dyn FnOnce(Outcome) + Send>) {
-        done(Outcome::from(Err("no".to_owned())));
-    }
-}
 
 fuzz_target!(|data: &[u8]| {
     let (client, own) = Connection::memory();

@@ -1,14 +1,16 @@
 //! Random edits of model files in a language server, with requests in between: after each sequence a server that has been
 //! there all the time and one that opens the result say the same.
 
+#[path = "../../crates/hyde-editor/tests/session/pieces.rs"]
+mod pieces;
+
+use self::pieces::PIECES;
 use crate::numbers::Numbers;
 use crate::root;
-use hyde_diag::Code;
-use hyde_editor::{Host, Order, Outcome, serve};
+use hyde_editor::{Nobody, serve};
 use hyde_study::world::{Disk, read_text};
 use lsp_server::{Connection, Message, Notification, Request, RequestId};
 use serde_json::{Value, json};
-use std::path::PathBuf;
 use std::sync::Arc;
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -21,38 +23,6 @@ const FILES: [&str; 6] = [
     "examples/bldc/rotor.hyde",
     "examples/two_mass/two_mass.hyde",
     "examples/y_axis/axis.hyde",
-];
-/// What is written into them, and pieces of themselves.
-const PIECES: [&str; 29] = [
-    "",
-    " ",
-    "\n",
-    ";",
-    "(",
-    ")",
-    "{",
-    "}",
-    "[",
-    "]",
-    "\"",
-    "//",
-    "/*",
-    "*/",
-    "=",
-    ".",
-    "µ",
-    "𝛼",
-    "end ",
-    "model ",
-    "equation\n",
-    "x",
-    "1 [mm]",
-    "experiment e of ",
-    "for i in 1:3 loop ",
-    "if x then ",
-    "modes initial a { mode a { } }",
-    "extends ",
-    "import Drives.*;\n",
 ];
 /// Requests about a place, and about a file.
 const AT: [&str; 8] = [
@@ -211,22 +181,6 @@ fn place(text: &str, byte: usize) -> Value {
 
 fn uri() -> String {
     format!("file://{PATH}")
-}
-
-struct Nobody;
-
-impl Host for Nobody {
-    fn library_file(&self, _: &str, _: &str) -> Option<PathBuf> {
-        None
-    }
-
-    fn explanation(&self, code: Code) -> String {
-        code.title().to_owned()
-    }
-
-    fn start(&self, _: Order, done: Box<dyn FnOnce(Outcome) + Send>) {
-        done(Outcome::from(Err("nobody runs it".to_owned())));
-    }
 }
 
 /// An editor with a server of its own.

@@ -12,6 +12,7 @@
 //! values        values, spreads and dimensions                             values.rs
 //! lens          commands over experiments and diagnoses                    lens.rs
 //! outcome       how such a command ended                                   outcome.rs
+//! nobody        a host that runs none, for tests and fuzz targets          nobody.rs
 //! runs          the last run of each file: its values and its failure      runs.rs, course.rs
 //! occurrences   every name of a file with its meaning                      occurrences.rs
 //! position      places as the protocol counts them                         position.rs
@@ -31,6 +32,7 @@ mod documents;
 mod fixes;
 mod inlay;
 mod lens;
+mod nobody;
 mod occurrences;
 mod outcome;
 mod outline;
@@ -47,5 +49,6 @@ mod uri;
 mod values;
 
 pub use lens::{Action, Order};
+pub use nobody::Nobody;
 pub use outcome::{Course, Courses, Failure, Label, Outcome};
 pub use server::{Host, PAUSE, serve};

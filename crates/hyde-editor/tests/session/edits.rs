@@ -1,6 +1,7 @@
 //! Random edits: the server answers as one that opens the result, and never fails.
 
 use crate::client::{Client, place};
+use crate::pieces::PIECES;
 use serde_json::{Value, json};
 
 const PATH: &str = "/nowhere/edited.hyde";
@@ -53,35 +54,6 @@ fn after_any_edits_the_answers_are_those_of_a_new_server() {
 /// So many random edits; now and then the answers are compared.
 fn edit(count: i32, compared: i32) {
     let first = include_str!("../../../../examples/first/first.hyde");
-    let pieces = [
-        "",
-        " ",
-        "\n",
-        ";",
-        "(",
-        ")",
-        "{",
-        "}",
-        "[",
-        "]",
-        "\"",
-        "//",
-        "/*",
-        "*/",
-        "=",
-        ".",
-        "µ",
-        "𝛼",
-        "end ",
-        "model ",
-        "equation\n",
-        "x",
-        "1 [mm]",
-        "experiment e of ",
-        "for i in 1:3 loop ",
-        "if x then ",
-        "modes initial a { mode a { } }",
-    ];
     let mut state = 7;
     let mut client = Client::new(&["utf-16"]);
     let mut text = first.to_owned();
@@ -98,7 +70,7 @@ fn edit(count: i32, compared: i32) {
         let end = (end..=text.len())
             .find(|at| text.is_char_boundary(*at))
             .unwrap();
-        let new = pieces[next(&mut state) % pieces.len()];
+        let new = PIECES[next(&mut state) % PIECES.len()];
         let range = [start, end].map(|byte| {
             let (line, character) = place(&text, byte);
             json!({ "line": line, "character": character })

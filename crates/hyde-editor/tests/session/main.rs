@@ -11,5 +11,6 @@ mod client;
 mod edits;
 mod examples;
 mod numbers;
+mod pieces;
 mod renames;
 mod runs;
