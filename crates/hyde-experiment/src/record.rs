@@ -40,7 +40,7 @@ fn layout(item: &RecordItem) -> Result<Layout, Diagnostic> {
         };
         let known = matches!(
             name,
-            "columns" | "header" | "separator" | "decimal" | "encoding" | "sheet"
+            "columns" | "header" | "separator" | "decimal" | "encoding" | "sheet" | "run"
         );
         if known && (setting.unit.is_some() || setting.wraps.is_some()) {
             let message = format!("`{name}` has neither a unit nor a range");
@@ -69,11 +69,15 @@ fn layout(item: &RecordItem) -> Result<Layout, Diagnostic> {
             }
             "header" if layout.header.is_some() => return Err(twice()),
             "header" => {
-                let line = setting.number.filter(|line| *line >= 0.0 && line.fract() == 0.0);
-                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "checked above")]
-                let line = line.map(|line| line as u64);
-                layout.header = Some(line.ok_or_else(|| {
+                layout.header = Some(whole(setting).ok_or_else(|| {
                     wrong("the header is not the number of a line".to_owned(), "write its line, counted from 1: `header = 5`")
+                })?);
+            }
+            "run" if layout.run.is_some() => return Err(twice()),
+            "run" => {
+                let run = whole(setting).and_then(|run| usize::try_from(run).ok());
+                layout.run = Some(run.filter(|run| *run > 0).ok_or_else(|| {
+                    wrong("the run is not the number of one".to_owned(), "write which run of the file is meant, counted from 1: `run = 2`")
                 })?);
             }
             "separator" => layout.separator = Some(separator(value).ok_or_else(|| {
@@ -96,11 +100,24 @@ fn layout(item: &RecordItem) -> Result<Layout, Diagnostic> {
                 let message = format!("a record has no setting `{name}`");
                 return Err(Diagnostic::error(Code::BadRecord, message)
                     .label(setting.name.span, "not known here")
-                    .help("its settings are `time`, `column`, `columns`, `header`, `separator`, `decimal`, `encoding` and `sheet`: `time = \"Timestamp\" in [ms]`"));
+                    .help("its settings are `time`, `column`, `columns`, `header`, `separator`, `decimal`, `encoding`, `sheet` and `run`: `time = \"Timestamp\" in [ms]`"));
             }
         }
     }
     Ok(layout)
+}
+
+/// The value of a setting that counts.
+fn whole(setting: &LayoutSetting) -> Option<u64> {
+    let number = setting
+        .number
+        .filter(|number| *number >= 0.0 && number.fract() == 0.0);
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "checked above"
+    )]
+    number.map(|number| number as u64)
 }
 
 /// `layout twincat`.

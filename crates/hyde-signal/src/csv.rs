@@ -22,6 +22,7 @@ mod number;
 mod pairs;
 mod read;
 mod rows;
+mod runs;
 mod separator;
 mod text;
 mod write;

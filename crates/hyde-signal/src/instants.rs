@@ -168,7 +168,7 @@ fn shifted(
 
 /// The number of values after which a counter begins again: as declared, else as the only step back shows that goes on by a
 /// usual step if it is taken for a counter of 16 or 32 bits.
-fn wraps(values: &[f64], declared: Option<&DeclaredColumn>) -> Option<f64> {
+pub(crate) fn wraps(values: &[f64], declared: Option<&DeclaredColumn>) -> Option<f64> {
     if let Some(period) = declared.and_then(|declared| declared.wraps) {
         return Some(period);
     }
@@ -320,6 +320,11 @@ fn candidate(raw: &[Raw], but: usize) -> Option<Candidate> {
     timed.next()
 }
 
+/// Whether a clock that read `before` has returned: it is nearer to the first time of the run.
+pub(crate) fn is_anew(first: f64, before: f64, now: f64) -> bool {
+    now < before && now - first < 0.5 * (before - first)
+}
+
 /// Time goes forward: not back, not anew, and not nowhere.
 fn advances(
     seconds: &[f64],
@@ -333,7 +338,7 @@ fn advances(
         return Err(TimeError::RunsBack {
             place: place(row),
             times: (shown(row - 1), shown(row)),
-            anew: now - first < 0.5 * (before - first),
+            anew: is_anew(first, before, now),
         });
     }
     let (first, last) = (seconds.first(), seconds.last());

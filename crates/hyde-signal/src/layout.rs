@@ -24,6 +24,8 @@ pub struct Layout {
     pub sheet: Option<String>,
     /// The encoding, by a name of the [WHATWG](https://encoding.spec.whatwg.org/#names-and-labels).
     pub encoding: Option<String>,
+    /// The run that is meant, from 1, where a file contains several.
+    pub run: Option<usize>,
     /// The kind of layout that the file must have.
     pub kind: Option<Kind>,
 }

@@ -20,6 +20,8 @@ pub enum RecordError {
     Workbook(workbook::ReadError),
     /// A compressed file that cannot be unpacked.
     Unpack(String),
+    /// A run is asked for in a file that cannot have several.
+    Run,
     /// A column cannot be used, where all of them are asked for.
     Column(Unusable),
 }
@@ -40,6 +42,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, RecordError> {
     if bytes.starts_with(b"<") || bytes.starts_with(b"\xef\xbb\xbf<") {
         let text = xml(bytes);
         if sinumerik::is_of_control(&text) {
+            one_run(layout)?;
             return sinumerik::read(&text, layout).map_err(RecordError::Sinumerik);
         }
     }
@@ -47,9 +50,18 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, RecordError> {
         return Err(RecordError::Foreign(foreign));
     }
     if parquet::is_parquet(bytes) {
+        one_run(layout)?;
         return parquet::read(bytes, layout).map_err(RecordError::Parquet);
     }
     csv::read(bytes, layout).map_err(RecordError::Csv)
+}
+
+/// Runs are told apart in texts and sheets only.
+fn one_run(layout: &Layout) -> Result<(), RecordError> {
+    match layout.run {
+        Some(_) => Err(RecordError::Run),
+        None => Ok(()),
+    }
 }
 
 const GZIP: &[u8] = b"\x1f\x8b";
@@ -116,6 +128,7 @@ impl RecordError {
             Self::Parquet(error) => error.repair(record),
             Self::Sinumerik(error) => error.repair(record),
             Self::Workbook(error) => error.repair(record),
+            Self::Run => "leave `run` out, and write one file per run".to_owned(),
             Self::Unpack(_) => "unpack it, and give the file in it".to_owned(),
             Self::Column(unusable) => unusable.fault.repair.clone(),
         }
@@ -130,6 +143,10 @@ impl fmt::Display for RecordError {
             Self::Parquet(error) => error.fmt(f),
             Self::Sinumerik(error) => error.fmt(f),
             Self::Workbook(error) => error.fmt(f),
+            Self::Run => write!(
+                f,
+                "a run is chosen in texts and workbooks only, not in a file of this kind"
+            ),
             Self::Unpack(reason) => write!(f, "the file cannot be unpacked: {reason}"),
             Self::Column(unusable) => unusable.fault.fmt(f),
         }

@@ -52,6 +52,9 @@ pub(super) fn print_unread(unread: &Unread) {
     } = unread;
     let help = help.as_ref();
     let help = help.map_or_else(String::new, |help| format!("\n  help: {help}"));
+    let message = message
+        .strip_prefix(&format!("`{file}`: "))
+        .unwrap_or(message);
     print_error(&format!("error: {file}: {message}{help}"));
 }
 

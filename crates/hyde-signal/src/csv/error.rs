@@ -57,6 +57,13 @@ pub enum ReadError {
         /// The line.
         line: u64,
     },
+    /// There are not so many runs.
+    NoRun {
+        /// Which one was asked for.
+        asked: usize,
+        /// How many there are.
+        found: usize,
+    },
     /// A header without a row below it.
     NoRows,
     /// A row has more or fewer cells than the header.
@@ -110,9 +117,10 @@ impl ReadError {
             Self::OtherKind { .. } => {
                 "leave `layout` out, and look at what the file is with `hyde look`".to_owned()
             }
-            Self::HeaderAgain { .. } => format!(
-                "cut the file there into one file per run, and give them one by one: `--record {record}=PATH`"
+            Self::HeaderAgain { .. } | Self::Time(TimeError::RunsBack { anew: true, .. }) => format!(
+                "say which run is meant, from 1: `record {record}(run = 1)`; a study of several takes a record for each"
             ),
+            Self::NoRun { found, .. } => format!("its runs are 1 to {found}: `record {record}(run = {found})`"),
             Self::NoRows => "write one row per sample below the header".to_owned(),
             Self::Ragged { .. } => {
                 "give every row one cell per column; a comma inside a number splits it into two cells".to_owned()
@@ -174,6 +182,11 @@ impl fmt::Display for ReadError {
             Self::HeaderAgain { line } => write!(
                 f,
                 "the file contains several runs: the header is repeated in line {line}"
+            ),
+            Self::NoRun { asked, found } => write!(
+                f,
+                "the file contains {}, and run {asked} is asked for",
+                hyde_units::counted(*found, "run")
             ),
             Self::NoRows => write!(f, "the file has a header but no samples"),
             Self::Ragged {

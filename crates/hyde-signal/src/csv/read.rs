@@ -6,6 +6,7 @@ use super::grid::Grid;
 use super::groups::Group;
 use super::number::{any_number, decimal_sign, grouping_sign, is_number};
 use super::rows::Rows;
+use super::runs;
 use super::text::decoded;
 use crate::assemble::{Cells, Raw};
 use crate::heading::{Heading, Temporal, is_time_unit, temporal};
@@ -35,6 +36,10 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
         None if !grid.groups.is_empty() => grid.groups.clone(),
         _ => vec![whole(&grid, &layout)?],
     };
+    if let Some(run) = layout.run {
+        let time = groups.first().and_then(|group| group.time);
+        notes.push(runs::choose(&mut grid, run, time, layout.time.as_ref())?);
+    }
     let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
     let mut columns = Columns::of(&grid.headings, &groups, layout.decimal);
     let (mut positions, mut width) = (Vec::new(), None);
@@ -185,8 +190,7 @@ fn check_row(
             expected,
         });
     }
-    let again = |(cell, heading): (&str, &Heading)| cell == heading.written;
-    if rows.cells().zip(headings).all(again) {
+    if rows.is_header(headings) {
         return Err(ReadError::HeaderAgain { line: rows.line() });
     }
     Ok(())

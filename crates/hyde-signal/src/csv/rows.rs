@@ -1,6 +1,7 @@
 //! The rows of a CSV text, without blank lines and comments, and the line each of them is on.
 
 use super::ReadError;
+use crate::heading::Heading;
 use ::csv::{ReaderBuilder, StringRecord, Trim};
 
 /// Goes through the rows of a text.
@@ -82,6 +83,12 @@ impl<'a> Rows<'a> {
     pub(super) fn is_end_mark(&self) -> bool {
         let mut cells = self.cells();
         cells.next() == Some("EOF") && cells.all(str::is_empty)
+    }
+
+    /// Whether the row is the header once more.
+    pub(super) fn is_header(&self, headings: &[Heading]) -> bool {
+        let again = |(cell, heading): (&str, &Heading)| cell == heading.written;
+        self.cells().zip(headings).all(again)
     }
 
     /// The last cell of the row that begins there.

@@ -315,6 +315,51 @@ fn repairs_name_the_column_that_may_be_the_time() {
 }
 
 #[test]
+fn one_of_several_runs_is_chosen() {
+    let run = |text: &str, run: usize| {
+        let layout = Layout {
+            run: Some(run),
+            ..Layout::default()
+        };
+        read(text.as_bytes(), &layout)
+    };
+    let column = |table: &Table| table.column("x").map(|x| x.values().to_vec());
+    // The clock returns; what is wrong in another run does not matter, and lines are those of the file.
+    let clock = "t [s],x\n0.5,1\n1.5,2\n\n0.5,3\n1.5,4\n2.5,5\n0.6,broken\n1.6,7\n";
+    let second = run(clock, 2).unwrap();
+    assert_eq!(second.time(), [0.5, 1.5, 2.5]);
+    assert_eq!(column(&second), Some(vec![3.0, 4.0, 5.0]));
+    assert!(notes(&second).contains("contains 3 runs: run 2 is read, lines 5 to 7"));
+    assert!(
+        run(clock, 3).unwrap().unusable()[0]
+            .fault
+            .message
+            .contains("line 8")
+    );
+    assert_eq!(
+        run(clock, 4).unwrap_err().to_string(),
+        "the file contains 3 runs, and run 4 is asked for"
+    );
+    // The header is repeated, and the clock counts on.
+    let header = run("t [s],x\n0.5,1\n1.5,2\nt [s],x\n2.5,3\n3.5,4\n", 2).unwrap();
+    assert_eq!(header.time(), [2.5, 3.5]);
+    // Dates, and a time of day that passes midnight, which is one run.
+    let dates = "Zeit;x\n05.03.2024 14:00:01;1\n05.03.2024 14:00:02;2\n05.03.2024 14:00:01;3\n05.03.2024 14:00:02;4\n";
+    assert_eq!(column(&run(dates, 2).unwrap()), Some(vec![3.0, 4.0]));
+    let midnight = "Zeit;x\n23:59:58;1\n23:59:59;2\n00:00:00;3\n00:00:01;4\n";
+    assert_eq!(run(midnight, 1).unwrap().rows(), 4);
+    // A counter of 16 bits that overflows goes on.
+    let counter = "t [us],x\n65000,1\n65200,2\n65400,3\n64,4\n264,5\n";
+    assert_eq!(run(counter, 1).unwrap().rows(), 5);
+    // Time that runs back a little within a run is a mistake as ever.
+    let back = "t [s],x\n0.5,1\n1.5,2\n0.5,3\n1.5,4\n1.25,5\n";
+    assert_eq!(
+        run(back, 2).unwrap_err().to_string(),
+        "line 6: time runs back from 1.5 to 1.25"
+    );
+}
+
+#[test]
 fn a_decimal_comma_stands_in_the_whole_file() {
     let table = table("t [s];x;y\n0,5;1;1.5\n1,5;2;2.5\n");
     assert_eq!(table.time(), [0.5, 1.5]);
