@@ -3,6 +3,7 @@
 mod backends;
 mod batches;
 mod bench;
+mod c_step;
 mod cases;
 mod clif_growth;
 mod clock;
@@ -51,6 +52,7 @@ pub use start::{START, first_step};
 pub const FIGURES: &[Figure] = &[
     clif_growth::FIGURE,
     residual_cost::FIGURE,
+    c_step::FIGURE,
     start::FIGURE,
     command_start::FIGURE,
     command_line::LINES,

@@ -2,11 +2,55 @@
 //! happens in a step happens at its end, as `hyde export c` says.
 
 use hyde_program::{
-    Constant, Function, Point, Program, ReactionKind, RelationUse, Target, Workspace, Wrt,
+    Column, Constant, Function, Point, Program, ReactionKind, RelationUse, Target, Workspace, Wrt,
 };
+use hyde_signal::{Cursor, Table};
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
 
 const ROUNDS: usize = 50;
+
+/// The inputs of a program that records drive, a list for each of some times in s.
+///
+/// # Errors
+/// A record has no such column.
+pub fn inputs(
+    program: &Program,
+    tables: &BTreeMap<String, Table>,
+    times: &[f64],
+) -> Result<Vec<Vec<f64>>, String> {
+    let signal = |column: &Column| {
+        let table = tables.get(&column.record);
+        let signal = table.and_then(|table| table.signal(&column.column));
+        signal.ok_or_else(|| format!("`{}` has no `{}`", column.record, column.column))
+    };
+    let of = |column: &Column| -> Result<Vec<f64>, String> {
+        let signal = signal(column)?;
+        let mut cursor = Cursor::default();
+        let value = |&t: &f64| match column.next {
+            true => signal.next(t, &mut cursor),
+            false => signal.linear(t, &mut cursor),
+        };
+        Ok(times.iter().map(value).collect())
+    };
+    let columns = program.columns.iter().map(of);
+    let columns: Vec<Vec<f64>> = columns.collect::<Result<_, String>>()?;
+    let row = |at: usize| columns.iter().map(|column| column[at]).collect();
+    match columns.is_empty() {
+        true => Ok(Vec::new()),
+        false => Ok((0..times.len()).map(row).collect()),
+    }
+}
+
+/// The same as the programs in `tests/exports` read them: a line for each step.
+#[must_use]
+pub fn lines(inputs: &[Vec<f64>]) -> String {
+    let line = |row: &Vec<f64>| {
+        let values: Vec<String> = row.iter().map(|value| format!("{value:?}")).collect();
+        values.join(" ") + "\n"
+    };
+    inputs.iter().map(line).collect()
+}
 
 /// A program that is stepped.
 pub struct FixedStep<'a> {

@@ -8,11 +8,8 @@
 
 use hyde_compiler::Backend;
 use hyde_program::Program;
-use hyde_signal::{Cursor, Table};
-use hyde_tests::fixed_step::FixedStep;
+use hyde_tests::fixed_step::{FixedStep, inputs, lines};
 use hyde_tests::{Example, root};
-use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 
@@ -72,15 +69,8 @@ impl Built {
         let mut command = Command::new(self.program());
         command.arg(steps.to_string());
         if !inputs.is_empty() {
-            let mut text = String::new();
-            for row in inputs {
-                for value in row {
-                    let _ = write!(text, "{value:?} ");
-                }
-                text.push('\n');
-            }
             let path = self.folder.path().join("inputs");
-            std::fs::write(&path, text).unwrap();
+            std::fs::write(&path, lines(inputs)).unwrap();
             command.arg(path);
         }
         let output = command.output().unwrap();
@@ -112,22 +102,6 @@ impl Built {
     }
 }
 
-/// The inputs of a program that records drive, at the end of every step.
-fn columns(program: &Program, tables: &BTreeMap<String, Table>, times: &[f64]) -> Vec<Vec<f64>> {
-    let value = |column: &hyde_program::Column, t: f64| {
-        let signal = tables[&column.record].signal(&column.column).unwrap();
-        match column.next {
-            true => signal.next(t, &mut Cursor::default()),
-            false => signal.linear(t, &mut Cursor::default()),
-        }
-    };
-    let row = |&t: &f64| program.columns.iter().map(|own| value(own, t)).collect();
-    match program.columns.is_empty() {
-        true => Vec::new(),
-        false => times.iter().map(row).collect(),
-    }
-}
-
 /// Compares a model with the reference; gives back how many values were compared and how often the outputs changed.
 fn compare(file: &str, experiment: &str, step: &str, outputs: &str, steps: usize) -> usize {
     let built = Built::new(file, experiment, step, outputs);
@@ -138,7 +112,7 @@ fn compare(file: &str, experiment: &str, step: &str, outputs: &str, steps: usize
     let ((start_s, _), _) = hyde_experiment::extent(&program, &tables, &p);
     let step_s: f64 = step.parse().unwrap();
     let times: Vec<f64> = (1..=steps).map(|k| start_s + k as f64 * step_s).collect();
-    let inputs = columns(&program, &tables, &times);
+    let inputs = inputs(&program, &tables, &times).unwrap();
     let found = built.run(steps, &inputs).unwrap();
     assert_eq!(found.len(), steps + 1);
     let start = hyde_sim::known_start(&program, &tables, &p, start_s, &[]).unwrap();
