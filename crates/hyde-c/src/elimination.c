@@ -30,7 +30,9 @@ static int hy_factor(@NAME@ *m, double t, double h, int kind)
             a[row * HY_N + column] /= most;
         }
     }
-    m->swapped[kind] = 0;
+    for (int row = 0; row < HY_N; ++row) {
+        m->equation[kind][row] = (unsigned short)hy_equation_at[row];
+    }
     for (int k = 0; k < HY_N; ++k) {
         int pivot = k;
         for (int row = k + 1; row < HY_N; ++row) {
@@ -41,12 +43,16 @@ static int hy_factor(@NAME@ *m, double t, double h, int kind)
         if (fabs(a[k * HY_N + k]) >= HY_PIVOT * fabs(a[pivot * HY_N + k])) {
             pivot = k;
         }
-        m->pivot[kind][k] = pivot;
         if (!(fabs(a[pivot * HY_N + k]) > 1e-300)) {
             return @NAME@_SINGULAR;
         }
         if (pivot != k) {
-            m->swapped[kind] = 1;
+            const unsigned short equation = m->equation[kind][k];
+            const double scale = m->scale[kind][k];
+            m->equation[kind][k] = m->equation[kind][pivot];
+            m->equation[kind][pivot] = equation;
+            m->scale[kind][k] = m->scale[kind][pivot];
+            m->scale[kind][pivot] = scale;
             for (int column = 0; column < HY_N; ++column) {
                 const double other = a[k * HY_N + column];
                 a[k * HY_N + column] = a[pivot * HY_N + column];
@@ -87,28 +93,24 @@ static void hy_substitute(@NAME@ *m, int kind, double *b)
 {
     double *x = m->solution;
     for (int row = 0; row < HY_N; ++row) {
-        x[row] = b[hy_equation_at[row]] * m->scale[kind][row];
-    }
-    for (int k = 0; m->swapped[kind] && k < HY_N; ++k) {
-        const int pivot = m->pivot[kind][k];
-        const double other = x[k];
-        x[k] = x[pivot];
-        x[pivot] = other;
-    }
-    for (int row = 0; row < HY_N; ++row) {
         const double *values = &m->matrix[kind][row * HY_N];
         const unsigned short *columns = &m->column[kind][row * HY_N];
-        for (int k = 0; k < m->first[kind][row]; ++k) {
-            x[row] -= values[k] * x[columns[k]];
+        const int count = m->first[kind][row];
+        double sum = b[m->equation[kind][row]] * m->scale[kind][row];
+        for (int k = 0; k < count; ++k) {
+            sum -= values[k] * x[columns[k]];
         }
+        x[row] = sum;
     }
     for (int row = HY_N - 1; row >= 0; --row) {
         const double *values = &m->matrix[kind][row * HY_N];
         const unsigned short *columns = &m->column[kind][row * HY_N];
-        for (int k = m->first[kind][row]; k < m->last[kind][row]; ++k) {
-            x[row] -= values[k] * x[columns[k]];
+        const int count = m->last[kind][row];
+        double sum = x[row];
+        for (int k = m->first[kind][row]; k < count; ++k) {
+            sum -= values[k] * x[columns[k]];
         }
-        x[row] *= m->inverse[kind][row];
+        x[row] = sum * m->inverse[kind][row];
     }
     for (int k = 0; k < HY_N; ++k) {
         b[hy_unknown_at[k]] = x[k];

@@ -106,13 +106,13 @@ fn structure(text: &mut String, model: &FixedStep<'_>) {
         "/* All of a model. Nothing of it is for others to read or write. */\n\
          typedef struct {name} {{\n\
          \x20   long long count, unsettled, pending_at[{holds}], before_pending_at[{holds}];\n\
-         \x20   int set, broken, fresh[2], swapped[2], pivot[2][{n}], first[2][{n}], last[2][{n}];\n\
+         \x20   int set, broken, fresh[2], first[2][{n}], last[2][{n}];\n\
          \x20   double y[{n}], yp[{n}], z[{z}], u[{u}], p[{p}], w[{w}], out[{out}];\n\
          \x20   double before_y[{n}], before_yp[{n}], before_z[{z}], left_y[{n}], left_yp[{n}], left_z[{z}];\n\
          \x20   double now_z[{z}], after_z[{z}], base[{n}], largest[{n}], residual[{n}], solution[{n}], scale[2][{n}], inverse[2][{n}], matrix[2][{square}];\n\
          \x20   double partials[{partials}], roots[{relations}], later[{relations}], truths[{reactions}], values[{values}];\n\
          \x20   double pin_value[{pins}], before_pin_value[{pins}], pending[{holds}], before_pending[{holds}];\n\
-         \x20   unsigned short column[2][{square}];\n\
+         \x20   unsigned short column[2][{square}], equation[2][{n}];\n\
          \x20   unsigned char given[{p}], conditions[{reactions}], before_conditions[{reactions}], flipped[{relations}];\n\
          \x20   unsigned char fired[{reactions}], pin_on[{pins}], before_pin_on[{pins}], left[{automata}], clause[{clauses}];\n\
          }} {name};\n\n",

@@ -85,14 +85,14 @@ static int hy_solve(@NAME@ *m, double t, double h, int kind)
             if (hy_differential[k]) {
                 m->y[k] = m->base[k] + h * m->yp[k];
             }
-            double part;
+            double small, part;
             m->largest[k] = hy_largest(m->largest[k], fabs(*value));
-            part = fabs(change) / (HY_RELATIVE * m->largest[k] + HY_ABSOLUTE);
+            small = HY_RELATIVE * m->largest[k] + HY_ABSOLUTE;
             if (hy_differential[k]) {
                 /* What matters of a rate is what it makes of its state in a step. */
-                const double of_state = @NAME@_STEP * fabs(change) / (HY_RELATIVE * fabs(m->y[k]) + HY_ABSOLUTE);
-                part = of_state < part ? of_state : part;
+                small = hy_largest(small, (HY_RELATIVE * fabs(m->y[k]) + HY_ABSOLUTE) * (1.0 / @NAME@_STEP));
             }
+            part = fabs(change) / small;
             if (!(part <= size)) {
                 size = part;
             }
