@@ -17,6 +17,7 @@ use crate::observer::measured;
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
 use hyde_program::{Program, Workspace};
+use hyde_signal::statistics::autocorrelation;
 use hyde_signal::wrap;
 use nalgebra::{DMatrix, DVector};
 
@@ -198,7 +199,7 @@ fn clear(columns: &DMatrix<f64>, errors: &DVector<f64>, channels: usize) -> DVec
     let freedoms = errors.len().saturating_sub(shown.len()).max(1);
     let scatter = (left.norm_squared() / freedoms as f64).max(1.0).sqrt();
     // What is wrong with a model is alike from row to row, and looks like a start.
-    let alike = correlation(&left, channels).clamp(0.0, 0.95);
+    let alike = autocorrelation(left.as_slice(), channels).clamp(0.0, 0.95);
     let scatter = scatter * (1.0 + alike) / (1.0 - alike);
     let mut variances = DVector::zeros(scales.len());
     for i in shown {
@@ -215,12 +216,4 @@ fn clear(columns: &DMatrix<f64>, errors: &DVector<f64>, channels: usize) -> DVec
         let clear = change.abs() > CLEAR * variance.sqrt();
         if clear { change } else { 0.0 }
     })
-}
-
-/// Correlation of what follows each other in a channel, rows of channels being one behind the other.
-fn correlation(values: &DVector<f64>, channels: usize) -> f64 {
-    let pairs = values.iter().zip(values.iter().skip(channels));
-    let products: f64 = pairs.map(|(a, b)| a * b).sum();
-    let total = values.norm_squared();
-    if total > 0.0 { products / total } else { 0.0 }
 }

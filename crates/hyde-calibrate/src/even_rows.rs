@@ -5,8 +5,8 @@
 //! there as they always are. [`Uneven`] tells of it. Over a long gap nothing is known of what drives the model: such a record
 //! is refused.
 
-use crate::fit::median;
 use crate::recording::RecordError;
+use hyde_signal::statistics::median;
 use hyde_signal::{Column, Signal, Table};
 
 /// Rows are even that are this part of their spacing off at most.

@@ -9,6 +9,8 @@ use crate::plant::Unsupported;
 use crate::solution::Solution;
 use crate::standstill::{Cause, audible, standstill};
 use crate::varied::Varied;
+use hyde_signal::statistics::distributions::{TWO_SIDED, student};
+use hyde_signal::statistics::{autocorrelation, mean_square};
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
@@ -16,9 +18,6 @@ use std::borrow::Cow;
 const CORRELATED: f64 = 0.9;
 /// The data say nothing of a parameter whose standard deviation stays above this part of what it was beforehand.
 const UNTOLD: f64 = 0.9;
-/// Half the width of a 95 % interval in standard deviations.
-const TWO_SIDED: f64 = 1.96;
-
 /// A parameter after calibration; numbers are SI.
 #[derive(Clone, Debug)]
 pub struct FittedParameter {
@@ -182,29 +181,10 @@ pub(crate) fn channel_errors(innovations: &Innovations, observer: &Observer) -> 
         ChannelError {
             chi,
             rms: chi.sqrt() * deviation,
-            correlation: correlation(&list),
+            correlation: autocorrelation(&list, 1),
         }
     })
     .collect()
-}
-
-/// Mean of the squares; 0 of none.
-pub(crate) fn mean_square(list: &[f64]) -> f64 {
-    list.iter().map(|r| r * r).sum::<f64>() / (list.len() as f64).max(1.0)
-}
-
-/// The middle one of some values; `None` of none.
-pub(crate) fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied()
-}
-
-/// Correlation of successive values.
-pub(crate) fn correlation(list: &[f64]) -> f64 {
-    let total: f64 = list.iter().map(|r| r * r).sum();
-    let products: f64 = list.windows(2).map(|pair| pair[0] * pair[1]).sum();
-    if total > 0.0 { products / total } else { 0.0 }
 }
 
 /// By how much a sum of squares overstates what is known: the mean square where it is above one, and (1 + rho)/(1 - rho)
@@ -228,7 +208,7 @@ fn largest_inflation(innovations: &[Innovations]) -> f64 {
 fn inflation_over<'a>(lists: impl Iterator<Item = Cow<'a, [f64]>>) -> f64 {
     let (mut sum, mut count) = (0.0, 0.0);
     for list in lists {
-        let rho = correlation(&list).clamp(0.0, 0.99);
+        let rho = autocorrelation(&list, 1).clamp(0.0, 0.99);
         let squares: f64 = list.iter().map(|r| r * r).sum();
         sum += squares * (1.0 + rho) / (1.0 - rho);
         count += list.len() as f64;
@@ -285,14 +265,6 @@ pub(crate) fn covariance_of_first(solution: &Solution, inflation: f64, n: usize)
 fn few(blocks: usize) -> f64 {
     let blocks = blocks.max(2);
     blocks as f64 / (blocks - 1) as f64 * student(blocks - 1).powi(2)
-}
-
-/// Student's 97.5 % quantile over the normal one (Abramowitz and Stegun 26.7.5).
-fn student(freedoms: usize) -> f64 {
-    let (x, n) = (TWO_SIDED, freedoms.max(1) as f64);
-    let first = (x.powi(2) + 1.0) / 4.0;
-    let second = (5.0 * x.powi(4) + 16.0 * x.powi(2) + 3.0) / 96.0;
-    1.0 + first / n + second / n.powi(2)
 }
 
 fn parameters(

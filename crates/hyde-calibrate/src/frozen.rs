@@ -3,8 +3,8 @@
 //! An axis that sticks, or is within its play, goes on from where it held. A reading that was held is at once where the axis
 //! has gone meanwhile. Nothing of the model is asked.
 
-use crate::fit::median;
 use crate::recording::Recording;
+use hyde_signal::statistics::median;
 
 /// Rows that a reading stands still, to the last bit, at least.
 const ROWS: usize = 20;

@@ -12,12 +12,12 @@
 
 use crate::configuration::{Configuration, Places};
 use crate::diagnosis::MATERIAL;
-use crate::fit::median;
 use crate::gain::Observer;
 use crate::observer;
 use crate::plant::Unsupported;
 use crate::recording::Recording;
 use hyde_program::{Column, Function, Point, Program, Workspace};
+use hyde_signal::statistics::median;
 use nalgebra::{DMatrix, DVector};
 
 /// The median of the size of a normal number, in standard deviations.

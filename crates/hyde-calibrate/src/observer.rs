@@ -1,10 +1,10 @@
 //! An observer over a record: predict a row, compare, correct, on.
 
-use crate::fit::mean_square;
 use crate::gain::Observer;
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
 use hyde_program::{Function, Program, SomeRows};
+use hyde_signal::statistics::mean_square;
 use std::borrow::Cow;
 use std::ops::ControlFlow;
 use std::sync::Arc;

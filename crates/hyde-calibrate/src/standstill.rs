@@ -1,7 +1,6 @@
 //! [`Cause`]: why a calibration taught nothing, where it did not: least squares of what nothing changes end at once, and look
 //! as if they had converged.
 
-use crate::fit::mean_square;
 use crate::gain::Observer;
 use crate::observer::{When, run_while};
 use crate::plant::Unsupported;
@@ -9,6 +8,7 @@ use crate::recording::Recording;
 use crate::solution::Solution;
 use crate::varied::Varied;
 use hyde_program::Program;
+use hyde_signal::statistics::{mean, mean_square};
 use std::ops::ControlFlow;
 
 /// A parameter has no effect that changes the sum of squares by less than this over its prior's standard deviation: a unit
@@ -68,7 +68,7 @@ pub fn standstill(
         for (channel, list) in innovations.each_of_readings().enumerate() {
             let rows = &recording.channels[channel][recording.first_row..];
             let known: Vec<f64> = rows.iter().copied().filter(|v| v.is_finite()).collect();
-            let mean = hyde_signal::statistics::mean(&known);
+            let mean = mean(&known);
             let signal: Vec<f64> = known.iter().map(|value| value - mean).collect();
             let signal = mean_square(&signal).sqrt();
             let rms = mean_square(&list).sqrt() * observer.deviations[channel];

@@ -3,9 +3,9 @@
 //! Those of a model that is right are white and do not go with each other (Ljung, System Identification, 2nd ed. 1999,
 //! section 16.6).
 
-use crate::fit::correlation;
 use crate::observer::Innovations;
 use hyde_program::Program;
+use hyde_signal::statistics::autocorrelation;
 use rayon::prelude::*;
 
 /// How innovations of a channel go with themselves and with what was measured.
@@ -38,7 +38,7 @@ pub fn whiteness(
     let mean = |all: &[&Innovations], channel: usize| {
         let lists = all.iter().map(|own| own.of_readings(channel));
         let rows: usize = lists.clone().map(|list| list.len()).sum();
-        let each = lists.map(|list| correlation(&list) * list.len() as f64);
+        let each = lists.map(|list| autocorrelation(&list, 1) * list.len() as f64);
         each.sum::<f64>() / (rows as f64).max(1.0)
     };
     let cross = |channel: usize| {

@@ -22,6 +22,7 @@ use crate::recording::Recording;
 use crate::tangent::{Direction, Own};
 use crate::track::{Track, Vectors};
 use hyde_program::Program;
+use hyde_signal::statistics::distributions::TWO_SIDED;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -462,7 +463,7 @@ fn asked(
     let larger = inflation(&innovations);
     let mut found = vec![None; knots.len()];
     for (number, &knot) in shown.iter().enumerate() {
-        let half = 1.96 * (larger * covariance[(number, number)]).sqrt();
+        let half = TWO_SIDED * (larger * covariance[(number, number)]).sqrt();
         found[knot] = Some((sizes[number], half));
     }
     Some(found)

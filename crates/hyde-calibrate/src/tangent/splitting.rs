@@ -11,10 +11,10 @@
 use crate::configuration::{Places, arranged, partials, uneven, v_column, x_column};
 use crate::dense::add_low_rank;
 use crate::exponential::{Step, phi1, steps};
-use crate::fit::median;
 use crate::plant::{LEVELS, shortest_steps};
 use crate::track::Track;
 use hyde_program::{Function, Point, Program, Workspace, Wrt};
+use hyde_signal::statistics::median;
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
 
