@@ -12,14 +12,15 @@
 //! is alike from row to row. Modes follow as in a run:
 //! one that holds a state elsewhere than it is shown to be is left ([`hyde_sim::known_start`]), others by their guards.
 
-use crate::gain::{deviation, output_matrix, state_names};
-use crate::observer::measured;
+use crate::gain::{deviation, state_names};
+use crate::outputs::{measured, output_matrix};
 use crate::plant::{Plant, Unsupported};
-use crate::recording::Recording;
+use crate::recording::{RecordError, Recording};
 use hyde_program::{Program, Workspace};
 use hyde_signal::statistics::autocorrelation;
-use hyde_signal::wrap;
+use hyde_signal::{Table, wrap};
 use nalgebra::{DMatrix, DVector};
+use std::collections::BTreeMap;
 
 /// Rows that show it: a model that is somewhat wrong is right for so long.
 const ROWS: usize = 30;
@@ -32,25 +33,23 @@ const SHOWN: f64 = 1e-3;
 /// How often it is looked from what was found: a gap that closes is a spring from there on.
 const ROUNDS: usize = 5;
 
-/// The positions of states among the unknowns of a program; those it does not have are left out.
-pub(crate) fn positions(program: &Program, beginning: &[(String, f64)]) -> Vec<(usize, f64)> {
-    if beginning.is_empty() {
-        return Vec::new();
+impl Recording {
+    /// A record for a program in the observed form, with the states that it shows elsewhere than the model starts; none where
+    /// there is no observer.
+    ///
+    /// # Errors
+    /// See [`RecordError`].
+    pub fn new(
+        name: &str,
+        program: &Program,
+        tables: BTreeMap<String, Table>,
+    ) -> Result<Self, RecordError> {
+        let mut recording = Self::read(name, program, tables)?;
+        let mut found = Vec::new();
+        let _none = look(program, &recording, &mut found);
+        recording.beginning = found;
+        Ok(recording)
     }
-    let unknowns = 0..program.n_unknowns;
-    let known = unknowns.filter_map(|position| {
-        let name = program.unknown_name(position);
-        let own = beginning.iter().find(|(state, _)| *state == name)?;
-        Some((position, own.1))
-    });
-    known.collect()
-}
-
-/// The states that a record shows elsewhere than the model starts; none where there is no observer.
-pub(crate) fn shown(program: &Program, recording: &Recording) -> Vec<(String, f64)> {
-    let mut found = Vec::new();
-    let _none = look(program, recording, &mut found);
-    found
 }
 
 fn look(

@@ -7,11 +7,11 @@
 //! [Derivatives](crate::linearised) are those along one run, for the last steps differences of runs; intervals are of the
 //! former. Sums are formed in a fixed order, so the number of threads changes nothing.
 
-use crate::fit::inflation;
 use crate::linearised::Slopes;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::solution::Solution;
+use crate::uncertainty::inflation;
 use crate::varied::Varied;
 use hyde_sim::Reached;
 use nalgebra::{DMatrix, DVector};

@@ -1,18 +1,16 @@
 //! [`Fit`]: a calibration with what it is worth: intervals, correlations, what the data cannot tell apart.
 
 use crate::descent::Objective;
-use crate::gain::Observer;
 use crate::joint::Joint;
 use crate::least_squares::Problem;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::solution::Solution;
 use crate::standstill::{Cause, audible, standstill};
+use crate::uncertainty::{covariance, inflation};
 use crate::varied::Varied;
-use hyde_signal::statistics::distributions::{TWO_SIDED, student};
-use hyde_signal::statistics::{autocorrelation, mean_square};
-use nalgebra::{DMatrix, DVector};
-use std::borrow::Cow;
+use hyde_signal::statistics::distributions::TWO_SIDED;
+use nalgebra::DMatrix;
 
 /// Parameters are of one group if some pair of their errors is correlated more than this.
 const CORRELATED: f64 = 0.9;
@@ -43,17 +41,6 @@ pub struct FittedParameter {
     pub untold: bool,
     /// No innovation depends on it.
     pub silent: bool,
-}
-
-/// Innovations of a channel in a record.
-#[derive(Clone, Debug)]
-pub struct ChannelError {
-    /// Mean square of whitened innovations.
-    pub chi: f64,
-    /// Root mean square of innovations, SI.
-    pub rms: f64,
-    /// Correlation of successive innovations.
-    pub correlation: f64,
 }
 
 /// A calibration.
@@ -172,99 +159,6 @@ fn start_values(varied: &[Varied], number: usize) -> Vec<f64> {
         varied.nominal + (2.0 * part - 1.0) * width
     };
     varied.iter().enumerate().map(spread).collect()
-}
-
-pub(crate) fn channel_errors(innovations: &Innovations, observer: &Observer) -> Vec<ChannelError> {
-    let each = innovations.each_of_readings().zip(&observer.deviations);
-    each.map(|(list, deviation)| {
-        let chi = mean_square(&list);
-        ChannelError {
-            chi,
-            rms: chi.sqrt() * deviation,
-            correlation: autocorrelation(&list, 1),
-        }
-    })
-    .collect()
-}
-
-/// By how much a sum of squares overstates what is known: the mean square where it is above one, and (1 + rho)/(1 - rho)
-/// for correlated errors (Bartlett, J. R. Stat. Soc. Suppl. 8, 1946, 27), over all channels.
-pub(crate) fn inflation(innovations: &[Innovations]) -> f64 {
-    inflation_over(innovations.iter().flat_map(Innovations::each_of_readings))
-}
-
-/// The same of the channel where it is largest.
-fn largest_inflation(innovations: &[Innovations]) -> f64 {
-    let channels = innovations.iter().map(|own| own.channels.len()).max();
-    let each = (0..channels.unwrap_or(0)).map(|channel| {
-        let with_it = innovations
-            .iter()
-            .filter(|own| channel < own.channels.len());
-        inflation_over(with_it.map(|own| own.of_readings(channel)))
-    });
-    each.fold(1.0, f64::max)
-}
-
-fn inflation_over<'a>(lists: impl Iterator<Item = Cow<'a, [f64]>>) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for list in lists {
-        let rho = autocorrelation(&list, 1).clamp(0.0, 0.99);
-        let squares: f64 = list.iter().map(|r| r * r).sum();
-        sum += squares * (1.0 + rho) / (1.0 - rho);
-        count += list.len() as f64;
-    }
-    (sum / f64::max(count, 1.0)).max(1.0)
-}
-
-/// By how much a sum of squares overstates what is known of some parameters: the scatter of gradients from second to second,
-/// which knows how they go with what is not explained (White, Econometrica 50, 1982, 1); at most [`inflation`] of
-/// the channel where it is largest, which takes them to change as slowly as they can.
-pub(crate) fn inflation_of(solution: &Solution, own: impl IntoIterator<Item = usize>) -> f64 {
-    let most = largest_inflation(&solution.innovations);
-    let Some(bread) = solution.inverse_curvature() else {
-        return most;
-    };
-    let (scatter, blocks) = &solution.scatter;
-    let scattered = &bread * (scatter * few(*blocks)) * &bread;
-    let each = own.into_iter().map(|i| scattered[(i, i)] / bread[(i, i)]);
-    each.fold(1.0, f64::max).min(most)
-}
-
-/// The covariance of the parameters, in units of their scales: that of independent innovations, less what they tell less than
-/// such, and no deviation smaller than the scatter of gradients from second to second says. What a model lacks is not
-/// independent from row to row, and shows there (White, Econometrica 50, 1982, 1). The scatter of few blocks is itself uncertain:
-/// Student's quantile for one freedom less takes the normal one's place (Cameron and Miller, J. Hum. Resour. 50, 2015, 317).
-pub(crate) fn covariance(solution: &Solution, inflation: f64) -> DMatrix<f64> {
-    covariance_of_first(solution, inflation, solution.values.len())
-}
-
-/// The same of the first `n` parameters, the others held where they are.
-pub(crate) fn covariance_of_first(solution: &Solution, inflation: f64, n: usize) -> DMatrix<f64> {
-    let first = |matrix: &DMatrix<f64>| matrix.view((0, 0), (n, n)).into_owned();
-    let (data, priors) = &solution.curvature;
-    let (data, priors) = (&first(data), &first(priors));
-    let largest = data
-        .diagonal()
-        .iter()
-        .fold(1e-300_f64, |most, v| most.max(*v));
-    let floor = DMatrix::identity(n, n) * (1e-12 * largest);
-    let unknown = || DMatrix::from_element(n, n, f64::NAN);
-    let inverse = |matrix: DMatrix<f64>| matrix.try_inverse().unwrap_or_else(unknown);
-    let independent = inverse(data / inflation + priors + &floor);
-    let weighed = solution.weight * priors;
-    let bread = inverse(data + &weighed + floor);
-    let (scatter, blocks) = (first(&solution.scatter.0), &solution.scatter.1);
-    let scattered = &bread * (scatter * few(*blocks) + weighed) * &bread;
-    let wider = DVector::from_fn(n, |i, _| {
-        (scattered[(i, i)] / independent[(i, i)]).max(1.0).sqrt() * solution.wider[i]
-    });
-    DMatrix::from_fn(n, n, |i, j| independent[(i, j)] * wider[i] * wider[j])
-}
-
-/// By how much the scatter of so many blocks is to be taken for more than it is.
-fn few(blocks: usize) -> f64 {
-    let blocks = blocks.max(2);
-    blocks as f64 / (blocks - 1) as f64 * student(blocks - 1).powi(2)
 }
 
 fn parameters(

@@ -9,17 +9,20 @@
 //! not known to ([`crate::input_noise`]). P solves the discrete Riccati equation, by structured
 //! doubling (Chu, Fan, Lin and Wang, Int. J. Control 77, 2004, 767).
 //!
-//! A channel that is read in some rows only has a gain in these ([`Gains`]).
+//! A channel that is read in some rows only has a gain in these: C and R are of the channels that have a reading in the row. P
+//! is one for all rows: the stationary covariance of a prediction if a channel that has a reading in every m-th row had one in
+//! each, of m times the variance, which tells as much in the mean.
 //!
 //! The gain is made once from the nominal model and never again within a study: innovations stay comparable.
 
-use crate::configuration::{Configuration, Places};
+use crate::configuration::Configuration;
 use crate::gains::Gains;
 use crate::input_noise;
+use crate::outputs::output_matrix;
 use crate::plant::{Plant, Unsupported};
-use crate::readings::Rates;
+use crate::readings::{Rates, Readings};
 use crate::recording::Recording;
-use hyde_program::{Constant, Function, Point, Program, Workspace, Wrt};
+use hyde_program::{Constant, Program, Workspace};
 use nalgebra::{DMatrix, DVector};
 
 /// The part of its usual rate that a balance is not known to.
@@ -273,50 +276,6 @@ fn rounding(program: &Program, channel: usize, p: &[f64]) -> f64 {
     width.unwrap_or(0.0)
 }
 
-/// Derivatives of the measured channels by the states, at a point of a configuration.
-pub(crate) fn output_matrix(
-    program: &Program,
-    places: &Places,
-    configuration: &Configuration<'_>,
-    at: Point<'_>,
-    workspace: &mut Workspace,
-) -> DMatrix<f64> {
-    let channels = program.experiment.measured.len();
-    let entries = program.partials(Function::Outputs);
-    let mut values = vec![0.0; entries.len()];
-    program
-        .kernels
-        .partials(Function::Outputs, at, workspace, &mut values);
-    let number_in =
-        |list: &[usize], position: usize| list.iter().position(|&known| known == position);
-    let mut c = DMatrix::zeros(channels, places.states.len());
-    for (entry, value) in entries.iter().zip(values) {
-        let measured = &program.experiment.measured;
-        let Some(channel) = measured.iter().position(|m| m.output == entry.row) else {
-            continue;
-        };
-        let by_state = match entry.wrt {
-            Wrt::Unknown(position) => match number_in(&places.states, position) {
-                Some(state) => {
-                    c[(channel, state)] += value;
-                    None
-                }
-                None => number_in(&places.algebraics, position)
-                    .map(|row| configuration.by_states.row(places.states.len() + row)),
-            },
-            Wrt::Derivative(position) => {
-                number_in(&places.states, position).map(|row| configuration.by_states.row(row))
-            }
-            Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => None,
-        };
-        if let Some(row) = by_state {
-            let mut own = c.row_mut(channel);
-            own += row * value;
-        }
-    }
-    c
-}
-
 /// The states that a balance moves: all but those whose rate is another state.
 #[allow(
     clippy::float_cmp,
@@ -355,10 +314,31 @@ pub(crate) fn stationary(
         s[(channel, channel)] += sd * sd;
     }
     Stationary {
-        gains: Gains::of(&p, c, noise, &rates.kinds),
+        gains: gains(&p, c, noise, &rates.kinds),
         deviations: s.diagonal().iter().map(|v| v.sqrt()).collect(),
         spread: p.diagonal().iter().map(|v| v.max(0.0).sqrt()).collect(),
     }
+}
+
+/// The gains by a covariance of the prediction, for some kinds of rows; `noise` is the standard deviation of each channel.
+fn gains(p: &DMatrix<f64>, c: &DMatrix<f64>, noise: &[f64], kinds: &[Readings]) -> Gains {
+    Gains::of_kinds(noise.len(), kinds, |readings| {
+        let channels = 0..noise.len();
+        let known: Vec<usize> = channels.filter(|&channel| readings[channel]).collect();
+        let seen = c.select_rows(&known);
+        let mut s = &seen * p * seen.transpose();
+        for (row, &channel) in known.iter().enumerate() {
+            s[(row, row)] += noise[channel] * noise[channel];
+        }
+        let inverse = s.clone().try_inverse();
+        let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(s.nrows(), s.ncols()));
+        let own = p * seen.transpose() * inverse;
+        let mut gain = DMatrix::zeros(p.nrows(), noise.len());
+        for (column, &channel) in known.iter().enumerate() {
+            gain.set_column(channel, &own.column(column));
+        }
+        gain
+    })
 }
 
 /// Root mean square of each state's rate over the records.

@@ -1,10 +1,4 @@
-//! [`Gains`]: what an observer corrects states by, for each kind of row.
-//!
-//! ```text
-//! K = P C'(C P C' + R)^-1        C and R of the channels that have a reading in the row
-//! ```
-//! P is one for all rows: the stationary covariance of a prediction if a channel that has a reading in every m-th row had one
-//! in each, of m times the variance, which tells as much in the mean.
+//! [`Gains`]: what corrects the states of a plant by the errors of its channels, for each kind of row.
 
 use crate::readings::Readings;
 use nalgebra::DMatrix;
@@ -26,31 +20,13 @@ impl Gains {
         }
     }
 
-    /// Those of a covariance of the prediction, for some kinds of rows; `noise` is the standard deviation of each channel.
-    pub(crate) fn of(
-        p: &DMatrix<f64>,
-        c: &DMatrix<f64>,
-        noise: &[f64],
+    /// One for each kind of row, those with a reading of every channel of `count` among them or not.
+    pub(crate) fn of_kinds(
+        count: usize,
         kinds: &[Readings],
+        gain: impl Fn(&Readings) -> DMatrix<f64>,
     ) -> Self {
-        let gain = |readings: &Readings| {
-            let channels = 0..noise.len();
-            let known: Vec<usize> = channels.filter(|&channel| readings[channel]).collect();
-            let seen = c.select_rows(&known);
-            let mut s = &seen * p * seen.transpose();
-            for (row, &channel) in known.iter().enumerate() {
-                s[(row, row)] += noise[channel] * noise[channel];
-            }
-            let inverse = s.clone().try_inverse();
-            let inverse = inverse.unwrap_or_else(|| DMatrix::zeros(s.nrows(), s.ncols()));
-            let own = p * seen.transpose() * inverse;
-            let mut gain = DMatrix::zeros(p.nrows(), noise.len());
-            for (column, &channel) in known.iter().enumerate() {
-                gain.set_column(channel, &own.column(column));
-            }
-            gain
-        };
-        let all = vec![true; noise.len()];
+        let all = vec![true; count];
         let others = kinds.iter().filter(|readings| **readings != all);
         Self {
             others: others.map(|own| (own.clone(), gain(own))).collect(),

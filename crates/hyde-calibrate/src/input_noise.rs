@@ -11,7 +11,6 @@
 //! a variance by which all of them together, in whatever pattern, are worth less than the least effect that counts.
 
 use crate::configuration::{Configuration, Places};
-use crate::diagnosis::MATERIAL;
 use crate::gain::Observer;
 use crate::observer;
 use crate::plant::Unsupported;
@@ -19,6 +18,9 @@ use crate::recording::Recording;
 use hyde_program::{Column, Function, Point, Program, Workspace};
 use hyde_signal::statistics::median;
 use nalgebra::{DMatrix, DVector};
+
+/// An effect counts if it improves the sum of squares of innovations that were not fitted by this part of their number.
+pub(crate) const MATERIAL: f64 = 0.002;
 
 /// The median of the size of a normal number, in standard deviations.
 const MEDIAN: f64 = 0.6745;

@@ -25,6 +25,7 @@
 mod beginning;
 mod begins_again;
 mod blocks;
+mod channel_error;
 mod configuration;
 mod dense;
 mod descent;
@@ -51,6 +52,7 @@ mod linearised;
 mod measures;
 mod model;
 mod observer;
+mod outputs;
 mod past;
 mod plan;
 mod plant;
@@ -60,16 +62,19 @@ mod readings;
 mod recording;
 mod residual_map;
 mod selftest;
+mod snapshot;
 mod solution;
 mod standstill;
 mod stepping;
 mod tangent;
 mod track;
+mod uncertainty;
 mod varied;
 mod whiteness;
 mod windows;
 
 pub use blocks::Fold;
+pub use channel_error::ChannelError;
 pub use diagnosis::{
     Alternative, Author, Built, CurvePoint, Diagnosis, Experiment, Factor, Finding, FoundCurve,
     FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, LawVariable,
@@ -77,7 +82,7 @@ pub use diagnosis::{
     Unknown, Variable, Verdict, Written, diagnose,
 };
 pub use even_rows::Uneven;
-pub use fit::{ChannelError, Fit, FittedParameter, fit, fitted_parameters};
+pub use fit::{Fit, FittedParameter, fit, fitted_parameters};
 pub use free_run::{FreeChannel, free_run};
 pub use frozen::{Frozen, frozen};
 pub use gain::{Observer, Taken, UNDECLARED_NOISE};

@@ -8,7 +8,7 @@
 //!                                                                              shifted by half a count
 //! ```
 
-use crate::fit::{ChannelError, channel_errors};
+use crate::channel_error::{ChannelError, channel_errors};
 use crate::free_run::{FreeChannel, free_run};
 use crate::gain::Observer;
 use crate::observer::Innovations;

@@ -1,9 +1,10 @@
 //! An observer over a record: predict a row, compare, correct, on.
 
 use crate::gain::Observer;
+use crate::outputs::measured;
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
-use hyde_program::{Function, Program, SomeRows};
+use hyde_program::Program;
 use hyde_signal::statistics::mean_square;
 use std::borrow::Cow;
 use std::ops::ControlFlow;
@@ -161,13 +162,6 @@ fn whitened(error: f64, deviation: f64) -> f64 {
     } else {
         1e6
     }
-}
-
-/// What the channels show, alone of all outputs.
-pub(crate) fn measured(program: &Program) -> Box<dyn SomeRows + '_> {
-    let measured = program.experiment.measured.iter();
-    let outputs: Vec<usize> = measured.map(|measured| measured.output).collect();
-    program.kernels.some_rows(Function::Outputs, &outputs)
 }
 
 /// A value that is missing corrects nothing.

@@ -7,8 +7,8 @@
 //! stays there bitwise.
 
 use crate::configuration::{Configuration, Places};
-use crate::gain::output_matrix;
 use crate::leg::{Event, Instant, Leg};
+use crate::outputs::output_matrix;
 use crate::past::Past;
 use crate::recording::Recording;
 use crate::stepping::{Outcome, Room, gather};
@@ -109,7 +109,7 @@ impl<'a> Plant<'a> {
     ) -> Result<Self, Unsupported> {
         supported(program)?;
         let p = recording.parameters(program, set);
-        let known = crate::beginning::positions(program, beginning);
+        let known = positions(program, beginning);
         let (tables, t) = (&recording.tables, recording.start_s);
         let start = hyde_sim::known_start(program, tables, &p, t, &known).map_err(no_start)?;
         let mut plant = Self::from(program, recording, p, (start.y, start.yp, start.z))?;
@@ -440,6 +440,20 @@ impl<'a> Plant<'a> {
         self.met
             .extend(self.pinned.iter().map(|(position, _)| *position));
     }
+}
+
+/// The positions of states among the unknowns of a program; those it does not have are left out.
+fn positions(program: &Program, beginning: &[(String, f64)]) -> Vec<(usize, f64)> {
+    if beginning.is_empty() {
+        return Vec::new();
+    }
+    let unknowns = 0..program.n_unknowns;
+    let known = unknowns.filter_map(|position| {
+        let name = program.unknown_name(position);
+        let own = beginning.iter().find(|(state, _)| *state == name)?;
+        Some((position, own.1))
+    });
+    known.collect()
 }
 
 #[allow(clippy::needless_pass_by_value, reason = "a function to map errors by")]

@@ -80,11 +80,11 @@ const SETTLING_ROWS: usize = 150;
 const SETTLING_READINGS: usize = 20;
 
 impl Recording {
-    /// A record for a program in the observed form.
+    /// A record for a program in the observed form; nothing is known yet of where it begins.
     ///
     /// # Errors
     /// See [`RecordError`].
-    pub fn new(
+    pub(crate) fn read(
         name: &str,
         program: &Program,
         tables: BTreeMap<String, Table>,
@@ -129,7 +129,7 @@ impl Recording {
             .max(SETTLING_ROWS)
             .max(settled(&channels));
         let (kinds, of_rows) = readings::kinds(&channels);
-        let mut found = Self {
+        Ok(Self {
             name: name.to_owned(),
             step_s,
             start_s: time[0],
@@ -145,9 +145,7 @@ impl Recording {
             columns,
             first_row,
             beginning: Vec::new(),
-        };
-        found.beginning = crate::beginning::shown(program, &found);
-        Ok(found)
+        })
     }
 
     /// Number of rows.

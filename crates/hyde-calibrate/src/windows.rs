@@ -6,9 +6,11 @@
 
 use crate::dense::set_product;
 use crate::gain::Observer;
-use crate::observer::{forget_missing, measured};
+use crate::observer::forget_missing;
+use crate::outputs::measured;
 use crate::plant::{Plant, Unsupported};
 use crate::recording::Recording;
+use crate::snapshot::Snapshot;
 use hyde_program::Program;
 use nalgebra::{DMatrix, DVector};
 
@@ -35,7 +37,7 @@ pub(crate) fn windows(
 ) -> Result<Windows, Unsupported> {
     let (mut plant, observer) = observer.on(program, recording, set)?;
     let length = ((WINDOW_S / recording.step_s).round() as usize).max(1);
-    let mut starts: Vec<(Start, Vec<f64>)> = Vec::new();
+    let mut starts: Vec<(Snapshot, Vec<f64>)> = Vec::new();
     crate::observer::run(&mut plant, &observer, |plant, row, error| {
         let counted = row.checked_sub(recording.first_row);
         let whole = row + length < recording.rows();
@@ -44,7 +46,7 @@ pub(crate) fn windows(
             forget_missing(&mut known);
             let mut increment = vec![0.0; plant.places.states.len()];
             set_product(observer.gain_in(plant), &known, &mut increment);
-            starts.push((Start::of(plant), increment));
+            starts.push((Snapshot::of(plant), increment));
         }
     });
     let mut found = Windows {
@@ -52,7 +54,7 @@ pub(crate) fn windows(
         rms: vec![Vec::new(); recording.channels.len()],
     };
     for (start, increment) in &starts {
-        let plain = start.window(&mut plant, increment, length);
+        let plain = window(&mut plant, start, increment, length);
         let best = match moved(&mut plant, &observer, start, increment, &plain, length) {
             Some(other) if size(&other, &observer) < size(&plain, &observer) => other,
             Some(_) | None => plain,
@@ -71,21 +73,6 @@ pub(crate) fn windows(
     Ok(found)
 }
 
-/// A plant at a row, before the row has begun.
-struct Start {
-    y: Vec<f64>,
-    yp: Vec<f64>,
-    z: Vec<f64>,
-    u: Vec<f64>,
-    row: usize,
-    index: usize,
-    level: usize,
-    current: usize,
-    pinned: Vec<(usize, f64)>,
-    watched: Vec<usize>,
-    conditions: Vec<bool>,
-}
-
 impl Windows {
     /// Root mean square over all windows of a channel, SI.
     #[must_use]
@@ -96,62 +83,37 @@ impl Windows {
     }
 }
 
-impl Start {
-    fn of(plant: &Plant<'_>) -> Self {
-        Self {
-            y: plant.y.clone(),
-            yp: plant.yp.clone(),
-            z: plant.z.clone(),
-            u: plant.u.clone(),
-            row: plant.row,
-            index: plant.index,
-            level: plant.level,
-            current: plant.current,
-            pinned: plant.pinned.clone(),
-            watched: plant.watched.clone(),
-            conditions: plant.conditions.clone(),
+/// Errors of the rows behind the start, channel by channel, the states moved by an increment at the start.
+fn window(
+    plant: &mut Plant<'_>,
+    start: &Snapshot,
+    increment: &[f64],
+    length: usize,
+) -> Vec<Vec<f64>> {
+    start.restore(plant);
+    let (program, recording) = (plant.program, plant.recording);
+    let still = vec![0.0; increment.len()];
+    let shown = measured(program);
+    let mut outputs = vec![0.0; recording.channels.len()];
+    let mut errors = vec![Vec::with_capacity(length); recording.channels.len()];
+    plant.begin_row(increment);
+    for row in start.row + 1..=start.row + length {
+        plant.advance();
+        let (at, workspace) = plant.point();
+        shown.evaluate(at, workspace, &mut outputs);
+        for (channel, output) in outputs.iter().enumerate() {
+            errors[channel].push(recording.error(channel, row, *output));
         }
+        plant.begin_row(&still);
     }
-
-    fn restore(&self, plant: &mut Plant<'_>) {
-        plant.y.clone_from(&self.y);
-        plant.yp.clone_from(&self.yp);
-        plant.z.clone_from(&self.z);
-        plant.u.clone_from(&self.u);
-        (plant.row, plant.index, plant.level) = (self.row, self.index, self.level);
-        plant.current = self.current;
-        plant.pinned.clone_from(&self.pinned);
-        plant.watched.clone_from(&self.watched);
-        plant.conditions.clone_from(&self.conditions);
-    }
-
-    /// Errors of the rows behind the start, channel by channel, the states moved by an increment at the start.
-    fn window(&self, plant: &mut Plant<'_>, increment: &[f64], length: usize) -> Vec<Vec<f64>> {
-        self.restore(plant);
-        let (program, recording) = (plant.program, plant.recording);
-        let still = vec![0.0; increment.len()];
-        let shown = measured(program);
-        let mut outputs = vec![0.0; recording.channels.len()];
-        let mut errors = vec![Vec::with_capacity(length); recording.channels.len()];
-        plant.begin_row(increment);
-        for row in self.row + 1..=self.row + length {
-            plant.advance();
-            let (at, workspace) = plant.point();
-            shown.evaluate(at, workspace, &mut outputs);
-            for (channel, output) in outputs.iter().enumerate() {
-                errors[channel].push(recording.error(channel, row, *output));
-            }
-            plant.begin_row(&still);
-        }
-        errors
-    }
+    errors
 }
 
 /// The window from the start that suits it best by one step of least squares; `None` where that has no answer.
 fn moved(
     plant: &mut Plant<'_>,
     observer: &Observer,
-    start: &Start,
+    start: &Snapshot,
     increment: &[f64],
     plain: &[Vec<f64>],
     length: usize,
@@ -170,7 +132,7 @@ fn moved(
     for (column, &state) in known.iter().enumerate() {
         let mut other = increment.to_vec();
         other[state] += VARIED * observer.spread[state];
-        let errors = DVector::from_vec(whitened(&start.window(plant, &other, length)));
+        let errors = DVector::from_vec(whitened(&window(plant, start, &other, length)));
         columns.set_column(column, &((errors - &here) / VARIED));
     }
     // In units of each state's spread, what is known of the start beforehand is the identity.
@@ -180,7 +142,7 @@ fn moved(
     for (&state, part) in known.iter().zip(step.iter()) {
         best[state] += part * observer.spread[state];
     }
-    Some(start.window(plant, &best, length))
+    Some(window(plant, start, &best, length))
 }
 
 /// The sum of squares of a window in units of its noise.

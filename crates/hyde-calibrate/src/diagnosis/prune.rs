@@ -8,8 +8,8 @@ use super::hypothesis::{Build, Built};
 use super::search::Gates;
 use super::stage::{Ground, Stage, below};
 use crate::descent::{MAX_STEPS, Objective};
-use crate::fit::inflation_of;
 use crate::linearised::Slopes;
+use crate::uncertainty::inflation_of;
 use crate::varied::Varied;
 use nalgebra::DVector;
 

@@ -19,20 +19,19 @@ use super::stage::{Ground, Stage};
 use super::trial::Trial;
 use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
-use crate::fit::inflation;
 use crate::frozen::{Frozen, frozen};
 use crate::gain::Observer;
+use crate::input_noise::MATERIAL;
 use crate::observer::Innovations;
 use crate::plant::Unsupported;
 use crate::solution::Solution;
+use crate::uncertainty::inflation;
 use crate::varied::Varied;
 use hyde_signal::statistics::{autocorrelation, distributions};
 
 /// One of this many sets of records without an effect may pass a single gate by chance, and the margin above that.
 const CHANCE: f64 = 0.01;
 const MARGIN: f64 = 2.0;
-/// The part of the number of innovations that a gain on what was not fitted is to reach.
-pub(crate) const MATERIAL: f64 = 0.002;
 /// Innovations that are explained: their mean square, and their correlation, of what is smaller than noise a part.
 const EXPLAINED: (f64, f64) = (1.05, 0.1);
 /// What gains this part of what is more than noise, in the linear answer, may explain all once it is fitted.

@@ -5,8 +5,8 @@
 //! holds its declared value, that says as much as any other: it is kept, and the rest is fitted again.
 
 use super::hypothesis::Knob;
-use crate::fit::{covariance, inflation_of};
 use crate::solution::Solution;
+use crate::uncertainty::{covariance, inflation_of};
 use crate::varied::Varied;
 use hyde_signal::statistics::distributions::TWO_SIDED;
 use std::ops::Range;

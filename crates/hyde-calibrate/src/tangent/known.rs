@@ -2,8 +2,8 @@
 
 use super::splitting::{Bend, Splitting};
 use crate::configuration::partials;
-use crate::gain::output_matrix;
 use crate::observer::When;
+use crate::outputs::output_matrix;
 use crate::plant::{Unsupported, shortest_steps};
 use crate::readings::Readings;
 use crate::recording::Recording;

@@ -1,7 +1,7 @@
 //! [`Own`]: evaluations of the model with other parameters where the plant is.
 
 use super::Direction;
-use crate::observer::measured;
+use crate::outputs::measured;
 use hyde_program::{Function, Point, Program, SomeRows, Workspace, Wrt};
 use nalgebra::DMatrix;
 
