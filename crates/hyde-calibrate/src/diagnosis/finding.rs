@@ -4,7 +4,7 @@ use super::apart::Alternative;
 use super::forward::Taken;
 use super::hypothesis::{Hypothesis, Knob};
 use super::stage::Stage;
-use crate::uncertainty::{covariance, inflation};
+use crate::fit::{covariance, inflation};
 use hyde_signal::statistics::distributions::TWO_SIDED;
 use hyde_units::{Dimension, NamedUnit};
 

@@ -12,7 +12,7 @@ use super::scan::{Node, Scanner, Score};
 use super::search::Gates;
 use super::stage::Stage;
 use super::trial::{together, unseen};
-use crate::uncertainty::{inflation, inflation_of};
+use crate::fit::{inflation, inflation_of};
 use rayon::prelude::*;
 
 /// Pairs that are fitted.

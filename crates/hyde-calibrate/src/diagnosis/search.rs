@@ -19,14 +19,10 @@ use super::stage::{Ground, Stage};
 use super::trial::Trial;
 use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
-use crate::frozen::{Frozen, frozen};
-use crate::gain::Observer;
-use crate::input_noise::MATERIAL;
-use crate::observer::Innovations;
+use crate::fit::{Solution, Varied, inflation};
+use crate::observer::{Innovations, MATERIAL, Observer};
 use crate::plant::Unsupported;
-use crate::solution::Solution;
-use crate::uncertainty::inflation;
-use crate::varied::Varied;
+use crate::records::{Frozen, frozen};
 use hyde_signal::statistics::{autocorrelation, distributions};
 
 /// One of this many sets of records without an effect may pass a single gate by chance, and the margin above that.

@@ -6,13 +6,11 @@ use super::scan::{Node, Score};
 use super::search::Gates;
 use super::stage::{Ground, Stage};
 use super::undetermined;
-use crate::blocks::Fold;
-use crate::descent::{LAST_STEPS, MAX_STEPS, Objective};
-use crate::linearised::Slopes;
+use crate::fit::{
+    Fold, LAST_STEPS, MAX_STEPS, Objective, Slopes, Solution, Varied, covariance,
+    covariance_of_first, inflation_of,
+};
 use crate::observer::Innovations;
-use crate::solution::Solution;
-use crate::uncertainty::{covariance, covariance_of_first, inflation_of};
-use crate::varied::Varied;
 use hyde_program::Program;
 use hyde_signal::statistics::distributions::{TWO_SIDED, chi_squared};
 use nalgebra::DVector;

@@ -5,9 +5,7 @@
 //! holds its declared value, that says as much as any other: it is kept, and the rest is fitted again.
 
 use super::hypothesis::Knob;
-use crate::solution::Solution;
-use crate::uncertainty::{covariance, inflation_of};
-use crate::varied::Varied;
+use crate::fit::{Solution, Varied, covariance, inflation_of};
 use hyde_signal::statistics::distributions::TWO_SIDED;
 use std::ops::Range;
 
