@@ -99,7 +99,7 @@ fn held(
     let _end = run_while(&mut plant, &observer, |plant, _, when, _| {
         if matches!(when, When::Before) {
             for (count, pin) in counts.iter_mut().zip(&program.pins) {
-                let here = plant.z[program.automata[pin.automaton].place] as usize == pin.mode;
+                let here = program.mode(&plant.z, pin.automaton) == pin.mode;
                 *count += f64::from(u8::from(here));
             }
         }

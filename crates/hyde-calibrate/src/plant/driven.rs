@@ -384,7 +384,7 @@ impl<'a> Plant<'a> {
     }
 
     fn differs(&self, relation: usize, root: f64) -> bool {
-        truth(self.program, relation, root) != (self.z[relation] != 0.0)
+        self.program.relations[relation].truth(root) != (self.z[relation] != 0.0)
     }
 
     /// Finds or makes the configuration of the modes it is in.
@@ -460,12 +460,6 @@ fn positions(program: &Program, beginning: &[(String, f64)]) -> Vec<(usize, f64)
 #[allow(clippy::needless_pass_by_value, reason = "a function to map errors by")]
 fn no_start(failure: Box<Failure>) -> Unsupported {
     Unsupported::Start(format!("{:?}", failure.kind))
-}
-
-/// The truth of a relation from its root function.
-#[allow(clippy::float_cmp, reason = "a zero that stays zero is exact")]
-pub(crate) fn truth(program: &Program, relation: usize, root: f64) -> bool {
-    root > 0.0 || (root == 0.0 && program.relations[relation].inclusive)
 }
 
 fn supported(program: &Program) -> Result<(), Unsupported> {

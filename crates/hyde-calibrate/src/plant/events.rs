@@ -1,26 +1,23 @@
-//! Events of the fixed-step form: reactions fire together until nothing fires (M7), as in hyde-sim, at the instants that
-//! the steps know.
+//! Events of the fixed-step form: reactions fire together until nothing fires (M7), by the rules of [`Program::firing`] and its
+//! neighbours, at the instants that the steps know.
 //!
 //! A relation that is exactly zero counts as its declaration says: a guard that leaves zero is true one shortest step
-//! later. Rounds without end are left after a few dozen: an estimate that is corrected at every row may well hop.
+//! later. Asserts are not looked at. Rounds without end are left after a few dozen: an estimate that is corrected at every row
+//! may well hop.
 
-use super::driven::{Plant, truth};
-use hyde_program::{Function, Program, ReactionKind, RelationUse, Target};
+use super::driven::Plant;
+use hyde_program::{Function, Program, ReactionKind, RelationUse};
 
 const MAX_ROUNDS: usize = 30;
 
 /// The relations that matter in the modes that the memory says.
 pub(crate) fn watched(program: &Program, z: &[f64]) -> Vec<usize> {
-    let matters = |number: &usize| match program.relations[*number].used {
-        RelationUse::Exit(automaton, mode) => in_mode(program, z, automaton, mode),
-        RelationUse::Equation | RelationUse::When => true,
-        RelationUse::Assert => false,
+    let in_mode = |automaton, mode| program.mode(z, automaton) == mode;
+    let matters = |number: &usize| {
+        let used = program.relations[*number].used;
+        used != RelationUse::Assert && used.matters(in_mode)
     };
     (0..program.relations.len()).filter(matters).collect()
-}
-
-fn in_mode(program: &Program, z: &[f64], automaton: usize, mode: usize) -> bool {
-    z[program.automata[automaton].place] as usize == mode
 }
 
 impl Plant<'_> {
@@ -43,7 +40,7 @@ impl Plant<'_> {
         }
     }
 
-    /// Writes the truths of relations to the memory; those of equations that changed.
+    /// Writes the truths of watched relations to the memory; those of equations that changed.
     fn flip(&mut self) -> Vec<usize> {
         let program = self.program;
         let mut roots = vec![0.0; program.relations.len()];
@@ -51,48 +48,22 @@ impl Plant<'_> {
         program
             .kernels
             .evaluate(Function::Roots, at, workspace, &mut roots);
-        let mut flipped = Vec::new();
-        for &number in &self.watched {
-            let value = f64::from(u8::from(truth(program, number, roots[number])));
-            if self.z[number].to_bits() != value.to_bits() {
-                self.z[number] = value;
-                if program.relations[number].used == RelationUse::Equation {
-                    flipped.push(number);
-                }
-            }
-        }
-        flipped
+        let watched = self.watched.iter();
+        let truths =
+            watched.map(|&number| (number, program.relations[number].truth(roots[number])));
+        program.write_truths(&mut self.z, truths)
     }
 
-    /// The reactions that fire: the first true exit of each current mode, branches of `when` that became true.
+    /// The reactions that fire.
     fn fired(&mut self) -> Vec<usize> {
         let program = self.program;
         let mut truths = vec![0.0; program.reactions.len()];
         let (at, workspace) = self.point();
         program.kernels.conditions(at, workspace, &mut truths);
-        let (mut fired, mut left, mut clauses) = (Vec::new(), Vec::new(), Vec::new());
-        for (number, reaction) in program.reactions.iter().enumerate() {
-            let (now, before) = (truths[number] != 0.0, self.conditions[number]);
-            self.conditions[number] = now;
-            match &reaction.kind {
-                ReactionKind::Transition {
-                    automaton, from, ..
-                } => {
-                    let here = in_mode(program, &self.z, *automaton, *from);
-                    if now && here && !left.contains(automaton) {
-                        left.push(*automaton);
-                        fired.push(number);
-                    }
-                }
-                ReactionKind::When { clause } => {
-                    if now && !before && !clauses.contains(clause) {
-                        clauses.push(*clause);
-                        fired.push(number);
-                    }
-                }
-                ReactionKind::Edge(_) | ReactionKind::Assert(_) => {}
-            }
-        }
+        let holds: Vec<bool> = truths.iter().map(|truth| *truth != 0.0).collect();
+        let in_mode = |automaton, mode| program.mode(&self.z, automaton) == mode;
+        let fired = program.firing(&holds, &self.conditions, in_mode);
+        self.conditions = holds;
         fired
     }
 
@@ -100,33 +71,23 @@ impl Plant<'_> {
     fn apply(&mut self, fired: &[usize], flipped: &[usize]) {
         let program = self.program;
         let mut values = vec![0.0; program.rows(Function::Assignments)];
-        self.turn(flipped);
+        Program::turn(&mut self.z, flipped);
         let (at, workspace) = self.point();
         program
             .kernels
             .evaluate(Function::Assignments, at, workspace, &mut values);
-        self.turn(flipped);
-        for &number in fired {
-            let reaction = &program.reactions[number];
-            for index in reaction.assignments.clone() {
-                match program.assignments[index].target {
-                    Target::State(position) => self.y[position] = values[index],
-                    Target::Memory(position) => self.z[position] = values[index],
-                }
-            }
+        Program::turn(&mut self.z, flipped);
+        let reactions = || fired.iter().map(|&number| &program.reactions[number]);
+        for index in reactions().flat_map(|reaction| reaction.assignments.clone()) {
+            let target = program.assignments[index].target;
+            target.set(values[index], &mut self.y, &mut self.z);
         }
-        for &number in fired {
-            if let ReactionKind::Transition { automaton, to, .. } = program.reactions[number].kind {
-                self.z[program.automata[automaton].place] = to as f64;
+        for reaction in reactions() {
+            if let ReactionKind::Transition { automaton, to, .. } = reaction.kind {
+                program.set_mode(&mut self.z, automaton, to);
             }
         }
         self.pin();
-    }
-
-    fn turn(&mut self, relations: &[usize]) {
-        for &relation in relations {
-            self.z[relation] = 1.0 - self.z[relation];
-        }
     }
 
     /// Fixes the states of the modes it is in.
@@ -141,12 +102,9 @@ impl Plant<'_> {
             .kernels
             .evaluate(Function::Assignments, at, workspace, &mut values);
         self.pinned.clear();
-        for (number, pin) in program.pins.iter().enumerate() {
-            if in_mode(program, &self.z, pin.automaton, pin.mode) {
-                let value = values[program.assignments.len() + number];
-                self.pinned.push((pin.state, value));
-            }
-        }
+        let pins = program.pins_in(&self.z);
+        self.pinned
+            .extend(pins.map(|(row, pin)| (pin.state, values[row])));
         self.apply_pins();
     }
 }

@@ -7,7 +7,7 @@
 //! another, and are carried by it alone (Hochbruck and Ostermann 2010, section 2.4, with a diagonal for the Jacobian).
 
 use super::configuration::{Configuration, Places};
-use super::driven::{LEVELS, Plant, shortest_steps, size_of, truth};
+use super::driven::{LEVELS, Plant, shortest_steps, size_of};
 use super::model::{Model, Solving};
 use crate::linear::{phi1, set_product};
 use hyde_program::{Function, Program, Workspace};
@@ -298,7 +298,8 @@ impl<'a> Plant<'a> {
             let kernels = &model.program.kernels;
             kernels.evaluate(Function::Roots, at, workspace, &mut room.roots);
             event = watched.iter().any(|&number| {
-                truth(model.program, number, room.roots[number]) != (model.z[number] != 0.0)
+                model.program.relations[number].truth(room.roots[number])
+                    != (model.z[number] != 0.0)
             });
         }
         if event && level + 1 < LEVELS {
