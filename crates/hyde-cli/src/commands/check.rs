@@ -4,7 +4,7 @@ use super::sweep::prepared;
 use crate::args::{CheckArgs, ModelArgs};
 use crate::exit::Exit;
 use crate::files;
-use crate::project::{self, Project, Records, Told as _, print_output};
+use crate::project::{self, Loaded, Project, Records, Told as _, print_output};
 use crate::render;
 use hyde_compiler::{Compiled, States};
 use hyde_diag::Origin;
@@ -99,7 +99,8 @@ impl Found {
 /// have nothing but types and functions.
 fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
     let mut found = Found::default();
-    if each(args, folder)?.is_empty() {
+    let (loaded, each) = each(args, folder)?;
+    if each.is_empty() {
         return Ok(found);
     }
     let mut models: Vec<String> = Vec::new();
@@ -121,7 +122,7 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
         }
     };
     let complain = |reason: String| project::complain(args, Exit::CommandLine, &reason);
-    let all = hyde_study::check(&project::asked(args)?, &|| false, &mut visit).map_err(complain)?;
+    let all = hyde_study::check(loaded, &project::asked(args)?, &|| false, &mut visit).map_err(complain)?;
     if let Some(reason) = all.refused.into_iter().next() {
         return Err(complain(reason));
     }
@@ -228,33 +229,25 @@ fn states_json(model: &str, states: &States, project: &Project) -> Value {
     })
 }
 
-/// The arguments for each experiment of the file, if none is named.
-pub(crate) fn each(args: &ModelArgs, folder: bool) -> Result<Vec<ModelArgs>, Exit> {
-    if args.experiment.is_some() || args.model.is_some() {
-        return Ok(vec![args.clone()]);
-    }
+/// The file, parsed once, and the arguments for each of its experiments, if none is named; no arguments where a file of a folder
+/// has nothing to compile.
+pub(crate) fn each(args: &ModelArgs, folder: bool) -> Result<(Loaded, Vec<ModelArgs>), Exit> {
     let loaded = project::parsed(args)?;
-    let names: Vec<String> = loaded
-        .file
-        .experiments()
-        .map(|experiment| experiment.name.text.clone())
-        .collect();
-    if names.is_empty() {
-        let nothing = folder && loaded.file.models().next().is_none();
-        if nothing && loaded.diagnostics.has_errors() {
-            return Err(project::refused(args, &loaded.refused()));
-        }
-        return Ok(if nothing {
-            Vec::new()
-        } else {
-            vec![args.clone()]
-        });
+    if args.experiment.is_some() || args.model.is_some() {
+        return Ok((loaded, vec![args.clone()]));
     }
-    Ok(names
-        .into_iter()
-        .map(|name| ModelArgs {
-            experiment: Some(name),
-            ..args.clone()
-        })
-        .collect())
+    let named = |name: &str| ModelArgs {
+        experiment: Some(name.to_owned()),
+        ..args.clone()
+    };
+    let experiments = loaded.file.experiments();
+    let mut each: Vec<ModelArgs> = experiments.map(|own| named(&own.name.text)).collect();
+    let nothing = folder && loaded.file.models().next().is_none();
+    if each.is_empty() && nothing && loaded.diagnostics.has_errors() {
+        return Err(project::refused(args, &loaded.refused()));
+    }
+    if each.is_empty() && !nothing {
+        each.push(args.clone());
+    }
+    Ok((loaded, each))
 }
