@@ -2,7 +2,6 @@
 //!
 //! [`hyde_study::experiment_tests`] does it, as for `hyde test`; here the sizes that are 0 are tested too, at a tenth of their range.
 
-use super::check;
 use super::test::how;
 use crate::args::ModelArgs;
 use crate::exit::Exit;
@@ -49,7 +48,7 @@ fn tested(args: &ModelArgs) -> Result<(Vec<Tested>, Vec<String>), Exit> {
     let mut tests = Vec::new();
     let mut known: Vec<String> = Vec::new();
     let mut used: BTreeSet<String> = BTreeSet::new();
-    let (loaded, each) = check::each(&quiet, false)?;
+    let (loaded, each) = project::experiments_of(&quiet, false)?;
     for one in each {
         if one.experiment.is_none() {
             let reason = "the file has no experiment: an effect is tested on a model that moves";

@@ -1,7 +1,6 @@
 //! `hyde test`: runs the experiments of a file or a package, looks at what they expect, and at whether effects vanish.
 
 use crate::args::{ModelArgs, TestArgs};
-use crate::commands::check;
 use crate::commands::run::watch;
 use crate::exit::Exit;
 use crate::interruption::interrupted;
@@ -29,7 +28,7 @@ fn tested(args: &ModelArgs) -> Result<Exit, Exit> {
             ..file
         };
         let mut of_file = Vec::new();
-        let (loaded, experiments) = check::each(&quiet, true)?;
+        let (loaded, experiments) = project::experiments_of(&quiet, true)?;
         let experiments = experiments.iter().filter(|one| one.experiment.is_some());
         for one in experiments {
             exit = exit.max(experiment(&loaded, one, &mut of_file)?);
