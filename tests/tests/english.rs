@@ -19,6 +19,8 @@ fn the_documents() {
         "CHANGELOG.md",
         "ARCHITECTURE.md",
         "CONTRIBUTING.md",
+        "packaging/README.md",
+        "packaging/THIRD-PARTY.md",
     ]
     .map(|name| root().join(name))
     .to_vec();

@@ -55,7 +55,6 @@ mod unknown;
 mod whole;
 
 pub(crate) use projection::Projection;
-pub(crate) use search::MATERIAL;
 pub(crate) use stage::{Ground, Stage, flat};
 
 pub use apart::{Alternative, Experiment};

@@ -1,365 +1,46 @@
-//! [`Fit`]: a calibration with what it is worth: intervals, correlations, what the data cannot tell apart.
+//! Calibration: bounded least squares on innovations and on what is known beforehand, and what the result is worth.
+//!
+//! ```text
+//! varied             a parameter that may change                                        fit/varied.rs
+//! least squares      innovations of one program's records                               fit/least_squares.rs
+//! joint              those of several experiments at once                               fit/joint.rs
+//! linearised         their derivatives, by tangents or by differences of runs           fit/linearised.rs
+//! blocks             every other second of a record, to judge what the rest was fitted to   fit/blocks.rs
+//! descent            steps of Gauss and Newton, damped                                  fit/descent.rs
+//! solution           where they arrived, and how sharply                                fit/solution.rs
+//! uncertainty        the covariance of its values                                       fit/uncertainty.rs
+//! calibration        the whole: several starts, intervals, correlations, groups         fit/calibration.rs
+//! profile            the interval of one parameter, all others fitted again             fit/profile_likelihood.rs
+//! identifiability    which parameters records determine, before a fit                   fit/identifiability.rs
+//! information        how sharply records would determine them                           fit/information.rs
+//! standstill         why a fit taught nothing                                           fit/standstill.rs
+//! ```
 
-use crate::descent::Objective;
-use crate::gain::Observer;
-use crate::joint::Joint;
-use crate::least_squares::Problem;
-use crate::observer::Innovations;
-use crate::plant::Unsupported;
-use crate::solution::Solution;
-use crate::standstill::{Cause, audible, standstill};
-use crate::varied::Varied;
-use nalgebra::{DMatrix, DVector};
-use std::borrow::Cow;
+mod blocks;
+mod calibration;
+mod descent;
+mod identifiability;
+mod information;
+mod joint;
+mod least_squares;
+mod linearised;
+mod profile_likelihood;
+mod solution;
+mod standstill;
+mod uncertainty;
+mod varied;
 
-/// Parameters are of one group if some pair of their errors is correlated more than this.
-const CORRELATED: f64 = 0.9;
-/// The data say nothing of a parameter whose standard deviation stays above this part of what it was beforehand.
-const UNTOLD: f64 = 0.9;
-/// Half the width of a 95 % interval in standard deviations.
-const TWO_SIDED: f64 = 1.96;
-
-/// A parameter after calibration; numbers are SI.
-#[derive(Clone, Debug)]
-pub struct FittedParameter {
-    /// Its name.
-    pub name: String,
-    /// Position in the parameter vector.
-    pub place: usize,
-    /// Declared value.
-    pub nominal: f64,
-    /// Calibrated value.
-    pub value: f64,
-    /// Its 95 % interval, by the effective number of samples.
-    pub interval: (f64, f64),
-    /// Standard deviation beforehand, if it has a prior.
-    pub prior: Option<f64>,
-    /// Standard deviation after.
-    pub deviation: f64,
-    /// It lies outside its declared range, by more than its interval: it may stand in for something that the model lacks.
-    pub left_range: bool,
-    /// It lies on a bound.
-    pub at_bound: bool,
-    /// What is known of it is what was known before.
-    pub untold: bool,
-    /// No innovation depends on it.
-    pub silent: bool,
-}
-
-/// Innovations of a channel in a record.
-#[derive(Clone, Debug)]
-pub struct ChannelError {
-    /// Mean square of whitened innovations.
-    pub chi: f64,
-    /// Root mean square of innovations, SI.
-    pub rms: f64,
-    /// Correlation of successive innovations.
-    pub correlation: f64,
-}
-
-/// A calibration.
-#[derive(Clone, Debug)]
-pub struct Fit {
-    /// The parameters.
-    pub parameters: Vec<FittedParameter>,
-    /// Numbers of parameters whose errors go together.
-    pub groups: Vec<Vec<usize>>,
-    /// Correlation of the errors of each two parameters.
-    pub correlation: Vec<Vec<f64>>,
-    /// Mean square of the innovations of each part, and of how many.
-    pub parts: Vec<(f64, usize)>,
-    /// By how much innovations tell less than as many independent ones: mean square times correlation.
-    pub inflation: f64,
-    /// Steps of the least squares, of the best start.
-    pub steps: usize,
-    /// Whether they converged.
-    pub converged: bool,
-    /// How many of the starts ended within a unit of the lowest sum of squares, and how many there were.
-    pub agreeing_starts: (usize, usize),
-    /// Why there is nothing in it, or little, as far as its runs show it: each with the number of its part.
-    pub causes: Vec<(usize, Cause)>,
-    /// Where it ended.
-    pub solution: Solution,
-}
-
-impl Fit {
-    /// Whether innovations depend on anything that was varied.
-    #[must_use]
-    pub fn learned(&self) -> bool {
-        self.parameters.iter().any(|parameter| !parameter.silent)
-    }
-}
-
-/// Calibrates programs on the records of their parts.
-///
-/// # Errors
-/// A program has no fixed-step form.
-pub fn fit(joint: &Joint<'_>, starts: usize) -> Result<Fit, Unsupported> {
-    let varied = joint.varied;
-    let mut solutions = Vec::new();
-    for start in 0..starts.max(1) {
-        solutions.push(joint.solve(&start_values(varied, start))?);
-    }
-    let lowest = solutions
-        .iter()
-        .map(Solution::cost)
-        .fold(f64::INFINITY, f64::min);
-    let agreeing = solutions.iter().filter(|s| s.cost() < lowest + 1.0).count();
-    let best = solutions
-        .iter()
-        .position(|s| s.cost() <= lowest)
-        .unwrap_or(0);
-    let solution = solutions.swap_remove(best);
-    let inflation = inflation(&solution.innovations);
-    let covariance = covariance(&solution, inflation);
-    let (mut causes, mut parts, mut first) = (Vec::new(), Vec::new(), 0);
-    for (number, part) in joint.parts.iter().enumerate() {
-        let Problem {
-            program,
-            recordings,
-            observer,
-            varied,
-            set,
-            ..
-        } = part.problem;
-        let own = solution.innovations[first..first + recordings.len()].to_vec();
-        first += recordings.len();
-        let count = own.iter().map(Innovations::count).sum();
-        let sum: f64 = own.iter().map(Innovations::sum_of_squares).sum();
-        parts.push((sum / (count as f64).max(1.0), count));
-        let own = Solution {
-            values: part.values(&solution.values),
-            innovations: own,
-            ..solution.clone()
-        };
-        let found = standstill(program, recordings, observer, varied, set, &own)?;
-        causes.extend(found.into_iter().map(|cause| (number, cause)));
-    }
-    Ok(Fit {
-        parameters: parameters(varied, &solution, &covariance),
-        groups: groups(&covariance),
-        correlation: correlations(&covariance),
-        parts,
-        inflation,
-        steps: solution.steps,
-        converged: solution.converged,
-        agreeing_starts: (agreeing, starts.max(1)),
-        causes,
-        solution,
-    })
-}
-
-/// What a solution says of the parameters that were varied, each with its interval.
-#[must_use]
-pub fn fitted_parameters(varied: &[Varied], solution: &Solution) -> Vec<FittedParameter> {
-    let inflation = inflation(&solution.innovations);
-    parameters(varied, solution, &covariance(solution, inflation))
-}
-
-/// The declared values, then points spread evenly over what is known beforehand (additive recurrence of the roots of
-/// x^(d+1) = x + 1; Roberts 2018, The unreasonable effectiveness of quasirandom sequences).
-fn start_values(varied: &[Varied], number: usize) -> Vec<f64> {
-    if number == 0 {
-        return varied.iter().map(|varied| varied.nominal).collect();
-    }
-    let dimensions = varied.len() as f64;
-    let mut root = 2.0_f64;
-    for _ in 0..60 {
-        root = (1.0 + root).powf(1.0 / (dimensions + 1.0));
-    }
-    let spread = |(axis, varied): (usize, &Varied)| {
-        let part = (number as f64 * root.powi(-(i32::try_from(axis).unwrap_or(0) + 1))).fract();
-        let width = varied.scale() * 3.0_f64.sqrt();
-        varied.nominal + (2.0 * part - 1.0) * width
-    };
-    varied.iter().enumerate().map(spread).collect()
-}
-
-pub(crate) fn channel_errors(innovations: &Innovations, observer: &Observer) -> Vec<ChannelError> {
-    let each = innovations.each_of_readings().zip(&observer.deviations);
-    each.map(|(list, deviation)| {
-        let chi = mean_square(&list);
-        ChannelError {
-            chi,
-            rms: chi.sqrt() * deviation,
-            correlation: correlation(&list),
-        }
-    })
-    .collect()
-}
-
-/// Mean of the squares; 0 of none.
-pub(crate) fn mean_square(list: &[f64]) -> f64 {
-    list.iter().map(|r| r * r).sum::<f64>() / (list.len() as f64).max(1.0)
-}
-
-/// The middle one of some values; `None` of none.
-pub(crate) fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    sorted.get(sorted.len() / 2).copied()
-}
-
-/// Correlation of successive values.
-pub(crate) fn correlation(list: &[f64]) -> f64 {
-    let total: f64 = list.iter().map(|r| r * r).sum();
-    let products: f64 = list.windows(2).map(|pair| pair[0] * pair[1]).sum();
-    if total > 0.0 { products / total } else { 0.0 }
-}
-
-/// By how much a sum of squares overstates what is known: the mean square where it is above one, and (1 + rho)/(1 - rho)
-/// for correlated errors (Bartlett, J. R. Stat. Soc. Suppl. 8, 1946, 27), over all channels.
-pub(crate) fn inflation(innovations: &[Innovations]) -> f64 {
-    inflation_over(innovations.iter().flat_map(Innovations::each_of_readings))
-}
-
-/// The same of the channel where it is largest.
-fn largest_inflation(innovations: &[Innovations]) -> f64 {
-    let channels = innovations.iter().map(|own| own.channels.len()).max();
-    let each = (0..channels.unwrap_or(0)).map(|channel| {
-        let with_it = innovations
-            .iter()
-            .filter(|own| channel < own.channels.len());
-        inflation_over(with_it.map(|own| own.of_readings(channel)))
-    });
-    each.fold(1.0, f64::max)
-}
-
-fn inflation_over<'a>(lists: impl Iterator<Item = Cow<'a, [f64]>>) -> f64 {
-    let (mut sum, mut count) = (0.0, 0.0);
-    for list in lists {
-        let rho = correlation(&list).clamp(0.0, 0.99);
-        let squares: f64 = list.iter().map(|r| r * r).sum();
-        sum += squares * (1.0 + rho) / (1.0 - rho);
-        count += list.len() as f64;
-    }
-    (sum / f64::max(count, 1.0)).max(1.0)
-}
-
-/// By how much a sum of squares overstates what is known of some parameters: the scatter of gradients from second to second,
-/// which knows how they go with what is not explained (White, Econometrica 50, 1982, 1); at most [`inflation`] of
-/// the channel where it is largest, which takes them to change as slowly as they can.
-pub(crate) fn inflation_of(solution: &Solution, own: impl IntoIterator<Item = usize>) -> f64 {
-    let most = largest_inflation(&solution.innovations);
-    let Some(bread) = solution.inverse_curvature() else {
-        return most;
-    };
-    let (scatter, blocks) = &solution.scatter;
-    let scattered = &bread * (scatter * few(*blocks)) * &bread;
-    let each = own.into_iter().map(|i| scattered[(i, i)] / bread[(i, i)]);
-    each.fold(1.0, f64::max).min(most)
-}
-
-/// The covariance of the parameters, in units of their scales: that of independent innovations, less what they tell less than
-/// such, and no deviation smaller than the scatter of gradients from second to second says. What a model lacks is not
-/// independent from row to row, and shows there (White, Econometrica 50, 1982, 1). The scatter of few blocks is itself uncertain:
-/// Student's quantile for one freedom less takes the normal one's place (Cameron and Miller, J. Hum. Resour. 50, 2015, 317).
-pub(crate) fn covariance(solution: &Solution, inflation: f64) -> DMatrix<f64> {
-    covariance_of_first(solution, inflation, solution.values.len())
-}
-
-/// The same of the first `n` parameters, the others held where they are.
-pub(crate) fn covariance_of_first(solution: &Solution, inflation: f64, n: usize) -> DMatrix<f64> {
-    let first = |matrix: &DMatrix<f64>| matrix.view((0, 0), (n, n)).into_owned();
-    let (data, priors) = &solution.curvature;
-    let (data, priors) = (&first(data), &first(priors));
-    let largest = data
-        .diagonal()
-        .iter()
-        .fold(1e-300_f64, |most, v| most.max(*v));
-    let floor = DMatrix::identity(n, n) * (1e-12 * largest);
-    let unknown = || DMatrix::from_element(n, n, f64::NAN);
-    let inverse = |matrix: DMatrix<f64>| matrix.try_inverse().unwrap_or_else(unknown);
-    let independent = inverse(data / inflation + priors + &floor);
-    let weighed = solution.weight * priors;
-    let bread = inverse(data + &weighed + floor);
-    let (scatter, blocks) = (first(&solution.scatter.0), &solution.scatter.1);
-    let scattered = &bread * (scatter * few(*blocks) + weighed) * &bread;
-    let wider = DVector::from_fn(n, |i, _| {
-        (scattered[(i, i)] / independent[(i, i)]).max(1.0).sqrt() * solution.wider[i]
-    });
-    DMatrix::from_fn(n, n, |i, j| independent[(i, j)] * wider[i] * wider[j])
-}
-
-/// By how much the scatter of so many blocks is to be taken for more than it is.
-fn few(blocks: usize) -> f64 {
-    let blocks = blocks.max(2);
-    blocks as f64 / (blocks - 1) as f64 * student(blocks - 1).powi(2)
-}
-
-/// Student's 97.5 % quantile over the normal one (Abramowitz and Stegun 26.7.5).
-fn student(freedoms: usize) -> f64 {
-    let (x, n) = (TWO_SIDED, freedoms.max(1) as f64);
-    let first = (x.powi(2) + 1.0) / 4.0;
-    let second = (5.0 * x.powi(4) + 16.0 * x.powi(2) + 3.0) / 96.0;
-    1.0 + first / n + second / n.powi(2)
-}
-
-fn parameters(
-    varied: &[Varied],
-    solution: &Solution,
-    covariance: &DMatrix<f64>,
-) -> Vec<FittedParameter> {
-    let audible = audible(solution);
-    let each = varied.iter().zip(&solution.values).enumerate();
-    each.map(|(number, (varied, &value))| {
-        let deviation = covariance[(number, number)].max(0.0).sqrt() * varied.scale();
-        let width = TWO_SIDED * deviation;
-        let (low, high) = varied.bounds;
-        let near = 1e-9 * varied.scale();
-        // The normal distribution that stands for a uniform one has a standard deviation of half its width over sqrt(3).
-        let outside = varied.prior.map_or(0.0, |sd| {
-            (value - varied.nominal).abs() - 3.0_f64.sqrt() * sd
-        });
-        FittedParameter {
-            name: varied.name.clone(),
-            place: varied.place,
-            nominal: varied.nominal,
-            value,
-            interval: (value - width, value + width),
-            prior: varied.prior,
-            deviation,
-            left_range: outside > width,
-            at_bound: value <= low + near || value >= high - near,
-            untold: varied.prior.is_some_and(|sd| deviation > UNTOLD * sd),
-            silent: !audible[number],
-        }
-    })
-    .collect()
-}
-
-/// Correlations of a covariance; 0 where a parameter has none.
-fn correlations(covariance: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    let n = covariance.nrows();
-    let of = |i: usize, j: usize| {
-        let own = covariance[(i, j)] / (covariance[(i, i)] * covariance[(j, j)]).sqrt();
-        match (i == j, own.is_finite()) {
-            (true, _) => 1.0,
-            (false, true) => own.clamp(-1.0, 1.0),
-            (false, false) => 0.0,
-        }
-    };
-    (0..n).map(|i| (0..n).map(|j| of(i, j)).collect()).collect()
-}
-
-/// Parameters whose errors go together: chains of correlated pairs.
-fn groups(covariance: &DMatrix<f64>) -> Vec<Vec<usize>> {
-    let n = covariance.nrows();
-    let mut found: Vec<Vec<usize>> = Vec::new();
-    let correlated = |i: usize, j: usize| {
-        covariance[(i, j)].abs() > CORRELATED * (covariance[(i, i)] * covariance[(j, j)]).sqrt()
-    };
-    for i in 0..n {
-        let (mut joined, others): (Vec<_>, Vec<_>) = found
-            .into_iter()
-            .partition(|group: &Vec<usize>| group.iter().any(|&j| correlated(i, j)));
-        let mut group: Vec<usize> = joined.drain(..).flatten().collect();
-        group.push(i);
-        found = others;
-        found.push(group);
-    }
-    found.retain(|group| group.len() > 1);
-    found.iter_mut().for_each(|group| group.sort_unstable());
-    found.sort();
-    found
-}
+pub use blocks::Fold;
+pub(crate) use blocks::rows_of_a_block;
+pub use calibration::{Fit, FittedParameter, fit, fitted_parameters};
+pub(crate) use descent::{LAST_STEPS, MAX_STEPS, Objective, sum_of_squares};
+pub use identifiability::{Identifiability, Together};
+pub use information::{Information, UNKNOWN};
+pub use joint::{Joint, Part};
+pub use least_squares::Problem;
+pub(crate) use linearised::{Linearised, Slopes};
+pub use profile_likelihood::{LIMIT, Profile};
+pub use solution::Solution;
+pub use standstill::{Cause, standstill};
+pub(crate) use uncertainty::{covariance, covariance_of_first, inflation, inflation_of};
+pub use varied::Varied;

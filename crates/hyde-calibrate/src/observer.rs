@@ -1,277 +1,31 @@
-//! An observer over a record: predict a row, compare, correct, on.
+//! An observer over a record: innovations, and how they change with small changes of parameters.
+//!
+//! ```text
+//! beginning      the states that the first rows of a record show                        observer/beginning.rs
+//! gain           a fixed Kalman gain                                                    observer/gain.rs
+//! input noise    what driving columns are not known to, as noise of the states          observer/input_noise.rs
+//! held           another gain for modes in which errors grow by the fixed one           observer/held.rs
+//! over record    predict a row, compare, correct, on                                    observer/over_record.rs
+//! innovations    what the model did not predict, whitened                               observer/innovations.rs
+//! track          where the plant has been along a record, row by row                    observer/track.rs, observer/track/
+//! tangent        how innovations change with parameters along a track                   observer/tangent.rs, observer/tangent/
+//! lateness       how they change if what drives the axis comes a little later           observer/lateness.rs
+//! ```
 
-use crate::fit::mean_square;
-use crate::gain::Observer;
-use crate::plant::{Plant, Unsupported};
-use crate::recording::Recording;
-use hyde_program::{Function, Program, SomeRows};
-use std::borrow::Cow;
-use std::ops::ControlFlow;
-use std::sync::Arc;
+mod beginning;
+mod gain;
+mod held;
+mod innovations;
+mod input_noise;
+mod lateness;
+mod over_record;
+mod tangent;
+mod track;
 
-/// Whitened innovations of a record: each channel's, row by row, in standard deviations.
-#[derive(Clone, Debug, Default)]
-pub struct Innovations {
-    /// One list a channel, rows from the first that counts.
-    pub channels: Vec<Vec<f64>>,
-    /// The step of each channel's quantiser, in the same units; 0 without one.
-    pub(crate) counts: Vec<f64>,
-    /// The rows of each channel that have no reading, ascending; their innovations are 0.
-    pub(crate) absent: Vec<Arc<[usize]>>,
-}
-
-impl Innovations {
-    /// Those of a program with some parameters set (position and value).
-    ///
-    /// # Errors
-    /// The program has no fixed-step form.
-    pub fn of(
-        program: &Program,
-        recording: &Recording,
-        observer: &Observer,
-        set: &[(usize, f64)],
-    ) -> Result<Self, Unsupported> {
-        let whole = Self::within(program, recording, observer, set, f64::INFINITY)?;
-        Ok(whole.unwrap_or_default())
-    }
-
-    /// The same as long as the sum of their squares stays within a limit, else `None`: what is worse than that is not run
-    /// to its end.
-    ///
-    /// # Errors
-    /// The program has no fixed-step form.
-    pub(crate) fn within(
-        program: &Program,
-        recording: &Recording,
-        observer: &Observer,
-        set: &[(usize, f64)],
-        limit: f64,
-    ) -> Result<Option<Self>, Unsupported> {
-        let (mut plant, observer) = observer.on(program, recording, set)?;
-        let mut found = Self::empty(recording, &observer);
-        let mut sum = 0.0;
-        let end = run_while(&mut plant, &observer, |_, row, when, error| {
-            if matches!(when, When::Before) && row >= recording.first_row {
-                sum += found.add(error, recording.readings(row), &observer);
-            }
-            if sum <= limit {
-                ControlFlow::Continue(())
-            } else {
-                ControlFlow::Break(())
-            }
-        });
-        Ok(end.is_continue().then_some(found))
-    }
-
-    /// None yet, with room for all rows of a record.
-    pub(crate) fn empty(recording: &Recording, observer: &Observer) -> Self {
-        let rows = recording.rows() - recording.first_row;
-        let counts = observer.rounding.iter().zip(&observer.deviations);
-        Self {
-            channels: vec![Vec::with_capacity(rows); recording.channels.len()],
-            counts: counts.map(|(step, deviation)| step / deviation).collect(),
-            absent: recording.absent.clone(),
-        }
-    }
-
-    /// Adds those of a row, given in SI; the sum of their squares.
-    pub(crate) fn add(&mut self, error: &[f64], readings: &[bool], observer: &Observer) -> f64 {
-        let mut sum = 0.0;
-        let known = error.iter().zip(&observer.deviations).zip(readings);
-        for (list, ((error, deviation), there)) in self.channels.iter_mut().zip(known) {
-            let value = match there {
-                true => whitened(*error, *deviation),
-                false => 0.0,
-            };
-            sum += value * value;
-            list.push(value);
-        }
-        sum
-    }
-
-    /// Those of a channel's readings: without the rows that have none.
-    #[must_use]
-    pub fn of_readings(&self, channel: usize) -> Cow<'_, [f64]> {
-        self.of_rows(channel, &self.channels[channel])
-    }
-
-    /// Values of rows, in those that have a reading of a channel.
-    pub(crate) fn of_rows<'v>(&self, channel: usize, list: &'v [f64]) -> Cow<'v, [f64]> {
-        let absent = self.absent.get(channel).filter(|absent| !absent.is_empty());
-        let Some(absent) = absent else {
-            return Cow::Borrowed(list);
-        };
-        let mut absent = absent.iter().peekable();
-        let there = |(row, _): &(usize, &f64)| absent.next_if(|own| **own == *row).is_none();
-        let known = list.iter().enumerate().filter(there);
-        Cow::Owned(known.map(|(_, value)| *value).collect())
-    }
-
-    /// The same of each channel.
-    pub(crate) fn each_of_readings(&self) -> impl Iterator<Item = Cow<'_, [f64]>> {
-        (0..self.channels.len()).map(|channel| self.of_readings(channel))
-    }
-
-    /// How many readings there are.
-    #[must_use]
-    pub fn count(&self) -> usize {
-        let rows: usize = self.channels.iter().map(Vec::len).sum();
-        rows - self.absent.iter().map(|absent| absent.len()).sum::<usize>()
-    }
-
-    /// Each channel's readings, with their mean square as it would be if what is measured lay evenly between the counts of a quantiser.
-    ///
-    /// It does not where an axis stands, or moves by a whole number of counts a row: rounding is the same there over and
-    /// over, of a model that is right too. How much the prediction is rounded by is the innovation but for whole counts, and
-    /// its mean square over `q^2/12` is what has to be taken out.
-    pub(crate) fn sizes(&self) -> impl Iterator<Item = (Cow<'_, [f64]>, f64)> {
-        let each = self.each_of_readings().zip(&self.counts);
-        each.map(|(list, &count)| {
-            let uneven = match count > 0.0 {
-                true => {
-                    let rounded = list.iter().map(|r| r - count * (r / count).round());
-                    let rounded: Vec<f64> = rounded.collect();
-                    mean_square(&rounded) - count * count / 12.0
-                }
-                false => 0.0,
-            };
-            let size = mean_square(&list) - uneven;
-            (list, size)
-        })
-    }
-
-    /// Their mean square, over all channels.
-    #[must_use]
-    pub fn chi(&self) -> f64 {
-        self.sum_of_squares() / (self.count() as f64).max(1.0)
-    }
-
-    /// The sum of their squares.
-    #[must_use]
-    pub fn sum_of_squares(&self) -> f64 {
-        self.channels.iter().flatten().map(|r| r * r).sum()
-    }
-}
-
-/// An innovation in standard deviations; what diverged is far off, and no more than that.
-fn whitened(error: f64, deviation: f64) -> f64 {
-    let value = error / deviation;
-    if value.is_finite() {
-        value.clamp(-1e6, 1e6)
-    } else {
-        1e6
-    }
-}
-
-/// What the channels show, alone of all outputs.
-pub(crate) fn measured(program: &Program) -> Box<dyn SomeRows + '_> {
-    let measured = program.experiment.measured.iter();
-    let outputs: Vec<usize> = measured.map(|measured| measured.output).collect();
-    program.kernels.some_rows(Function::Outputs, &outputs)
-}
-
-/// A value that is missing corrects nothing.
-pub(crate) fn forget_missing(error: &mut [f64]) {
-    let missing = error.iter_mut().filter(|e| !e.is_finite());
-    missing.for_each(|e| *e = 0.0);
-}
-
-/// Before the correction of a row, or after it.
-#[derive(Clone, Copy)]
-pub(crate) enum When {
-    Before,
-    After,
-}
-
-/// Runs the observer over the record. At each row, before it is corrected, `visit` gets the plant, the row's number and the
-/// innovations in SI.
-pub(crate) fn run(
-    plant: &mut Plant<'_>,
-    observer: &Observer,
-    mut visit: impl FnMut(&mut Plant<'_>, usize, &[f64]),
-) {
-    let _end = run_while(plant, observer, |plant, row, when, error| {
-        if matches!(when, When::Before) {
-            visit(plant, row, error);
-        }
-        ControlFlow::Continue(())
-    });
-}
-
-/// The same before the correction and after it, where what is missing counts as 0; as long as `visit` says so.
-pub(crate) fn run_while(
-    plant: &mut Plant<'_>,
-    observer: &Observer,
-    mut visit: impl FnMut(&mut Plant<'_>, usize, When, &[f64]) -> ControlFlow<()>,
-) -> ControlFlow<()> {
-    let recording = plant.recording;
-    let program = plant.program;
-    let shown = measured(program);
-    let mut outputs = vec![0.0; recording.channels.len()];
-    let mut error = vec![0.0; recording.channels.len()];
-    let mut increment = vec![0.0; plant.places.states.len()];
-    for row in 0..recording.rows() {
-        let (at, workspace) = plant.point();
-        shown.evaluate(at, workspace, &mut outputs);
-        for (channel, output) in outputs.iter().enumerate() {
-            error[channel] = recording.error(channel, row, *output);
-        }
-        visit(plant, row, When::Before, &error)?;
-        forget_missing(&mut error);
-        crate::dense::set_product(observer.gain_in(plant), &error, &mut increment);
-        plant.begin_row(&increment);
-        visit(plant, row, When::After, &error)?;
-        if row + 1 < recording.rows() {
-            plant.advance();
-        }
-    }
-    ControlFlow::Continue(())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// What a quantiser of a step of 1 makes of positions, seen from predictions that are off by an error, and whitened.
-    fn rounded(positions: impl Iterator<Item = f64>, off: impl Fn(usize) -> f64) -> Innovations {
-        let deviation = (1.0 / 12.0_f64).sqrt();
-        let error = |(row, place): (usize, f64)| place.floor() + 0.5 - (place + off(row));
-        let innovations = positions.enumerate().map(error);
-        Innovations {
-            channels: vec![innovations.map(|error| error / deviation).collect()],
-            counts: vec![1.0 / deviation],
-            absent: Vec::new(),
-        }
-    }
-
-    fn size(innovations: &Innovations) -> f64 {
-        innovations.sizes().next().unwrap().1
-    }
-
-    #[test]
-    fn where_rounding_is_uneven_a_model_that_is_right_is_of_size_one() {
-        let rows = 0..20_000_u32;
-        let evenly = rows.clone().map(|row| 0.381_966 * f64::from(row));
-        assert!((size(&rounded(evenly, |_| 0.0)) - 1.0).abs() < 1e-3);
-        for place in [0.02, 0.3, 0.5, 0.98] {
-            // By 24 counts a row, and trembling by a fiftieth of one.
-            let trembling = |row: u32| 0.02 * (2.4 * f64::from(row)).sin();
-            let whole = rows
-                .clone()
-                .map(|row| 24.0 * f64::from(row) + place + trembling(row));
-            let own = rounded(whole, |_| 0.0);
-            assert!((size(&own) - 1.0).abs() < 1e-12);
-            assert!((own.chi() - 1.0).abs() > 0.4, "{}", own.chi());
-        }
-    }
-
-    #[test]
-    fn an_error_of_the_prediction_adds_its_mean_square() {
-        let evenly = (0..20_000_u32).map(|row| 0.381_966 * f64::from(row));
-        let off = |row: usize| 0.2 * (1.7 * row as f64).sin();
-        let expected = 1.0 + 0.02 * 12.0;
-        let found = rounded(evenly, off);
-        assert!((size(&found) - expected).abs() < 5e-3, "{}", size(&found));
-        assert!((found.chi() - expected).abs() < 5e-3);
-    }
-}
+pub use gain::{Observer, Taken, UNDECLARED_NOISE};
+pub use innovations::Innovations;
+pub(crate) use input_noise::MATERIAL;
+pub(crate) use lateness::{KNOWN_TO, changes_if_late};
+pub(crate) use over_record::{When, forget_missing, run, run_while};
+pub(crate) use tangent::{Direction, Known, Modes, Own, along, changes};
+pub(crate) use track::{Track, Vectors};

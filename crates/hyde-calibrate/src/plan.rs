@@ -1,11 +1,13 @@
-//! [`CalibrationPlan`]: what a `calibrate` block asks for, its words checked.
+//! [`CalibrationPlan`]: what a `calibrate` block asks for, its words checked; and [`Label`]: a fact about records that it names.
 
-use crate::label::Label;
+mod label;
+
 use hyde_diag::{Code, Diagnostic, Diagnostics, Span};
 use hyde_syntax::ast::{
     self, Expr, ExprKind, Name, Range, Reference, SettingValue, Study, StudyItem, Unary, Varied,
 };
 use hyde_units::NamedUnit;
+pub use label::{Label, LabelValue};
 
 /// Records of an experiment: `bench("fit-*.csv")`.
 #[derive(Clone, Debug)]
@@ -245,7 +247,7 @@ impl CalibrationPlan {
     }
 }
 
-pub(crate) fn wrong(span: Span, message: &str, help: &str) -> Diagnostic {
+fn wrong(span: Span, message: &str, help: &str) -> Diagnostic {
     Diagnostic::error(Code::BadStudy, message)
         .label(span, "in this study")
         .help(help)
@@ -356,7 +358,7 @@ fn bounds(range: &Range, diagnostics: &mut Diagnostics) -> Option<(f64, f64, Nam
 }
 
 /// A number as written, with its unit.
-pub(crate) fn number(expr: &Expr) -> Option<(f64, Option<String>)> {
+fn number(expr: &Expr) -> Option<(f64, Option<String>)> {
     match &expr.kind {
         ExprKind::Number(value, unit) => {
             Some((*value, unit.as_ref().map(|unit| unit.text.clone())))

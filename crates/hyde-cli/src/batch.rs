@@ -5,9 +5,13 @@
 //! DIR/journal/*.journal         a record for each finished case: the truth          store
 //! DIR/cases.parquet, …          made of the journals once no case is missing
 //! ```
-//! `asked` makes an order of arguments, `progress` shows how far a batch is, `slurm` has it solved elsewhere.
+//! `asked` makes an order of arguments, `prepared` a batch of an order, `folder` keeps it and makes the data set, `shard` says
+//! which cases are one shard's, `progress` shows how far a batch is, `slurm` has it solved elsewhere.
 
 pub(crate) mod asked;
+pub(crate) mod folder;
+pub(crate) mod prepared;
 pub(crate) mod progress;
+pub(crate) mod shard;
 pub(crate) mod slurm;
 pub(crate) mod store;

@@ -69,6 +69,32 @@ pub(crate) fn files_of(args: &ModelArgs) -> Result<Vec<ModelArgs>, Exit> {
         .collect())
 }
 
+/// The file, parsed once, and the arguments for each of its experiments, if none is named; no arguments where a file of a folder
+/// has nothing to compile.
+pub(crate) fn experiments_of(
+    args: &ModelArgs,
+    folder: bool,
+) -> Result<(Loaded, Vec<ModelArgs>), Exit> {
+    let loaded = parsed(args)?;
+    if args.experiment.is_some() || args.model.is_some() {
+        return Ok((loaded, vec![args.clone()]));
+    }
+    let named = |name: &str| ModelArgs {
+        experiment: Some(name.to_owned()),
+        ..args.clone()
+    };
+    let experiments = loaded.file.experiments();
+    let mut each: Vec<ModelArgs> = experiments.map(|own| named(&own.name.text)).collect();
+    let nothing = folder && loaded.file.models().next().is_none();
+    if each.is_empty() && nothing && loaded.diagnostics.has_errors() {
+        return Err(refused(args, &loaded.refused()));
+    }
+    if each.is_empty() && !nothing {
+        each.push(args.clone());
+    }
+    Ok((loaded, each))
+}
+
 impl From<Fault> for Exit {
     fn from(fault: Fault) -> Self {
         match fault {

@@ -30,7 +30,7 @@ pub(crate) fn diagnosis(args: &StudyArgs) -> Result<(DiagnosisPlan, Calibration)
         ..args.model_args()
     };
     let (plan, calibration) = loaded(&model_args, |loaded, asked| {
-        hyde_study::diagnosis(loaded, asked, args.study.as_deref())
+        hyde_study::diagnosis::prepared(loaded, asked, args.study.as_deref())
     })?;
     calibration.project.print_warnings(&model_args);
     Ok((plan, calibration))

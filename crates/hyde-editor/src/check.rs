@@ -61,7 +61,7 @@ fn all(job: &Job) -> Vec<lsp_types::Diagnostic> {
         Ok(loaded) if has_nothing(&loaded) => {
             return shown(&loaded.file, &loaded.sources, &loaded.diagnostics, job);
         }
-        Ok(_) => hyde_study::check(&asked, &stop, &mut |_, _| {}),
+        Ok(loaded) => hyde_study::check(loaded, &asked, &stop, &mut |_, _| {}),
         Err(reason) => Err(reason),
     };
     let found = match found {

@@ -64,7 +64,7 @@ pub(crate) fn assumptions(
             }),
             RelationUse::Exit(automaton, mode) => {
                 let taken = |known: &TakenMode| known.automaton == automaton;
-                let here = point.z[program.automata[automaton].place] as usize == mode;
+                let here = program.mode(&point.z, automaton) == mode;
                 let new = here && !point.modes.iter().any(taken);
                 new.then_some(Assumption::Event {
                     condition,

@@ -8,6 +8,7 @@
 //! ```text
 //! figures, asked_figures, panels, thinned   the curves of a run
 //! summary, ledger, forces, start            a run as text and JSON, with its energies, its forces, its start
+//! states                                    the states of a model, where its equations leave a choice
 //! assumptions, assumed                      what was assumed of the data, and where a model was linearised
 //! head, run_page                            the head of every page; the page of a run
 //! fitted, diagnosed                         a calibration; a diagnosis
@@ -50,6 +51,7 @@ pub mod run_page;
 pub mod selftest;
 pub mod start;
 pub mod state_space;
+pub mod states;
 pub mod summary;
 pub mod sweep;
 pub mod thinned;

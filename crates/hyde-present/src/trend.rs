@@ -1,7 +1,8 @@
 //! How sizes and parameters went from one diagnosis to the next, as a table and as JSON.
 
 use crate::comparison::shortened;
-use hyde_study::trend::{TWO_SIDED, Trends, slope, word};
+use hyde_signal::statistics::distributions::TWO_SIDED;
+use hyde_study::trend::{Trends, slope, word};
 use hyde_units::significant;
 use serde_json::{Value, json};
 use std::fmt::Write as _;

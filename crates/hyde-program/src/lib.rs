@@ -9,6 +9,8 @@
 //! held variables. `u` holds two values a record column at the current time: read linearly, and held. `p` holds the
 //! parameters, then what is derived from them alone.
 //!
+//! What events do to memory and states is the same for all who run a program: [`Program::firing`] and its neighbours.
+//!
 //! Numbers come from [`Kernels`], everything about them from the tables of the [`Program`]. There are three implementers
 //! of the trait: machine code, the interpreter of the IR, and problems written by hand for tests. A kernel has no state:
 //! equal arguments give equal results, from any thread.
@@ -24,6 +26,7 @@ mod jacobian;
 mod kernels;
 mod ledger;
 mod program;
+mod reacting;
 
 pub use event::{
     Assignment, Automaton, Clock, Delay, Firmness, Hold, InitialCondition, Pin, Reaction,

@@ -1,6 +1,7 @@
 //! Rows that are missing, that stand at one instant, or that are not evenly spaced: told, for nobody sees them in a curve.
 
 use crate::Note;
+use crate::statistics::median;
 
 /// From this multiple of the usual distance on, a distance of rows that are else even is a gap.
 const GAP: f64 = 1.5;
@@ -20,8 +21,7 @@ pub(crate) fn told(time_s: &[f64]) -> Vec<Note> {
     let mut notes = Vec::new();
     let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.retain(|step| *step > 0.0);
-    steps.sort_by(f64::total_cmp);
-    let Some(&usual) = steps.get(steps.len() / 2) else {
+    let Some(usual) = median(&steps) else {
         return notes;
     };
     let near = |step: &&f64| (**step - usual).abs() <= SLACK * usual;

@@ -4,6 +4,7 @@ use crate::assemble::{Cells, Raw};
 use crate::calendar::{self, Origin};
 use crate::heading::{Temporal, is_time_unit, temporal};
 use crate::layout::DeclaredColumn;
+use crate::statistics::median;
 use crate::table::may_be_first;
 use crate::time_error::{Candidate, TimeError};
 use crate::{Note, declared, gaps, wrap};
@@ -177,9 +178,8 @@ pub(crate) fn wraps(values: &[f64], declared: Option<&DeclaredColumn>) -> Option
         return None;
     }
     let steps = values.windows(2).map(|pair| pair[1] - pair[0]);
-    let mut forward: Vec<f64> = steps.clone().filter(|step| *step > 0.0).collect();
-    forward.sort_by(f64::total_cmp);
-    let usual = forward.get(forward.len() / 2).copied()?;
+    let forward: Vec<f64> = steps.clone().filter(|step| *step > 0.0).collect();
+    let usual = median(&forward)?;
     let (least, most) = values
         .iter()
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), value| {

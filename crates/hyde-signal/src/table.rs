@@ -228,9 +228,8 @@ impl Table {
     #[must_use]
     pub fn usual_step(&self) -> Option<f64> {
         let pairs = self.time().windows(2).map(|pair| pair[1] - pair[0]);
-        let mut steps: Vec<f64> = pairs.filter(|step| *step > 0.0).collect();
-        steps.sort_by(f64::total_cmp);
-        steps.get(steps.len() / 2).copied()
+        let steps: Vec<f64> = pairs.filter(|step| *step > 0.0).collect();
+        crate::statistics::median(&steps)
     }
 
     /// The declared period in s, if time is not a column.

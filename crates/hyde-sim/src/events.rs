@@ -19,13 +19,13 @@ mod struck;
 
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
-use crate::guards::{current_mode, is_active};
+use crate::guards::is_active;
 use crate::results::{Event, EventKind};
 use crate::root_rates::{root_rates, rounding};
 use crate::sensitivity::Sensitivities;
 use crate::state::State;
 use branches::{Branches, Found};
-use hyde_program::{Function, ReactionKind, RelationUse, Target};
+use hyde_program::{Function, Program, ReactionKind, RelationUse, Target};
 
 const MAX_ROUNDS: usize = 50;
 /// Rounds at the start in which relations alone may change.
@@ -108,7 +108,8 @@ impl Instant<'_, '_> {
                 not_finite,
             } = known;
             turned.extend(self.true_guards(&truths));
-            let mut flipped = self.flip(&truths);
+            let numbered = truths.iter().copied().enumerate();
+            let mut flipped = program.write_truths(&mut self.state.z, numbered);
             switched.extend(&flipped);
             let first_at_start = at_start && seen.is_empty();
             let conditions = self.conditions_with_edges(first_at_start);
@@ -304,58 +305,24 @@ impl Instant<'_, '_> {
             .collect()
     }
 
-    /// Writes the truths to the memory; the relations of equations whose truth changed.
-    fn flip(&mut self, truths: &[bool]) -> Vec<usize> {
-        let program = self.state.program;
-        let mut flipped = Vec::new();
-        for (number, &truth) in truths.iter().enumerate() {
-            let value = f64::from(u8::from(truth));
-            if self.state.z[number].to_bits() != value.to_bits() {
-                self.state.z[number] = value;
-                if program.relations[number].used == RelationUse::Equation {
-                    flipped.push(number);
-                }
-            }
-        }
-        flipped
-    }
-
-    /// The reactions that fire: exits of current modes, branches that became true.
+    /// The reactions that fire, after the asserts. At the start conditions of `when` have held before.
     fn fired(&mut self, conditions: &[bool], at_start: bool) -> Result<Vec<usize>, Box<Failure>> {
         let program = self.state.program;
-        let mut fired = Vec::new();
-        let mut left: Vec<usize> = Vec::new();
-        let mut clauses: Vec<usize> = Vec::new();
-        for (number, reaction) in program.reactions.iter().enumerate() {
-            let (now, before) = (conditions[number], self.conditions[number]);
-            match &reaction.kind {
-                ReactionKind::Transition {
-                    automaton, from, ..
-                } => {
-                    let here = self.state.in_mode(*automaton, *from);
-                    if now && here && !left.contains(automaton) {
-                        left.push(*automaton);
-                        fired.push(number);
-                    }
-                }
-                ReactionKind::When { clause } => {
-                    if now && !before && !at_start && !clauses.contains(clause) {
-                        clauses.push(*clause);
-                        fired.push(number);
-                    }
-                }
-                ReactionKind::Edge(_) => {}
-                ReactionKind::Assert(message) => {
-                    if now {
-                        let failure = Failure::new(FailureKind::Assert(message.clone()), self.t);
-                        let failure = failure.at_origin(&reaction.origin);
-                        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
-                        return Err(failure.with_values(self.state, at, &reaction.text));
-                    }
-                }
+        for (reaction, now) in program.reactions.iter().zip(conditions) {
+            if let (ReactionKind::Assert(message), true) = (&reaction.kind, now) {
+                let failure = Failure::new(FailureKind::Assert(message.clone()), self.t);
+                let failure = failure.at_origin(&reaction.origin);
+                let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+                return Err(failure.with_values(self.state, at, &reaction.text));
             }
         }
-        Ok(fired)
+        let held = if at_start {
+            conditions
+        } else {
+            self.conditions.as_slice()
+        };
+        let in_mode = |automaton, mode| self.state.in_mode(automaton, mode);
+        Ok(program.firing(conditions, held, in_mode))
     }
 
     /// Carries out the assignments of reactions, all from the values before; then modes, then pins.
@@ -367,12 +334,11 @@ impl Instant<'_, '_> {
     ) -> Result<(), Box<Failure>> {
         let program = self.state.program;
         let mut values = vec![0.0; program.rows(Function::Assignments)];
-        // What an event sets is made of values before it, also of those that a relation switches at this instant.
-        self.turn(flipped);
+        Program::turn(&mut self.state.z, flipped);
         self.state
             .evaluate(Function::Assignments, self.t, self.y, self.yp, &mut values);
         let slopes = self.slopes_of_assignments();
-        self.turn(flipped);
+        Program::turn(&mut self.state.z, flipped);
         let mut entered: Vec<(usize, usize, bool)> = Vec::new();
         for &number in fired {
             let reaction = &program.reactions[number];
@@ -399,10 +365,7 @@ impl Instant<'_, '_> {
             }
             for index in reaction.assignments.clone() {
                 let target = program.assignments[index].target;
-                match target {
-                    Target::State(position) => self.y[position] = values[index],
-                    Target::Memory(position) => self.state.z[position] = values[index],
-                }
+                target.set(values[index], self.y, &mut self.state.z);
                 if let Some(sensitivities) = &mut self.sensitivities {
                     sensitivities.assign(target, &slopes, index);
                 }
@@ -411,7 +374,7 @@ impl Instant<'_, '_> {
         for &(automaton, to, _) in &entered {
             let slides = &mut self.state.slides;
             slides.retain(|slide| slide.modes.is_none_or(|pair| pair.automaton != automaton));
-            self.state.z[program.automata[automaton].place] = to as f64;
+            program.set_mode(&mut self.state.z, automaton, to);
         }
         self.let_go(fired, &entered)?;
         self.pin(&entered)
@@ -426,13 +389,6 @@ impl Instant<'_, '_> {
         })
     }
 
-    /// Turns the truths of relations over.
-    fn turn(&mut self, relations: &[usize]) {
-        for &relation in relations {
-            self.state.z[relation] = 1.0 - self.state.z[relation];
-        }
-    }
-
     /// Fixes the states of the modes entered, and frees those of the modes left.
     fn pin(&mut self, entered: &[(usize, usize, bool)]) -> Result<(), Box<Failure>> {
         let program = self.state.program;
@@ -444,11 +400,8 @@ impl Instant<'_, '_> {
             .evaluate(Function::Assignments, self.t, self.y, self.yp, &mut values);
         let slopes = self.slopes_of_assignments();
         let mut pinned = Vec::new();
-        for (number, pin) in program.pins.iter().enumerate() {
-            if current_mode(program, &self.state.z, pin.automaton) != pin.mode {
-                continue;
-            }
-            let value = values[program.assignments.len() + number];
+        for (row, pin) in program.pins_in(&self.state.z) {
+            let value = values[row];
             let entry = entered
                 .iter()
                 .find(|(automaton, ..)| *automaton == pin.automaton);
@@ -465,7 +418,6 @@ impl Instant<'_, '_> {
             }
             pinned.push((pin.state, value));
             if let Some(sensitivities) = &mut self.sensitivities {
-                let row = program.assignments.len() + number;
                 sensitivities.assign(Target::State(pin.state), &slopes, row);
             }
         }

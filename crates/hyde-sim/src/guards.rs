@@ -11,7 +11,7 @@ use crate::consistent::Consistent;
 use crate::integrator::Integrator;
 use crate::slides::margins;
 use crate::state::State;
-use hyde_program::{Function, Program, RelationUse};
+use hyde_program::Function;
 
 /// Chebyshev points inside a step.
 const INSIDE: [f64; 3] = [0.146_446_609_406_726_24, 0.5, 0.853_553_390_593_273_8];
@@ -80,16 +80,9 @@ pub(crate) fn active(state: &State<'_>) -> Vec<usize> {
 
 /// Whether a relation matters in the current modes, and is neither held at its zero nor followed.
 pub(crate) fn is_active(state: &State<'_>, relation: usize) -> bool {
-    let in_mode = match state.program.relations[relation].used {
-        RelationUse::Exit(automaton, mode) => state.in_mode(automaton, mode),
-        RelationUse::Equation | RelationUse::When | RelationUse::Assert => true,
-    };
-    in_mode && !state.is_loose(relation) && !state.slides.iter().any(|slide| slide.holds(relation))
-}
-
-/// The number of an automaton's mode.
-pub(crate) fn current_mode(program: &Program, z: &[f64], automaton: usize) -> usize {
-    z[program.automata[automaton].place] as usize
+    let used = state.program.relations[relation].used;
+    let matters = used.matters(|automaton, mode| state.in_mode(automaton, mode));
+    matters && !state.is_loose(relation) && !state.slides.iter().any(|slide| slide.holds(relation))
 }
 
 /// The first change of a watched relation within the last step, which began at `from`. Without one, relations that have left

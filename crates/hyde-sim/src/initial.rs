@@ -346,8 +346,7 @@ fn guess_relations(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64], known: 
     }
     for (number, (relation, root)) in relations.iter().zip(roots).enumerate() {
         if relation.used == RelationUse::Equation && root.is_finite() && !open[number] {
-            let truth = root > 0.0 || (root == 0.0 && relation.inclusive);
-            state.z[number] = f64::from(u8::from(truth));
+            state.z[number] = f64::from(u8::from(relation.truth(root)));
         }
     }
 }

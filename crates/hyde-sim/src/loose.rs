@@ -97,9 +97,7 @@ impl State<'_> {
         let kernels = &program.kernels;
         kernels.evaluate(Function::Roots, at, workspace, &mut roots);
         for &relation in relations {
-            let inclusive = program.relations[relation].inclusive;
-            let root = roots[relation];
-            let truth = root > 0.0 || (root == 0.0 && inclusive);
+            let truth = program.relations[relation].truth(roots[relation]);
             self.z[relation] = f64::from(u8::from(truth));
         }
     }

@@ -13,7 +13,6 @@
 //! A. F. Filippov: Differential Equations with Discontinuous Righthand Sides (1988), §4; several switches at once add
 //! their differences, which is his solution where they act on the equations independently of each other.
 
-use crate::guards::current_mode;
 use crate::state::State;
 use hyde_program::{Function, Jacobian, Wrt};
 
@@ -82,7 +81,7 @@ impl State<'_> {
         let mut pairs = self.slides.iter().filter_map(|slide| slide.modes);
         let pair = pairs.find(|pair| pair.automaton == automaton);
         pair.map_or_else(
-            || current_mode(self.program, &self.z, automaton) == mode,
+            || self.program.mode(&self.z, automaton) == mode,
             |pair| pair.modes.contains(&mode),
         )
     }

@@ -1,7 +1,7 @@
 //! Modes that cannot be with the values that states have, at the start and after an impact: they are left.
 
 use crate::failure::{Failure, FailureKind};
-use crate::guards::{current_mode, is_active};
+use crate::guards::is_active;
 use crate::state::State;
 use hyde_program::{Firmness, Function, InitialCondition, Program, ReactionKind, Target};
 
@@ -18,13 +18,8 @@ pub(crate) fn initial_pins(
     }
     let mut values = vec![0.0; program.rows(Function::Assignments)];
     state.evaluate(Function::Assignments, t, y, yp, &mut values);
-    program
-        .pins
-        .iter()
-        .enumerate()
-        .filter(|(_, pin)| current_mode(program, &state.z, pin.automaton) == pin.mode)
-        .map(|(number, pin)| (pin.state, values[program.assignments.len() + number]))
-        .collect()
+    let pins = program.pins_in(&state.z);
+    pins.map(|(row, pin)| (pin.state, values[row])).collect()
 }
 
 /// Leaves initial modes that fix a state whose fixed start value is another one. A guide that moves at the start slips.
@@ -65,7 +60,7 @@ pub(crate) fn leave_modes(
         let Some((pin, value)) = violated(state, automaton, t, y, yp, given) else {
             continue;
         };
-        let here = current_mode(program, &state.z, automaton);
+        let here = program.mode(&state.z, automaton);
         let before = state.z.clone();
         let mut found = None;
         for (number, reaction) in program.reactions.iter().enumerate() {
@@ -88,7 +83,7 @@ pub(crate) fn leave_modes(
                     state.z[position] = values[index];
                 }
             }
-            state.z[program.automata[automaton].place] = to as f64;
+            program.set_mode(&mut state.z, automaton, to);
             if violated(state, automaton, t, y, yp, given).is_none()
                 && !leaves_at_once(state, automaton, to, t, y, yp)
             {
@@ -117,7 +112,7 @@ fn violated(
     given: &dyn Fn(usize, usize) -> bool,
 ) -> Option<(usize, f64)> {
     let program = state.program;
-    let mode = current_mode(program, &state.z, automaton);
+    let mode = program.mode(&state.z, automaton);
     let mut values = vec![0.0; program.rows(Function::Assignments)];
     state.evaluate(Function::Assignments, t, y, yp, &mut values);
     program.pins.iter().enumerate().find_map(|(number, pin)| {

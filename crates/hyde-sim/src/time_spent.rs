@@ -1,6 +1,5 @@
 //! How long the run is in which mode, and slides on which surface.
 
-use crate::guards::current_mode;
 use crate::integrator::Integrator;
 use crate::results::Results;
 
@@ -10,7 +9,7 @@ pub(crate) fn count_modes(integrator: &mut Integrator<'_>, results: &mut Results
     let state = integrator.state();
     let program = state.program;
     for automaton in 0..program.automata.len() {
-        let mode = current_mode(program, &state.z, automaton);
+        let mode = program.mode(&state.z, automaton);
         results.mode_times[automaton][mode] += span_s;
     }
     if state.slides.is_empty() {
@@ -27,7 +26,7 @@ pub(crate) fn count_modes(integrator: &mut Integrator<'_>, results: &mut Results
         }
         if let Some(pair) = slide.modes {
             let times = &mut results.mode_times[pair.automaton];
-            times[current_mode(program, &state.z, pair.automaton)] -= span_s;
+            times[program.mode(&state.z, pair.automaton)] -= span_s;
             for (mode, share) in pair.modes.into_iter().zip([1.0 - weight, weight]) {
                 times[mode] += share * span_s;
             }

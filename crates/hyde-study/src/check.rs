@@ -18,18 +18,18 @@ pub struct Checked {
     pub refused: Vec<String>,
 }
 
-/// Checks the experiment or the model that is asked for, else all experiments of the file, else its last model. One that is
+/// Checks the experiment or the model that is asked for of a file that is parsed, else all experiments of the file, else its last model. One that is
 /// wrong does not keep the others from being looked at. `visit` sees what compiled; `stop` is asked between stages, and true
 /// ends the check early with what was found so far.
 ///
 /// # Errors
-/// The file cannot be read.
+/// The file cannot be read again with the whole library, which a diagnosis needs.
 pub fn check(
+    mut loaded: Loaded,
     asked: &Asked,
     stop: &dyn Fn() -> bool,
     visit: &mut dyn FnMut(&Project, &Compiled),
 ) -> Result<Checked, String> {
-    let mut loaded = Loaded::of(asked)?;
     let mut asked = asked.clone();
     let mut found = Checked {
         project: None,

@@ -30,10 +30,9 @@
 //! store             where finished tasks of a long study are kept       store.rs
 //! progress          how far a long study is                             progress.rs
 //! calibration       a calibration with its records and its observers    calibration.rs
-//! diagnosis         a diagnosis with its block and its calibration      diagnosis.rs
 //! comparison        errors before and after, over the noise floor       comparison.rs
 //! fitted            what a calibration found, and its models            fitted.rs
-//! diagnosed         what a diagnosis found, and its model               diagnosed.rs
+//! diagnosis         its block and calibration, what it found, its model   diagnosis.rs
 //! unknown           an effect that no library has                       unknown.rs
 //! left_model        what stands before a model in a file                left_model.rs
 //! excitation        what to record next for a calibration               excitation.rs
@@ -51,8 +50,7 @@ pub mod budget;
 mod calibration;
 mod check;
 pub mod comparison;
-pub mod diagnosed;
-mod diagnosis;
+pub mod diagnosis;
 pub mod excitation;
 pub mod experiment_tests;
 pub mod first_model;
@@ -93,7 +91,6 @@ pub use calibration::{
     Calibration, JointCalibration, JointPart, Local, Number, calibration, chosen, joint_calibration,
 };
 pub use check::{Checked, check};
-pub use diagnosis::diagnosis;
 pub use fmus::{FmuHost, NamedFmu};
 pub use inputs::{Content, Inputs, Key, Kind};
 pub use package::{MANIFEST, Manifest, Root, Roots, is_inside, links_out};

@@ -15,7 +15,7 @@ mod work;
 
 pub use kept::{Kept, word};
 
-use crate::{Calibration, Progress, Store, diagnosed, unknown};
+use crate::{Calibration, Progress, Store, diagnosis, unknown};
 use hyde_calibrate::{
     Asked, Axis, Case, Hypothesis, Planting, SelftestError, Tally, Written, cases, tally,
 };
@@ -174,7 +174,7 @@ fn on_axis<T>(
         .into_iter()
         .filter(|candidate| plan.selects(candidate))
         .collect();
-    let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnosed::hypothesis).collect();
+    let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnosis::hypothesis).collect();
     let seed = options.seed.unwrap_or(plan.seed);
     let measured = calibration.compiled.program.experiment.measured.iter();
     let channels: Vec<String> = measured.map(|m| m.name.clone()).collect();

@@ -3,11 +3,9 @@
 //! A report whose name begins with a date, `2026-03-14`, is of that day; where one is not, all count one after the other.
 //! Slopes are those of least squares weighed by the intervals, which grow where values scatter by more.
 
+use hyde_signal::statistics::distributions::TWO_SIDED;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-
-/// Half the width of a 95 % interval in standard deviations.
-pub const TWO_SIDED: f64 = 1.96;
 
 /// A quantity in one report.
 pub struct Point {

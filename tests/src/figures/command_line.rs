@@ -61,7 +61,7 @@ fn parses(_: &Session) -> Result<Measured, String> {
     let first = "examples/first/first.hyde";
     let bench = ["examples/bench_axis/axis.hyde", "--quiet", "--data"];
     let cogging = "examples/bench_axis/cogging";
-    let commands: [(&str, Vec<&str>); 6] = [
+    let commands: [(&str, Vec<&str>); 9] = [
         ("run", vec![first, "--quiet"]),
         ("fit", [&bench[..], &[cogging]].concat()),
         ("diagnose", [&bench[..], &[cogging]].concat()),
@@ -74,6 +74,9 @@ fn parses(_: &Session) -> Result<Measured, String> {
             vec!["examples/frequency_response/axis.hyde", "hybrid"],
         ),
         ("sweep", [&[first, "--quiet"], &SWEEP[..]].concat()),
+        ("check", vec![first, "--quiet"]),
+        ("test", vec![first, "--quiet"]),
+        ("effects", vec![first, "--check", "--quiet"]),
     ];
     let mut most = 0.0_f64;
     for (name, arguments) in commands {

@@ -5,8 +5,8 @@
 //! missing, of the motion that tells most (discrimination of models; Hunter and Reiner, Technometrics 7, 1965, 307).
 
 use super::trial::Trial;
-use crate::blocks::rows_of_a_block;
-use crate::recording::Recording;
+use crate::fit::rows_of_a_block;
+use crate::records::Recording;
 
 /// What would take more records than this is told apart by no motion of this kind.
 const MOST: f64 = 1000.0;

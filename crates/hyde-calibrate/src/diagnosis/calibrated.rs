@@ -9,11 +9,9 @@
 use super::inquiry::Inquiry;
 use super::search::Diagnosis;
 use super::stage::{Ground, Stage};
-use crate::descent::{MAX_STEPS, Objective, sum_of_squares};
-use crate::gain::Observer;
-use crate::linearised::Slopes;
+use crate::fit::{MAX_STEPS, Objective, Slopes, Solution, sum_of_squares};
+use crate::observer::Observer;
 use crate::plant::Unsupported;
-use crate::solution::Solution;
 
 /// Calibrates the model that was found with an observer of its own, where it has states that the declared one's does not know.
 pub(super) fn calibrate_found(

@@ -17,11 +17,10 @@ use super::search::Diagnosis;
 use super::stage::{Ground, flat};
 use super::unknown::{CURVE_PROBE, Felt, Kind, PROBE_SIZES, Site, Variable, probe, strongest};
 use crate::fit::inflation;
-use crate::observer::{Innovations, When};
-use crate::recording::Recording;
-use crate::tangent::{Direction, Own};
-use crate::track::{Track, Vectors};
+use crate::observer::{Direction, Innovations, Own, Track, Vectors, When};
+use crate::records::Recording;
 use hyde_program::Program;
+use hyde_signal::statistics::distributions::TWO_SIDED;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
 
@@ -462,7 +461,7 @@ fn asked(
     let larger = inflation(&innovations);
     let mut found = vec![None; knots.len()];
     for (number, &knot) in shown.iter().enumerate() {
-        let half = 1.96 * (larger * covariance[(number, number)]).sqrt();
+        let half = TWO_SIDED * (larger * covariance[(number, number)]).sqrt();
         found[knot] = Some((sizes[number], half));
     }
     Some(found)

@@ -5,6 +5,7 @@ use super::forward::Taken;
 use super::hypothesis::{Hypothesis, Knob};
 use super::stage::Stage;
 use crate::fit::{covariance, inflation};
+use hyde_signal::statistics::distributions::TWO_SIDED;
 use hyde_units::{Dimension, NamedUnit};
 
 /// A quantity that was found, SI.
@@ -63,7 +64,7 @@ pub(super) fn findings(
         let interval = match number_of(name) {
             Some(number) => {
                 let deviation = covariance[(number, number)].max(0.0).sqrt();
-                let half = 1.96 * deviation * stage.varied[number].scale();
+                let half = TWO_SIDED * deviation * stage.varied[number].scale();
                 (value - half, value + half)
             }
             // As declared, for the records do not determine it ([`super::undetermined`]).

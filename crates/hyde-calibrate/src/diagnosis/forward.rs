@@ -16,8 +16,8 @@ use super::scan::{Scanner, Score};
 use super::search::{Gates, Round, explained};
 use super::stage::{Ground, Stage};
 use super::trial::Trial;
+use crate::observer::Track;
 use crate::plant::Unsupported;
-use crate::track::Track;
 
 /// Hypotheses fitted in a round at first, and the part of the best score that they must have.
 const SURVIVORS: usize = 6;

@@ -1,7 +1,7 @@
 //! [`holding`]: an observer that holds an effect that was found and the declared model alike.
 //!
 //! All models are compared by one observer, that of the declared model. An effect with modes of its own may bring one in which
-//! errors grow by that gain, as an open play does. There the gain is another ([`crate::gain::Observer::gain_in`]), and it
+//! errors grow by that gain, as an open play does. There the gain is another ([`crate::observer::Observer::gain_in`]), and it
 //! is enough to say that the effect is there; but the sum of squares jumps as modes come a row earlier or later, and a fit ends
 //! where it happens to. So the search begins again by the observer of the model with the effect: its gain lets go of what
 //! the effect does, and holds the declared model too.
@@ -9,9 +9,8 @@
 use super::hypothesis::brings_modes;
 use super::inquiry::Inquiry;
 use super::stage::Stage;
-use crate::gain::Observer;
+use crate::observer::{Observer, Track};
 use crate::plant::Unsupported;
-use crate::track::Track;
 
 /// The observer of a stage, if it has modes that the inquiry's does not hold; `None` where that is as good.
 pub(super) fn holding(

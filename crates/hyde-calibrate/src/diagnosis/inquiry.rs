@@ -3,9 +3,9 @@
 use super::hypothesis::{Built, Hypothesis};
 use super::stage::Ground;
 use super::unknown::{Site, Written};
-use crate::gain::Observer;
-use crate::recording::Recording;
-use crate::varied::Varied;
+use crate::fit::Varied;
+use crate::observer::Observer;
+use crate::records::Recording;
 
 /// Puts known hypotheses, by number, and written effects on the model; `None` where they cannot be.
 pub type Author<'a> = dyn Fn(&[usize], &[Written]) -> Option<Built> + Sync + 'a;

@@ -9,9 +9,8 @@
 //! along a kink, intervals are those of the profile; where it does not grow at all, the fit has not converged and the
 //! number has none.
 
-use crate::least_squares::Problem;
+use crate::fit::{Problem, Solution};
 use crate::plant::Unsupported;
-use crate::solution::Solution;
 use nalgebra::{DMatrix, DVector};
 
 /// Costs are compared this many standard deviations apart, and the bottom is looked for so far from them.

@@ -8,11 +8,9 @@
 
 use super::products::Products;
 use super::stage::{Ground, Stage, flat};
-use crate::lateness::{self, KNOWN_TO};
-use crate::linearised::Linearised;
-use crate::observer::Innovations;
+use crate::fit::Linearised;
+use crate::observer::{Innovations, KNOWN_TO, Track, changes_if_late};
 use crate::plant::Unsupported;
-use crate::track::Track;
 use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Innovations, with what parameters can do about them.
@@ -102,7 +100,7 @@ impl Projection {
         let pairs = tracks.iter().zip(ground.recordings);
         let late = pairs.map(|(track, recording)| {
             let p = recording.parameters(&stage.program, &set);
-            lateness::changes(track, &stage.program, recording, &p)
+            changes_if_late(track, &stage.program, recording, &p)
         });
         let late = late.collect::<Result<Vec<DMatrix<f64>>, Unsupported>>()?;
         for column in 0..stage.program.columns.len() {

@@ -7,10 +7,7 @@
 use super::hypothesis::{Build, Built};
 use super::search::Gates;
 use super::stage::{Ground, Stage, below};
-use crate::descent::{MAX_STEPS, Objective};
-use crate::fit::inflation_of;
-use crate::linearised::Slopes;
-use crate::varied::Varied;
+use crate::fit::{MAX_STEPS, Objective, Slopes, Varied, inflation_of};
 use nalgebra::DVector;
 
 /// The places among the effects of those that were dropped, in the order in which they were.

@@ -1,6 +1,6 @@
 //! [`Score`]: what an effect at a site gains at best, over its shapes and sizes, before anything is fitted.
 //!
-//! How innovations change with a small size is differentiated along one run ([`crate::tangent`]). Where the effect is
+//! How innovations change with a small size is differentiated along one run ([`crate::observer::changes`]). Where the effect is
 //! linear in its sizes the best ones follow at once; what is gained there is then tried by the model itself. An effect
 //! that brings modes of its own, as play does, is nothing to begin with and is tried at sizes all over its range.
 
@@ -9,7 +9,8 @@ use super::hypothesis::{Build, Built, Hypothesis, Knob, brings_modes};
 use super::projection::Projection;
 use super::runs::{Runs, largest};
 use super::stage::{Ground, Stage};
-use crate::track::Track;
+use crate::observer::Track;
+use crate::plant::past_differs;
 use hyde_program::Program;
 use nalgebra::DVector;
 use rayon::prelude::*;
@@ -217,7 +218,7 @@ impl Scanner<'_> {
         let mut each = self.ground.recordings.iter();
         each.next().is_some_and(|first| {
             let p = |value| first.parameters(program, &set(value));
-            crate::past::moves(program, &p(0.0), &p(1.0))
+            past_differs(program, &p(0.0), &p(1.0))
         })
     }
 

@@ -19,19 +19,15 @@ use super::stage::{Ground, Stage};
 use super::trial::Trial;
 use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
-use crate::fit::{correlation, inflation};
-use crate::frozen::{Frozen, frozen};
-use crate::gain::Observer;
-use crate::observer::Innovations;
+use crate::fit::{Solution, Varied, inflation};
+use crate::observer::{Innovations, MATERIAL, Observer};
 use crate::plant::Unsupported;
-use crate::solution::Solution;
-use crate::varied::Varied;
+use crate::records::{Frozen, frozen};
+use hyde_signal::statistics::{autocorrelation, distributions};
 
 /// One of this many sets of records without an effect may pass a single gate by chance, and the margin above that.
 const CHANCE: f64 = 0.01;
 const MARGIN: f64 = 2.0;
-/// The part of the number of innovations that a gain on what was not fitted is to reach.
-pub(crate) const MATERIAL: f64 = 0.002;
 /// Innovations that are explained: their mean square, and their correlation, of what is smaller than noise a part.
 const EXPLAINED: (f64, f64) = (1.05, 0.1);
 /// What gains this part of what is more than noise, in the linear answer, may explain all once it is fitted.
@@ -54,7 +50,7 @@ impl Gates {
     /// What a gain of a hypothesis with so many sizes and shapes has to reach.
     #[must_use]
     pub fn gain(&self, freedoms: usize) -> f64 {
-        MARGIN * chi_squared(freedoms.max(1), CHANCE / self.tried.max(1) as f64)
+        MARGIN * distributions::chi_squared(freedoms.max(1), CHANCE / self.tried.max(1) as f64)
     }
 
     /// What a gain over a model has to reach that a single number is worth.
@@ -348,62 +344,11 @@ pub(super) fn excess(solution: &Solution) -> f64 {
 pub(super) fn explained(solution: &Solution) -> bool {
     let records = || solution.innovations.iter();
     let channels: usize = records().map(|own| own.channels.len()).sum();
-    let chance = normal_quantile(CHANCE / channels.max(1) as f64);
+    let chance = distributions::normal(CHANCE / channels.max(1) as f64);
     records().flat_map(Innovations::sizes).all(|(list, size)| {
         let rows = list.len().max(1) as f64;
         let (largest, likeness) = EXPLAINED;
         size <= largest + chance * (2.0 / rows).sqrt()
-            && correlation(&list) * size.clamp(0.0, 1.0) <= likeness + chance / rows.sqrt()
+            && autocorrelation(&list, 1) * size.clamp(0.0, 1.0) <= likeness + chance / rows.sqrt()
     })
-}
-
-/// The value that chi squared with so many degrees of freedom exceeds with a small probability; from three degrees on by
-/// Wilson and Hilferty's cube (Proc. Natl. Acad. Sci. 17, 1931, 684).
-pub(super) fn chi_squared(freedoms: usize, probability: f64) -> f64 {
-    match freedoms {
-        0 | 1 => normal_quantile(0.5 * probability).powi(2),
-        2 => -2.0 * probability.ln(),
-        _ => {
-            let k = freedoms as f64;
-            let part = 2.0 / (9.0 * k);
-            k * (1.0 - part + normal_quantile(probability) * part.sqrt()).powi(3)
-        }
-    }
-}
-
-/// The value that a normal number exceeds with a small probability: by bisection of the complementary error function's
-/// asymptotic continued fraction (Abramowitz and Stegun 26.2.14).
-fn normal_quantile(probability: f64) -> f64 {
-    let upper = |x: f64| {
-        let mut fraction = x;
-        for k in (1..=60).rev() {
-            fraction = x + f64::from(k) / fraction;
-        }
-        (-0.5 * x * x).exp() / (std::f64::consts::TAU.sqrt() * fraction)
-    };
-    let (mut low, mut high) = (1.0, 12.0);
-    for _ in 0..80 {
-        let middle = 0.5 * (low + high);
-        if upper(middle) > probability {
-            low = middle
-        } else {
-            high = middle
-        }
-    }
-    low
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_are_those_of_tables() {
-        // Abramowitz and Stegun, tables 26.6 and 26.8.
-        assert!((normal_quantile(0.001) - 3.0902).abs() < 1e-4);
-        for (freedoms, value) in [(1, 10.828), (2, 13.816), (4, 18.467)] {
-            let found = chi_squared(freedoms, 0.001);
-            assert!((found / value - 1.0).abs() < 0.02, "{freedoms}: {found}");
-        }
-    }
 }

@@ -2,17 +2,10 @@
 
 use super::hypothesis::Hypothesis;
 use super::profile::profiled;
-use crate::blocks::Fold;
-use crate::descent::{MAX_STEPS, Objective};
-use crate::gain::Observer;
-use crate::least_squares::Problem;
-use crate::linearised::{Linearised, Slopes};
-use crate::observer::Innovations;
+use crate::fit::{Fold, Linearised, MAX_STEPS, Objective, Problem, Slopes, Solution, Varied};
+use crate::observer::{Innovations, Observer, Track};
 use crate::plant::Unsupported;
-use crate::recording::Recording;
-use crate::solution::Solution;
-use crate::track::Track;
-use crate::varied::Varied;
+use crate::records::Recording;
 use hyde_program::Program;
 
 /// Two periods, orders or frequencies are nearly the same that are apart by this part.

@@ -3,17 +3,16 @@
 
 use super::hypothesis::{Build, Built, Hypothesis, Knob, is_on_bound};
 use super::scan::{Node, Score};
-use super::search::{Gates, chi_squared};
+use super::search::Gates;
 use super::stage::{Ground, Stage};
 use super::undetermined;
-use crate::blocks::Fold;
-use crate::descent::{LAST_STEPS, MAX_STEPS, Objective};
-use crate::fit::{covariance, covariance_of_first, inflation_of};
-use crate::linearised::Slopes;
+use crate::fit::{
+    Fold, LAST_STEPS, MAX_STEPS, Objective, Slopes, Solution, Varied, covariance,
+    covariance_of_first, inflation_of,
+};
 use crate::observer::Innovations;
-use crate::solution::Solution;
-use crate::varied::Varied;
 use hyde_program::Program;
+use hyde_signal::statistics::distributions::{TWO_SIDED, chi_squared};
 use nalgebra::DVector;
 use std::ops::Range;
 
@@ -134,7 +133,7 @@ impl Trial {
         let covariance = covariance(solution, self.inflation);
         self.own.clone().any(|size| {
             let deviation = covariance[(size, size)].max(0.0).sqrt();
-            (solution.values[size] / self.stage.varied[size].scale()).abs() > 1.96 * deviation
+            (solution.values[size] / self.stage.varied[size].scale()).abs() > TWO_SIDED * deviation
         })
     }
 

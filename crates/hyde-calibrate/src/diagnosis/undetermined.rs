@@ -5,13 +5,9 @@
 //! holds its declared value, that says as much as any other: it is kept, and the rest is fitted again.
 
 use super::hypothesis::Knob;
-use crate::fit::{covariance, inflation_of};
-use crate::solution::Solution;
-use crate::varied::Varied;
+use crate::fit::{Solution, Varied, covariance, inflation_of};
+use hyde_signal::statistics::distributions::TWO_SIDED;
 use std::ops::Range;
-
-/// Half of a 95 % interval in standard deviations.
-const HALF: f64 = 1.96;
 
 /// Takes the shapes that stand on a bound and might as well be as declared from what is varied, and with them their
 /// values; gives their full names and declared values. `own` are the numbers of what the effect varies.
@@ -32,7 +28,7 @@ pub(crate) fn held(
         };
         let deviation = covariance[(number, number)].max(0.0).sqrt() * varied[number].scale();
         let off = (values[number] - shape.value).abs();
-        if shape.is_at_bound(values[number]) && off <= HALF * deviation {
+        if shape.is_at_bound(values[number]) && off <= TWO_SIDED * deviation {
             held.push((varied.remove(number).name, shape.value));
             values.remove(number);
         }

@@ -12,9 +12,8 @@
 use super::hypothesis::Hypothesis;
 use super::profile::direction;
 use super::stage::{Ground, Stage};
-use crate::fit::{covariance, inflation};
+use crate::fit::{Solution, covariance, inflation};
 use crate::plant::Unsupported;
-use crate::solution::Solution;
 
 /// A whole number further off than this many standard deviations is not tried.
 const FURTHEST: f64 = 6.0;

@@ -2,7 +2,7 @@
 
 use super::random::Random;
 use crate::diagnosis::{Hypothesis, Knob};
-use crate::varied::Varied;
+use crate::fit::Varied;
 
 /// Shapes are drawn between their declared value over this and times this.
 const SHAPES: f64 = 3.0;

@@ -6,14 +6,11 @@
 //! Continuous Univariate Distributions 2, 1995, ch. 29). An effect is said to show where that passes the gate in 39 of 40
 //! sets of noise: `G - 4*sqrt(G) >= gate`.
 
-use crate::descent::Objective;
 use crate::diagnosis::{Author, Built, Gates, Ground, Hypothesis, Projection, Stage, flat};
-use crate::gain::Observer;
-use crate::linearised::Slopes;
-use crate::observer::Innovations;
+use crate::fit::{Objective, Slopes, Varied};
+use crate::observer::{Innovations, Observer};
 use crate::plant::Unsupported;
-use crate::recording::Recording;
-use crate::varied::Varied;
+use crate::records::Recording;
 use hyde_program::Program;
 use nalgebra::DVector;
 

@@ -7,9 +7,9 @@
 
 use super::expected::Reference;
 use crate::diagnosis::{Author, Hypothesis};
+use crate::fit::Varied;
 use crate::plant::Unsupported;
-use crate::recording::Recording;
-use crate::varied::Varied;
+use crate::records::Recording;
 use hyde_program::Program;
 use nalgebra::{Cholesky, DMatrix, DVector};
 

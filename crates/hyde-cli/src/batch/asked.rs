@@ -2,17 +2,37 @@
 //! commands that rerun cases.
 
 use crate::args::SweepArgs;
+use crate::files;
 use hyde_present::lines::shell_word as word;
+use hyde_study::Inputs;
 use hyde_study::sweep::Order;
+use hyde_study::world::Disk;
+
+/// The order of a batch, from its folder or from the arguments, with the files that it reads.
+pub(crate) fn order_of(args: &SweepArgs, kept: bool) -> Result<(Order, Inputs), String> {
+    let file = args.file.display();
+    if files::is_folder(&args.file) && !kept {
+        return Err(format!("the folder `{file}` contains no batch"));
+    }
+    if !kept {
+        return Ok((ordered(args), Inputs::recording_with(written(args))));
+    }
+    if args.sweep.is_some() || !asked_for_nothing(args) {
+        return Err(format!(
+            "`{file}` is the folder of a batch, which defines the sweep: leave out the sweep, `--of`, `--set`, `--record`, `--data`, `--seed` and `--keep`"
+        ));
+    }
+    Order::read(&Disk, &args.file)
+}
 
 /// Whether the arguments say nothing of what the batch is, as of a folder that knows it.
-pub(crate) fn asked_for_nothing(args: &SweepArgs) -> bool {
+fn asked_for_nothing(args: &SweepArgs) -> bool {
     let none = args.settings.is_empty() && args.records.is_empty() && args.keep.is_empty();
     none && args.data.is_none() && args.seed.is_none() && args.of.is_none()
 }
 
 /// The order that the arguments give.
-pub(crate) fn ordered(args: &SweepArgs) -> Order {
+fn ordered(args: &SweepArgs) -> Order {
     Order {
         file: args.file.clone(),
         sweep: match &args.of {
@@ -31,7 +51,7 @@ pub(crate) fn ordered(args: &SweepArgs) -> Order {
 const ASKED: &str = "asked";
 
 /// A sweep that was given in arguments, as it would be written below the model.
-pub(crate) fn written(args: &SweepArgs) -> String {
+fn written(args: &SweepArgs) -> String {
     let Some(experiment) = &args.of else {
         return String::new();
     };

@@ -5,7 +5,7 @@ use crate::exit::Exit;
 use crate::project::{Told as _, complain, print_output};
 use crate::{clock, files, study};
 use hyde_present::diagnosed;
-use hyde_study::diagnosed::{Diagnosed, search};
+use hyde_study::diagnosis::{Diagnosed, search};
 use hyde_study::left_model;
 use serde_json::Value;
 use std::path::Path;

@@ -2,7 +2,6 @@
 //!
 //! [`hyde_study::experiment_tests`] does it, as for `hyde test`; here the sizes that are 0 are tested too, at a tenth of their range.
 
-use super::check;
 use super::test::how;
 use crate::args::ModelArgs;
 use crate::exit::Exit;
@@ -49,12 +48,13 @@ fn tested(args: &ModelArgs) -> Result<(Vec<Tested>, Vec<String>), Exit> {
     let mut tests = Vec::new();
     let mut known: Vec<String> = Vec::new();
     let mut used: BTreeSet<String> = BTreeSet::new();
-    for one in check::each(&quiet, false)? {
+    let (loaded, each) = project::experiments_of(&quiet, false)?;
+    for one in each {
         if one.experiment.is_none() {
             let reason = "the file has no experiment: an effect is tested on a model that moves";
             return Err(complain(args, Exit::CommandLine, reason));
         }
-        let (loaded, asked, how) = (project::parsed(&one)?, project::asked(&one)?, how());
+        let (asked, how) = (project::asked(&one)?, how());
         let refused = |own| project::refused(&one, &own);
         let project = project_of(&loaded, &asked).map_err(refused)?;
         known = project.file.effects().map(str::to_owned).collect();

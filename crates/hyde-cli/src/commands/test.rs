@@ -1,11 +1,10 @@
 //! `hyde test`: runs the experiments of a file or a package, looks at what they expect, and at whether effects vanish.
 
 use crate::args::{ModelArgs, TestArgs};
-use crate::commands::check;
 use crate::commands::run::watch;
 use crate::exit::Exit;
 use crate::interruption::interrupted;
-use crate::project::{self, print_output};
+use crate::project::{self, Loaded, print_output};
 use hyde_present::experiment_tests::table;
 use hyde_study::experiment_tests::{self, Tested, Verdict};
 use hyde_study::runs::How;
@@ -29,10 +28,10 @@ fn tested(args: &ModelArgs) -> Result<Exit, Exit> {
             ..file
         };
         let mut of_file = Vec::new();
-        let experiments = check::each(&quiet, true)?;
+        let (loaded, experiments) = project::experiments_of(&quiet, true)?;
         let experiments = experiments.iter().filter(|one| one.experiment.is_some());
         for one in experiments {
-            exit = exit.max(experiment(one, &mut of_file)?);
+            exit = exit.max(experiment(&loaded, one, &mut of_file)?);
         }
         if of_file.is_empty() {
             continue;
@@ -67,11 +66,11 @@ fn tested(args: &ModelArgs) -> Result<Exit, Exit> {
 }
 
 /// The tests of an experiment; what could not be run is printed.
-fn experiment(args: &ModelArgs, tests: &mut Vec<Tested>) -> Result<Exit, Exit> {
-    let (loaded, asked) = (project::parsed(args)?, project::asked(args)?);
+fn experiment(loaded: &Loaded, args: &ModelArgs, tests: &mut Vec<Tested>) -> Result<Exit, Exit> {
+    let asked = project::asked(args)?;
     let how = how();
     let _watch = watch(args.json || args.quiet, &how.reached);
-    let found = experiment_tests::experiment(&loaded, &asked, &how);
+    let found = experiment_tests::experiment(loaded, &asked, &how);
     let mut tested = found.tests.iter();
     let failed = tested.any(|test| test.verdict == Verdict::Failed);
     let mut exit = match failed && found.ran {

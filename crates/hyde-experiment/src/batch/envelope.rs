@@ -1,6 +1,7 @@
 //! [`envelope`]: a variable over time in all cases, as quantiles at common instants.
 
-use super::summary::{QUANTILES, quantile};
+use super::summary::QUANTILES;
+use hyde_signal::statistics::quantile;
 
 /// Quantiles at [`QUANTILES`] over time.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -3,6 +3,7 @@
 use super::dataset::Dataset;
 use super::outcome::Outcome;
 use super::plan::{Plan, Value};
+use hyde_signal::statistics::{correlation, quantile};
 
 /// The probabilities of the quantiles that are told.
 pub const QUANTILES: [f64; 7] = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0];
@@ -153,23 +154,6 @@ impl Gathered {
     }
 }
 
-/// The quantile of sorted values: linear between order statistics (definition 7 of Hyndman and Fan 1996). NaN of none.
-pub(super) fn quantile(sorted: &[f64], p: f64) -> f64 {
-    let Some(last) = sorted.len().checked_sub(1) else {
-        return f64::NAN;
-    };
-    let at = p * last as f64;
-    let below = at.floor() as usize;
-    let part = at - below as f64;
-    let (low, high) = (sorted[below], sorted[(below + 1).min(last)]);
-    // Equal values may be infinite.
-    if part > 0.0 && low < high {
-        low + part * (high - low)
-    } else {
-        low
-    }
-}
-
 /// Ranks from 1, equal values share their mean; `None` where a value is missing or all are equal.
 fn varying_ranks(values: &[f64]) -> Option<Vec<f64>> {
     if values.iter().any(|value| value.is_nan()) {
@@ -191,34 +175,10 @@ fn varying_ranks(values: &[f64]) -> Option<Vec<f64>> {
     (groups > 1).then_some(ranks)
 }
 
-/// Pearson's correlation of ranks, which is Spearman's of the values, with ties.
-fn correlation(a: &[f64], b: &[f64]) -> Option<f64> {
-    let mean = 0.5 * (a.len() + 1) as f64;
-    let product = |x: &[f64], y: &[f64]| -> f64 {
-        x.iter().zip(y).map(|(x, y)| (x - mean) * (y - mean)).sum()
-    };
-    let scale = (product(a, a) * product(b, b)).sqrt();
-    (scale > 0.0 && a.len() == b.len()).then(|| product(a, b) / scale)
-}
-
 #[cfg(test)]
 #[allow(clippy::float_cmp, reason = "small integers and halves are exact")]
 mod tests {
     use super::*;
-
-    #[test]
-    fn quantiles_are_those_of_the_definition() {
-        // R's default, type 7: quantile(c(1, 2, 4, 8), 0.25) = 1.75 and 0.5 = 3.
-        let sorted = [1.0, 2.0, 4.0, 8.0];
-        assert_eq!(
-            [0.0, 0.25, 0.5, 1.0].map(|p| quantile(&sorted, p)),
-            [1.0, 1.75, 3.0, 8.0]
-        );
-        assert!(quantile(&[], 0.5).is_nan());
-        let some_never = [1.0, f64::INFINITY, f64::INFINITY];
-        assert_eq!(quantile(&some_never, 0.9), f64::INFINITY);
-        assert_eq!(quantile(&some_never, 0.25), f64::INFINITY);
-    }
 
     #[test]
     fn rank_correlations_see_order_and_share_ties() {

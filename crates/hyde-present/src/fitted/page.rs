@@ -7,7 +7,7 @@ use crate::compared;
 use crate::head;
 use hyde_report::{Block, Page, Section, Table};
 use hyde_study::Project;
-use hyde_study::diagnosed::suspicion;
+use hyde_study::diagnosis::suspicion;
 use hyde_units::significant;
 
 /// The page as one HTML text; `made` says when it is made.

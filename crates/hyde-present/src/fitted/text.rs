@@ -4,7 +4,7 @@ use super::{Fitted, experiment_name, named, shown, shown_difference};
 use crate::comparison::{self, shortened};
 use crate::diagnosed::wrapped;
 use hyde_calibrate::{FittedParameter, Profile};
-use hyde_study::diagnosed::suspicion;
+use hyde_study::diagnosis::suspicion;
 use hyde_units::{counted, engineering_difference, significant};
 use std::fmt::Write as _;
 

@@ -1,6 +1,7 @@
 //! Parameters from measured natural frequencies, as text and as JSON.
 
 use hyde_experiment::Combination;
+use hyde_signal::statistics::distributions::TWO_SIDED;
 use hyde_study::modes::Found;
 use hyde_units::significant;
 use serde_json::{Value, json};
@@ -30,7 +31,7 @@ pub fn text(found: &Found) -> String {
         };
         let interval = match found.spread {
             Some(spread) => {
-                let factor = (1.96 * spread).exp();
+                let factor = (TWO_SIDED * spread).exp();
                 let (low, high) = (found.values.1 / factor, found.values.1 * factor);
                 format!("{} .. {}", shown(low), shown(high))
             }

@@ -2,7 +2,7 @@
 
 use super::json::{shown, sums};
 use hyde_calibrate::{Found, Planting, Row};
-use hyde_study::diagnosed::verdict;
+use hyde_study::diagnosis::verdict;
 use hyde_study::selftest::Tested;
 use hyde_units::significant;
 use std::collections::BTreeMap;

@@ -9,6 +9,7 @@ use super::rows::Rows;
 use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::heading::{Heading, Place};
 use crate::layout::{DeclaredColumn, Layout};
+use crate::statistics::median;
 use crate::{Fault, Note, Table, TimeError, declared};
 
 /// The lines of so many missing readings are told.
@@ -275,9 +276,8 @@ fn said_unit(
     };
     let numbers: Vec<f64> = cells.iter().map_while(|cell| any_number(cell)).collect();
     let steps = numbers.windows(2).map(|pair| pair[1] - pair[0]);
-    let mut steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
-    steps.sort_by(f64::total_cmp);
-    let Some(step) = steps.get(steps.len() / 2).copied() else {
+    let steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
+    let Some(step) = median(&steps) else {
         return Ok(());
     };
     let near = |a: f64, b: f64| (a - b).abs() <= 0.02 * b;

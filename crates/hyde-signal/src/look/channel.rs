@@ -1,5 +1,7 @@
 //! How a channel was sampled: its range, its step, its noise, and what is wrong with its readings.
 
+use crate::statistics::{mean_square, middle};
+
 /// How a channel was sampled, in the unit of its file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sampled {
@@ -133,9 +135,7 @@ fn noise(values: &[f64]) -> f64 {
     third.sort_by(f64::total_cmp);
     // Spikes and steps are among the largest.
     third.truncate(third.len() * 9 / 10);
-    let mean_square =
-        third.iter().map(|value| value * value).sum::<f64>() / third.len().max(1) as f64;
-    (mean_square / LOWER_NINE_TENTHS / 20.0).sqrt()
+    (mean_square(&third) / LOWER_NINE_TENTHS / 20.0).sqrt()
 }
 
 /// The mean square of the nine tenths of a normal distribution that are nearest to 0, over its variance.
@@ -185,7 +185,7 @@ fn stuck(time: &[f64], values: &[f64]) -> Option<Held> {
 fn saturated(values: &[f64], range: (f64, f64)) -> Option<Limit> {
     let mut steps = sorted_steps(values);
     steps.retain(|step| *step > 0.0);
-    let usual = steps.get(steps.len() / 2).copied()?;
+    let usual = middle(&steps)?;
     let stretches = stretches(values);
     [range.1, range.0].into_iter().find_map(|value| {
         let at_end = |(from, to): &&(usize, usize)| {

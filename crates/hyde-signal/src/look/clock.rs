@@ -1,5 +1,7 @@
 //! The instants of a record: how far apart, where some are missing or double, how the clock goes.
 
+use crate::statistics::middle;
+
 /// The samples of one rate.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Clock {
@@ -28,7 +30,7 @@ pub(super) fn of(time: &[f64]) -> Clock {
     let steps: Vec<f64> = time.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let mut sorted: Vec<f64> = steps.iter().copied().filter(|step| *step > 0.0).collect();
     sorted.sort_by(f64::total_cmp);
-    let usual = sorted.get(sorted.len() / 2).copied().unwrap_or(0.0);
+    let usual = middle(&sorted).unwrap_or(0.0);
     let places = || steps.iter().zip(time);
     let ordinary: Vec<f64> = sorted
         .iter()

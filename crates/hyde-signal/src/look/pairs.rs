@@ -2,6 +2,7 @@
 
 use super::channel::STATES;
 use crate::Table;
+use crate::statistics::correlation;
 
 /// A channel that follows another.
 #[derive(Clone, Debug, PartialEq)]
@@ -117,7 +118,7 @@ fn limited(mut rates: Vec<f64>) -> Vec<f64> {
 
 /// Whether the second channel is the slope of the first.
 fn slope(a: &Trace, b: &Trace) -> Option<Slope> {
-    let correlation = correlation(&a.rates, &b.values);
+    let correlation = correlation(&a.rates, &b.values).unwrap_or(0.0);
     let energy = a.rates.iter().map(|rate| rate * rate).sum::<f64>();
     let common = a
         .rates
@@ -146,10 +147,11 @@ fn delay(a: &Trace, b: &Trace) -> Option<Delay> {
     let most = LAGS.min(a.rates.len() / 4);
     let at = |lag: isize| {
         let shift = lag.unsigned_abs();
-        match lag >= 0 {
-            true => correlation(&a.rates[..a.rates.len() - shift], &b.rates[shift..]),
-            false => correlation(&a.rates[shift..], &b.rates[..b.rates.len() - shift]),
-        }
+        let (earlier, later) = match lag >= 0 {
+            true => (&a.rates[..a.rates.len() - shift], &b.rates[shift..]),
+            false => (&a.rates[shift..], &b.rates[..b.rates.len() - shift]),
+        };
+        correlation(earlier, later).unwrap_or(0.0)
     };
     let most = isize::try_from(most).unwrap_or(0);
     let (best, found) = (-most..=most)
@@ -184,22 +186,6 @@ fn range(values: &[f64]) -> f64 {
     values.sort_by(f64::total_cmp);
     let part = values.len() / 100;
     values[values.len() - 1 - part] - values[part]
-}
-
-fn correlation(a: &[f64], b: &[f64]) -> f64 {
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len().max(1) as f64;
-    let (a_mean, b_mean) = (mean(a), mean(b));
-    let (mut ab, mut aa, mut bb) = (0.0, 0.0, 0.0);
-    for (a, b) in a.iter().zip(b) {
-        ab += (a - a_mean) * (b - b_mean);
-        aa += (a - a_mean).powi(2);
-        bb += (b - b_mean).powi(2);
-    }
-    if aa > 0.0 && bb > 0.0 {
-        ab / (aa * bb).sqrt()
-    } else {
-        0.0
-    }
 }
 
 #[cfg(test)]

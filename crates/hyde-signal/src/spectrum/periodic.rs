@@ -1,6 +1,7 @@
 //! The response to a periodic excitation, a multisine, with the noise seen from period to period.
 
 use super::{CrossPower, FrequencyResponse, SpectrumError, check_pair, transform};
+use crate::statistics::median;
 use realfft::RealFftPlanner;
 use realfft::num_complex::Complex;
 
@@ -198,9 +199,8 @@ fn excited(lines: &[Line]) -> Vec<bool> {
         return vec![false; lines.len()];
     }
     // Amplitudes that are noise part by any ratio: below three times the usual noise they count as that.
-    let mut noises: Vec<f64> = lines.iter().map(|line| line.noise).collect();
-    noises.sort_by(f64::total_cmp);
-    let usual = 3.0 * noises[noises.len() / 2];
+    let noises: Vec<f64> = lines.iter().map(|line| line.noise).collect();
+    let usual = 3.0 * median(&noises).unwrap_or(0.0);
     // The maximum ignores the NaN of a single period.
     let floor = usual.max(1e-6 * largest);
     let mut sorted: Vec<f64> = amplitudes.iter().map(|a| a.max(floor)).collect();

@@ -1,6 +1,7 @@
 //! Where most of a signal's power is.
 
 use super::{SpectrumError, check_pair, transform};
+use crate::statistics::median;
 use realfft::RealFftPlanner;
 
 /// Zeros behind the signal make the lines so many times denser, so that a parabola fits the lobe at its top.
@@ -18,9 +19,7 @@ const DENSER: usize = 4;
 /// If there are fewer than 8 samples, or the rate is not positive.
 pub fn strongest_frequency(values: &[f64], rate_hz: f64) -> Result<f64, SpectrumError> {
     check_pair(values, values, 8, rate_hz)?;
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    let rest = sorted[sorted.len() / 2];
+    let rest = median(values).unwrap_or(0.0);
     let mut padded: Vec<f64> = values.iter().map(|value| value - rest).collect();
     padded.resize((DENSER * values.len()).next_power_of_two(), 0.0);
     let spacing = rate_hz / padded.len() as f64;

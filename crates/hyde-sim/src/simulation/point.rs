@@ -2,7 +2,6 @@
 
 use super::Simulation;
 use crate::failure::Failure;
-use crate::guards::current_mode;
 use crate::initial;
 use crate::operating_point::{OperatingPoint, PointModes, TakenMode};
 use crate::setup::same_instant;
@@ -50,7 +49,7 @@ impl Simulation<'_> {
         let program = self.program;
         let mut taken = Vec::new();
         for automaton in 0..program.automata.len() {
-            let of_run = current_mode(program, &self.integrator.state().z, automaton);
+            let of_run = program.mode(&self.integrator.state().z, automaton);
             let wanted = asked.iter().find(|(number, _)| *number == automaton);
             let asked = wanted.is_some();
             let mode = match wanted {
@@ -114,7 +113,7 @@ impl Simulation<'_> {
                 }
             }
         }
-        state.z[program.automata[automaton].place] = mode as f64;
+        program.set_mode(&mut state.z, automaton, mode);
         state.pinned = initial_pins(state, t, &y, &yp);
         self.make_consistent()
     }

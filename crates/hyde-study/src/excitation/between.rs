@@ -1,7 +1,7 @@
 //! Effects that a record is to distinguish: those named by `--between`.
 
 use super::options::Options;
-use crate::diagnosed;
+use crate::diagnosis;
 use crate::excitation::{Bench, Failed};
 use crate::unknown;
 use hyde_calibrate::{Hypothesis, Recording, Separation, separation};
@@ -30,7 +30,7 @@ pub struct Apart {
 /// # Errors
 /// A name is not one effect of the model, or there is one only.
 pub(super) fn of(options: &Options, candidates: Vec<Candidate>) -> Result<Effects, String> {
-    let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnosed::hypothesis).collect();
+    let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnosis::hypothesis).collect();
     let mut numbers = Vec::new();
     for name in &options.between {
         let number = number_of(name, &hypotheses)?;

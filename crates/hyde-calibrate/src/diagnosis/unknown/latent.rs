@@ -10,13 +10,10 @@
 //! do without the force.
 
 use super::site::PROBE;
-use crate::dense::{SIDE_BY_SIDE, add_product, set_product, set_products};
 use crate::diagnosis::projection::dot;
-use crate::gain::Observer;
-use crate::observer::When;
-use crate::recording::Recording;
-use crate::tangent::{Direction, Known, Modes, Own};
-use crate::track::{Track, Vectors};
+use crate::linear::{SIDE_BY_SIDE, add_product, set_product, set_products};
+use crate::observer::{Direction, Known, Modes, Observer, Own, Track, Vectors, When};
+use crate::records::Recording;
 use hyde_program::Program;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::collections::BTreeMap;

@@ -12,8 +12,8 @@ use crate::diagnosis::projection::Projection;
 use crate::diagnosis::search::{Gates, PROMISING, excess, explained};
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::trial::Trial;
+use crate::fit::Solution;
 use crate::plant::Unsupported;
-use crate::solution::Solution;
 use rayon::prelude::*;
 
 /// Sites whose map gains this part of the best one's are searched for a law, so many at most.

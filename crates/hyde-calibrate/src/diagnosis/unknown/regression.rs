@@ -5,9 +5,9 @@ use super::factor::Factor;
 use super::felt::Felt;
 use super::law::{Law, Summand};
 use super::seen::Seen;
-use crate::dense::SIDE_BY_SIDE;
 use crate::diagnosis::projection::{Projection, Sums};
 use crate::diagnosis::search::Gates;
+use crate::linear::SIDE_BY_SIDE;
 use rayon::prelude::*;
 use std::cell::LazyCell;
 

@@ -5,7 +5,7 @@
 //! parameter and two columns, begin and end of the run; `data_2` a row each variable and a column each sample; the time is
 //! the first row of both. Two columns of one time are an event.
 
-use super::columns;
+use super::folder::columns;
 use hyde_program::Program;
 use hyde_signal::Written;
 use hyde_signal::mat::Level4;

@@ -1,0 +1,314 @@
+//! How innovations change with small changes of parameters, many at once: along one run of the observer.
+//!
+//! ```text
+//! error of the states    eps+ = exp(A T) (I - K C) eps + forcing        change of innovations    -(C eps + dh)
+//! ```
+//! A change forces the equations by what it adds to their residual where the plant is, taken linearly over a row, and the
+//! channels by dh. Both are differences by the parameter, of kernels alone. So a direction costs a few evaluations and a
+//! column of a product a row, and no run of its own. Guards are taken to act when they do without it: for friction that is
+//! right to first order, for its force does not jump where it begins and ends to stick, and what has stuck in between forgets
+//! its speed; of contacts it is a part. Modes that begin within a row act from there on, and what bends has the derivatives
+//! of where the plant is ([`splitting`]).
+
+mod known;
+mod own;
+mod splitting;
+
+use super::gain::Observer;
+use super::over_record::When;
+use super::track::{Track, Vectors};
+use crate::linear::set_product;
+use crate::plant::{Leg, Unsupported, length, size_of};
+use crate::records::Recording;
+use hyde_program::Program;
+pub(crate) use known::{Known, Modes};
+use nalgebra::{DMatrix, DMatrixView};
+pub(crate) use own::Own;
+use std::collections::BTreeMap;
+
+/// A parameter by whose small change innovations are differentiated.
+pub(crate) struct Direction {
+    /// The whole parameter vector with the parameter changed.
+    pub(crate) p: Vec<f64>,
+    /// By how much.
+    pub(crate) step: f64,
+}
+
+/// A product of matrices is faster than one a column from this many columns on.
+const MANY: usize = 8;
+/// What bends in a row is put into one matrix for all columns from this many on: that costs as much as so many do.
+const WIDE: usize = 64;
+
+/// How whitened innovations change along a track, a column a direction, channels below each other.
+pub(crate) fn changes(
+    track: &Track<'_>,
+    program: &Program,
+    recording: &Recording,
+    p: &[f64],
+    directions: &[Direction],
+) -> Result<DMatrix<f64>, Unsupported> {
+    let channels = recording.channels.len();
+    let rows = recording.rows() - recording.first_row;
+    let mut change = DMatrix::zeros(rows * channels, directions.len());
+    let keep = |row: usize, changes: DMatrixView<'_, f64>| {
+        for number in 0..directions.len() {
+            for channel in 0..channels {
+                change[(channel * rows + row, number)] = changes[(channel, number)];
+            }
+        }
+    };
+    along(track, program, recording, p, directions, keep)?;
+    Ok(change)
+}
+
+/// The same, row by row: `each` gets the number of a row that counts, and how its whitened innovations change, a row a
+/// channel, a column a direction. The program is that of the track or one that it serves, `p` its parameters there.
+pub(crate) fn along(
+    track: &Track<'_>,
+    program: &Program,
+    recording: &Recording,
+    p: &[f64],
+    directions: &[Direction],
+    mut each: impl FnMut(usize, DMatrixView<'_, f64>),
+) -> Result<(), Unsupported> {
+    let route = &track.route;
+    let observer = &route.observer;
+    let (states, channels) = (track.places.states.len(), recording.channels.len());
+    let count = directions.len();
+    let mut own = Own::new(program, p, directions);
+    let mut known = Known::new(track, program, recording, p, &own.touched);
+    let touched = own.touched.len();
+    // A column a direction: errors of the states, forces at the start of a row and at its end, what channels show of it.
+    let mut before = DMatrix::<f64>::zeros(states + 2 * touched + channels, count);
+    // Errors after it and the answers below them; forces are put over these in the next row.
+    let mut after = before.clone();
+    let mut now = DMatrix::<f64>::zeros(touched, count);
+    let (mut then, mut reached) = (now.clone(), now.clone());
+    let mut by_output = DMatrix::<f64>::zeros(channels, count);
+    let mut corrected = Corrected::default();
+    // Of a row in which equations bend: errors at its end, and those with what it shows, of all there is at its start.
+    let mut errors = DMatrix::zeros(states, states + 2 * touched);
+    let mut bent = DMatrix::zeros(states + channels, states + 2 * touched + channels);
+    let (mut at, mut room) = (None, Vectors::default());
+    // The combination of modes in which the last row was left, and what bends there.
+    let (mut left, mut bend) = (0, None);
+    for (row, passed) in route.rows.iter().enumerate() {
+        let [before_it, next] = passed.modes;
+        let seen = known.modes(row, When::Before, before_it)?;
+        if own.shown {
+            let at = track.point(row, When::Before, p, &mut room);
+            own.seen(at, directions, &mut by_output);
+        }
+        let at_end = track.point(row, When::After, p, &mut room);
+        own.forces(at_end, directions, &mut then);
+        let bend_next = known.bend(next, at_end);
+        // Forces at the end of a row are those at the start of the next, unless the correction has changed modes.
+        let same = next == before_it;
+        let legs = track.legs(row);
+        let within = legs.iter().any(|leg| leg.event.is_some());
+        let one = [Leg {
+            level: 0,
+            event: None,
+        }];
+        let legs = if within { legs } else { &one };
+        let bends = at.is_some() && known.splitting(left).is_some();
+        let apart = at.is_some() && (within || bends && count < WIDE);
+        let end = if same { &then } else { &now };
+        if apart {
+            // Modes that begin within the row act from there on: the axis may ring several times in a row's time.
+            // So do forces, which jump from one mode to the next, and grow evenly in each.
+            let mut configuration = left;
+            for mode in legs.split_inclusive(|leg| leg.event.is_some()) {
+                let event = mode.last().and_then(|leg| leg.event.as_ref());
+                known.kick(configuration, &bend, length(mode), &now, &mut before);
+                if let Some(event) = event {
+                    let at = track.within(row, &event.before, p, &mut room);
+                    own.forces(at, directions, &mut reached);
+                    bend = known.bend(configuration, at);
+                } else {
+                    reached.copy_from(if same { &then } else { &now });
+                    bend.clone_from(&bend_next);
+                    if next != configuration {
+                        let at = track.point(row, When::Before, p, &mut room);
+                        bend = known.bend(configuration, at);
+                    }
+                }
+                for (number, leg) in mode.iter().enumerate() {
+                    put(&mut before, states, &now);
+                    let part = size_of(leg.level) as f64 / length(&mode[number..]) as f64;
+                    now.zip_apply(&reached, |now, end| *now += part * (end - *now));
+                    put(&mut before, states + touched, &now);
+                    let matrix = known.leg(configuration, leg.level)?;
+                    let errors = matrix * before.rows(0, states + 2 * touched);
+                    put(&mut before, 0, &errors);
+                }
+                known.kick(configuration, &bend, length(mode), &reached, &mut before);
+                if let Some(event) = event {
+                    fix(&event.fixed, &mut before);
+                    let at = track.within(row, &event.after, p, &mut room);
+                    own.forces(at, directions, &mut now);
+                    configuration = event.configuration;
+                    bend = known.bend(configuration, at);
+                }
+            }
+        } else {
+            put(&mut before, states, &now);
+            put(&mut before, states + touched, end);
+        }
+        put(&mut before, states + 2 * touched, &by_output);
+        let matrix = if bends && !apart {
+            // One product for all directions, of what bends at both ends of the row and the step between.
+            let turned = (next != left).then(|| {
+                let at = track.point(row, When::Before, p, &mut room);
+                known.bend(left, at)
+            });
+            let reached = turned.as_ref().unwrap_or(&bend_next);
+            known.bent(left, [&bend, reached], &mut errors)?;
+            correct(&errors, &known.modes[seen], observer, &mut bent);
+            &bent
+        } else {
+            let stepped = at.filter(|_| !apart);
+            corrected.of(&known.modes, stepped, seen, observer)
+        };
+        if count < MANY {
+            for (mut after, before) in after.column_iter_mut().zip(before.column_iter()) {
+                let after = &mut after.as_mut_slice()[..states + channels];
+                set_product(matrix, before.as_slice(), after);
+            }
+        } else {
+            let mut after = after.rows_mut(0, states + channels);
+            after.gemm(1.0, matrix, &before, 0.0);
+        }
+        if let Some(row) = row.checked_sub(recording.first_row) {
+            each(row, after.rows(states, channels));
+        }
+        fix(&passed.fixed, &mut after);
+        std::mem::swap(&mut before, &mut after);
+        std::mem::swap(&mut now, &mut then);
+        at = Some(known.modes(row, When::After, next)?);
+        (left, bend) = (next, bend_next);
+    }
+    Ok(())
+}
+
+/// Copies rows to where one begins.
+fn put(into: &mut DMatrix<f64>, row: usize, rows: &DMatrix<f64>) {
+    let height = into.nrows();
+    let (into, own) = (into.as_mut_slice(), rows.as_slice());
+    // By slices: views of matrices are copied number by number. A few rows are copied in place, by no call a column.
+    match rows.nrows() {
+        0 => {}
+        1 => put_few::<1>(into, height, row, own),
+        2 => put_few::<2>(into, height, row, own),
+        3 => put_few::<3>(into, height, row, own),
+        4 => put_few::<4>(into, height, row, own),
+        many => {
+            let columns = into.chunks_exact_mut(height);
+            for (into, column) in columns.zip(own.chunks_exact(many)) {
+                into[row..row + many].copy_from_slice(column);
+            }
+        }
+    }
+}
+
+fn put_few<const N: usize>(into: &mut [f64], height: usize, row: usize, rows: &[f64]) {
+    let (columns, _) = rows.as_chunks::<N>();
+    for (into, column) in into.chunks_exact_mut(height).zip(columns) {
+        into[row..row + N].copy_from_slice(column);
+    }
+}
+
+/// What a row's time and the correction at its end make of errors, forces at both ends and what channels show: corrected
+/// errors, and the whitened change of innovations.
+#[derive(Default)]
+struct Corrected {
+    /// By the modes of the row, if it is one step or none, and those at its end.
+    known: BTreeMap<(Option<usize>, usize), DMatrix<f64>>,
+}
+
+impl Corrected {
+    fn of(
+        &mut self,
+        known: &[Modes],
+        stepped: Option<usize>,
+        seen: usize,
+        observer: &Observer,
+    ) -> &DMatrix<f64> {
+        let make = || {
+            let outputs = &known[seen].outputs;
+            let ((channels, states), touched) = (outputs.shape(), known[seen].first.ncols());
+            // Errors before the correction, of errors and forces.
+            let mut errors = DMatrix::zeros(states, states + 2 * touched);
+            match stepped.map(|at| &known[at]) {
+                Some(Modes {
+                    exp, first, second, ..
+                }) => {
+                    errors.columns_mut(0, states).copy_from(exp);
+                    // The second integral is that of a growth over the row.
+                    errors
+                        .columns_mut(states, touched)
+                        .copy_from(&(first - second));
+                    errors
+                        .columns_mut(states + touched, touched)
+                        .copy_from(second);
+                }
+                None => errors.fill_with_identity(),
+            }
+            let mut matrix = DMatrix::zeros(states + channels, errors.ncols() + channels);
+            correct(&errors, &known[seen], observer, &mut matrix);
+            matrix
+        };
+        self.known.entry((stepped, seen)).or_insert_with(make)
+    }
+}
+
+/// What the correction at the end of a row makes of errors there, a column of `errors` each, and of what channels show beside
+/// them: corrected errors, and below them the whitened change of innovations.
+fn correct(
+    errors: &DMatrix<f64>,
+    Modes {
+        outputs,
+        gain,
+        readings,
+        ..
+    }: &Modes,
+    observer: &Observer,
+    matrix: &mut DMatrix<f64>,
+) {
+    let ((channels, states), inner) = (outputs.shape(), errors.ncols());
+    matrix.fill(0.0);
+    let (of_errors, of_channels) = matrix
+        .as_mut_slice()
+        .split_at_mut(inner * (states + channels));
+    let columns = of_errors.chunks_exact_mut(states + channels);
+    for (column, errors) in columns.zip(errors.as_slice().chunks_exact(states.max(1))) {
+        let (kept, answers) = column.split_at_mut(states);
+        kept.copy_from_slice(errors);
+        for (outputs, error) in outputs.as_slice().chunks_exact(channels).zip(errors) {
+            let each = answers.iter_mut().zip(outputs);
+            each.for_each(|(answer, output)| *answer -= output * error);
+        }
+        for (channel, answer) in answers.iter_mut().enumerate() {
+            let gain = gain.column(channel);
+            let each = kept.iter_mut().zip(gain.iter());
+            each.for_each(|(kept, gain)| *kept += gain * *answer);
+            *answer /= observer.deviations[channel];
+        }
+    }
+    let columns = of_channels.chunks_exact_mut(states + channels);
+    for (channel, column) in columns.enumerate() {
+        let gain = gain.column(channel);
+        let each = column.iter_mut().zip(gain.iter());
+        each.for_each(|(kept, gain)| *kept = -gain);
+        if readings[channel] {
+            column[states + channel] = -1.0 / observer.deviations[channel];
+        }
+    }
+}
+
+/// States that modes fix have no error, a row a state: what the observer corrects them by is lost.
+fn fix(states: &[usize], errors: &mut DMatrix<f64>) {
+    for &state in states {
+        errors.row_mut(state).fill(0.0);
+    }
+}

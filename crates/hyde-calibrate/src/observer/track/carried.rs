@@ -1,0 +1,280 @@
+//! [`Track::carrying`]: what an effect of size 0 brings along. It does not act on the axis, but the axis drives it: a body on
+//! a spring swings behind the table, whatever it weighs. Where its equations are linear in its own unknowns they are solved
+//! along the track, and no set of shapes needs a run of the axis.
+//!
+//! ```text
+//! over a row      x' = A x + g
+//! A constant      exact, g cubic: its values at both ends, and its slopes as far as states of the axis make it
+//! A diagonal      exact, A and g those of the middle of the row: bristles bend over the faster the faster they slide
+//! ```
+
+use super::equations::{Equations, Flow};
+use super::{Track, names};
+use crate::linear::{phi1, set_product};
+use crate::observer::over_record::When;
+use crate::plant::Plant;
+use crate::records::Recording;
+use hyde_program::{Point, Program, Workspace};
+use std::sync::Arc;
+
+/// Unknowns that an effect brings, along a track.
+pub(crate) struct Carried {
+    /// Where the unknowns of the route's program are in the vector of this one.
+    pub(super) positions: Vec<usize>,
+    /// Where its own are.
+    pub(super) own: Vec<usize>,
+    /// Of each row, before the correction and after it: its own unknowns, and their rates.
+    pub(super) values: Vec<f64>,
+}
+
+impl Carried {
+    /// Where a row was, in the vectors of the program.
+    pub(super) fn point<'a>(
+        &self,
+        row: usize,
+        when: When,
+        at: Point<'a>,
+        room: &'a mut Vectors,
+    ) -> Point<'a> {
+        self.placed(self.at(row, when), at, room)
+    }
+
+    /// A part of the way to a row: what is its own goes there evenly.
+    pub(super) fn within<'a>(
+        &self,
+        row: usize,
+        part: f64,
+        at: Point<'a>,
+        room: &'a mut Vectors,
+    ) -> Point<'a> {
+        let ends = self
+            .at(row - 1, When::After)
+            .iter()
+            .zip(self.at(row, When::Before));
+        let values: Vec<f64> = ends
+            .map(|(begin, end)| begin + part * (end - begin))
+            .collect();
+        self.placed(&values, at, room)
+    }
+
+    /// A point of the route in the vectors of the program, with its own unknowns and their rates.
+    fn placed<'a>(&self, values: &[f64], at: Point<'a>, room: &'a mut Vectors) -> Point<'a> {
+        let (y, yp) = values.split_at(self.own.len());
+        room.reach(self.positions.len() + self.own.len());
+        room.take(&self.positions, at);
+        room.take(&self.own, Point { y, yp, ..at });
+        room.in_place(at)
+    }
+
+    /// Its own unknowns in a row, and their rates.
+    fn at(&self, row: usize, when: When) -> &[f64] {
+        let count = self.own.len();
+        let first = 4 * count * row
+            + match when {
+                When::Before => 0,
+                When::After => 2 * count,
+            };
+        &self.values[first..][..2 * count]
+    }
+
+    /// A point of the route in the vectors of the program, what is its own being 0.
+    pub(super) fn at_rest<'a>(&self, at: Point<'a>, room: &'a mut Vectors) -> Point<'a> {
+        room.reach(self.positions.len() + self.own.len());
+        room.take(&self.positions, at);
+        room.in_place(at)
+    }
+}
+
+impl<'p> Track<'p> {
+    /// The track of a program that has all unknowns of this one, and some of its own that do not act on them with parameters
+    /// `set`; `None` where it is not so, or where they are not linear.
+    pub(crate) fn carrying(
+        &self,
+        program: &'p Program,
+        recording: &'p Recording,
+        set: &[(usize, f64)],
+    ) -> Option<Self> {
+        if self.carried.is_some() || !self.moves_as(program) {
+            return None;
+        }
+        let positions = positions(self.route.program, program)?;
+        let start = Plant::new(program, recording, set).ok()?;
+        let (p, mut places) = (start.p, start.places);
+        let step_s = recording.step_s;
+        let equations = Equations::new(self, program, &positions, &places, &p, step_s)?;
+        let states = &equations.own[..equations.states];
+        let mut x: Vec<f64> = states.iter().map(|&own| start.y[own]).collect();
+        let count = self.route.rows.len();
+        let mut values = Vec::with_capacity(4 * count * equations.own.len());
+        let mut end = Vectors {
+            y: start.y,
+            yp: start.yp,
+        };
+        let mut begin = end.clone();
+        let mut solver = Solver::new(&equations, start.workspace);
+        for row in 0..count {
+            for when in [When::Before, When::After] {
+                let at = self.route.point(row, when, &p);
+                end.take(&positions, at);
+                if row > 0 && matches!(when, When::Before) {
+                    solver.step(&mut x, &begin, &mut end, at, step_s);
+                }
+                solver.answer(&x, &mut end, at);
+                values.extend(equations.own.iter().map(|&own| end.y[own]));
+                values.extend(equations.own.iter().map(|&own| end.yp[own]));
+                std::mem::swap(&mut begin, &mut end);
+            }
+        }
+        let in_it = |list: &[usize]| list.iter().map(|&place| positions[place]).collect();
+        places.states = in_it(&self.places.states);
+        places.algebraics = in_it(&self.places.algebraics);
+        Some(Self {
+            route: Arc::clone(&self.route),
+            places,
+            carried: Some(Carried {
+                own: equations.own,
+                positions,
+                values,
+            }),
+        })
+    }
+}
+
+/// Where each unknown of a program is in another that has them all and more.
+fn positions(own: &Program, other: &Program) -> Option<Vec<usize>> {
+    let all = names(other);
+    let at = |name: &String| all.iter().position(|known| known == name);
+    let found: Option<Vec<usize>> = names(own).iter().map(at).collect();
+    found.filter(|_| other.n_unknowns > own.n_unknowns)
+}
+
+/// Unknowns and their rates.
+#[derive(Clone, Default)]
+pub(crate) struct Vectors {
+    pub(super) y: Vec<f64>,
+    pub(super) yp: Vec<f64>,
+}
+
+impl Vectors {
+    /// Makes them as long as needed.
+    pub(super) fn reach(&mut self, count: usize) {
+        self.y.resize(count, 0.0);
+        self.yp.resize(count, 0.0);
+    }
+
+    /// Takes over those of a shorter vector, to their positions.
+    pub(super) fn take(&mut self, positions: &[usize], at: Point<'_>) {
+        let values = at.y.iter().zip(at.yp);
+        for (&position, (y, yp)) in positions.iter().zip(values) {
+            (self.y[position], self.yp[position]) = (*y, *yp);
+        }
+    }
+
+    /// The point, its vectors being these.
+    fn in_place<'a>(&'a self, at: Point<'a>) -> Point<'a> {
+        Point {
+            y: &self.y,
+            yp: &self.yp,
+            ..at
+        }
+    }
+}
+
+/// Solves equations of what is brought.
+struct Solver<'e> {
+    equations: &'e Equations<'e>,
+    workspace: Workspace,
+    residual: Vec<f64>,
+    /// Rates of the states, and below them algebraic variables.
+    v: Vec<f64>,
+    /// Within a row.
+    middle: Vectors,
+    /// What a flow starts from.
+    from: Vec<f64>,
+}
+
+impl<'e> Solver<'e> {
+    fn new(equations: &'e Equations<'e>, workspace: Workspace) -> Self {
+        let count = equations.own.len();
+        Self {
+            equations,
+            workspace,
+            residual: vec![0.0; count],
+            v: vec![0.0; count],
+            middle: Vectors::default(),
+            from: Vec::new(),
+        }
+    }
+
+    /// v where the axis is, with some states.
+    fn solve(&mut self, states: impl Iterator<Item = f64>, here: &mut Vectors, at: Point<'_>) {
+        let Equations { own, .. } = self.equations;
+        for &place in own {
+            (here.y[place], here.yp[place]) = (0.0, 0.0);
+        }
+        for (&place, value) in own.iter().zip(states) {
+            here.y[place] = value;
+        }
+        let equations = &self.equations.residual;
+        equations.evaluate(here.in_place(at), &mut self.workspace, &mut self.residual);
+        set_product(&self.equations.by_residual, &self.residual, &mut self.v);
+    }
+
+    /// Sets its states, their rates and its algebraic variables.
+    fn answer(&mut self, x: &[f64], here: &mut Vectors, at: Point<'_>) {
+        self.solve(x.iter().copied(), here, at);
+        for (number, (&place, value)) in self.equations.own.iter().zip(&self.v).enumerate() {
+            if number < x.len() {
+                here.yp[place] = *value;
+            } else {
+                here.y[place] = *value;
+            }
+        }
+    }
+
+    /// Takes its states on by a row's time, from where all is known to where the axis is.
+    fn step(
+        &mut self,
+        x: &mut [f64],
+        begin: &Vectors,
+        end: &mut Vectors,
+        at: Point<'_>,
+        time: f64,
+    ) {
+        let n = x.len();
+        let Equations { own, of_axis, .. } = self.equations;
+        let from = &mut self.from;
+        from.clear();
+        match &self.equations.flow {
+            Flow::Constant { drivers, over } => {
+                from.extend_from_slice(x);
+                from.extend(own[..n].iter().map(|&place| begin.yp[place]));
+                from.extend(drivers.iter().map(|&place| begin.yp[place]));
+                from.extend(drivers.iter().map(|&place| end.yp[place]));
+                from.extend(drivers.iter().map(|&place| end.y[place] - begin.y[place]));
+                self.solve(std::iter::repeat_n(0.0, n), end, at);
+                self.from.extend_from_slice(&self.v[..n]);
+                set_product(over, &self.from, x);
+            }
+            Flow::Diagonal => {
+                let mut middle = std::mem::take(&mut self.middle);
+                let half = |(a, b): (&f64, &f64)| 0.5 * (a + b);
+                middle.y.clear();
+                middle.y.extend(begin.y.iter().zip(&end.y).map(half));
+                middle.yp.clear();
+                middle.yp.extend(begin.yp.iter().zip(&end.yp).map(half));
+                for &place in of_axis {
+                    middle.y[place] += time / 8.0 * (begin.yp[place] - end.yp[place]);
+                }
+                self.solve(std::iter::repeat_n(0.0, n), &mut middle, at);
+                self.from.extend_from_slice(&self.v[..n]);
+                self.solve(std::iter::repeat_n(1.0, n), &mut middle, at);
+                for ((x, g), with) in x.iter_mut().zip(&self.from).zip(&self.v) {
+                    let a = with - g;
+                    *x += time * phi1(a * time) * (g + a * *x);
+                }
+                self.middle = middle;
+            }
+        }
+    }
+}
