@@ -22,7 +22,9 @@ pub fn json(seen: &[Seen], failed: &[Unread]) -> Value {
 }
 
 fn json_of(seen: &Seen) -> Value {
-    let Seen { given, table, look } = seen;
+    let Seen {
+        given, table, look, ..
+    } = seen;
     let clocks: Vec<Value> = look
         .clocks
         .iter()

@@ -2,7 +2,7 @@
 
 use crate::gaps::seconds;
 use crate::note::listed;
-use crate::{Column, Note, Table, TableError};
+use crate::{Column, Fault, Note, Table, TableError};
 use std::fmt;
 
 /// Why files are not one record.
@@ -93,20 +93,49 @@ fn on_one_clock(mut files: Vec<Named>) -> Result<Vec<Named>, JoinError> {
     Ok(files)
 }
 
-/// Whether two files have the same channels, part by part.
+/// Whether two files have the same channels, part by part, but for those that one of them cannot use as a whole.
 fn alike(a: &Table, b: &Table) -> bool {
+    let lacks = |name: &str| {
+        let mut lacking = a.unusable().iter().chain(b.unusable());
+        lacking.any(|own| own.name == name)
+    };
     let names = |table: &Table| -> Vec<Vec<String>> {
-        let parts = table.parts();
-        parts
-            .map(|part| part.channels().map(|c| c.name().to_owned()).collect())
-            .collect()
+        let of = |part: &Table| {
+            let names = part.channels().map(Column::name);
+            let names = names.filter(|name| !lacks(name));
+            names.map(str::to_owned).collect()
+        };
+        table.parts().map(of).collect()
     };
     names(a) == names(b)
+}
+
+/// What one file of a group lacks of a channel, all of them lack then; the readings that are there stay.
+fn level(group: &mut [Named]) {
+    let several = group.len() > 1;
+    let mut lacking: Vec<(String, Fault)> = Vec::new();
+    for (file, table) in group.iter() {
+        for own in table.unusable() {
+            if lacking.iter().all(|(known, _)| *known != own.name) {
+                let mut fault = own.fault.clone();
+                if several {
+                    fault.message = format!("`{file}`: {}", fault.message);
+                }
+                lacking.push((own.name.clone(), fault));
+            }
+        }
+    }
+    for (_, table) in group {
+        for (name, fault) in &lacking {
+            table.set_apart(name, fault);
+        }
+    }
 }
 
 /// Files with the same channels, one after another.
 fn continued(mut group: Vec<Named>, notes: &mut Vec<Note>) -> Result<Named, JoinError> {
     let begin = |table: &Table| table.time()[0];
+    level(&mut group);
     group.sort_by(|(_, a), (_, b)| begin(a).total_cmp(&begin(b)));
     let mut group = group.into_iter();
     let (mut name, mut whole) = group.next().ok_or(JoinError::NoFiles)?;
@@ -234,6 +263,40 @@ mod tests {
             notes.contains(&"`log_10.csv` continues `log_2.csv` after 0.3 s".to_owned()),
             "{notes:?}"
         );
+    }
+
+    #[test]
+    fn what_one_part_lacks_of_a_channel_the_others_keep_as_readings() {
+        let whole = join(named(&[
+            ("a.csv", "t[s],x[mm],T[degC]\n0,1,20\n0.1,2,21\n"),
+            ("b.csv", "t[s],x[mm],T[degC]\n0.2,3,\n0.3,4,23\n0.4,5,24\n"),
+            ("c.csv", "t[s],x[mm],T[degC]\n0.5,6,25\n0.6,7,26\n"),
+        ]))
+        .unwrap();
+        assert_eq!(whole.column("x").unwrap().values().len(), 7);
+        let [lacking] = whole.unusable() else {
+            panic!("{:?}", whole.unusable());
+        };
+        assert!(
+            lacking
+                .fault
+                .message
+                .starts_with("`b.csv`: line 2, column 3 (`T`)")
+        );
+        let readings = whole.reading("T");
+        assert_eq!(readings.time(), [0.0, 0.1, 0.3, 0.4, 0.5, 0.6]);
+        assert_eq!(
+            readings.column("T").unwrap().in_unit().as_ref(),
+            [20.0, 21.0, 23.0, 24.0, 25.0, 26.0]
+        );
+        // A column that no file can use as numbers stays what it is.
+        let texts = join(named(&[
+            ("a.csv", "t[s],x[mm],note\n0,1,ok\n0.1,2,ok\n"),
+            ("b.csv", "t[s],x[mm],note\n0.2,3,1\n0.3,4,2\n"),
+        ]))
+        .unwrap();
+        assert_eq!(texts.rows(), 4);
+        assert!(texts.unusable()[0].readings.is_none());
     }
 
     #[test]

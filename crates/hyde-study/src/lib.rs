@@ -65,7 +65,7 @@ mod package;
 pub mod ports;
 mod progress;
 mod project;
-mod record_files;
+pub mod record_files;
 pub mod record_settings;
 mod records;
 mod refused;

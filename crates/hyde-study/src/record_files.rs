@@ -40,8 +40,7 @@ impl Files {
 impl Files {
     /// The names of all without their folders.
     pub(crate) fn names(&self) -> String {
-        let names = self.all.iter().map(|file| own_name(file));
-        names.collect::<Vec<_>>().join(AND)
+        sum(&self.all, own_name)
     }
 
     /// The files as the one record that a study names, beside all of them; neither if one is missing or outside the folder.
@@ -52,8 +51,7 @@ impl Files {
         };
         match !self.all.is_empty() && self.all.iter().all(inside) {
             true => {
-                let texts = self.all.iter().map(|file| file.to_string_lossy());
-                let sum = texts.collect::<Vec<_>>().join(AND);
+                let sum = sum(&self.all, |file| file.to_string_lossy().into_owned());
                 (vec![PathBuf::from(sum)], self.all)
             }
             false => (Vec::new(), Vec::new()),
@@ -61,8 +59,14 @@ impl Files {
     }
 }
 
+/// The text that names files as one record, each called so.
+pub fn sum(files: &[PathBuf], called: impl Fn(&Path) -> String) -> String {
+    let names = files.iter().map(|file| called(file));
+    names.collect::<Vec<_>>().join(AND)
+}
+
 /// A file's name without its folder.
-fn own_name(file: &Path) -> String {
+pub(crate) fn own_name(file: &Path) -> String {
     let name = file.file_name().unwrap_or(file.as_os_str());
     name.to_string_lossy().into_owned()
 }
@@ -97,7 +101,7 @@ fn of_parts(world: &dyn World, root: &Path, text: &str) -> Vec<PathBuf> {
 }
 
 /// The names and patterns of a sum.
-pub(crate) fn parts(text: &str) -> impl Iterator<Item = &str> {
+pub fn parts(text: &str) -> impl Iterator<Item = &str> {
     text.split(AND).map(str::trim)
 }
 

@@ -1,6 +1,7 @@
 //! How a record is to be read where its experiment does not say it: behind its file, as whoever asks names it, or in a file
 //! beside it.
 
+use crate::record_files::{self, Files};
 use crate::world::World;
 use hyde_diag::{Code, Diagnostic, Diagnostics, Sources};
 use hyde_signal::{Note, Table};
@@ -19,18 +20,20 @@ pub struct Given {
     pub text: String,
 }
 
-/// Reads a file as settings say, or the file beside it, for whoever has no experiment.
+/// Reads files as one record, as settings say or the files beside them, for whoever has no experiment.
 ///
 /// # Errors
 /// What is wrong, with the repair.
-pub fn alone(
+pub(crate) fn alone(
     world: &dyn World,
     given: &Given,
-    content: &[u8],
+    files: Files,
 ) -> Result<Table, (String, Option<String>)> {
     let item = parsed(RECORD, "").map_err(|reason| (reason, None))?;
-    let side = world.read(&side_file(&given.path)).ok();
-    table(&item, given.settings.as_ref(), &given.path, content, side)
+    let open = |file: &Path| world.read(file);
+    let missing = |reason: &str| Diagnostic::error(Code::NoRecord, reason.to_owned());
+    record_files::joined(&item, given.settings.as_ref(), files, &open, &missing)
+        .map(|record| record.table)
         .map_err(|diagnostic| (diagnostic.message.clone(), diagnostic.help.clone()))
 }
 

@@ -1,14 +1,18 @@
 //! [`seen`]: what is in a trace, before any model reads it.
 
+use crate::record_files::{self, Files, own_name};
 use crate::record_settings::{self, Given, RECORD};
 use crate::world::World;
 use hyde_signal::Table;
 use hyde_signal::look::{Look, look as look_at};
+use std::path::{Path, PathBuf};
 
 /// A file that was looked at.
 pub struct Seen {
-    /// Which file, and how it is read.
+    /// Which file, or which sum or pattern of several, and how they are read.
     pub given: Given,
+    /// The files that it names, which are one record.
+    pub files: Vec<PathBuf>,
     /// Its columns.
     pub table: Table,
     /// What is in them.
@@ -25,7 +29,8 @@ pub struct Unread {
     pub help: Option<String>,
 }
 
-/// Reads a file and looks at it; how it is to be read may follow its name.
+/// Reads a file, or several that a sum or a pattern names as one record, and looks at it; how it is to be read may follow its
+/// name.
 ///
 /// # Errors
 /// It cannot be read.
@@ -36,21 +41,24 @@ pub fn seen(world: &dyn World, file: &str) -> Result<Seen, Unread> {
         help,
     };
     let given = Given::of(world, RECORD, file).map_err(|reason| wrong(reason, None))?;
-    let content = world
-        .read(&given.path)
-        .map_err(|reason| wrong(reason, None))?;
-    let table = record_settings::alone(world, &given, &content)
+    let files = Files::named(world, Path::new(""), &given.path.to_string_lossy());
+    let found = files.all.clone();
+    let table = record_settings::alone(world, &given, files)
         .map_err(|(message, help)| wrong(message, help))?;
     let look = look_at(&table);
-    Ok(Seen { given, table, look })
+    Ok(Seen {
+        given,
+        files: found,
+        table,
+        look,
+    })
 }
 
 impl Seen {
     /// The line that declares the record in an experiment.
     #[must_use]
     pub fn line(&self) -> String {
-        let file = self.given.path.file_name().unwrap_or_default();
-        let file = file.to_string_lossy();
+        let file = record_files::sum(&self.files, own_name);
         format!("record {RECORD} = {file:?} {}", self.settings())
             .trim_end()
             .to_owned()

@@ -6,6 +6,7 @@ use crate::exit::Exit;
 use crate::files;
 use crate::project::{print_error, print_output};
 use hyde_study::first_model::{FirstModel, Template, Trace, Wish, first_model};
+use hyde_study::record_files::{parts, sum};
 use hyde_study::settings;
 use hyde_study::traces::seen;
 use hyde_study::world::Disk;
@@ -78,7 +79,11 @@ fn written(args: &NewArgs) -> Result<(PathBuf, FirstModel), Failed> {
 fn folder(args: &NewArgs) -> PathBuf {
     let of_trace = || {
         let text = args.from.first()?;
-        let file = text.split(" (").next().unwrap_or(text);
+        let first = text
+            .split(" (")
+            .next()
+            .and_then(|files| parts(files).next());
+        let file = first.unwrap_or(text);
         let parent = Path::new(file).parent()?;
         (!parent.as_os_str().is_empty()).then(|| parent.to_owned())
     };
@@ -104,22 +109,27 @@ fn trace(text: &str, folder: &Path) -> Result<Trace, Failed> {
         // With the units that follow from other channels.
         false => look(&format!("{} {settings}", path.display()))?,
     };
-    let inside = files::real(&path).zip(files::real(folder));
-    let inside =
-        inside.and_then(|(path, folder)| path.strip_prefix(folder).map(Path::to_owned).ok());
-    let file = inside.ok_or_else(|| {
-        let place = path.parent().unwrap_or(Path::new(".")).display().to_string();
-        let reason = format!(
-            "`{}` is not below the folder of the model, and a model reads no file outside its folder: write `--out {place}`",
-            path.display()
-        );
-        (Exit::CommandLine, reason)
-    })?;
+    let files = seen.files.iter().map(|file| inside(file, folder));
+    let files = files.collect::<Result<Vec<PathBuf>, Failed>>()?;
     Ok(Trace {
-        file: file.to_string_lossy().into_owned(),
+        file: sum(&files, |file| file.to_string_lossy().into_owned()),
         settings,
         table: seen.table,
         look: seen.look,
+    })
+}
+
+/// Where a file is below the folder of the model.
+fn inside(file: &Path, folder: &Path) -> Result<PathBuf, Failed> {
+    let both = files::real(file).zip(files::real(folder));
+    let below = both.and_then(|(file, folder)| file.strip_prefix(folder).map(Path::to_owned).ok());
+    below.ok_or_else(|| {
+        let place = file.parent().unwrap_or(Path::new(".")).display().to_string();
+        let reason = format!(
+            "`{}` is not below the folder of the model, and a model reads no file outside its folder: write `--out {place}`",
+            file.display()
+        );
+        (Exit::CommandLine, reason)
     })
 }
 

@@ -163,20 +163,49 @@ impl Table {
                 first.notes.push(note.clone());
             }
         }
-        let known = |fault: &Unusable| first.unusable.iter().any(|own| own.name == fault.name);
-        let faults: Vec<Unusable> = later
-            .unusable
-            .iter()
-            .filter(|fault| !known(fault))
-            .cloned()
-            .collect();
-        first.unusable.extend(faults);
-        // What one file lacks of a column the others may have, or lack too.
-        first
-            .unusable
-            .iter_mut()
-            .for_each(|own| own.readings = None);
+        for own in &mut first.unusable {
+            let same = later.unusable.iter().find(|later| later.name == own.name);
+            let later = same.and_then(|later| later.readings.as_deref());
+            own.readings = match (own.readings.take(), later) {
+                (Some(readings), Some(later)) => Some(Box::new(readings.appended(later)?)),
+                (Some(_) | None, _) => None,
+            };
+        }
         Ok(first)
+    }
+
+    /// Makes a channel one that lacks readings, as another file of the record lacks some: `fault` says which. Those that it has
+    /// stay.
+    pub(crate) fn set_apart(&mut self, name: &str, fault: &Fault) {
+        if let Some(own) = self.unusable.iter_mut().find(|own| own.name == name) {
+            own.fault = fault.clone();
+            return;
+        }
+        let mut readings = None;
+        for at in 0..=self.others.len() {
+            let part = match at.checked_sub(1) {
+                Some(other) => &mut self.others[other],
+                None => &mut *self,
+            };
+            let time = match part.time {
+                Time::Column(at) => Some(at),
+                Time::Every(..) => None,
+            };
+            let mut columns = (0..part.columns.len()).filter(|at| Some(*at) != time);
+            let Some(at) = columns.find(|at| part.columns[*at].name() == name) else {
+                continue;
+            };
+            readings = part.readings_of(&part.columns[at]);
+            part.columns.remove(at);
+            if let Time::Column(time) = &mut part.time {
+                *time -= usize::from(*time > at);
+            }
+        }
+        self.unusable.push(Unusable {
+            name: name.to_owned(),
+            fault: fault.clone(),
+            readings: readings.map(Box::new),
+        });
     }
 
     fn appended(self, later: &Self) -> Result<Self, Broken> {
