@@ -80,6 +80,10 @@ pub const PACKAGES: &[Package] = &[
         text: include_str!("../models/Drives/FixedStep.hyde"),
     },
     Package {
+        name: "Laws",
+        text: include_str!("../models/Laws.hyde"),
+    },
+    Package {
         name: "Effects",
         text: include_str!("../models/Effects.hyde"),
     },
