@@ -21,16 +21,17 @@ use crate::instance::{Elementwise, InstanceId, Position, Scope, Setting, Typed};
 use crate::law_roles::{Refusal, wrong};
 use crate::model::{Model, listed};
 use crate::names::{FileIndex, TypeName, nearest};
-use hyde_diag::{Diagnostic, MadeBy, Span};
+use hyde_diag::{Diagnostic, FileId, MadeBy, Span};
 use hyde_ir::{
     Expr as Ir, ExprArena, ExprId, Id as _, Index, LawAxis, LawConstant, LawInput, LawRole,
     LawShape, LawUnit, VarId, VariableKind,
 };
 use hyde_syntax::ast::{
     Argument, Class, ClassBody, ClassKind, Declaration, Declarator, Element, Equation, Expr,
-    ExprKind, Item, Name, Prefix,
+    ExprKind, File, Item, Name, Prefix,
 };
 use hyde_units::{Dimension, NamedUnit};
+use std::sync::Arc;
 
 /// The instance in which shapes are read: the model; they see nothing of it.
 const READ_IN: InstanceId = 0;
@@ -264,11 +265,11 @@ impl<'a> Model<'a, '_> {
         let mut roots = Vec::new();
         shape.each_expression(&mut |id| roots.push(*id));
         let number = |var: VarId| variables.iter().position(|known| *known == var);
-        let (exprs, copies) = self.flat.exprs.copied(&roots, |leaf| match leaf {
-            Ir::Var(var, _) => number(var).map_or(leaf, |number| {
+        let (exprs, copies) = self.flat.exprs.copied(&roots, |leaf| {
+            let number = leaf.access().and_then(|(var, ..)| number(var));
+            number.map_or(leaf, |number| {
                 Ir::Var(VarId::from_index(number), Index::SCALAR)
-            }),
-            _ => leaf,
+            })
         });
         let mut copies = copies.into_iter();
         shape.each_expression(&mut |id| *id = copies.next().unwrap_or(*id));
@@ -297,10 +298,7 @@ impl<'a> Draft<'a> {
     /// Reads the roles behind `over`.
     fn roles(&mut self, declarator: &Declarator) -> Result<(), Refusal> {
         for argument in &declarator.over {
-            let word = match &argument.value.kind {
-                ExprKind::Reference(name) if argument.name.is_none() => name.as_word(),
-                _ => None,
-            };
+            let word = word(argument).filter(|_| argument.name.is_none());
             let words = LawRole::ALL.iter().map(|(_, word)| *word);
             let known = LawRole::ALL.iter();
             let Some((role, _)) = known.into_iter().find(|(_, own)| Some(*own) == word) else {
@@ -342,10 +340,7 @@ impl<'a> Draft<'a> {
         let Some(argument) = arguments.first() else {
             return Ok((name.text.clone(), None));
         };
-        let word = match &argument.value.kind {
-            ExprKind::Reference(name) => name.as_word(),
-            _ => None,
-        };
+        let word = word(argument);
         let mut constants = self.shape.constants.iter();
         match constants.position(|constant| Some(constant.name.as_str()) == word) {
             Some(number) => Ok((name.text.clone(), Some(number))),
@@ -361,9 +356,7 @@ impl<'a> Draft<'a> {
 }
 
 /// The functions with a signature, in the order of the files.
-fn marked<'a>(
-    files: &'a [(hyde_diag::FileId, std::sync::Arc<hyde_syntax::ast::File>)],
-) -> Vec<(FileIndex, &'a Class, &'a [Mark])> {
+fn marked(files: &[(FileId, Arc<File>)]) -> Vec<(FileIndex, &Class, &[Mark])> {
     let mut found = Vec::new();
     for (file, (_, tree)) in files.iter().enumerate() {
         for item in &tree.items {
@@ -371,9 +364,12 @@ fn marked<'a>(
                 && class.kind == ClassKind::Function
                 && let ClassBody::Long { elements, .. } = &class.body
             {
-                let marks = elements.iter().find_map(|element| match element {
-                    Element::Signature(marks) => Some(marks.as_slice()),
-                    _ => None,
+                let marks = elements.iter().find_map(|element| {
+                    if let Element::Signature(marks) = element {
+                        Some(marks.as_slice())
+                    } else {
+                        None
+                    }
                 });
                 found.extend(marks.map(|marks| (file, class, marks)));
             }
@@ -392,27 +388,33 @@ fn elements<'a>(
         return Ok(found);
     };
     for element in elements {
-        match element {
-            Element::Declaration(declaration) => {
-                found.extend(declaration.declarators.iter().map(|d| (declaration, d)));
-            }
-            Element::Equation(equation) => equations.push(equation),
-            Element::Signature(_) => {}
-            _ => {
-                return Err(wrong(
-                    format!(
-                        "the shape `{}` has an element that is not allowed",
-                        class.name.text
-                    ),
-                    class.name.span,
-                    "inputs, variables, outputs, filters and a signature",
-                    "remove the rest, or remove the signature: then it is no shape of laws"
-                        .to_owned(),
-                ));
-            }
+        if let Element::Declaration(declaration) = element {
+            found.extend(declaration.declarators.iter().map(|d| (declaration, d)));
+        } else if let Element::Equation(equation) = element {
+            equations.push(equation);
+        } else if !matches!(element, Element::Signature(_)) {
+            return Err(wrong(
+                format!(
+                    "the shape `{}` has an element that is not allowed",
+                    class.name.text
+                ),
+                class.name.span,
+                "allowed are inputs, variables, outputs, filters and a signature",
+                "remove the element, or the signature: a function without one is not a shape"
+                    .to_owned(),
+            ));
         }
     }
     Ok(found)
+}
+
+/// The word that an argument is.
+fn word(argument: &Argument) -> Option<&str> {
+    if let ExprKind::Reference(name) = &argument.value.kind {
+        name.as_word()
+    } else {
+        None
+    }
 }
 
 fn every_role() -> String {

@@ -132,21 +132,27 @@ impl ExprArena {
 /// An operation in each row. Those that are cheaper than a call get a loop of their own.
 fn unary(op: UnaryOp, from: &[f64], to: &mut [f64]) {
     let each = to.iter_mut().zip(from);
-    match op {
-        UnaryOp::Neg => each.for_each(|(to, a)| *to = UnaryOp::Neg.apply(*a)),
-        UnaryOp::Abs => each.for_each(|(to, a)| *to = UnaryOp::Abs.apply(*a)),
-        _ => each.for_each(|(to, a)| *to = op.apply(*a)),
+    if op == UnaryOp::Neg {
+        each.for_each(|(to, a)| *to = UnaryOp::Neg.apply(*a));
+    } else if op == UnaryOp::Abs {
+        each.for_each(|(to, a)| *to = UnaryOp::Abs.apply(*a));
+    } else {
+        each.for_each(|(to, a)| *to = op.apply(*a));
     }
 }
 
 fn binary(op: BinaryOp, left: &[f64], right: &[f64], to: &mut [f64]) {
     let each = to.iter_mut().zip(left.iter().zip(right));
-    match op {
-        BinaryOp::Add => each.for_each(|(to, (a, b))| *to = BinaryOp::Add.apply(*a, *b)),
-        BinaryOp::Sub => each.for_each(|(to, (a, b))| *to = BinaryOp::Sub.apply(*a, *b)),
-        BinaryOp::Mul => each.for_each(|(to, (a, b))| *to = BinaryOp::Mul.apply(*a, *b)),
-        BinaryOp::Div => each.for_each(|(to, (a, b))| *to = BinaryOp::Div.apply(*a, *b)),
-        _ => each.for_each(|(to, (a, b))| *to = op.apply(*a, *b)),
+    if op == BinaryOp::Add {
+        each.for_each(|(to, (a, b))| *to = BinaryOp::Add.apply(*a, *b));
+    } else if op == BinaryOp::Sub {
+        each.for_each(|(to, (a, b))| *to = BinaryOp::Sub.apply(*a, *b));
+    } else if op == BinaryOp::Mul {
+        each.for_each(|(to, (a, b))| *to = BinaryOp::Mul.apply(*a, *b));
+    } else if op == BinaryOp::Div {
+        each.for_each(|(to, (a, b))| *to = BinaryOp::Div.apply(*a, *b));
+    } else {
+        each.for_each(|(to, (a, b))| *to = op.apply(*a, *b));
     }
 }
 
@@ -169,18 +175,12 @@ mod tests {
         let sine = arena.unary(UnaryOp::Sin, b);
         let root = arena.if_else(below, part, sine);
         let rows: Vec<f64> = (0..700).map(|row| f64::from(row - 300) / 80.0).collect();
-        let column = arena.column(root, rows.len(), |leaf| match leaf {
-            Expr::Var(var, _) if var == x => Ok(Along::Rows(&rows)),
-            Expr::Var(..) => Ok(Along::Same(0.3)),
-            _ => Err(()),
+        let is_x = |leaf: Expr| leaf == Expr::Var(x, crate::Index::SCALAR);
+        let column = arena.column(root, rows.len(), |leaf| match is_x(leaf) {
+            true => Ok(Along::Rows(&rows)),
+            false => Ok(Along::Same(0.3)),
         });
-        let one = |row: f64| {
-            arena.evaluate(root, |leaf| match leaf {
-                Expr::Var(var, _) if var == x => Ok(row),
-                Expr::Var(..) => Ok(0.3),
-                _ => Err(()),
-            })
-        };
+        let one = |row: f64| arena.evaluate(root, |leaf| Ok(if is_x(leaf) { row } else { 0.3 }));
         let each: Result<Vec<f64>, ()> = rows.iter().map(|&row| one(row)).collect();
         assert_eq!(column, each);
         let same = arena.column(sine, 3, |_| Ok::<_, ()>(Along::Same(0.0)));

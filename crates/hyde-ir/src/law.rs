@@ -241,10 +241,8 @@ impl LawShape {
     /// The input that a leaf is.
     #[must_use]
     pub fn input(&self, leaf: Expr) -> Option<LawInput> {
-        match leaf {
-            Expr::Var(var, _) => self.inputs.get(var.index()).copied(),
-            _ => None,
-        }
+        let (var, ..) = leaf.access()?;
+        self.inputs.get(var.index()).copied()
     }
 
     /// Whether an input is read by its values or its filters.

@@ -39,38 +39,42 @@ impl<'a> Model<'a, '_> {
             pieces.push(LawPiece::Input(number));
             pieces.extend(letters(rest));
         }
-        let is_factor = match &open.kind {
-            ExprKind::Binary(op, ..) => matches!(op, Binary::Mul | Binary::Div | Binary::Pow),
-            ExprKind::If(..) | ExprKind::Unary(..) => false,
-            _ => true,
-        };
+        let product = |op: &Binary| matches!(op, Binary::Mul | Binary::Div | Binary::Pow);
         Ok(LawText {
             value,
             pieces,
-            is_sum: !is_factor,
+            is_sum: match &open.kind {
+                ExprKind::Binary(op, ..) => !product(op),
+                ExprKind::If(..) | ExprKind::Unary(..) => true,
+                ExprKind::Number(..)
+                | ExprKind::String(_)
+                | ExprKind::Boolean(_)
+                | ExprKind::Reference(_)
+                | ExprKind::Call(..)
+                | ExprKind::Array(..)
+                | ExprKind::Comprehension(_)
+                | ExprKind::Slice(..) => false,
+            },
         })
     }
 
     /// Replaces the names in an expression.
     fn open(&self, draft: &Draft<'a>, expr: &mut Expr) {
-        match &mut expr.kind {
-            ExprKind::Reference(name) => {
-                let word = name.as_word().unwrap_or_default();
-                if let Some((_, value)) = draft.locals.iter().find(|(own, _)| *own == word) {
-                    let mut value = (*value).clone();
-                    self.open(draft, &mut value);
-                    *expr = value;
-                } else if let Some(number) = draft.input(word) {
-                    *name = word_at(format!("{OPEN}{number}_"), name);
-                }
-                return;
+        if let ExprKind::Reference(name) = &mut expr.kind {
+            let word = name.as_word().unwrap_or_default();
+            if let Some((_, value)) = draft.locals.iter().find(|(own, _)| *own == word) {
+                let mut value = (*value).clone();
+                self.open(draft, &mut value);
+                *expr = value;
+            } else if let Some(number) = draft.input(word) {
+                *name = word_at(format!("{OPEN}{number}_"), name);
             }
-            ExprKind::Call(function, _) => {
-                if let Some((file, class)) = self.function_named(function) {
-                    *function = word_at(self.full_name(file, class), function);
-                }
-            }
-            _ => {}
+            return;
+        }
+        if let ExprKind::Call(function, _) = &mut expr.kind
+            && let Some((file, class)) = self.function_named(function)
+        {
+            *function = word_at(self.full_name(file, class), function);
         }
         for child in expr.children_mut() {
             self.open(draft, child);

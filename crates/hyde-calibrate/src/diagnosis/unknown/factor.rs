@@ -166,7 +166,13 @@ impl Factor {
                     Some(values) => Along::Rows(values),
                     None => Along::Same(f64::NAN),
                 },
-                _ => Along::Same(self.of_leaf(leaf, seen)),
+                Some(
+                    LawInput::Round(_)
+                    | LawInput::Least(_)
+                    | LawInput::Greatest(_)
+                    | LawInput::Constant(_),
+                )
+                | None => Along::Same(self.of_leaf(leaf, seen)),
             })
         };
         let Ok(values) = self.shape.exprs.column(text.value, course.time.len(), leaf);
