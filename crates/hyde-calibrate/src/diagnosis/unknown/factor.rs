@@ -57,7 +57,7 @@ pub(crate) fn is_of_speed(shape: &LawShape) -> bool {
 
 impl Factor {
     /// A shape with each of the values of its constants that a search begins with.
-    pub fn tried<'a>(
+    pub(crate) fn tried<'a>(
         shape: &'a Arc<LawShape>,
         seen: &'a Seen,
     ) -> impl Iterator<Item = Self> + use<'a> {
