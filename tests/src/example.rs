@@ -1,7 +1,7 @@
 //! [`Example`]: a `.hyde` file of this project with one of its experiments, its records, and what is set beside it.
 
 use hyde_compiler::{
-    Additions, Backend, Candidate, Compiled, File, Form, FreeInputs, Header, Request, Stage,
+    Additions, Backend, Candidate, Compiled, File, Form, FreeInputs, Header, Laws, Request, Stage,
 };
 use hyde_diag::{Diagnostic, Diagnostics, FileId, Sources};
 use hyde_experiment::{Options, Run, RunError};
@@ -314,6 +314,18 @@ impl Loaded {
         let headers = self.headers();
         let request = self.request(example, &headers, Backend::Native);
         hyde_compiler::candidates(&request, &mut diagnostics)
+            .ok_or_else(|| lines(&diagnostics, &self.sources))
+    }
+
+    /// Where a law may act on the model, and the shapes that it may be made of.
+    ///
+    /// # Errors
+    /// Every diagnostic, one a line.
+    pub fn laws(&self, example: &Example) -> Result<Laws, String> {
+        let mut diagnostics = self.diagnostics.clone();
+        let headers = self.headers();
+        let request = self.request(example, &headers, Backend::Native);
+        hyde_compiler::laws(&request, &mut diagnostics)
             .ok_or_else(|| lines(&diagnostics, &self.sources))
     }
 

@@ -4,7 +4,7 @@ use crate::args::ModelArgs;
 use crate::exit::Exit;
 pub(crate) use crate::output::{print_diagnostics, print_error, print_output};
 use crate::{output, render, sandbox};
-use hyde_compiler::{Candidate, Compiled, LawSite};
+use hyde_compiler::{Candidate, Compiled, Laws};
 use hyde_diag::{Diagnostics, Sources};
 use hyde_experiment::RunError;
 use hyde_program::Program;
@@ -115,8 +115,8 @@ pub(crate) trait Told {
     /// Which effects fit where on the model, as long as that is in order; reports and ends otherwise.
     fn candidates_or_report(&mut self, args: &ModelArgs) -> Result<Vec<Candidate>, Exit>;
 
-    /// The sites of the model where a law may act, as long as it is in order; reports and ends otherwise.
-    fn law_sites_or_report(&mut self, args: &ModelArgs) -> Result<Vec<LawSite>, Exit>;
+    /// Where a law may act on the model and what it may be made of, as long as both are in order; reports and ends otherwise.
+    fn laws_or_report(&mut self, args: &ModelArgs) -> Result<Laws, Exit>;
 
     /// Prints warnings, if any.
     fn print_warnings(&self, args: &ModelArgs);
@@ -141,8 +141,8 @@ impl Told for Project {
         found.ok_or_else(|| self.finish_with_errors(args))
     }
 
-    fn law_sites_or_report(&mut self, args: &ModelArgs) -> Result<Vec<LawSite>, Exit> {
-        let found = self.law_sites();
+    fn laws_or_report(&mut self, args: &ModelArgs) -> Result<Laws, Exit> {
+        let found = self.laws();
         found.ok_or_else(|| self.finish_with_errors(args))
     }
 

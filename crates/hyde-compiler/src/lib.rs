@@ -21,12 +21,12 @@ pub use emit::{Stage, emit, kernels_as_c};
 pub use hyde_analysis::beside_time;
 pub use hyde_flatten::{FUNCTIONS, usage};
 pub use hyde_flatten::{FmuInterface, Form, FreeInputs, Header, TableFile, fmu_has_no_equations};
-pub use hyde_ir::{Prior, Quantity};
+pub use hyde_ir::{LawShape, Prior, Quantity};
 pub use hyde_jit::Backend;
 pub use ideal::{changed, ideals};
 pub use known::{
-    Additions, Candidate, Knob, LawSite, LawVariable, Meaning, MeaningOf, ValueOf, candidates,
-    law_sites, meaning,
+    Additions, Candidate, Knob, LawSite, LawVariable, Laws, Meaning, MeaningOf, ValueOf,
+    candidates, laws, meaning,
 };
 pub use load::{File, Find, Packages, Place, check_name, load};
 pub use parses::parses;

@@ -7,7 +7,7 @@ use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use hyde_flatten::{FmuInterface, TableFile};
 use hyde_library::Package;
 use hyde_syntax::ast::{self, Item};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
 /// Parsed files, the user's first, then every package that one of them names.
@@ -65,13 +65,67 @@ pub fn load(
     let mut files = vec![(id, Arc::new(tree))];
     let own = files[0].1.package.as_ref();
     let mut known: Vec<String> = own.map(|(path, _)| path.dotted()).into_iter().collect();
-    let mut at = 0;
-    while at < files.len() {
-        let (importer, mut wanted) = (files[at].0, packages_named(&files[at].1));
-        if at == 0 && packages.whole_library {
-            let whole = hyde_library::PACKAGES.iter();
-            wanted.extend(whole.map(|p| (p.name.to_owned(), Span::new(importer, 0, 0))));
-        }
+    let mut first = packages_named(&files[0].1);
+    if packages.whole_library {
+        let whole = hyde_library::PACKAGES.iter();
+        first.extend(whole.map(|p| (p.name.to_owned(), Span::new(id, 0, 0))));
+    }
+    add_packages(
+        sources,
+        &mut files,
+        &mut known,
+        first,
+        packages,
+        diagnostics,
+    );
+    let mut file = File {
+        files,
+        elsewhere: BTreeMap::new(),
+        tables: BTreeMap::new(),
+        fmus: BTreeMap::new(),
+    };
+    file.unknown_imports(packages, diagnostics);
+    file.look_elsewhere(sources, packages);
+    file
+}
+
+/// The sources and the file with a package of the library beside those that are loaded.
+pub(crate) fn with_package(sources: &Sources, file: &File, name: &str) -> (Sources, File) {
+    let (mut sources, mut file) = (sources.clone(), file.clone());
+    let own = file.files.iter();
+    let own = own.filter_map(|(_, tree)| tree.package.as_ref());
+    let mut known: Vec<String> = own.map(|(path, _)| path.dotted()).collect();
+    if let Some(&(first, _)) = file.files.first() {
+        let wanted = vec![(name.to_owned(), Span::new(first, 0, 0))];
+        let packages = &Packages::LIBRARY;
+        // The library has no errors: a test of its own compiles all of it.
+        let mut diagnostics = Diagnostics::new();
+        add_packages(
+            &mut sources,
+            &mut file.files,
+            &mut known,
+            wanted,
+            packages,
+            &mut diagnostics,
+        );
+    }
+    (sources, file)
+}
+
+/// Adds packages that the first file wants, and all that these name.
+fn add_packages(
+    sources: &mut Sources,
+    files: &mut Vec<(FileId, Arc<ast::File>)>,
+    known: &mut Vec<String>,
+    wanted: Vec<(String, Span)>,
+    packages: &Packages<'_>,
+    diagnostics: &mut Diagnostics,
+) {
+    let mut waiting = VecDeque::new();
+    if let Some(&(first, _)) = files.first() {
+        waiting.push_back((first, wanted));
+    }
+    while let Some((importer, wanted)) = waiting.pop_front() {
         for (name, span) in wanted {
             if known.contains(&name) {
                 continue;
@@ -89,19 +143,10 @@ pub fn load(
                     Arc::new(tree)
                 }
             };
+            waiting.push_back((id, packages_named(&tree)));
             files.push((id, tree));
         }
-        at += 1;
     }
-    let mut file = File {
-        files,
-        elsewhere: BTreeMap::new(),
-        tables: BTreeMap::new(),
-        fmus: BTreeMap::new(),
-    };
-    file.unknown_imports(packages, diagnostics);
-    file.look_elsewhere(sources, packages);
-    file
 }
 
 /// A package that was found.

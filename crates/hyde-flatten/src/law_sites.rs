@@ -342,7 +342,7 @@ impl<'a> Model<'a, '_> {
     }
 
     /// What the user's file may call a class of a file.
-    fn full_name(&self, file: FileIndex, class: &Class) -> String {
+    pub(crate) fn full_name(&self, file: FileIndex, class: &Class) -> String {
         let tree = self.input.files.get(file).filter(|_| file > 0);
         let package = tree.and_then(|(_, tree)| tree.package.as_ref());
         match package {

@@ -29,6 +29,7 @@ mod foreign;
 mod instance;
 mod instantiate;
 mod law_roles;
+mod law_shapes;
 mod law_sites;
 mod ledger;
 mod lower;
@@ -50,7 +51,7 @@ pub use law_sites::{LawSite, LawVariable};
 pub use meaning::{Meaning, MeaningOf, ValueOf};
 
 use hyde_diag::{Diagnostics, FileId, Sources};
-use hyde_ir::FlatModel;
+use hyde_ir::{FlatModel, LawShape};
 use hyde_syntax::ast;
 use hyde_units::NamedUnit;
 use std::collections::BTreeMap;
@@ -159,15 +160,25 @@ pub fn candidates(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Ve
     flat_model(input, true, diagnostics).map(|(_, candidates)| candidates)
 }
 
-/// The sites of the model where a law may act, in the order of the model.
+/// Where a law may act on a model, and what it may be made of.
+#[derive(Clone, Debug, Default)]
+pub struct Laws {
+    /// The sites, in the order of the model.
+    pub sites: Vec<LawSite>,
+    /// The shapes of the files.
+    pub shapes: Vec<LawShape>,
+}
+
+/// The sites of the model where a law may act, and the shapes that the files have for one.
 ///
 /// `None` if there were errors; all of them are in `diagnostics`.
-pub fn law_sites(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Vec<LawSite>> {
+pub fn laws(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Laws> {
     let before = diagnostics.error_count();
     let mut model = model::Model::new(input, diagnostics);
     build(&mut model)?;
     let sites = model.named_law_sites();
-    (diagnostics.error_count() == before).then_some(sites)
+    let shapes = model.law_shapes();
+    (diagnostics.error_count() == before).then_some(Laws { sites, shapes })
 }
 
 /// What the expressions and parameters of the first file mean, as far as they are understood; what is wrong with the others

@@ -374,6 +374,37 @@ impl ExprArena {
         memo[&root]
     }
 
+    /// What stands below some roots, in an arena of its own with each leaf as `leaf` gives it; the roots there.
+    #[must_use]
+    pub fn copied(
+        &self,
+        roots: &[ExprId],
+        mut leaf: impl FnMut(Expr) -> Expr,
+    ) -> (Self, Vec<ExprId>) {
+        let (mut copy, mut places) = (Self::new(), Memo::default());
+        for id in self.below(roots) {
+            let own = match self[id] {
+                Expr::Unary(op, a) => Expr::Unary(op, places[&a]),
+                Expr::Binary(op, a, b) => Expr::Binary(op, places[&a], places[&b]),
+                Expr::If(c, a, b) => Expr::If(places[&c], places[&a], places[&b]),
+                Expr::NoEvent(a) => Expr::NoEvent(places[&a]),
+                number @ Expr::Const(_) => number,
+                other @ (Expr::Time
+                | Expr::Counter
+                | Expr::Param(..)
+                | Expr::Var(..)
+                | Expr::Der(..)
+                | Expr::Pre(..)
+                | Expr::Relation(_)
+                | Expr::InMode(..)) => leaf(other),
+            };
+            let place = copy.add(own);
+            places.insert(id, place);
+        }
+        let roots = roots.iter().map(|root| places[root]).collect();
+        (copy, roots)
+    }
+
     fn power(&mut self, a: ExprId, b: ExprId, exponent: Option<f64>) -> ExprId {
         match exponent {
             Some(0.0) => self.constant(1.0),

@@ -22,6 +22,10 @@
 //! variables; `u` the columns of records; `p` parameters and what is derived from them alone; *work* the explicit
 //! variables that are arrays. [`Dae::place`] tells where a variable lives.
 //!
+//! # Laws from records
+//! A [`LawShape`] is a function of the language as data: its expressions, and what a search for an unknown law needs to
+//! know of its inputs. [`ExprArena::column`] evaluates an expression in every row of a record.
+//!
 //! This crate transforms nothing beyond what a constructor folds ([`ExprArena`]) and what the derivative of an
 //! operation is ([`ExprArena::tangent`], [`ExprArena::gradient`]): IR can be built, differentiated, printed, validated,
 //! and evaluated. The evaluator of single operations, [`UnaryOp::apply`] and [`BinaryOp::apply`], is the
@@ -33,21 +37,28 @@ pub mod print;
 
 mod below;
 mod builtin;
+mod columns;
 mod counter;
 mod differentiate;
 mod evaluate;
 mod expr;
 mod id;
+mod law;
 mod validate;
 mod variable;
 
 pub use builtin::{BinaryOp, UnaryOp};
+pub use columns::Along;
 pub use dae::Dae;
 pub use expr::{Expr, ExprArena, Index, Memo, Number, Range};
 pub use flat::FlatModel;
 pub use id::{
     AutomatonId, ClockId, ColumnId, DefinitionId, DelayId, ExprId, Id, IdVec, ParamId, RelationId,
     UnknownId, VarId,
+};
+pub use law::{
+    LawAxis, LawConstant, LawInput, LawPiece, LawRole, LawShape, LawState, LawStep, LawText,
+    LawUnit,
 };
 pub use validate::{validate_dae, validate_flat};
 pub use variable::{

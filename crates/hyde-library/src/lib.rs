@@ -2,7 +2,7 @@
 //! package `A.B` is the file `A/B.hyde`.
 //!
 //! They are ordinary source files; nothing in them is known to the compiler. A model names what it uses:
-//! `import Rotational.*;`.
+//! `import Rotational.*;`. The shapes of the package `Laws` alone need no import: a diagnosis always has them.
 
 /// A package: its name and its source text.
 #[derive(Clone, Copy, Debug)]
@@ -78,6 +78,10 @@ pub const PACKAGES: &[Package] = &[
     Package {
         name: "Drives.FixedStep",
         text: include_str!("../models/Drives/FixedStep.hyde"),
+    },
+    Package {
+        name: "Laws",
+        text: include_str!("../models/Laws.hyde"),
     },
     Package {
         name: "Effects",

@@ -1,7 +1,7 @@
-//! What is known of a project's model beside its program: which effects fit where on it, and where a law may act.
+//! What is known of a project's model beside its program: which effects fit where on it, and which laws may act where.
 
 use crate::Project;
-use hyde_compiler::{Backend, Candidate, Form, FreeInputs, LawSite, Request};
+use hyde_compiler::{Backend, Candidate, Form, FreeInputs, Laws, Request};
 use hyde_diag::Diagnostics;
 use std::collections::BTreeMap;
 
@@ -11,9 +11,10 @@ impl Project {
         self.known(hyde_compiler::candidates)
     }
 
-    /// The sites of the model where a law may act, as long as it is in order; what is wrong stays in the project's diagnostics.
-    pub fn law_sites(&mut self) -> Option<Vec<LawSite>> {
-        self.known(hyde_compiler::law_sites)
+    /// Where a law may act on the model and what it may be made of, as long as both are in order; what is wrong stays in the
+    /// project's diagnostics.
+    pub fn laws(&mut self) -> Option<Laws> {
+        self.known(hyde_compiler::laws)
     }
 
     /// What the compiler knows of the model beside its program.

@@ -19,7 +19,7 @@ use crate::{Calibration, Progress, Store, diagnosis, unknown};
 use hyde_calibrate::{
     Asked, Axis, Case, Hypothesis, Planting, SelftestError, Tally, Written, cases, tally,
 };
-use hyde_compiler::{Candidate, DiagnosisPlan, LawSite};
+use hyde_compiler::{Candidate, DiagnosisPlan, Laws};
 use hyde_diag::Diagnostic;
 use hyde_experiment::batch::{Identity, digest};
 use hyde_signal::Table;
@@ -51,8 +51,8 @@ pub struct Subject<'a> {
     pub calibration: &'a Calibration,
     /// The effects of the model.
     pub candidates: Vec<Candidate>,
-    /// The sites of the model where a law may act.
-    pub sites: Vec<LawSite>,
+    /// Where a law may act on the model, and what it may be made of.
+    pub laws: Laws,
 }
 
 /// What a self-test found.
@@ -167,9 +167,10 @@ fn on_axis<T>(
         plan,
         calibration,
         candidates,
-        sites,
+        laws,
     } = subject;
-    let sites: Vec<_> = sites.into_iter().map(unknown::site).collect();
+    let sites: Vec<_> = laws.sites.into_iter().map(unknown::site).collect();
+    let shapes: Vec<_> = laws.shapes.into_iter().map(Arc::new).collect();
     let candidates: Vec<Candidate> = candidates
         .into_iter()
         .filter(|candidate| plan.selects(candidate))
@@ -194,7 +195,7 @@ fn on_axis<T>(
         &calibration.varied,
         &set,
         &hypotheses,
-        (&sites, &author),
+        (&sites, &shapes, &author),
         &simulate,
         plan.max_effects,
         seed,

@@ -30,6 +30,7 @@ mod frequency_responses;
 mod gradients;
 mod held_parts;
 mod late_sensor;
+mod law_shapes;
 mod ledger;
 mod limit_cycle;
 mod loops;

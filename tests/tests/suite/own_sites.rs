@@ -48,6 +48,20 @@ equation
 end WireSensor;
 "#;
 
+/// A package with a shape of its own: a peak that falls slowly to both sides.
+const PEAKS: &str = r#"package peaks "what our scales show";
+import SI.*;
+
+function resonant "a resonance at {x0} ± {width}"
+  input Length x, x_min, x_max;
+  input Length x0(step = 0.5*width) = {x_min + (x_max - x_min)*k/20 for k in 0:20} in x_min .. x_max;
+  input Length width = 0.05*(x_max - x_min) in 0 .. 0.5*(x_max - x_min);
+  Real away = ((x - x0)/width)^2;
+  output Real f(cost = 1) = 1/(1 + away) over (place, stretch);
+  signature position(x0);
+end resonant;
+"#;
+
 /// An axis with a component of a package and an effect on it, diagnosed; its law, checked as a part of a file of its own.
 fn diagnosed(
     (name, package): (&str, &str),
@@ -125,4 +139,26 @@ fn a_new_kind_of_sensor_gets_a_law_over_its_own_angle() {
     close_to(&effect["sizes"]["es"]["value"], 4e-6, 0.05);
     close_to(&effect["sizes"]["ec"]["value"], -3e-6, 0.05);
     close_to(&effect["shape"]["N"]["value"], 1.0, 0.01);
+}
+
+/// A shape of a package that the model imports is tried beside those of the library.
+#[test]
+fn a_law_is_made_of_a_shape_of_ones_own() {
+    let found = diagnosed(
+        ("peaks", PEAKS),
+        &[],
+        (
+            "effect Odd on Translational.PositionSensor
+               wrap s by s + 60 [um]/(1 + ((a.s - 30 [mm])/(6 [mm]))^2);
+             end Odd;",
+            "scale",
+        ),
+    );
+    let law = law_alone(&found);
+    let clause = "wrap s by s + e*1/(1 + ((a.s - x0)/width)^2);";
+    assert!(law.contains(clause), "{law}");
+    let effect = &found["effects"][0];
+    close_to(&effect["size"], 60e-6, 0.05);
+    close_to(&effect["shape"]["x0"]["value"], 0.03, 0.02);
+    close_to(&effect["shape"]["width"]["value"], 0.006, 0.05);
 }

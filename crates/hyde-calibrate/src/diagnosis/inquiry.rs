@@ -6,6 +6,8 @@ use super::unknown::{Site, Written};
 use crate::fit::Varied;
 use crate::observer::Observer;
 use crate::records::Recording;
+use hyde_ir::LawShape;
+use std::sync::Arc;
 
 /// Puts known hypotheses, by number, and written effects on the model; `None` where they cannot be.
 pub type Author<'a> = dyn Fn(&[usize], &[Written]) -> Option<Built> + Sync + 'a;
@@ -25,6 +27,8 @@ pub struct Inquiry<'a> {
     pub hypotheses: &'a [Hypothesis],
     /// Where a law that no effect is may act.
     pub sites: &'a [Site],
+    /// The shapes that a law may be made of.
+    pub shapes: &'a [Arc<LawShape>],
     /// Compiles.
     pub author: &'a Author<'a>,
     /// How many effects are claimed at most.

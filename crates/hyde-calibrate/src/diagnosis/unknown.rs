@@ -7,7 +7,7 @@
 //! felt           a site with a probe run along every record                    unknown/felt.rs
 //! map            of which variable the force is a function                     unknown/map.rs
 //! seen           what records show of a site                                   unknown/seen.rs
-//! factor         the shapes a law is a product of                              unknown/factor.rs
+//! factor         a shape of the library with its constants                       unknown/factor.rs
 //! law            a sum of products; its text                                   unknown/law.rs
 //! regression     which products, with which constants                          unknown/regression.rs
 //! places         the sites of a stage, and the law that explains most there    unknown/places.rs

@@ -9,6 +9,7 @@ use crate::observer::Observer;
 use crate::plant::Unsupported;
 use crate::records::{RecordError, Recording};
 use hyde_experiment::Options;
+use hyde_ir::LawShape;
 use hyde_program::Program;
 use hyde_signal::Table;
 use std::collections::BTreeMap;
@@ -34,6 +35,8 @@ pub struct Axis<'a> {
     pub hypotheses: &'a [Hypothesis],
     /// Where a law that no effect is may act.
     pub sites: &'a [Site],
+    /// The shapes that a law may be made of.
+    pub shapes: &'a [Arc<LawShape>],
     /// Puts hypotheses and written effects on the observed form.
     pub author: &'a Author<'a>,
     /// Puts hypotheses on the recorded form; sizes and shapes of the last of them may shape the equations.
@@ -123,7 +126,7 @@ impl<'a> Axis<'a> {
         varied: &'a [Varied],
         set: &'a [(String, f64)],
         hypotheses: &'a [Hypothesis],
-        laws: (&'a [Site], &'a Author<'a>),
+        laws: (&'a [Site], &'a [Arc<LawShape>], &'a Author<'a>),
         simulate: &'a Simulate<'a>,
         max_effects: usize,
         seed: u64,
@@ -149,7 +152,8 @@ impl<'a> Axis<'a> {
             set,
             hypotheses,
             sites: laws.0,
-            author: laws.1,
+            shapes: laws.1,
+            author: laws.2,
             simulate,
             max_effects,
             seed,
@@ -204,6 +208,7 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         set: axis.set,
         hypotheses: &hypotheses,
         sites: axis.sites,
+        shapes: axis.shapes,
         author: &author,
         max_effects: axis.max_effects,
         barred: &[],

@@ -27,11 +27,11 @@ fn told(args: &DiagnoseArgs) -> Result<Exit, Exit> {
     ready.map_err(|reason| complain(&model_args, Exit::CommandLine, &reason))?;
     let (plan, mut calibration) = study::diagnosis(&args.study)?;
     let candidates = calibration.project.candidates_or_report(&model_args)?;
-    let sites = calibration.project.law_sites_or_report(&model_args)?;
+    let laws = calibration.project.laws_or_report(&model_args)?;
     // A terminal does not show the curves.
     let curves = args.out.is_some() || args.study.json;
     let tell = |told: &Diagnosed<'_>| tell(args, told);
-    let told = search(&plan, &mut calibration, candidates, sites, curves, tell);
+    let told = search(&plan, &mut calibration, candidates, laws, curves, tell);
     told.map_err(|diagnostic| {
         calibration.project.diagnostics.push(*diagnostic);
         calibration.project.finish_with_errors(&model_args)

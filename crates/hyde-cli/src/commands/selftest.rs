@@ -30,12 +30,12 @@ fn told(args: &SelftestArgs) -> Result<Exit, Exit> {
     let options = options(args).map_err(refused)?;
     let (plan, mut calibration) = study::diagnosis(&args.study)?;
     let candidates = calibration.project.candidates_or_report(&model_args)?;
-    let sites = calibration.project.law_sites_or_report(&model_args)?;
+    let laws = calibration.project.laws_or_report(&model_args)?;
     let subject = Subject {
         plan: &plan,
         calibration: &calibration,
         candidates,
-        sites,
+        laws,
     };
     let told = match (&args.case, &args.out) {
         (Some(name), Some(folder)) => {

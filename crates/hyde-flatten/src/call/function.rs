@@ -50,7 +50,7 @@ struct Call {
 
 impl<'a> Model<'a, '_> {
     /// The function of that name, seen from where the name is written.
-    pub(super) fn function_named(&self, name: &Reference) -> Option<(FileIndex, &'a Class)> {
+    pub(crate) fn function_named(&self, name: &Reference) -> Option<(FileIndex, &'a Class)> {
         let file = self.names.file_of(name.span)?;
         let found = self.names.class(file, name);
         found.filter(|(_, class)| class.kind == ClassKind::Function)
@@ -257,6 +257,10 @@ impl<'a> Model<'a, '_> {
         };
         let mut found = Vec::new();
         for element in elements {
+            // Its mark says that laws are made of it.
+            if matches!(element, Element::Signature(_)) {
+                continue;
+            }
             let Element::Declaration(declaration) = element else {
                 self.report(
                     Diagnostic::error(

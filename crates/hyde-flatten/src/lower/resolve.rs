@@ -61,14 +61,16 @@ impl<'a> Model<'a, '_> {
     ) -> Option<Resolved> {
         let first = reference.parts.first()?;
         let word = first.name.text.as_str();
+        let single = reference.parts.len() == 1 && first.subscripts.is_empty();
+        let counter = scope.counters.iter().rev();
+        let counter = counter.filter(|_| single).find(|(name, _)| *name == word);
+        if let Some((_, counter)) = counter {
+            return Some(Resolved::Counter(*counter));
+        }
         if let Some(values) = &scope.values {
             return self.in_function(reference, values);
         }
-        if reference.parts.len() == 1 && first.subscripts.is_empty() {
-            if let Some((_, counter)) = scope.counters.iter().rev().find(|(name, _)| *name == word)
-            {
-                return Some(Resolved::Counter(*counter));
-            }
+        if single {
             if let Some((_, var)) = scope.locals.iter().rev().find(|(name, _)| *name == word) {
                 return Some(Resolved::Variable(*var, None));
             }

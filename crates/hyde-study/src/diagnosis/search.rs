@@ -5,11 +5,12 @@ use crate::{Calibration, unknown, unobservable};
 use hyde_calibrate::{
     Cause, Hypothesis, Inquiry, Knob, Site, Solution, Unsupported, fitted_parameters,
 };
-use hyde_compiler::{Candidate, DiagnosisPlan, Form, LawSite};
+use hyde_compiler::{Candidate, DiagnosisPlan, Form, Laws};
 use hyde_diag::Diagnostic;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
-/// Searches, and gives what was found to `tell`. `candidates` and `sites` are those of the model; `curves` asks for each
+/// Searches, and gives what was found to `tell`. `candidates` and `laws` are those of the model; `curves` asks for each
 /// finding as a curve, which takes time. The calibration gets the observer that the search ended with.
 ///
 /// # Errors
@@ -18,11 +19,11 @@ pub fn search<T>(
     plan: &DiagnosisPlan,
     calibration: &mut Calibration,
     candidates: Vec<Candidate>,
-    sites: Vec<LawSite>,
+    laws: Laws,
     curves: bool,
     tell: impl FnOnce(&Diagnosed<'_>) -> T,
 ) -> Result<T, Box<Diagnostic>> {
-    match searched(plan, calibration, candidates, sites, curves, tell) {
+    match searched(plan, calibration, candidates, laws, curves, tell) {
         Ok(told) => told,
         Err(error) => Err(Box::new(unobservable::unsupported(&error, plan.span))),
     }
@@ -32,11 +33,12 @@ fn searched<T>(
     plan: &DiagnosisPlan,
     calibration: &mut Calibration,
     candidates: Vec<Candidate>,
-    sites: Vec<LawSite>,
+    laws: Laws,
     curves: bool,
     tell: impl FnOnce(&Diagnosed<'_>) -> T,
 ) -> Result<Result<T, Box<Diagnostic>>, Unsupported> {
-    let sites: Vec<Site> = sites.into_iter().map(unknown::site).collect();
+    let sites: Vec<Site> = laws.sites.into_iter().map(unknown::site).collect();
+    let shapes: Vec<_> = laws.shapes.into_iter().map(Arc::new).collect();
     let candidates: Vec<Candidate> = candidates
         .into_iter()
         .filter(|candidate| plan.selects(candidate))
@@ -57,6 +59,7 @@ fn searched<T>(
             set: &project.set(),
             hypotheses: &hypotheses,
             sites: &sites,
+            shapes: &shapes,
             author: &author,
             max_effects: plan.max_effects,
             barred: &[],

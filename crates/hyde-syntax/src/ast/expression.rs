@@ -37,6 +37,32 @@ impl Expr {
         }
     }
 
+    /// The same, to be changed.
+    pub fn children_mut(&mut self) -> Vec<&mut Self> {
+        match &mut self.kind {
+            ExprKind::Number(..)
+            | ExprKind::String(_)
+            | ExprKind::Boolean(_)
+            | ExprKind::Reference(_) => Vec::new(),
+            ExprKind::Call(_, arguments) => arguments
+                .iter_mut()
+                .map(|argument| &mut argument.value)
+                .collect(),
+            ExprKind::Unary(_, inner) => vec![&mut **inner],
+            ExprKind::Binary(_, left, right) => vec![&mut **left, &mut **right],
+            ExprKind::If(branches, otherwise) => branches
+                .iter_mut()
+                .flat_map(|(condition, value)| [condition, value])
+                .chain([&mut **otherwise])
+                .collect(),
+            ExprKind::Array(items, _) => items.iter_mut().collect(),
+            ExprKind::Comprehension(list) => {
+                vec![&mut list.value, &mut list.first, &mut list.last]
+            }
+            ExprKind::Slice(first, last) => vec![&mut **first, &mut **last],
+        }
+    }
+
     /// Whether this expression or one below it satisfies `test`.
     pub fn any(&self, test: &impl Fn(&Self) -> bool) -> bool {
         test(self) || self.children().into_iter().any(|child| child.any(test))

@@ -1,441 +1,320 @@
-//! [`Factor`]: the shapes that a law is a product of: of speed, of place, of time. Each can be evaluated along a record, and
-//! be written down.
+//! [`Factor`]: a shape of the library or of the user's packages with its constants, as a law multiplies it. It is evaluated
+//! along a record by the evaluator of the IR, and written from the same expressions.
 
 use super::latent::Course;
-use super::seen::{Scales, Seen};
+use super::seen::Seen;
 use super::site::Kind;
+use hyde_ir::{
+    Along, Expr, ExprId, LawAxis, LawInput, LawPiece, LawRole, LawShape, LawStep, LawText, LawUnit,
+};
 use hyde_units::{Dimension, NamedUnit};
+use std::convert::Infallible;
+use std::sync::Arc;
 
-/// A shape, with its constants, SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Factor {
-    /// In proportion to speed.
-    Speed,
-    /// In proportion to its magnitude.
-    Magnitude,
-    /// Its square, with the sign of the motion.
-    SignedSquare,
-    /// Its square.
-    Square,
-    /// Its third power.
-    Cube,
-    /// Towards a constant from a speed on: `v/(|v| + vs)`.
-    Switching(f64),
-    /// To a constant at a speed, and no more beyond it: `tanh(v/vs)`.
-    Turning(f64),
-    /// As [`Self::Switching`] where it moves forwards, nothing backwards.
-    Forwards(f64),
-    /// The same where it moves backwards, nothing forwards.
-    Backwards(f64),
-    /// Falls from a speed on, exponentially.
-    Falling(f64),
-    /// Falls from a speed on, as a bell.
-    Bell(f64),
-    /// More about a speed, either way: centre and width.
-    SpeedBump(f64, f64),
-    /// Speed, late by a filter of the first order: its time constant.
-    Lagged(f64),
-    /// The speed's magnitude, late by such a filter: how much it has been moved lately. Its time constant.
-    Worked(f64),
-    /// In proportion to place.
-    Place,
-    /// The magnitude of place.
-    PlaceMagnitude,
-    /// The square of place.
-    PlaceSquare,
-    /// The same with its sign.
-    PlaceSignedSquare,
-    /// The third power of place.
-    PlaceCube,
-    /// Towards a constant from a place on, either way: `x/(|x| + x0)`.
-    Yielding(f64),
-    /// A sine and a cosine over place: period. Of an angle the number of times a turn.
-    Wave(f64),
-    /// More about a place: centre and width.
-    Bump(f64, f64),
-    /// From one place on: middle and width of the step.
-    Step(f64, f64),
-    /// In proportion to time.
-    Time,
-    /// Fades with time: time constant.
-    Fading(f64),
+/// A shape with its constants.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Factor {
+    shape: Arc<LawShape>,
+    /// SI.
+    constants: Vec<f64>,
 }
 
 /// A constant of a shape as it is written.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Constant {
-    pub(crate) stem: &'static str,
+    pub(crate) stem: String,
     pub(crate) value: f64,
     pub(crate) range: (f64, f64),
     pub(crate) unit: NamedUnit,
 }
 
+/// How a search changes a constant at first.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Step {
+    /// By so much, SI.
+    Added(f64),
+    /// By so much of its logarithm.
+    Ratio(f64),
+}
+
+/// The axes of a site.
+const AXES: [LawAxis; 3] = [LawAxis::Speed, LawAxis::Place, LawAxis::Time];
+
+/// Whether a shape is tried at a kind of site: of each variable that it is a function of, a role fits.
+pub(crate) fn is_tried(shape: &LawShape, kind: &Kind) -> bool {
+    AXES.iter().all(|&axis| {
+        let mut roles = shape.roles.iter().filter(|role| role.axis() == axis);
+        let named = roles.clone().next().is_some();
+        !named || roles.any(|&role| kind.has(role))
+    })
+}
+
+/// Whether a shape is one of the speed, which those of other variables multiply.
+pub(crate) fn is_of_speed(shape: &LawShape) -> bool {
+    let mut roles = shape.roles.iter();
+    roles.all(|role| matches!(role, LawRole::Speed | LawRole::Slip | LawRole::Rate))
+}
+
 impl Factor {
+    /// A shape with each of the values of its constants that a search begins with.
+    pub(crate) fn tried<'a>(
+        shape: &'a Arc<LawShape>,
+        seen: &'a Seen,
+    ) -> impl Iterator<Item = Self> + use<'a> {
+        (0..shape.count()).map(move |number| {
+            let mut factor = Self {
+                shape: Arc::clone(shape),
+                constants: Vec::new(),
+            };
+            for constant in &shape.constants {
+                let values = &constant.values;
+                let value = values.get(number).or(values.last());
+                let value = value.map_or(f64::NAN, |value| factor.number(*value, seen));
+                factor.constants.push(value);
+            }
+            factor
+        })
+    }
+
     /// What it is at a kind of site, in words; numbers are SI.
     #[must_use]
-    pub fn words(self, kind: &Kind) -> String {
-        let n = |value: f64| hyde_units::significant(value, 3);
+    pub fn words(&self, kind: &Kind) -> String {
         let [place, speed] = kind.variables();
-        match self {
-            Self::Speed => format!("the {speed}"),
-            Self::Magnitude => format!("the magnitude of the {speed}"),
-            Self::SignedSquare => format!("the signed square of the {speed}"),
-            Self::Square => format!("the square of the {speed}"),
-            Self::Cube => format!("the cube of the {speed}"),
-            Self::Switching(a) => format!("the direction, gradually above {}", n(a)),
-            Self::Turning(a) => format!("the direction, smoothed over {}", n(a)),
-            Self::Forwards(a) => format!("the forward direction only, gradually above {}", n(a)),
-            Self::Backwards(a) => format!("the backward direction only, gradually above {}", n(a)),
-            Self::Falling(a) => format!("an exponential decrease with {speed} over {}", n(a)),
-            Self::Bell(a) => format!("a Gaussian of the {speed} with width {}", n(a)),
-            Self::SpeedBump(a, b) => format!("a peak at the {speed} {} ± {}", n(a), n(b)),
-            Self::Lagged(a) => format!("the {speed} with a lag of {} s", n(a)),
-            Self::Worked(a) => format!("the magnitude of the {speed} with a lag of {} s", n(a)),
-            Self::Place => format!("the {place}"),
-            Self::PlaceMagnitude => format!("the magnitude of the {place}"),
-            Self::PlaceSquare => format!("the square of the {place}"),
-            Self::PlaceSignedSquare => format!("the signed square of the {place}"),
-            Self::PlaceCube => format!("the cube of the {place}"),
-            Self::Yielding(a) => format!("the {place}, saturating beyond {}", n(a)),
-            Self::Wave(a) => format!("a wave over {place} of {}", n(a)),
-            Self::Bump(a, b) => format!("a peak at {} ± {}", n(a), n(b)),
-            Self::Step(a, b) => format!("a step at {} ± {}", n(a), n(b)),
-            Self::Time => "time".to_owned(),
-            Self::Fading(a) => format!("a decay over {} s", n(a)),
-        }
+        let constants = self.shape.constants.iter().zip(&self.constants);
+        let numbers = constants.map(|(constant, value)| {
+            let number = hyde_units::significant(*value, 3);
+            (constant.name.as_str(), number)
+        });
+        let variables = [("x", place), ("v", speed)];
+        let words = variables.into_iter().chain(numbers);
+        words.fold(self.shape.words.clone(), |text, (name, word)| {
+            text.replace(&format!("{{{name}}}"), &word)
+        })
     }
 
     /// Its constants.
-    pub(crate) fn constants(self) -> Vec<f64> {
-        match self {
-            Self::Speed
-            | Self::Magnitude
-            | Self::SignedSquare
-            | Self::Square
-            | Self::Cube
-            | Self::Place
-            | Self::PlaceMagnitude
-            | Self::PlaceSquare
-            | Self::PlaceSignedSquare
-            | Self::PlaceCube
-            | Self::Time => Vec::new(),
-            Self::Switching(a)
-            | Self::Turning(a)
-            | Self::Forwards(a)
-            | Self::Backwards(a)
-            | Self::Falling(a)
-            | Self::Bell(a)
-            | Self::Yielding(a)
-            | Self::Lagged(a)
-            | Self::Worked(a)
-            | Self::Wave(a)
-            | Self::Fading(a) => vec![a],
-            Self::SpeedBump(a, b) | Self::Bump(a, b) | Self::Step(a, b) => vec![a, b],
-        }
+    pub(crate) fn constants(&self) -> &[f64] {
+        &self.constants
     }
 
     /// The same shape with other constants.
-    pub(crate) fn with(self, c: &[f64]) -> Self {
-        let at = |index: usize| c.get(index).copied().unwrap_or(f64::NAN);
-        match self {
-            Self::Speed
-            | Self::Magnitude
-            | Self::SignedSquare
-            | Self::Square
-            | Self::Cube
-            | Self::Place
-            | Self::PlaceMagnitude
-            | Self::PlaceSquare
-            | Self::PlaceSignedSquare
-            | Self::PlaceCube
-            | Self::Time => self,
-            Self::Yielding(_) => Self::Yielding(at(0)),
-            Self::Switching(_) => Self::Switching(at(0)),
-            Self::Turning(_) => Self::Turning(at(0)),
-            Self::Forwards(_) => Self::Forwards(at(0)),
-            Self::Backwards(_) => Self::Backwards(at(0)),
-            Self::Falling(_) => Self::Falling(at(0)),
-            Self::Bell(_) => Self::Bell(at(0)),
-            Self::Lagged(_) => Self::Lagged(at(0)),
-            Self::Worked(_) => Self::Worked(at(0)),
-            Self::Wave(_) => Self::Wave(at(0)),
-            Self::Fading(_) => Self::Fading(at(0)),
-            Self::SpeedBump(..) => Self::SpeedBump(at(0), at(1)),
-            Self::Bump(..) => Self::Bump(at(0), at(1)),
-            Self::Step(..) => Self::Step(at(0), at(1)),
+    pub(crate) fn with(&self, constants: &[f64]) -> Self {
+        Self {
+            shape: Arc::clone(&self.shape),
+            constants: constants.to_vec(),
         }
+    }
+
+    /// Whether another one is the same shape, whatever its constants.
+    pub(crate) fn has_shape_of(&self, other: &Self) -> bool {
+        self.shape == other.shape
     }
 
     /// Whether what the records show is enough of the shape to tell its constants.
-    pub(crate) fn is_told(self, seen: &Seen, turns: bool) -> bool {
-        let travel = seen.travel();
-        let duration = seen.time.1 - seen.time.0;
-        let inside = |x: f64, (low, high): (f64, f64)| (low..=high).contains(&x);
-        match self {
-            Self::Speed
-            | Self::Magnitude
-            | Self::SignedSquare
-            | Self::Square
-            | Self::Cube
-            | Self::Place
-            | Self::PlaceMagnitude
-            | Self::PlaceSquare
-            | Self::PlaceSignedSquare
-            | Self::PlaceCube
-            | Self::Time => true,
-            Self::Yielding(x0) => x0 <= 2.0 * travel,
-            Self::Switching(vs)
-            | Self::Turning(vs)
-            | Self::Forwards(vs)
-            | Self::Backwards(vs)
-            | Self::Falling(vs)
-            | Self::Bell(vs) => vs <= 2.0 * seen.speed,
-            Self::SpeedBump(centre, width) => {
-                inside(centre, (0.0, seen.speed)) && width <= seen.speed
-            }
-            Self::Lagged(tau) | Self::Worked(tau) => tau <= 0.3 * duration,
-            Self::Fading(tau) => tau <= 3.0 * duration,
-            Self::Wave(p) => wave_number(p, turns) * travel >= std::f64::consts::PI,
-            Self::Bump(centre, width) | Self::Step(centre, width) => {
-                inside(centre, seen.place) && width <= 0.5 * travel
-            }
+    pub(crate) fn is_told(&self, seen: &Seen) -> bool {
+        let constants = self.shape.constants.iter().zip(&self.constants);
+        constants.into_iter().all(|(constant, value)| {
+            let [from, to] = constant.range.map(|bound| self.number(bound, seen));
+            (from..=to).contains(value)
+        })
+    }
+
+    /// The steps that a search for its constants begins with.
+    pub(crate) fn steps(&self, seen: &Seen) -> impl Iterator<Item = Step> {
+        let constants = self.shape.constants.iter();
+        constants.map(|constant| match constant.step {
+            LawStep::Added(step) => Step::Added(self.number(step, seen)),
+            LawStep::Ratio(step) => Step::Ratio(self.number(step, seen)),
+        })
+    }
+
+    /// The names of its values where there are several, as of a sine and a cosine; one without a name otherwise.
+    pub(crate) fn values(&self) -> Vec<&str> {
+        match self.shape.outputs.as_slice() {
+            [_] => vec![""],
+            several => several.iter().map(|(name, _)| name.as_str()).collect(),
         }
     }
 
-    /// Whether it has a sine and a cosine.
-    pub(crate) fn is_pair(self) -> bool {
-        matches!(self, Self::Wave(_))
+    /// Its values along a record: a list for each.
+    pub(crate) fn along(&self, course: &Course, seen: &Seen) -> Vec<Vec<f64>> {
+        let mut filtered: Vec<Vec<f64>> = Vec::new();
+        for state in &self.shape.states {
+            let time_constant = self.number(state.time_constant.value, seen);
+            let input = self.column(&state.input, course, seen, &filtered);
+            filtered.push(late(&course.time, time_constant, &input));
+        }
+        let outputs = self.shape.outputs.iter();
+        outputs
+            .map(|(_, text)| self.column(text, course, seen, &filtered))
+            .collect()
     }
 
-    /// Its values along a record: one list, of a wave two.
-    pub(crate) fn along(self, course: &Course, turns: bool, scales: &Scales) -> Vec<Vec<f64>> {
-        let of = |list: &[f64], f: &dyn Fn(f64) -> f64| list.iter().map(|&x| f(x)).collect();
-        let speed = |f: &dyn Fn(f64) -> f64| vec![of(&course.speed, f)];
-        let place = |f: &dyn Fn(f64) -> f64| vec![of(&course.place, f)];
-        let time = |f: &dyn Fn(f64) -> f64| vec![of(&course.time, f)];
-        let (v1, x1, t1) = (scales.speed, scales.place, scales.time);
-        match self {
-            Self::Speed => speed(&|v| v / v1),
-            Self::Magnitude => speed(&|v| v.abs() / v1),
-            Self::SignedSquare => speed(&|v| v * v.abs() / (v1 * v1)),
-            Self::Square => speed(&|v| v * v / (v1 * v1)),
-            Self::Cube => speed(&|v| (v / v1).powi(3)),
-            Self::Switching(vs) => speed(&|v| v / (v.abs() + vs)),
-            Self::Turning(vs) => speed(&|v| (v / vs).tanh()),
-            Self::Forwards(vs) => speed(&|v| 0.5 + 0.5 * v / (v.abs() + vs)),
-            Self::Backwards(vs) => speed(&|v| 0.5 - 0.5 * v / (v.abs() + vs)),
-            Self::Falling(vs) => speed(&|v| (-v.abs() / vs).exp()),
-            Self::Bell(vs) => speed(&|v| (-(v / vs) * (v / vs)).exp()),
-            Self::SpeedBump(v0, width) => speed(&|v| (-((v.abs() - v0) / width).powi(2)).exp()),
-            Self::Lagged(tau) => vec![late(course, tau, &|v| v / v1)],
-            Self::Worked(tau) => vec![late(course, tau, &|v| v.abs() / v1)],
-            Self::Place => place(&|x| x / x1),
-            Self::PlaceMagnitude => place(&|x| x.abs() / x1),
-            Self::PlaceSquare => place(&|x| (x / x1) * (x / x1)),
-            Self::PlaceSignedSquare => place(&|x| x * x.abs() / (x1 * x1)),
-            Self::PlaceCube => place(&|x| (x / x1).powi(3)),
-            Self::Yielding(x0) => place(&|x| x / (x.abs() + x0)),
-            Self::Wave(p) => {
-                let k = wave_number(p, turns);
-                vec![
-                    of(&course.place, &|x| (k * x).sin()),
-                    of(&course.place, &|x| (k * x).cos()),
-                ]
+    fn column(
+        &self,
+        text: &LawText,
+        course: &Course,
+        seen: &Seen,
+        filtered: &[Vec<f64>],
+    ) -> Vec<f64> {
+        let leaf = |leaf: Expr| -> Result<Along<'_>, Infallible> {
+            Ok(match self.shape.input(leaf) {
+                Some(LawInput::Variable(LawAxis::Speed)) => Along::Rows(&course.speed),
+                Some(LawInput::Variable(LawAxis::Place)) => Along::Rows(&course.place),
+                Some(LawInput::Variable(LawAxis::Time)) => Along::Rows(&course.time),
+                Some(LawInput::State(number)) => match filtered.get(number) {
+                    Some(values) => Along::Rows(values),
+                    None => Along::Same(f64::NAN),
+                },
+                Some(
+                    LawInput::Round(_)
+                    | LawInput::Least(_)
+                    | LawInput::Greatest(_)
+                    | LawInput::Constant(_),
+                )
+                | None => Along::Same(self.of_leaf(leaf, seen)),
+            })
+        };
+        let Ok(values) = self.shape.exprs.column(text.value, course.time.len(), leaf);
+        values
+    }
+
+    /// The value of an expression of its constants and of what records show.
+    fn number(&self, expression: ExprId, seen: &Seen) -> f64 {
+        let leaf = |leaf: Expr| -> Result<f64, Infallible> { Ok(self.of_leaf(leaf, seen)) };
+        let Ok(value) = self.shape.exprs.evaluate(expression, leaf);
+        value
+    }
+
+    /// The value of an input that is the same in every row.
+    fn of_leaf(&self, leaf: Expr, seen: &Seen) -> f64 {
+        let scales = seen.scales();
+        match self.shape.input(leaf) {
+            Some(LawInput::Constant(number)) => {
+                self.constants.get(number).copied().unwrap_or(f64::NAN)
             }
-            Self::Bump(x0, width) => place(&|x| (-((x - x0) / width).powi(2)).exp()),
-            Self::Step(x0, width) => place(&|x| 0.5 + 0.5 * ((x - x0) / width).tanh()),
-            Self::Time => time(&|t| t / t1),
-            Self::Fading(tau) => time(&|t| (-t / tau).exp()),
+            Some(LawInput::Round(LawAxis::Speed)) => scales.speed,
+            Some(LawInput::Round(LawAxis::Place)) => scales.place,
+            Some(LawInput::Round(LawAxis::Time)) => scales.time,
+            Some(LawInput::Least(LawAxis::Speed)) => -seen.speed,
+            Some(LawInput::Least(LawAxis::Place)) => seen.place.0,
+            Some(LawInput::Least(LawAxis::Time)) => seen.time.0,
+            Some(LawInput::Greatest(LawAxis::Speed)) => seen.speed,
+            Some(LawInput::Greatest(LawAxis::Place)) => seen.place.1,
+            Some(LawInput::Greatest(LawAxis::Time)) => seen.time.1,
+            Some(LawInput::Variable(_) | LawInput::State(_)) | None => f64::NAN,
         }
     }
 
-    /// How it is written, the names of its constants given: one expression, of a wave two.
-    pub(crate) fn expressions(self, kind: &Kind, names: &[String]) -> Vec<String> {
-        let (x, v) = (&kind.place.text, &kind.speed.text);
-        let (x1, v1, t1) = (&kind.place.round, &kind.speed.round, &kind.round_time);
-        let name = |index: usize| names.get(index).map_or("", String::as_str);
-        let (a, b) = (name(0), name(1));
-        let abs = format!("noEvent(abs({v}))");
-        let one = match self {
-            Self::Speed => format!("{v}/{v1}"),
-            Self::Magnitude => format!("{abs}/{v1}"),
-            Self::SignedSquare => format!("{v}*{abs}/{v1}^2"),
-            Self::Square => format!("({v}/{v1})^2"),
-            Self::Cube => format!("({v}/{v1})^3"),
-            Self::Switching(_) => format!("{v}/({abs} + {a})"),
-            Self::Turning(_) => format!("tanh({v}/{a})"),
-            Self::Forwards(_) => format!("(1 + {v}/({abs} + {a}))/2"),
-            Self::Backwards(_) => format!("(1 - {v}/({abs} + {a}))/2"),
-            Self::Falling(_) => format!("exp(-{abs}/{a})"),
-            Self::Bell(_) => format!("exp(-({v}/{a})^2)"),
-            Self::SpeedBump(..) => format!("exp(-(({abs} - {a})/{b})^2)"),
-            Self::Lagged(_) => format!("late_{a}/{v1}"),
-            Self::Worked(_) => format!("worked_{a}/{v1}"),
-            Self::Place => format!("{x}/{x1}"),
-            Self::PlaceMagnitude => format!("noEvent(abs({x}))/{x1}"),
-            Self::PlaceSquare => format!("({x}/{x1})^2"),
-            Self::PlaceSignedSquare => format!("{x}*noEvent(abs({x}))/{x1}^2"),
-            Self::PlaceCube => format!("({x}/{x1})^3"),
-            Self::Yielding(_) => format!("{x}/(noEvent(abs({x})) + {a})"),
-            Self::Wave(_) if kind.turns() => {
-                return vec![format!("sin({a}*{x})"), format!("cos({a}*{x})")];
-            }
-            Self::Wave(_) => {
-                return vec![format!("sin(2*pi*{x}/{a})"), format!("cos(2*pi*{x}/{a})")];
-            }
-            Self::Bump(..) => format!("exp(-(({x} - {a})/{b})^2)"),
-            Self::Step(..) => format!("(1 + tanh(({x} - {a})/{b}))/2"),
-            Self::Time => format!("time/{t1}"),
-            Self::Fading(_) => format!("exp(-time/{a})"),
-        };
-        vec![one]
+    /// How its values are written, the names of its constants given.
+    pub(crate) fn expressions(&self, kind: &Kind, names: &[String]) -> Vec<String> {
+        let outputs = self.shape.outputs.iter();
+        let texts = outputs.map(|(_, text)| match text.is_sum {
+            true => format!("({})", self.text(text, kind, names)),
+            false => self.text(text, kind, names),
+        });
+        texts.collect()
     }
 
-    /// What else has to be written for it: a filter.
-    pub(crate) fn equations(self, kind: &Kind, names: &[String]) -> (String, String) {
-        let (v, unit) = (&kind.speed.text, &kind.speed.unit);
-        let (name, input, what) = match self {
-            Self::Lagged(_) => ("late", v.clone(), "the speed with a lag"),
-            Self::Worked(_) => {
-                let what = "recent motion, filtered";
-                ("worked", format!("noEvent(abs({v}))"), what)
-            }
-            Self::Speed
-            | Self::Magnitude
-            | Self::SignedSquare
-            | Self::Square
-            | Self::Cube
-            | Self::Switching(_)
-            | Self::Turning(_)
-            | Self::Forwards(_)
-            | Self::Backwards(_)
-            | Self::Falling(_)
-            | Self::Bell(_)
-            | Self::SpeedBump(..)
-            | Self::Place
-            | Self::PlaceMagnitude
-            | Self::PlaceSquare
-            | Self::PlaceSignedSquare
-            | Self::PlaceCube
-            | Self::Yielding(_)
-            | Self::Wave(_)
-            | Self::Bump(..)
-            | Self::Step(..)
-            | Self::Time
-            | Self::Fading(_) => return (String::new(), String::new()),
+    /// What else has to be written for it: the filters, declared and determined.
+    pub(crate) fn equations(&self, kind: &Kind, names: &[String]) -> (String, String) {
+        let (mut declared, mut equations) = (String::new(), String::new());
+        for (number, state) in self.shape.states.iter().enumerate() {
+            let name = self.state(number, names);
+            let (unit, doc) = (unit(&state.unit, kind), &state.doc);
+            let [time_constant, input] =
+                [&state.time_constant, &state.input].map(|text| self.text(text, kind, names));
+            declared.push_str(&format!(
+                "  Real {name}(start = 0 [{unit}], fixed = true) \"{doc}\";\n"
+            ));
+            equations.push_str(&format!(
+                "  {time_constant}*der({name}) = {input} - {name};\n"
+            ));
+        }
+        (declared, equations)
+    }
+
+    fn text(&self, text: &LawText, kind: &Kind, names: &[String]) -> String {
+        let named = |number: &usize| match self.shape.inputs.get(*number)? {
+            LawInput::Variable(LawAxis::Speed) => Some(kind.speed.text.clone()),
+            LawInput::Variable(LawAxis::Place) => Some(kind.place.text.clone()),
+            LawInput::Variable(LawAxis::Time) => Some("time".to_owned()),
+            LawInput::Round(LawAxis::Speed) => Some(kind.speed.round.clone()),
+            LawInput::Round(LawAxis::Place) => Some(kind.place.round.clone()),
+            LawInput::Round(LawAxis::Time) => Some(kind.round_time.clone()),
+            LawInput::Constant(number) => names.get(*number).cloned(),
+            LawInput::State(number) => Some(self.state(*number, names)),
+            // No text of a shape has them.
+            LawInput::Least(_) | LawInput::Greatest(_) => None,
         };
-        let tau = names.first().map_or("", String::as_str);
-        (
-            format!("  Real {name}_{tau}(start = 0 [{unit}], fixed = true) \"{what}\";\n"),
-            format!("  {tau}*der({name}_{tau}) = {input} - {name}_{tau};\n"),
-        )
+        let pieces = text.pieces.iter().map(|piece| match piece {
+            LawPiece::Letters(letters) => letters.clone(),
+            LawPiece::Input(number) => named(number).unwrap_or_default(),
+        });
+        pieces.collect()
+    }
+
+    /// What a filtered value is called: by its first constant there is one of that name.
+    fn state(&self, number: usize, names: &[String]) -> String {
+        let own = self.shape.states.get(number);
+        let own = own.map_or("", |state| &state.name);
+        match names.first() {
+            Some(first) => format!("{own}_{first}"),
+            None => own.to_owned(),
+        }
     }
 
     /// Its constants as they are written, with the ranges that a fit may search.
-    pub(crate) fn written(self, kind: &Kind, seen: &Seen) -> Vec<Constant> {
-        let (place, speed) = (&kind.place.unit, &kind.speed.unit);
-        let positive = |stem, value: f64, unit: &NamedUnit| Constant {
-            stem,
-            value,
-            range: (0.2 * value, 5.0 * value),
-            unit: unit.clone(),
-        };
-        match self {
-            Self::Speed
-            | Self::Magnitude
-            | Self::SignedSquare
-            | Self::Square
-            | Self::Cube
-            | Self::Place
-            | Self::PlaceMagnitude
-            | Self::PlaceSquare
-            | Self::PlaceSignedSquare
-            | Self::PlaceCube
-            | Self::Time => Vec::new(),
-            Self::Switching(a)
-            | Self::Turning(a)
-            | Self::Forwards(a)
-            | Self::Backwards(a)
-            | Self::Falling(a)
-            | Self::Bell(a) => {
-                vec![positive("vs", a, speed)]
+    pub(crate) fn written(&self, kind: &Kind, seen: &Seen) -> Vec<Constant> {
+        let constants = self.shape.constants.iter().zip(&self.constants);
+        let written = constants.map(|(constant, value)| {
+            let [from, to] = constant.limits.map(|bound| self.number(bound, seen));
+            Constant {
+                stem: constant.name.clone(),
+                value: *value,
+                range: (from, to),
+                unit: unit(&constant.unit, kind),
             }
-            Self::Yielding(a) => vec![positive("x0", a, place)],
-            Self::SpeedBump(centre, width) => vec![
-                Constant {
-                    range: (0.0, seen.speed),
-                    ..positive("v0", centre, speed)
-                },
-                positive("dv", width, speed),
-            ],
-            Self::Lagged(tau) | Self::Worked(tau) | Self::Fading(tau) => {
-                vec![positive("tau", tau, &NamedUnit::usual(Dimension::TIME))]
-            }
-            Self::Wave(p) => {
-                let wave = match kind.turns() {
-                    true => positive("N", p, &NamedUnit::usual(Dimension::DIMENSIONLESS)),
-                    false => positive("period", p, place),
-                };
-                vec![Constant {
-                    range: (0.7 * p, 1.4 * p),
-                    ..wave
-                }]
-            }
-            Self::Bump(centre, width) | Self::Step(centre, width) => vec![
-                Constant {
-                    range: (seen.place.0, seen.place.1),
-                    ..positive("x0", centre, place)
-                },
-                positive("width", width, place),
-            ],
+        });
+        written.collect()
+    }
+
+    /// The mark that it leaves.
+    pub(crate) fn mark(&self, kind: &Kind, names: &[String]) -> String {
+        let (mark, of) = &self.shape.mark;
+        let of = of.and_then(|number| names.get(number));
+        match (mark.as_str(), of) {
+            (mark, Some(name)) => format!("{mark}({name})"),
+            ("position", None) => kind.mark_of_place().to_owned(),
+            (mark, None) => mark.to_owned(),
         }
     }
 
     /// Which of the round numbers it is written with: speed, place, time.
-    pub(crate) fn scales(self) -> [bool; 3] {
-        match self {
-            Self::Speed
-            | Self::Magnitude
-            | Self::SignedSquare
-            | Self::Square
-            | Self::Cube
-            | Self::Lagged(_)
-            | Self::Worked(_) => [true, false, false],
-            Self::Place
-            | Self::PlaceMagnitude
-            | Self::PlaceSquare
-            | Self::PlaceSignedSquare
-            | Self::PlaceCube => [false, true, false],
-            Self::Time => [false, false, true],
-            Self::Switching(_)
-            | Self::Turning(_)
-            | Self::Forwards(_)
-            | Self::Backwards(_)
-            | Self::Falling(_)
-            | Self::Bell(_)
-            | Self::SpeedBump(..)
-            | Self::Yielding(_)
-            | Self::Wave(_)
-            | Self::Bump(..)
-            | Self::Step(..)
-            | Self::Fading(_) => [false; 3],
-        }
+    pub(crate) fn scales(&self) -> [bool; 3] {
+        AXES.map(|axis| self.shape.reads(LawInput::Round(axis)))
     }
 }
 
-/// What a filter of the first order makes of a function of speed.
-fn late(course: &Course, tau: f64, of: &dyn Fn(f64) -> f64) -> Vec<f64> {
+/// The unit of a quantity at a kind of site.
+fn unit(of: &LawUnit, kind: &Kind) -> NamedUnit {
+    match of {
+        LawUnit::Of(LawAxis::Speed) => kind.speed.unit.clone(),
+        LawUnit::Of(LawAxis::Place) => kind.place.unit.clone(),
+        LawUnit::Of(LawAxis::Time) => NamedUnit::usual(Dimension::TIME),
+        LawUnit::Own(unit) => unit.clone(),
+    }
+}
+
+/// What a filter of the first order makes of a course.
+fn late(time: &[f64], time_constant: f64, input: &[f64]) -> Vec<f64> {
     let mut state = 0.0;
-    let mut last = course.time.first().copied().unwrap_or(0.0);
-    let rows = course.speed.iter().zip(&course.time);
-    rows.map(|(&v, &t)| {
-        state += (1.0 - (-(t - last) / tau).exp()) * (of(v) - state);
+    let mut last = time.first().copied().unwrap_or(0.0);
+    let rows = input.iter().zip(time);
+    rows.map(|(value, &t)| {
+        state += (1.0 - (-(t - last) / time_constant).exp()) * (value - state);
         last = t;
         state
     })
     .collect()
-}
-
-fn wave_number(p: f64, turns: bool) -> f64 {
-    if turns { p } else { std::f64::consts::TAU / p }
 }

@@ -57,28 +57,34 @@ impl Felt {
 
     /// The same of several terms, which are run side by side.
     pub(crate) fn columns_of(&self, terms: &[Summand]) -> Vec<Vec<Vec<f64>>> {
-        let turns = self.site.kind.turns();
-        let each = self.carriers.iter().map(|carrier| {
-            let along = |term: &Summand| term.along(carrier, turns, &self.scales);
-            let courses: Vec<Vec<f64>> = terms.iter().flat_map(along).collect();
-            carrier.changes(&courses)
-        });
-        let mut lists = joined(each).into_iter();
+        let along = |carrier: &Carrier| {
+            let along = |term: &Summand| term.along(carrier, &self.seen);
+            terms.iter().flat_map(along).collect()
+        };
+        let mut lists = self.changes_along(&along).into_iter();
         let own = |term: &Summand| lists.by_ref().take(term.sizes.len()).collect();
         terms.iter().map(own).collect()
+    }
+
+    /// The changes of innovations by forces given for each record.
+    pub(crate) fn changes_along(
+        &self,
+        forces: &dyn Fn(&Carrier) -> Vec<Vec<f64>>,
+    ) -> Vec<Vec<f64>> {
+        let carriers = self.carriers.iter();
+        joined(carriers.map(|carrier| carrier.changes(&forces(carrier))))
     }
 
     /// What a term's columns have in common with given changes: a row a size of the term. `forces` are those changes as
     /// [`Self::common`] gives them.
     pub(crate) fn common_with(&self, term: &Summand, forces: &[Vec<Vec<f64>>]) -> DMatrix<f64> {
-        let turns = self.site.kind.turns();
         let count = forces.first().map_or(0, Vec::len);
         let mut common = DMatrix::zeros(term.sizes.len(), count);
         if count == 0 {
             return common;
         }
         for (carrier, forces) in self.carriers.iter().zip(forces) {
-            let courses = term.along(carrier, turns, &self.scales);
+            let courses = term.along(carrier, &self.seen);
             for (i, course) in courses.iter().enumerate() {
                 for (j, force) in forces.iter().enumerate() {
                     common[(i, j)] += dot(course, force);

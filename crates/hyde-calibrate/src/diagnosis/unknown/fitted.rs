@@ -62,7 +62,7 @@ impl Fitting<'_> {
     /// law can, or where gains fall so slowly that its terms are those of a series.
     pub(super) fn law(&self) -> Option<(Trial, Selected)> {
         let gate = self.gates.of_one(&self.stage.solution);
-        let own = select(self.felt, self.projection, gate, self.wanted.terms, None)?;
+        let own = self.select(gate, None)?;
         if own.gains[0] < self.wanted.least {
             return None;
         }
@@ -76,6 +76,19 @@ impl Fitting<'_> {
             let nearly = || excess(fitted) <= LEFT * excess(&self.stage.solution);
             !self.wanted.all || explained(fitted) || nearly()
         })
+    }
+
+    /// Selects terms, the first one if it is not given.
+    fn select(&self, gate: f64, first: Option<(Summand, f64)>) -> Option<Selected> {
+        let shapes = self.inquiry.shapes;
+        select(
+            shapes,
+            self.felt,
+            self.projection,
+            gate,
+            self.wanted.terms,
+            first,
+        )
     }
 
     /// Selected anew where another first term is better once it is fitted.
@@ -112,7 +125,7 @@ impl Fitting<'_> {
             let mut others = std::mem::take(&mut own.others);
             others.retain(|(term, _)| *term != rival.0);
             others.insert(0, (first, gain));
-            let again = select(felt, projection, gate, self.wanted.terms, Some(rival));
+            let again = self.select(gate, Some(rival));
             trial = trial.filter(|_| again.is_some());
             own = Selected {
                 others,

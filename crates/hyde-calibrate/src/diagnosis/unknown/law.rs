@@ -2,13 +2,13 @@
 
 use super::factor::{Constant, Factor};
 use super::latent::Carrier;
-use super::seen::{Scales, Seen};
-use super::site::{Kind, Site, Written};
+use super::seen::Seen;
+use super::site::{Site, Written};
 use crate::diagnosis::{Hypothesis, Knob};
 use hyde_units::{Dimension, NamedUnit, significant};
 use std::fmt::Write as _;
 
-/// A product of shapes with one size, or of a wave two.
+/// A product of shapes with one size, or as many as its shapes have values: of a wave two.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Summand {
     /// Its shapes; none is a constant.
@@ -30,16 +30,17 @@ pub struct Law {
 
 impl Summand {
     pub(crate) fn new(factors: &[Factor]) -> Self {
-        let pair = factors.iter().any(|factor| factor.is_pair());
+        let sizes = factors.iter().map(|factor| factor.values().len());
         Self {
             factors: factors.to_vec(),
-            sizes: vec![0.0; if pair { 2 } else { 1 }],
+            sizes: vec![0.0; sizes.product()],
         }
     }
 
     /// Constants of all its shapes.
     pub(crate) fn constants(&self) -> Vec<f64> {
-        self.factors.iter().flat_map(|f| f.constants()).collect()
+        let factors = self.factors.iter();
+        factors.flat_map(Factor::constants).copied().collect()
     }
 
     pub(crate) fn with(&self, constants: &[f64]) -> Self {
@@ -56,10 +57,10 @@ impl Summand {
     }
 
     /// Its course along a record a unit of each size.
-    pub(crate) fn along(&self, carrier: &Carrier, turns: bool, scales: &Scales) -> Vec<Vec<f64>> {
+    pub(crate) fn along(&self, carrier: &Carrier, seen: &Seen) -> Vec<Vec<f64>> {
         let mut lists = vec![vec![1.0; carrier.course.time.len()]];
         for factor in &self.factors {
-            let own = factor.along(&carrier.course, turns, scales);
+            let own = factor.along(&carrier.course, seen);
             lists = own
                 .iter()
                 .flat_map(|one| {
@@ -120,10 +121,11 @@ impl Law {
         let unit = &kind.value;
         for (number, term) in self.terms.iter().enumerate() {
             let mut products = vec![String::new()];
+            let mut endings = vec![String::new()];
             for factor in &term.factors {
                 let mut names = Vec::new();
                 for constant in factor.written(kind, &self.seen) {
-                    let own = taken.free(constant.stem);
+                    let own = taken.free(&constant.stem);
                     let _ = writeln!(
                         text,
                         "  shape Real {own} = {} in {};",
@@ -139,7 +141,7 @@ impl Law {
                 for (used, own) in used.iter_mut().zip(factor.scales()) {
                     *used |= own;
                 }
-                let mark = mark(*factor, kind, &names);
+                let mark = factor.mark(kind, &names);
                 if !signature.contains(&mark) {
                     signature.push(mark);
                 }
@@ -152,15 +154,18 @@ impl Law {
                             .map(move |product| format!("{product}*{one}"))
                     })
                     .collect();
+                let values = factor.values();
+                endings = values
+                    .iter()
+                    .flat_map(|value| endings.iter().map(move |ending| format!("{ending}{value}")))
+                    .collect();
             }
-            for (which, product) in products.iter().enumerate() {
+            for (which, (product, ending)) in products.iter().zip(&endings).enumerate() {
                 let mut own = kind.size.clone();
                 if !single {
                     let _ = write!(own, "{}", number + 1);
                 }
-                if products.len() == 2 {
-                    own.push(['s', 'c'][which]);
-                }
+                own.push_str(ending);
                 let value = term.sizes.get(which).copied().unwrap_or(0.0);
                 let most = up(20.0
                     * value
@@ -228,36 +233,6 @@ impl Law {
             resonant: None,
         };
         (written, hypothesis)
-    }
-}
-
-/// The mark that a shape leaves.
-fn mark(factor: Factor, kind: &Kind, names: &[String]) -> String {
-    let first = names.first().map_or("", String::as_str);
-    match factor {
-        Factor::Speed
-        | Factor::Magnitude
-        | Factor::SignedSquare
-        | Factor::Square
-        | Factor::Cube
-        | Factor::Switching(_)
-        | Factor::Turning(_)
-        | Factor::Worked(_)
-        | Factor::Falling(_)
-        | Factor::Bell(_)
-        | Factor::SpeedBump(..)
-        | Factor::Lagged(_) => "velocity".to_owned(),
-        Factor::Forwards(_) | Factor::Backwards(_) => "direction".to_owned(),
-        Factor::Wave(_) if kind.turns() => format!("angle({first})"),
-        Factor::Wave(_) | Factor::Bump(..) | Factor::Step(..) => format!("position({first})"),
-        Factor::Place
-        | Factor::PlaceMagnitude
-        | Factor::PlaceSquare
-        | Factor::PlaceSignedSquare
-        | Factor::PlaceCube
-        | Factor::Yielding(_) => kind.mark_of_place().to_owned(),
-        Factor::Time => "offset".to_owned(),
-        Factor::Fading(_) => format!("time({first})"),
     }
 }
 

@@ -9,6 +9,8 @@ use super::latent::Course;
 use super::regression::best_wave;
 use super::site::{Kind, Site};
 use crate::diagnosis::projection::Projection;
+use hyde_ir::LawShape;
+use std::sync::Arc;
 
 /// What a force may be a function of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,7 +86,7 @@ const KNOTS: usize = 16;
 const SHIFTS: usize = 19;
 
 /// The map of a site, without bands.
-pub(crate) fn map(felt: &Felt, projection: &Projection) -> Map {
+pub(crate) fn map(shapes: &[Arc<LawShape>], felt: &Felt, projection: &Projection) -> Map {
     let panels = variables(felt).into_iter().map(|variable| {
         let (knots, columns) = columns(felt, variable);
         let answer = projection.answer(&columns);
@@ -101,7 +103,7 @@ pub(crate) fn map(felt: &Felt, projection: &Projection) -> Map {
     Map {
         site: felt.site.clone(),
         panels,
-        waves: best_wave(felt, projection),
+        waves: best_wave(shapes, felt, projection),
     }
 }
 

@@ -49,7 +49,7 @@ impl<'a> Places<'a> {
         };
         let felt = |site: &Site| {
             let felt = Felt::new(&ground, stage, site, inquiry.author)?;
-            let map = map::map(&felt, &projection);
+            let map = map::map(inquiry.shapes, &felt, &projection);
             Some((felt, map))
         };
         let mut sites: Vec<(Felt, Map)> = inquiry.sites.par_iter().filter_map(felt).collect();

@@ -1,15 +1,17 @@
 //! Forward selection of a law's terms in the space of innovations, all parameters answering (orthogonal matching pursuit:
 //! Pati, Rezaiifar and Krishnaprasad, Asilomar 1993), the constants of each term refined before the next.
 
-use super::factor::Factor;
+use super::factor::{Factor, Step, is_of_speed, is_tried};
 use super::felt::Felt;
+use super::latent::Carrier;
 use super::law::{Law, Summand};
-use super::seen::Seen;
 use crate::diagnosis::projection::{Projection, Sums};
 use crate::diagnosis::search::Gates;
 use crate::linear::SIDE_BY_SIDE;
+use hyde_ir::LawShape;
 use rayon::prelude::*;
 use std::cell::LazyCell;
+use std::sync::Arc;
 
 /// Terms of a law at most.
 pub(crate) const MOST_TERMS: usize = 3;
@@ -18,9 +20,8 @@ const LEAST_PART: f64 = 0.01;
 /// Terms whose constants are refined in a round, and the part of the best one's gain that they must have before.
 const REFINED: usize = 8;
 const PROMISING: f64 = 0.4;
-/// Wave numbers tried of a wave alone, and of one times another shape.
-const WAVES: usize = 240;
-const MIXED_WAVES: usize = 120;
+/// Two shapes are multiplied if their costs are this together at most.
+const MOST_COST: u32 = 2;
 
 /// A law with what it gains in the linear answer.
 #[derive(Clone, Debug)]
@@ -36,13 +37,14 @@ pub(crate) struct Selected {
 
 /// Selects terms until the next one gains too little, so many at most; the first may be given, with what it gains.
 pub(crate) fn select(
+    shapes: &[Arc<LawShape>],
     felt: &Felt,
     projection: &Projection,
     gate: f64,
     most_terms: usize,
     first: Option<(Summand, f64)>,
 ) -> Option<Selected> {
-    let dictionary = dictionary(felt);
+    let dictionary = dictionary(shapes, felt);
     // Of terms alone, as many as are run side by side at a time; nothing where the first one is given and no other asked.
     let each = LazyCell::new(|| -> Vec<Sums> {
         let several = dictionary.par_chunks(SIDE_BY_SIDE);
@@ -174,7 +176,7 @@ fn same_form(a: &Summand, b: &Summand) -> bool {
         && a.factors
             .iter()
             .zip(&b.factors)
-            .all(|(a, b)| std::mem::discriminant(a) == std::mem::discriminant(b))
+            .all(|(a, b)| a.has_shape_of(b))
 }
 
 /// Constants by which a term gains most: a pattern search (Hooke and Jeeves, J. ACM 8, 1961, 212).
@@ -185,32 +187,26 @@ fn refine(
     gain_of: &(dyn Fn(&Summand) -> f64 + Sync),
 ) -> (Summand, f64) {
     let (mut best, mut most) = (term.clone(), gain);
-    let mut steps = first_steps(term, &felt.seen, felt.site.kind.turns());
-    let first = steps.clone();
+    let factors = term.factors.iter();
+    let first: Vec<Step> = factors
+        .flat_map(|factor| factor.steps(&felt.seen))
+        .collect();
+    // What is left of each first step.
+    let mut parts = vec![1.0; first.len()];
     for _ in 0..40 {
-        if steps
-            .iter()
-            .zip(&first)
-            .all(|(step, first)| *step < 0.02 * first)
-        {
+        if parts.iter().all(|part| *part < 0.02) {
             break;
         }
-        for which in 0..steps.len() {
+        for (which, (step, part)) in first.iter().zip(&mut parts).enumerate() {
             let mut moved = false;
             for sign in [1.0, -1.0] {
                 let mut constants = best.constants();
-                let shift = sign * steps[which];
-                if is_centre(&best, which) {
-                    constants[which] += shift;
-                } else {
-                    constants[which] *= shift.exp();
+                match step {
+                    Step::Added(step) => constants[which] += sign * *part * step,
+                    Step::Ratio(step) => constants[which] *= (sign * *part * step).exp(),
                 }
                 let new = best.with(&constants);
-                if !new
-                    .factors
-                    .iter()
-                    .all(|f| f.is_told(&felt.seen, felt.site.kind.turns()))
-                {
+                if !new.factors.iter().all(|factor| factor.is_told(&felt.seen)) {
                     continue;
                 }
                 let gain = gain_of(&new);
@@ -220,192 +216,79 @@ fn refine(
                 }
             }
             if !moved {
-                steps[which] *= 0.5;
+                *part *= 0.5;
             }
         }
     }
     (best, most)
 }
 
-/// Whether a constant is a place or a speed about which something is, which may be 0.
-fn is_centre(term: &Summand, which: usize) -> bool {
-    let mut number = 0;
-    for factor in &term.factors {
-        let own = factor.constants().len();
-        if which < number + own {
-            return own == 2 && which == number;
-        }
-        number += own;
-    }
-    false
-}
-
-/// The steps that a search for constants begins with: half of a grid's.
-fn first_steps(term: &Summand, seen: &Seen, turns: bool) -> Vec<f64> {
-    let mut steps = Vec::new();
-    for factor in &term.factors {
-        let constants = factor.constants();
-        match factor {
-            Factor::Wave(p) if turns => {
-                steps.push(std::f64::consts::PI / (2.0 * seen.travel() * p));
-            }
-            Factor::Wave(p) => steps.push(p / (4.0 * seen.travel())),
-            Factor::SpeedBump(_, width) | Factor::Bump(_, width) | Factor::Step(_, width) => {
-                steps.extend([0.5 * width, 0.3]);
-            }
-            Factor::Speed
-            | Factor::Magnitude
-            | Factor::SignedSquare
-            | Factor::Square
-            | Factor::Cube
-            | Factor::Place
-            | Factor::PlaceMagnitude
-            | Factor::PlaceSquare
-            | Factor::PlaceSignedSquare
-            | Factor::PlaceCube
-            | Factor::Yielding(_)
-            | Factor::Time
-            | Factor::Switching(_)
-            | Factor::Turning(_)
-            | Factor::Forwards(_)
-            | Factor::Backwards(_)
-            | Factor::Falling(_)
-            | Factor::Bell(_)
-            | Factor::Lagged(_)
-            | Factor::Worked(_)
-            | Factor::Fading(_) => steps.extend(constants.iter().map(|_| 0.3)),
-        }
-    }
-    steps
-}
-
-/// The terms that are tried at a site: shapes of speed times shapes of place or time.
-fn dictionary(felt: &Felt) -> Vec<Summand> {
-    let kind = &felt.site.kind;
+/// The terms that are tried at a site: shapes of speed times shapes of something else.
+fn dictionary(shapes: &[Arc<LawShape>], felt: &Felt) -> Vec<Summand> {
     let seen = &felt.seen;
-    let parts = |count: i32, least: f64| -> Vec<f64> {
-        // From a part of the speed up to it, in equal ratios.
-        (0..count)
-            .map(|k| seen.speed * least.powf(1.0 - f64::from(k) / f64::from(count - 1)))
-            .collect()
-    };
-    let mut speeds: Vec<Vec<Factor>> = vec![Vec::new()];
-    // A friction in proportion to speed is a force, and tried as such.
-    if !kind.is_grip() {
-        speeds.extend([vec![Factor::Speed], vec![Factor::Magnitude]]);
+    let tried = shapes
+        .iter()
+        .filter(|shape| is_tried(shape, &felt.site.kind));
+    let (of_speed, others): (Vec<_>, Vec<_>) = tried.partition(|shape| is_of_speed(shape));
+    let few = |shape: &LawShape| shape.few.unwrap_or(usize::MAX);
+    let mut found = vec![Summand::new(&[])];
+    for shape in of_speed.iter().chain(&others) {
+        found.extend(Factor::tried(shape, seen).map(|factor| Summand::new(&[factor])));
     }
-    let simple = speeds.clone();
-    // What acts by direction may do so at one place alone.
-    let mut by_direction: Vec<Vec<Factor>> = Vec::new();
-    let duration = seen.time.1 - seen.time.0;
-    if kind.is_grip() {
-        for vs in parts(8, 0.005) {
-            speeds.extend([vec![Factor::Falling(vs)], vec![Factor::Bell(vs)]]);
-        }
-        for v0 in parts(8, 0.05) {
-            speeds.push(vec![Factor::SpeedBump(v0, 0.3 * v0)]);
-        }
-    } else {
-        speeds.extend([
-            vec![Factor::SignedSquare],
-            vec![Factor::Square],
-            vec![Factor::Cube],
-        ]);
-        for (number, vs) in parts(5, 0.005).into_iter().enumerate() {
-            let shapes = [Factor::Switching, Factor::Forwards, Factor::Backwards];
-            let shapes = shapes.map(|shape| vec![shape(vs)]);
-            if number % 2 == 0 {
-                by_direction.extend(shapes.clone());
+    for speed in &of_speed {
+        for other in others
+            .iter()
+            .filter(|other| speed.cost + other.cost <= MOST_COST)
+        {
+            let most = match other.cost {
+                0 => [usize::MAX; 2],
+                _ => [few(speed), few(other)],
+            };
+            for second in Factor::tried(other, seen).take(most[1]) {
+                for first in Factor::tried(speed, seen).take(most[0]) {
+                    found.push(Summand::new(&[first, second.clone()]));
+                }
             }
-            speeds.extend(shapes);
-            speeds.push(vec![Factor::Turning(vs)]);
-        }
-        let taus = [0.003, 0.01, 0.03, 0.1].map(|part| part * duration.min(3.0));
-        speeds.extend(taus.map(|tau| vec![Factor::Lagged(tau)]));
-    }
-    let travel = seen.travel();
-    let mut others: Vec<Vec<Factor>> = vec![
-        Vec::new(),
-        vec![Factor::Place],
-        vec![Factor::PlaceSquare],
-        vec![Factor::Time],
-    ];
-    for tau in [0.1, 0.3, 1.0] {
-        others.push(vec![Factor::Fading(tau * duration)]);
-        others.push(vec![Factor::Worked(0.1 * tau * duration)]);
-    }
-    // A spring becomes stiffer as it is stretched, or yields; an amplifier gives less than it is asked for.
-    let bends = kind.bends_about_zero();
-    if bends {
-        others.extend([vec![Factor::PlaceSignedSquare], vec![Factor::PlaceCube]]);
-        for part in [0.03, 0.1, 0.3] {
-            others.push(vec![Factor::Yielding(part * travel)]);
-        }
-    } else {
-        others.push(vec![Factor::PlaceMagnitude]);
-    }
-    let mut places: Vec<Vec<Factor>> = Vec::new();
-    for count in [10, 24] {
-        let width = 1.2 * travel / f64::from(count);
-        for k in 0..=count {
-            let centre = seen.place.0 + travel * f64::from(k) / f64::from(count);
-            places.push(vec![Factor::Bump(centre, 0.6 * width)]);
-        }
-    }
-    for k in 1..8 {
-        let centre = seen.place.0 + travel * f64::from(k) / 8.0;
-        places.push(vec![Factor::Step(centre, 0.05 * travel)]);
-    }
-    let mut found = Vec::new();
-    let mut add = |speed: &[Factor], other: &[Factor]| {
-        let factors = [speed, other].concat();
-        found.push(Summand::new(&factors));
-    };
-    for speed in &speeds {
-        for other in &others {
-            add(speed, other);
-        }
-    }
-    for speed in simple.iter().chain(&by_direction) {
-        for place in &places {
-            add(speed, place);
-        }
-    }
-    for speed in simple.iter().filter(|_| !bends) {
-        let count = if speed.is_empty() { WAVES } else { MIXED_WAVES };
-        for wave in waves(felt, count) {
-            add(speed, &[wave]);
         }
     }
     found
 }
 
-/// Waves over place, half a turn further each over the whole way.
-fn waves(felt: &Felt, count: usize) -> impl Iterator<Item = Factor> {
-    let (turns, travel) = (felt.site.kind.turns(), felt.seen.travel());
-    (1..=count).map(move |k| {
-        let half_turns = k as f64;
-        Factor::Wave(if turns {
-            half_turns * std::f64::consts::PI / travel
-        } else {
-            2.0 * travel / half_turns
-        })
-    })
-}
-
 /// What the best wave over place gains, by itself or times speed; in proportion to speed a friction is a force.
-pub(crate) fn best_wave(felt: &Felt, projection: &Projection) -> f64 {
+pub(crate) fn best_wave(shapes: &[Arc<LawShape>], felt: &Felt, projection: &Projection) -> f64 {
     let kind = &felt.site.kind;
-    if kind.bends_about_zero() {
-        return 0.0;
-    }
-    let all: Vec<Factor> = waves(felt, MIXED_WAVES).collect();
+    let waves = shapes.iter().filter(|shape| {
+        let tried = is_tried(shape, kind) && !is_of_speed(shape);
+        tried && shape.outputs.len() > 1
+    });
+    let of = |shape| Factor::tried(shape, &felt.seen).take(shape.few.unwrap_or(usize::MAX));
+    let all: Vec<Factor> = waves.flat_map(of).collect();
     let gain = |few: &[Factor]| {
-        let mut terms: Vec<Summand> = few.iter().map(|wave| Summand::new(&[*wave])).collect();
-        if !kind.is_grip() {
-            terms.extend(few.iter().map(|wave| Summand::new(&[Factor::Speed, *wave])));
+        let forces = |carrier: &Carrier| {
+            let course = &carrier.course;
+            let alone = few.iter().flat_map(|wave| wave.along(course, &felt.seen));
+            let mut forces: Vec<Vec<f64>> = alone.collect();
+            if !kind.is_grip() {
+                let times_speed = |force: &Vec<f64>| {
+                    let rows = force.iter().zip(&course.speed);
+                    rows.map(|(value, speed)| value * (speed / felt.scales.speed))
+                        .collect()
+                };
+                forces.extend(forces.iter().map(times_speed).collect::<Vec<_>>());
+            }
+            forces
+        };
+        let changes = felt.changes_along(&forces);
+        let mut pairs: Vec<Vec<Vec<f64>>> = Vec::new();
+        let mut changes = changes.into_iter();
+        for wave in few.iter().cycle() {
+            let own: Vec<Vec<f64>> = changes.by_ref().take(wave.values().len()).collect();
+            if own.is_empty() {
+                break;
+            }
+            pairs.push(own);
         }
-        let sums = projection.sums_each(&felt.columns_of(&terms));
+        let sums = projection.sums_each(&pairs);
         let gains = sums.iter().map(|sums| projection.answer_from(sums).gain);
         gains.fold(0.0, f64::max)
     };

@@ -1,6 +1,7 @@
 //! [`Site`]: a place where an unwritten law may act, and the words that the language has for it there. All of it follows
 //! from what the model declares at the site: `site Force grip = F over (place = a.s, slip = v);`.
 
+use hyde_ir::LawRole;
 use hyde_syntax::{LawForm, LawTarget};
 use hyde_units::{Dimension, NamedUnit};
 
@@ -115,10 +116,20 @@ impl Kind {
         self.form == LawForm::Friction
     }
 
-    /// Whether the law bends about where the site's place is 0, as that of a spring does, and no wave goes along it.
-    #[must_use]
-    pub fn bends_about_zero(&self) -> bool {
-        matches!(self.form, LawForm::Elastic | LawForm::Demand)
+    /// Whether one of its variables has a role of a shape, or time has.
+    pub(crate) fn has(&self, role: LawRole) -> bool {
+        let lies = matches!(self.form, LawForm::Motion | LawForm::Friction);
+        match role {
+            LawRole::Speed => self.form == LawForm::Motion,
+            LawRole::Slip => self.form == LawForm::Friction,
+            LawRole::Rate => !lies,
+            LawRole::Place => lies,
+            LawRole::Distance => lies && !self.turns(),
+            LawRole::Angle => lies && self.turns(),
+            LawRole::Stretch => self.form == LawForm::Elastic,
+            LawRole::Demand => self.form == LawForm::Demand,
+            LawRole::Motion | LawRole::Time => true,
+        }
     }
 
     /// What place and speed of the site are.

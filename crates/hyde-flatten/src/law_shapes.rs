@@ -1,0 +1,428 @@
+//! [`LawShape`]s: the functions with a signature, of which laws from records are made.
+//!
+//! ```text
+//! function falling "an exponential decrease with {v} over {vs}"           LawShape
+//!   input Velocity v, v_max;                                                inputs [v, v_max, vs]
+//!   input Velocity vs = {0.01, 0.1, 1}*v_max in 0 .. 2*v_max;               constants [vs]
+//!   output Real f(cost = 2) = exp(-noEvent(abs(v))/vs) over (slip);         outputs [f], roles [slip], cost 2
+//!   signature velocity;                                                     mark velocity
+//! end falling;
+//! ```
+//! Each input is a variable, so that values, ranges and outputs are lowered, and their units checked, as those of any
+//! function.
+
+mod attributes;
+mod filter;
+mod text;
+
+use crate::dimension::Dim;
+use crate::effect_words::MARKS;
+use crate::instance::{Elementwise, InstanceId, Position, Scope, Setting, Typed};
+use crate::law_roles::{Refusal, wrong};
+use crate::model::{Model, listed};
+use crate::names::{FileIndex, TypeName, nearest};
+use hyde_diag::{Diagnostic, FileId, MadeBy, Span};
+use hyde_ir::{
+    Expr as Ir, ExprArena, ExprId, Id as _, Index, LawAxis, LawConstant, LawInput, LawRole,
+    LawShape, LawUnit, VarId, VariableKind,
+};
+use hyde_syntax::ast::{
+    Argument, Class, ClassBody, ClassKind, Declaration, Declarator, Element, Equation, Expr,
+    ExprKind, File, Item, Name, Prefix,
+};
+use hyde_units::{Dimension, NamedUnit};
+use std::sync::Arc;
+
+/// The instance in which shapes are read: the model; they see nothing of it.
+const READ_IN: InstanceId = 0;
+
+/// A shape while it is read.
+struct Draft<'a> {
+    file: FileIndex,
+    class: &'a Class,
+    shape: LawShape,
+    /// The variables that stand for its inputs.
+    variables: Vec<VarId>,
+    /// What its names stand for.
+    names: Vec<(&'a str, Typed)>,
+    /// The values of names that are not inputs.
+    locals: Vec<(&'a str, &'a Expr)>,
+    /// The dimension of each variable of a site.
+    axes: Vec<(LawAxis, Dimension)>,
+    /// Its constants as they are declared.
+    declared: Vec<&'a Declarator>,
+    equations: Vec<&'a Equation>,
+}
+
+/// A mark as written: its name and what stands in parentheses.
+type Mark = (Name, Vec<Argument>);
+
+impl<'a> Model<'a, '_> {
+    /// The shapes that the files declare; those that are declared wrongly are reported.
+    pub(crate) fn law_shapes(&mut self) -> Vec<LawShape> {
+        let mut found = Vec::new();
+        for (file, class, marks) in marked(self.input.files) {
+            match self.law_shape(file, class, marks) {
+                Ok(shape) => found.push(shape),
+                Err(Some(diagnostic)) => self.report(*diagnostic),
+                Err(None) => {}
+            }
+        }
+        found
+    }
+
+    fn law_shape(
+        &mut self,
+        file: FileIndex,
+        class: &'a Class,
+        marks: &'a [Mark],
+    ) -> Result<LawShape, Refusal> {
+        let mut draft = Draft {
+            file,
+            class,
+            shape: LawShape {
+                name: self.full_name(file, class),
+                words: class.doc.clone().unwrap_or_default(),
+                roles: Vec::new(),
+                exprs: ExprArena::new(),
+                inputs: Vec::new(),
+                constants: Vec::new(),
+                states: Vec::new(),
+                outputs: Vec::new(),
+                mark: (String::new(), None),
+                cost: 0,
+                few: None,
+            },
+            variables: Vec::new(),
+            names: Vec::new(),
+            locals: Vec::new(),
+            axes: Vec::new(),
+            declared: Vec::new(),
+            equations: Vec::new(),
+        };
+        for (declaration, declarator) in elements(class, &mut draft.equations)? {
+            if declaration.prefixes.contains(&Prefix::Output) {
+                draft.roles(declarator)?;
+            }
+            self.declared_in_shape(&mut draft, declaration, declarator)?;
+        }
+        if draft.shape.roles.is_empty() {
+            return Err(wrong(
+                format!("the shape `{}` has no role", class.name.text),
+                class.name.span,
+                "tried at no site",
+                format!("write `output Real f = … over (ROLE);`: {}", every_role()),
+            ));
+        }
+        for number in 0..draft.declared.len() {
+            self.constant_of_shape(&mut draft, number)?;
+        }
+        self.filters(&mut draft)?;
+        draft.shape.mark = draft.mark(marks)?;
+        Ok(self.finished(draft))
+    }
+
+    /// Reads a declaration of a shape.
+    fn declared_in_shape(
+        &mut self,
+        draft: &mut Draft<'a>,
+        declaration: &'a Declaration,
+        declarator: &'a Declarator,
+    ) -> Result<(), Refusal> {
+        let name = declarator.name.text.as_str();
+        let span = declarator.name.span;
+        let has = |prefix| declaration.prefixes.contains(&prefix);
+        let Some(kind) = self.names.quantity(draft.file, &declaration.type_name) else {
+            let unknown = self.names.unknown(draft.file, &declaration.type_name);
+            return Err(Some(Box::new(unknown)));
+        };
+        let dim = match kind {
+            TypeName::Real => Dim::NUMBER,
+            TypeName::Integer | TypeName::Boolean | TypeName::Quantity(..) => {
+                self.quantity(kind, None).0
+            }
+        };
+        let dimension = dim.as_known().unwrap_or(Dimension::DIMENSIONLESS);
+        match (&declarator.binding, has(Prefix::Input)) {
+            (None, true) => {
+                let Some(input) = LawInput::named(name) else {
+                    return Err(wrong(
+                        format!("the constant `{name}` of a shape has no value to begin with"),
+                        span,
+                        "neither a variable of a site nor with a value",
+                        format!(
+                            "write `{name} = {{…}} in … .. …`; the variables are `v`, `x`, `t`, `v1`, `x1`, `t1`, `v_max`, `x_min`, `x_max`, `t_min`, `t_max`"
+                        ),
+                    ));
+                };
+                if let LawInput::Variable(axis)
+                | LawInput::Round(axis)
+                | LawInput::Least(axis)
+                | LawInput::Greatest(axis) = input
+                {
+                    draft.axes.push((axis, dimension));
+                }
+                self.input_of_shape(draft, name, input, (dim, span));
+            }
+            (Some(values), true) => {
+                let values = self.values_of_constant(draft, values, &self.typed_as(&dim, span));
+                draft.shape.constants.push(LawConstant {
+                    name: name.to_owned(),
+                    unit: draft.unit(dimension),
+                    step: hyde_ir::LawStep::Ratio(values[0]),
+                    range: [values[0]; 2],
+                    limits: [values[0]; 2],
+                    values,
+                });
+                let number = draft.declared.len();
+                draft.declared.push(declarator);
+                self.input_of_shape(draft, name, LawInput::Constant(number), (dim, span));
+            }
+            (None, false) => {
+                let state = draft.state(declarator, dimension);
+                self.input_of_shape(draft, name, state, (dim, span));
+            }
+            (Some(value), false) => {
+                let typed = self.in_shape(draft, value, &self.typed_as(&dim, span));
+                if has(Prefix::Output) {
+                    let text = self.text_in_shape(draft, value, typed.id)?;
+                    draft.shape.outputs.push((name.to_owned(), text));
+                    self.attributes_of_output(draft, declarator)?;
+                }
+                draft.locals.push((name, value));
+                draft.names.push((name, Typed { dim, ..typed }));
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds an input to a shape.
+    fn input_of_shape(
+        &mut self,
+        draft: &mut Draft<'a>,
+        name: &'a str,
+        input: LawInput,
+        (dim, span): (Dim, Span),
+    ) {
+        let kind = VariableKind::Continuous;
+        let made_by = MadeBy::Source;
+        let var = self.add_variable(READ_IN, name.to_owned(), kind, dim.clone(), span, made_by);
+        let id = self.flat.exprs.var(var);
+        draft.variables.push(var);
+        draft.shape.inputs.push(input);
+        draft.names.push((name, self.typed(id, dim, span)));
+    }
+
+    /// The values of a constant that are tried: of a list each one.
+    fn values_of_constant(
+        &mut self,
+        draft: &Draft<'a>,
+        values: &'a Expr,
+        declared: &Typed,
+    ) -> Vec<ExprId> {
+        let scope = draft.scope();
+        let Some(count) = self.array_length(values, &scope) else {
+            return vec![self.in_shape(draft, values, declared).id];
+        };
+        let each = (0..count.max(1)).map(|at| {
+            let position = Position { at, of: count };
+            let value = self.lower(values, &scope.elements(Elementwise::One(position)));
+            self.agree(
+                declared,
+                &value,
+                "the declared type and the value are",
+                READ_IN,
+            );
+            value.id
+        });
+        each.collect()
+    }
+
+    /// A value within a shape.
+    fn in_shape(&mut self, draft: &Draft<'a>, value: &'a Expr, declared: &Typed) -> Typed {
+        let typed = self.lower(value, &draft.scope());
+        self.agree(
+            declared,
+            &typed,
+            "the declared type and the value are",
+            READ_IN,
+        );
+        typed
+    }
+
+    /// A quantity of a dimension that is not yet known by its value.
+    fn typed_as(&self, dim: &Dim, span: Span) -> Typed {
+        self.typed(ExprId::from_index(0), dim.clone(), span)
+    }
+
+    /// The shape with its expressions in an arena of its own.
+    fn finished(&self, draft: Draft<'a>) -> LawShape {
+        let Draft {
+            mut shape,
+            variables,
+            ..
+        } = draft;
+        let mut roots = Vec::new();
+        shape.each_expression(&mut |id| roots.push(*id));
+        let number = |var: VarId| variables.iter().position(|known| *known == var);
+        let (exprs, copies) = self.flat.exprs.copied(&roots, |leaf| {
+            let number = leaf.access().and_then(|(var, ..)| number(var));
+            number.map_or(leaf, |number| {
+                Ir::Var(VarId::from_index(number), Index::SCALAR)
+            })
+        });
+        let mut copies = copies.into_iter();
+        shape.each_expression(&mut |id| *id = copies.next().unwrap_or(*id));
+        shape.exprs = exprs;
+        shape
+    }
+}
+
+impl<'a> Draft<'a> {
+    fn scope(&self) -> Scope<'a> {
+        Scope {
+            values: Some(self.names.clone()),
+            ..Scope::new(READ_IN, Setting::Report)
+        }
+    }
+
+    /// The unit of a quantity at a site: that of the variable with its dimension.
+    fn unit(&self, dimension: Dimension) -> LawUnit {
+        let mut axes = self.axes.iter();
+        match axes.find(|(_, own)| *own == dimension) {
+            Some((axis, _)) => LawUnit::Of(*axis),
+            None => LawUnit::Own(NamedUnit::usual(dimension)),
+        }
+    }
+
+    /// Reads the roles behind `over`.
+    fn roles(&mut self, declarator: &Declarator) -> Result<(), Refusal> {
+        for argument in &declarator.over {
+            let word = word(argument).filter(|_| argument.name.is_none());
+            let words = LawRole::ALL.iter().map(|(_, word)| *word);
+            let known = LawRole::ALL.iter();
+            let Some((role, _)) = known.into_iter().find(|(_, own)| Some(*own) == word) else {
+                let near = nearest(word.unwrap_or_default(), words);
+                return Err(wrong(
+                    "this is not a role of a shape".to_owned(),
+                    argument.value.span,
+                    "not known",
+                    near.map_or_else(every_role, |near| format!("did you mean `{near}`?")),
+                ));
+            };
+            self.shape.roles.push(*role);
+        }
+        Ok(())
+    }
+
+    /// The mark that a shape leaves.
+    fn mark(&self, marks: &[Mark]) -> Result<(String, Option<usize>), Refusal> {
+        let [(name, arguments)] = marks else {
+            return Err(wrong(
+                format!(
+                    "the shape `{}` has several signatures",
+                    self.class.name.text
+                ),
+                self.class.name.span,
+                "one is allowed",
+                "leave one of them".to_owned(),
+            ));
+        };
+        let marks: Vec<&str> = MARKS.iter().map(|(mark, _)| *mark).collect();
+        if !marks.contains(&name.text.as_str()) {
+            return Err(wrong(
+                format!("`{}` is not a signature", name.text),
+                name.span,
+                "not known",
+                format!("the signatures are {}", listed(&marks)),
+            ));
+        }
+        let Some(argument) = arguments.first() else {
+            return Ok((name.text.clone(), None));
+        };
+        let word = word(argument);
+        let mut constants = self.shape.constants.iter();
+        match constants.position(|constant| Some(constant.name.as_str()) == word) {
+            Some(number) => Ok((name.text.clone(), Some(number))),
+            None => Err(wrong(
+                format!("the shape `{}` has no such constant", self.class.name.text),
+                argument.value.span,
+                "not a constant of the shape",
+                "name a constant that says where the shape is, or remove the parentheses"
+                    .to_owned(),
+            )),
+        }
+    }
+}
+
+/// The functions with a signature, in the order of the files.
+fn marked(files: &[(FileId, Arc<File>)]) -> Vec<(FileIndex, &Class, &[Mark])> {
+    let mut found = Vec::new();
+    for (file, (_, tree)) in files.iter().enumerate() {
+        for item in &tree.items {
+            if let Item::Class(class) = item
+                && class.kind == ClassKind::Function
+                && let ClassBody::Long { elements, .. } = &class.body
+            {
+                let marks = elements.iter().find_map(|element| {
+                    if let Element::Signature(marks) = element {
+                        Some(marks.as_slice())
+                    } else {
+                        None
+                    }
+                });
+                found.extend(marks.map(|marks| (file, class, marks)));
+            }
+        }
+    }
+    found
+}
+
+/// The declarations of a shape; its equations are added to `equations`.
+fn elements<'a>(
+    class: &'a Class,
+    equations: &mut Vec<&'a Equation>,
+) -> Result<Vec<(&'a Declaration, &'a Declarator)>, Refusal> {
+    let mut found = Vec::new();
+    let ClassBody::Long { elements, .. } = &class.body else {
+        return Ok(found);
+    };
+    for element in elements {
+        if let Element::Declaration(declaration) = element {
+            found.extend(declaration.declarators.iter().map(|d| (declaration, d)));
+        } else if let Element::Equation(equation) = element {
+            equations.push(equation);
+        } else if !matches!(element, Element::Signature(_)) {
+            return Err(wrong(
+                format!(
+                    "the shape `{}` has an element that is not allowed",
+                    class.name.text
+                ),
+                class.name.span,
+                "allowed are inputs, variables, outputs, filters and a signature",
+                "remove the element, or the signature: a function without one is not a shape"
+                    .to_owned(),
+            ));
+        }
+    }
+    Ok(found)
+}
+
+/// The word that an argument is.
+fn word(argument: &Argument) -> Option<&str> {
+    if let ExprKind::Reference(name) = &argument.value.kind {
+        name.as_word()
+    } else {
+        None
+    }
+}
+
+fn every_role() -> String {
+    let words = LawRole::ALL.map(|(_, word)| format!("`{word}`"));
+    format!("the roles are {}", words.join(", "))
+}
+
+/// A diagnostic as a refusal.
+fn refused(diagnostic: Diagnostic) -> Refusal {
+    Some(Box::new(diagnostic))
+}

@@ -1,0 +1,110 @@
+//! The text of a shape's expressions: names of inputs left open, other names of the function replaced by their values,
+//! functions named with their package.
+
+use super::Draft;
+use crate::law_roles::{Refusal, wrong};
+use crate::model::Model;
+use hyde_ir::{ExprId, LawInput, LawPiece, LawText};
+use hyde_syntax::ast::{Binary, Expr, ExprKind, Name, Part, Reference};
+
+/// Stands for an input in a text, with its number and a `_` behind.
+const OPEN: &str = "input_of_shape_";
+
+impl<'a> Model<'a, '_> {
+    /// The text of an expression of a shape.
+    pub(super) fn text_in_shape(
+        &self,
+        draft: &Draft<'a>,
+        expr: &Expr,
+        value: ExprId,
+    ) -> Result<LawText, Refusal> {
+        let mut open = expr.clone();
+        self.open(draft, &mut open);
+        let text = hyde_syntax::format_expression(&open);
+        let mut parts = text.split(OPEN);
+        let mut pieces: Vec<LawPiece> = Vec::new();
+        let letters = |text: &str| (!text.is_empty()).then(|| LawPiece::Letters(text.to_owned()));
+        pieces.extend(parts.next().and_then(letters));
+        for part in parts {
+            let (number, rest) = part.split_once('_').unwrap_or((part, ""));
+            let number = number.parse().unwrap_or(0);
+            if let LawInput::Least(_) | LawInput::Greatest(_) = draft.shape.inputs[number] {
+                return Err(wrong(
+                    "a shape depends on what records show".to_owned(),
+                    expr.span,
+                    "a law holds for other records too",
+                    "use a constant of the shape, or a round value: `v1`, `x1`, `t1`".to_owned(),
+                ));
+            }
+            pieces.push(LawPiece::Input(number));
+            pieces.extend(letters(rest));
+        }
+        let product = |op: &Binary| matches!(op, Binary::Mul | Binary::Div | Binary::Pow);
+        Ok(LawText {
+            value,
+            pieces,
+            is_sum: match &open.kind {
+                ExprKind::Binary(op, ..) => !product(op),
+                ExprKind::If(..) | ExprKind::Unary(..) => true,
+                ExprKind::Number(..)
+                | ExprKind::String(_)
+                | ExprKind::Boolean(_)
+                | ExprKind::Reference(_)
+                | ExprKind::Call(..)
+                | ExprKind::Array(..)
+                | ExprKind::Comprehension(_)
+                | ExprKind::Slice(..) => false,
+            },
+        })
+    }
+
+    /// Replaces the names in an expression.
+    fn open(&self, draft: &Draft<'a>, expr: &mut Expr) {
+        if let ExprKind::Reference(name) = &mut expr.kind {
+            let word = name.as_word().unwrap_or_default();
+            if let Some((_, value)) = draft.locals.iter().find(|(own, _)| *own == word) {
+                let mut value = (*value).clone();
+                self.open(draft, &mut value);
+                *expr = value;
+            } else if let Some(number) = draft.input(word) {
+                *name = word_at(format!("{OPEN}{number}_"), name);
+            }
+            return;
+        }
+        if let ExprKind::Call(function, _) = &mut expr.kind
+            && let Some((file, class)) = self.function_named(function)
+        {
+            *function = word_at(self.full_name(file, class), function);
+        }
+        for child in expr.children_mut() {
+            self.open(draft, child);
+        }
+    }
+}
+
+impl Draft<'_> {
+    /// The number of the input of that name.
+    fn input(&self, name: &str) -> Option<usize> {
+        let named = self.names.iter().filter(|(own, _)| {
+            let mut locals = self.locals.iter();
+            !locals.any(|(local, _)| local == own)
+        });
+        let mut inputs = named.map(|(own, _)| *own);
+        inputs.position(|own| own == name)
+    }
+}
+
+/// A name that may have dots in the place of another one.
+fn word_at(text: String, place: &Reference) -> Reference {
+    let parts = text.split('.').map(|part| Part {
+        name: Name {
+            text: part.to_owned(),
+            span: place.span,
+        },
+        subscripts: Vec::new(),
+    });
+    Reference {
+        parts: parts.collect(),
+        span: place.span,
+    }
+}
