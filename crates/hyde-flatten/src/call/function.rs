@@ -171,6 +171,25 @@ impl<'a> Model<'a, '_> {
             return Some(value.clone());
         }
         let mut values: Vec<(&'a str, Typed)> = Vec::new();
+        let outputs = declared
+            .iter()
+            .filter(|(d, _)| d.prefixes.contains(&Prefix::Output));
+        let outputs: Vec<&Declarator> = outputs.map(|(_, declarator)| *declarator).collect();
+        if let [first, second, ..] = outputs.as_slice() {
+            let name = &class.name.text;
+            let message = format!(
+                "the function `{name}` has {} outputs, and a call gives one value",
+                outputs.len()
+            );
+            self.report(
+                Diagnostic::error(Code::BadArguments, message)
+                    .label(span, "called here")
+                    .label(first.name.span, "one output")
+                    .label(second.name.span, "another one")
+                    .help("write a function for each of them; declare without `output` what only the function needs"),
+            );
+            return None;
+        }
         let mut output = None;
         for ((declaration, declarator), given) in declared.into_iter().zip(given) {
             let name = declarator.name.text.as_str();
