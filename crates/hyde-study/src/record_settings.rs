@@ -49,25 +49,40 @@ impl Given {
     /// # Errors
     /// What stands behind the file is not understood.
     pub fn of(world: &dyn World, name: &str, text: &str) -> Result<Self, String> {
-        let beginnings = BEGINNINGS.iter();
-        let at = beginnings
-            .filter_map(|beginning| text.find(beginning))
-            .min();
-        let whole = Path::new(text);
-        let Some(at) = at.filter(|_| !world.is_file(whole)) else {
+        let (file, behind) = split(world, text);
+        if behind.is_empty() {
             return Ok(Self {
-                path: whole.to_owned(),
+                path: PathBuf::from(file),
                 settings: None,
                 text: String::new(),
             });
-        };
-        let settings = parsed(name, &text[at..])
-            .map_err(|reason| format!("`--record {name}={text}`: {reason}"))?;
+        }
+        let settings =
+            parsed(name, behind).map_err(|reason| format!("`--record {name}={text}`: {reason}"))?;
         Ok(Self {
-            path: PathBuf::from(text[..at].trim_end()),
+            path: PathBuf::from(file),
             settings: Some(settings),
-            text: text[at..].trim().to_owned(),
+            text: behind.to_owned(),
         })
+    }
+}
+
+/// How messages call files: by their names, with what stands behind them.
+pub(crate) fn called(world: &dyn World, text: &str) -> String {
+    let (files, behind) = split(world, text);
+    let names = Files::named(world, Path::new(""), files).names();
+    format!("{names} {behind}").trim_end().to_owned()
+}
+
+/// The name of a file, and what stands behind it of how it is read.
+pub(crate) fn split<'t>(world: &dyn World, text: &'t str) -> (&'t str, &'t str) {
+    let beginnings = BEGINNINGS.iter();
+    let at = beginnings
+        .filter_map(|beginning| text.find(beginning))
+        .min();
+    match at.filter(|_| !world.is_file(Path::new(text))) {
+        Some(at) => (text[..at].trim_end(), text[at..].trim()),
+        None => (text, ""),
     }
 }
 

@@ -3,6 +3,7 @@
 use crate::asked::Asked;
 use crate::package::links_out;
 use crate::record_files;
+use crate::record_settings::{Given, called, split};
 use crate::unobservable::unreadable;
 use crate::world::{World, matching};
 use hyde_calibrate::{Recording, Source};
@@ -61,7 +62,8 @@ pub(super) fn files_of(
         }
     }
     let mut sets: Vec<Vec<(String, PathBuf)>> = Vec::new();
-    for (record, pattern, span, whole) in &patterns {
+    for (record, text, span, whole) in &patterns {
+        let (pattern, settings) = split(asked.world.as_ref(), text);
         let (matching, files) = match whole {
             true => record_files::Files::named(asked.world.as_ref(), &folder, pattern)
                 .one_record(asked.world.as_ref()),
@@ -129,10 +131,10 @@ pub(super) fn files_of(
         let count = old.len().max(matching.len());
         for number in 0..count {
             let mut set = old[number.min(old.len() - 1)].clone();
-            set.push((
-                record.clone(),
-                matching[number.min(matching.len() - 1)].clone(),
-            ));
+            // How it is read goes with the file.
+            let path = matching[number.min(matching.len() - 1)].display();
+            let path = PathBuf::from(format!("{path} {settings}").trim_end());
+            set.push((record.clone(), path));
             sets.push(set);
         }
     }
@@ -167,15 +169,20 @@ pub(super) fn recording(
                 Diagnostic::error(Code::BadStudy, message).label(span, "in this study"),
             ));
         };
-        let files = record_files::Files::named(world, Path::new(""), &path.to_string_lossy());
+        let wrong = |reason: String| {
+            Box::new(Diagnostic::error(Code::BadRecord, reason).label(span, "in this study"))
+        };
+        let text = path.to_string_lossy();
+        let given = Given::of(world, record, &text).map_err(wrong)?;
         if name.is_empty() {
-            name = files.names();
+            name = called(world, &text);
         }
+        let files = record_files::Files::named(world, Path::new(""), &given.path.to_string_lossy());
         let open = |file: &Path| world.read(file);
         let missing = |reason: &str| {
             Diagnostic::error(Code::NoFiles, reason.to_owned()).label(span, "in this study")
         };
-        let read = record_files::joined(item, None, files, &open, &missing);
+        let read = record_files::joined(item, given.settings.as_ref(), files, &open, &missing);
         let table = read.map_err(Box::new)?.table;
         tables.insert(record.clone(), table);
     }

@@ -6,7 +6,7 @@ use super::vary::{Own, varied};
 use super::{Calibration, Prepared, plan, prepared};
 use crate::asked::Asked;
 use crate::project::{Loaded, Records};
-use crate::record_files::Files;
+use crate::record_settings::called;
 use crate::refused::{Fault, Refused};
 use crate::unobservable::unsupported;
 use hyde_calibrate::{CalibrationPlan, Joint, Observer, Part, Problem, Recording, Varied};
@@ -14,7 +14,6 @@ use hyde_diag::{Code, Diagnostic};
 use hyde_sim::Reached;
 use hyde_syntax::ast::Experiment;
 use std::ops::Range;
-use std::path::Path;
 
 /// Everything a calibration of one or several experiments is made of.
 pub struct JointCalibration {
@@ -285,8 +284,7 @@ fn record_sets(
         for source in own.filter(|own| own.experiment == experiment.name.text) {
             for files in files_of(source, experiment, asked, &mut loaded.diagnostics) {
                 let name = files.first().map_or_else(String::new, |(_, path)| {
-                    let own = path.to_string_lossy();
-                    Files::named(asked.world.as_ref(), Path::new(""), &own).names()
+                    called(asked.world.as_ref(), &path.to_string_lossy())
                 });
                 let known = found
                     .iter()
