@@ -309,7 +309,19 @@ static WORDS: [Habit; 30] = [
     ),
 ];
 
-static SIGNS: [Habit; 8] = [
+static SIGNS: [Habit; 10] = [
+    word(
+        "±",
+        Place::Inside,
+        "an uncertainty stands behind `~`",
+        "write `parameter Mass M = 310 [kg] ~ ±8%;`",
+    ),
+    word(
+        "+/-",
+        Place::Inside,
+        "Hyde has no `+/-`",
+        "an uncertainty is written `parameter Mass M = 310 [kg] ~ ±8%;`",
+    ),
     word(
         ":=",
         Place::Inside,

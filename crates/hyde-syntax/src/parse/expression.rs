@@ -62,10 +62,14 @@ impl Builder<'_> {
             if strength <= least {
                 break;
             }
+            let operator = self.span(next);
             nodes.next();
             // A power is taken from the right: `2^3^2` is `2^(3^2)`.
             let from_right = u8::from(rule == Rule::power);
             let right = self.operators(nodes, strength - from_right, span);
+            if matches!(rule, Rule::plus | Rule::minus) {
+                self.refuse_two_signs(operator, &right);
+            }
             let span = left.span.to(right.span);
             let kind = ExprKind::Binary(binary(rule), Box::new(left), Box::new(right));
             left = Expr { kind, span };
@@ -164,6 +168,24 @@ impl Builder<'_> {
         }
         self.refuse_backwards(&from, &to);
         Some(Range { from, to })
+    }
+
+    /// `10 +- 2` may be meant as an uncertainty, and would be 8: one sign right behind another is refused.
+    fn refuse_two_signs(&mut self, operator: Span, right: &Expr) {
+        let ExprKind::Unary(Unary::Negative | Unary::Positive, operand) = &right.kind else {
+            return;
+        };
+        if operator.end != right.span.start {
+            return;
+        }
+        let number = crate::format_expression(operand);
+        let diagnostic = Diagnostic::error(Code::Syntax, "two signs stand one behind the other")
+            .label(operator.to(right.span), "a sum, or an uncertainty?")
+            .help(format!(
+                "the uncertainty of a parameter is written `~ ±{number}` behind its value; a sum with a negative number is \
+                 written `+ (-{number})`"
+            ));
+        self.diagnostics.push(diagnostic);
     }
 
     /// A range of numbers goes upwards.
