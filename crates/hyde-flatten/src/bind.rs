@@ -72,6 +72,15 @@ impl<'a> Model<'a, '_> {
         if let Some((instance, range)) = self.parameters[param.index()].within {
             self.flat.parameters[param].range = self.range_of(instance, range, &dim);
         }
+        if let Some((instance, prior)) = self.parameters[param.index()].prior
+            && !prior.percent
+        {
+            // An uncertainty without a unit would be one in SI units.
+            let written = self.number(prior.value, prior.unit.as_ref(), prior.span);
+            let declared = self.typed(written.id, dim, prior.span);
+            let what = "the parameter and its uncertainty are";
+            self.agree(&declared, &written, what, instance);
+        }
     }
 
     /// The bounds that a parameter may have, SI; the unit behind the upper one is that of both (U2).
@@ -346,6 +355,7 @@ impl<'a> Model<'a, '_> {
             boolean: false,
             bounds: [None, None],
             within: None,
+            prior: None,
         });
         let param = self.flat.parameters.push(Parameter {
             name,

@@ -117,6 +117,8 @@ pub(crate) struct ParameterNotes<'a> {
     pub(crate) bounds: [Option<Binding<'a>>; 2],
     /// `in a .. b`, with the instance whose names it uses.
     pub(crate) within: Option<(InstanceId, &'a hyde_syntax::ast::Range)>,
+    /// `~ ±0.1 [mm]`, with the instance of the parameter.
+    pub(crate) prior: Option<(InstanceId, &'a hyde_syntax::ast::Prior)>,
 }
 
 /// How far a parameter's binding is lowered.

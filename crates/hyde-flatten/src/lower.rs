@@ -120,7 +120,7 @@ impl<'a> Model<'a, '_> {
         });
     }
 
-    fn number(&mut self, value: f64, unit: Option<&UnitText>, span: Span) -> Typed {
+    pub(crate) fn number(&mut self, value: f64, unit: Option<&UnitText>, span: Span) -> Typed {
         let Some(text) = unit else {
             let id = self.flat.exprs.constant(value);
             let dim = if value == 0.0 { Dim::Any } else { Dim::NUMBER };

@@ -286,6 +286,12 @@ impl<'a> Parser<'a> {
         let before = self.text[start..at].trim_end();
         let here = &self.text[at..];
         let other_line = self.text[start + before.len()..at].contains('\n');
+        let digit = |sign: char| sign.is_ascii_digit();
+        let number = |text: &str| {
+            let word = |sign: char| sign.is_alphanumeric() || matches!(sign, '_' | '.');
+            let last = text.rsplit(|sign| !word(sign)).next();
+            last.is_some_and(|last| last.starts_with(digit))
+        };
         let open = before.matches('(').count() > before.matches(')').count();
         let help = |help| {
             Some(Hint {
@@ -306,6 +312,16 @@ impl<'a> Parser<'a> {
                 behind: true,
                 help: "end the line before with `;`",
             })
+        } else if before.ends_with('~') {
+            help("an uncertainty is written `~ ±8%` or `~ ±0.1 [mm]`")
+        } else if number(before) && here.starts_with('%') {
+            help(
+                "a part of something is a number: `0.05*M`; only an uncertainty is in percent, `~ ±5%`",
+            )
+        } else if number(before) && here.starts_with(char::is_alphabetic) {
+            help("a unit stands in brackets behind its number: `20 [mm]`")
+        } else if before.strip_suffix(',').is_some_and(number) && here.starts_with(digit) {
+            help("the decimal sign is a point: `1.5`")
         } else if here.starts_with("==") {
             help("an equation is written with one `=`; `==` compares")
         } else {

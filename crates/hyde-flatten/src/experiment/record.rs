@@ -272,6 +272,7 @@ impl<'a> Model<'a, '_> {
             boolean: false,
             bounds: [None, None],
             within: None,
+            prior: None,
         });
         let origin = self.origin(0, span).made_by(MadeBy::Experiment);
         let param = self.flat.parameters.push(Parameter {

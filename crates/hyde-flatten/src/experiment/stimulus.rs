@@ -178,6 +178,7 @@ impl<'a> Model<'a, '_> {
             boolean: false,
             bounds: [None, None],
             within: None,
+            prior: None,
         });
         let param = self.flat.parameters.push(Parameter {
             name,

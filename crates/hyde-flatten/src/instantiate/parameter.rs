@@ -52,8 +52,8 @@ impl<'a> Model<'a, '_> {
                 .prior
                 .as_ref()
                 .or_else(|| outermost.and_then(|m| m.change.prior.as_ref()));
-            let prior = outermost.and_then(|m| m.change.prior.as_ref()).or(declared);
-            let prior = prior.and_then(|prior| self.prior(prior));
+            let written = outermost.and_then(|m| m.change.prior.as_ref()).or(declared);
+            let prior = written.and_then(|prior| self.prior(prior));
             let source = outermost
                 .and_then(|m| m.change.source.clone())
                 .or_else(|| declarator.source.clone());
@@ -82,6 +82,7 @@ impl<'a> Model<'a, '_> {
                 boolean: matches!(kind, TypeName::Boolean),
                 bounds,
                 within: declarator.within.as_ref().map(|within| (id, within)),
+                prior: prior.and(written).map(|prior| (id, prior)),
             });
             let role = match (has(Prefix::Size), has(Prefix::Shape)) {
                 (true, _) => Role::Size,
