@@ -111,27 +111,32 @@ impl<'a> Model<'a, '_> {
             },
         };
         let mut numbers = Vec::new();
-        let mut dim: Option<Typed> = None;
+        // A zero may be of any dimension: the first number that is not says which one the list has.
+        let mut whole: Option<Typed> = unit.as_ref().map(|unit| {
+            let zero = self.flat.exprs.constant(0.0);
+            self.typed(zero, Dim::known(unit.unit().dimension), list.span)
+        });
         for item in items {
             let inner = scope.with(Setting::Parameter);
             let typed = self.value(item, &inner);
             let number = self.structural_number(&inner, item)?;
-            numbers.push(
-                unit.as_ref()
-                    .map_or(number, |unit| unit.unit().to_si(number)),
-            );
-            match &dim {
-                None => dim = Some(typed),
-                Some(first) => {
+            // The unit behind the list is that of numbers without one.
+            let known = typed.dim.as_known();
+            let pure = typed.bare || known.is_none_or(|dim| dim.is_dimensionless());
+            if let (true, Some(unit)) = (pure, &unit) {
+                numbers.push(unit.unit().to_si(number));
+                continue;
+            }
+            numbers.push(number);
+            match &whole {
+                Some(first) if first.dim != Dim::Any => {
                     let first = first.clone();
                     self.agree(&first, &typed, "the numbers of a list are", scope.instance);
                 }
+                _ => whole = Some(typed),
             }
         }
-        let dim = match unit {
-            Some(unit) => Dim::known(unit.unit().dimension),
-            None => dim.map_or(Dim::NUMBER, |typed| typed.dim),
-        };
+        let dim = whole.map_or(Dim::NUMBER, |typed| typed.dim);
         Some((numbers, dim))
     }
 }
