@@ -2,6 +2,7 @@
 
 use crate::dimension::Dim;
 use crate::instance::{Elementwise, Position, Scope, Typed};
+use crate::lower::sum_dim;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_syntax::ast::Expr;
@@ -33,11 +34,18 @@ impl<'a> Model<'a, '_> {
         for at in 0..len {
             let one = Elementwise::One(Position { at, of: len });
             let term = self.value(a, &scope.elements(one));
-            if let Some(sum) = &sum {
-                self.agree(sum, &term, "`sum` adds", scope.instance);
-            }
             total = self.flat.exprs.plus(total, term.id);
-            sum.get_or_insert(term);
+            if let Some(before) = &sum {
+                self.agree(before, &term, "`sum` adds", scope.instance);
+            }
+            // A zero may be of any dimension: those behind it say which one.
+            sum = Some(match sum {
+                Some(before) => Typed {
+                    dim: sum_dim(&before.dim, &term.dim),
+                    ..before
+                },
+                None => term,
+            });
         }
         self.typed(total, sum.map_or(Dim::Any, |sum| sum.dim), span)
     }
