@@ -3,7 +3,7 @@
 //! The parameters such a value uses become structural: a change of one of them compiles anew. Every other parameter
 //! stays plain.
 
-use crate::instance::{InstanceId, Lowering, Scope, Setting};
+use crate::instance::{InstanceId, Lowering, Scope, Setting, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic};
 use hyde_ir::{Expr as Ir, ExprId, Id as _, ParamId};
@@ -44,11 +44,17 @@ impl<'a> Model<'a, '_> {
         if self.diagnostics.error_count() > errors {
             return None;
         }
+        self.constant_of(&typed)
+    }
+
+    /// The number that a lowered expression is; one that is not constant is reported.
+    pub(crate) fn constant_of(&mut self, typed: &Typed) -> Option<f64> {
+        let errors = self.diagnostics.error_count();
         let value = self.evaluate(typed.id);
         if value.is_none() && self.diagnostics.error_count() == errors {
             self.report(
                 Diagnostic::error(Code::NotConstant, "the expression is not constant")
-                    .label(expr.span, "only numbers and parameters are allowed here"),
+                    .label(typed.span, "only numbers and parameters are allowed here"),
             );
         }
         value

@@ -75,7 +75,8 @@ pub(crate) fn called(world: &dyn World, text: &str) -> String {
 }
 
 /// The name of a file, and what stands behind it of how it is read.
-pub(crate) fn split<'t>(world: &dyn World, text: &'t str) -> (&'t str, &'t str) {
+#[must_use]
+pub fn split<'t>(world: &dyn World, text: &'t str) -> (&'t str, &'t str) {
     let beginnings = BEGINNINGS.iter();
     let at = beginnings
         .filter_map(|beginning| text.find(beginning))

@@ -7,6 +7,7 @@ use crate::files;
 use crate::project::{print_error, print_output};
 use hyde_study::first_model::{FirstModel, Template, Trace, Wish, first_model};
 use hyde_study::record_files::{parts, sum};
+use hyde_study::record_settings::split;
 use hyde_study::settings;
 use hyde_study::traces::seen;
 use hyde_study::world::Disk;
@@ -79,11 +80,7 @@ fn written(args: &NewArgs) -> Result<(PathBuf, FirstModel), Failed> {
 fn folder(args: &NewArgs) -> PathBuf {
     let of_trace = || {
         let text = args.from.first()?;
-        let first = text
-            .split(" (")
-            .next()
-            .and_then(|files| parts(files).next());
-        let file = first.unwrap_or(text);
+        let file = parts(split(&Disk, text).0).next()?;
         let parent = Path::new(file).parent()?;
         (!parent.as_os_str().is_empty()).then(|| parent.to_owned())
     };

@@ -2,7 +2,6 @@
 
 use crate::dimension::Dim;
 use crate::instance::{Elementwise, Position, Scope, Typed};
-use crate::lower::sum_dim;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_syntax::ast::Expr;
@@ -35,17 +34,7 @@ impl<'a> Model<'a, '_> {
             let one = Elementwise::One(Position { at, of: len });
             let term = self.value(a, &scope.elements(one));
             total = self.flat.exprs.plus(total, term.id);
-            if let Some(before) = &sum {
-                self.agree(before, &term, "`sum` adds", scope.instance);
-            }
-            // A zero may be of any dimension: those behind it say which one.
-            sum = Some(match sum {
-                Some(before) => Typed {
-                    dim: sum_dim(&before.dim, &term.dim),
-                    ..before
-                },
-                None => term,
-            });
+            sum = Some(self.agreeing(sum, term, "`sum` adds", scope.instance));
         }
         self.typed(total, sum.map_or(Dim::Any, |sum| sum.dim), span)
     }

@@ -100,41 +100,19 @@ impl<'a> Model<'a, '_> {
             );
             return None;
         };
-        let unit = match unit {
-            None => None,
-            Some(unit) => match hyde_units::NamedUnit::parse(&unit.text) {
-                Ok(unit) => Some(unit),
-                Err(error) => {
-                    self.bad_unit(unit, &error);
-                    return None;
-                }
-            },
-        };
+        let inner = scope.with(Setting::Parameter);
         let mut numbers = Vec::new();
-        // A zero may be of any dimension: the first number that is not says which one the list has.
-        let mut whole: Option<Typed> = unit.as_ref().map(|unit| {
-            let zero = self.flat.exprs.constant(0.0);
-            self.typed(zero, Dim::known(unit.unit().dimension), list.span)
-        });
+        let mut whole: Option<Typed> = None;
         for item in items {
-            let inner = scope.with(Setting::Parameter);
-            let typed = self.value(item, &inner);
-            let number = self.structural_number(&inner, item)?;
-            // The unit behind the list is that of numbers without one.
-            let known = typed.dim.as_known();
-            let pure = typed.bare || known.is_none_or(|dim| dim.is_dimensionless());
-            if let (true, Some(unit)) = (pure, &unit) {
-                numbers.push(unit.unit().to_si(number));
-                continue;
+            let errors = self.diagnostics.error_count();
+            let own = self.value(item, &inner);
+            let typed = self.in_unit(own, unit.as_ref());
+            if self.diagnostics.error_count() > errors {
+                return None;
             }
-            numbers.push(number);
-            match &whole {
-                Some(first) if first.dim != Dim::Any => {
-                    let first = first.clone();
-                    self.agree(&first, &typed, "the numbers of a list are", scope.instance);
-                }
-                _ => whole = Some(typed),
-            }
+            numbers.push(self.constant_of(&typed)?);
+            let what = "the numbers of a list are";
+            whole = Some(self.agreeing(whole, typed, what, scope.instance));
         }
         let dim = whole.map_or(Dim::NUMBER, |typed| typed.dim);
         Some((numbers, dim))

@@ -2,7 +2,7 @@
 
 use super::subscript::without_elements;
 use crate::dimension::Dim;
-use crate::instance::{Counter, Elementwise, Scope, Typed};
+use crate::instance::{Counter, Elementwise, InstanceId, Scope, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic};
 use hyde_syntax::ast::{Comprehension, Expr, ExprKind, UnitText};
@@ -103,6 +103,23 @@ impl<'a> Model<'a, '_> {
         };
         let typed = self.lower(item, &scope);
         self.in_unit(typed, unit)
+    }
+
+    /// Values of one dimension, taken one after another: a zero may be of any, and those behind it say which one.
+    pub(crate) fn agreeing(
+        &mut self,
+        before: Option<Typed>,
+        next: Typed,
+        what: &'static str,
+        instance: InstanceId,
+    ) -> Typed {
+        match before.filter(|before| before.dim != Dim::Any) {
+            Some(before) => {
+                self.agree(&before, &next, what, instance);
+                before
+            }
+            None => next,
+        }
     }
 
     /// The scope in which an element of a comprehension is read.

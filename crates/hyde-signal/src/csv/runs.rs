@@ -69,15 +69,12 @@ fn runs(
     }
     let mut returns = returns(&clock, declared).into_iter();
     let mut runs: Vec<Range<usize>> = Vec::new();
-    let mut row = 0;
-    while row < begins.len() {
-        let returned = !headers[row] && returns.next().unwrap_or(false);
+    for (row, _) in headers.iter().enumerate().filter(|(_, header)| !**header) {
+        let returned = returns.next().unwrap_or(false);
         match runs.last_mut() {
-            _ if headers[row] => {}
             Some(run) if run.end == row && !returned => run.end = row + 1,
             _ => runs.push(row..row + 1),
         }
-        row += 1;
     }
     let byte = |row: usize| {
         let begin = begins

@@ -181,31 +181,30 @@ impl Table {
             own.fault = fault.clone();
             return;
         }
-        let mut readings = None;
-        for at in 0..=self.others.len() {
-            let part = match at.checked_sub(1) {
-                Some(other) => &mut self.others[other],
-                None => &mut *self,
-            };
-            let time = match part.time {
-                Time::Column(at) => Some(at),
-                Time::Every(..) => None,
-            };
-            let mut columns = (0..part.columns.len()).filter(|at| Some(*at) != time);
-            let Some(at) = columns.find(|at| part.columns[*at].name() == name) else {
-                continue;
-            };
-            readings = part.readings_of(&part.columns[at]);
-            part.columns.remove(at);
-            if let Time::Column(time) = &mut part.time {
-                *time -= usize::from(*time > at);
-            }
-        }
+        let own = self.taken(name);
+        let of_part = || self.others.iter_mut().find_map(|part| part.taken(name));
+        let readings = own.or_else(of_part).flatten();
         self.unusable.push(Unusable {
             name: name.to_owned(),
             fault: fault.clone(),
             readings: readings.map(Box::new),
         });
+    }
+
+    /// Takes a channel out of this part, if it has it: its readings, where there are enough for a record of their own.
+    fn taken(&mut self, name: &str) -> Option<Option<Self>> {
+        let time = match self.time {
+            Time::Column(at) => Some(at),
+            Time::Every(..) => None,
+        };
+        let mut columns = (0..self.columns.len()).filter(|at| Some(*at) != time);
+        let at = columns.find(|at| self.columns[*at].name() == name)?;
+        let readings = self.readings_of(&self.columns[at]);
+        self.columns.remove(at);
+        if let Time::Column(time) = &mut self.time {
+            *time -= usize::from(*time > at);
+        }
+        Some(readings)
     }
 
     fn appended(self, later: &Self) -> Result<Self, Broken> {
