@@ -7,6 +7,7 @@
 pub mod ast;
 
 mod format;
+mod forms;
 mod grammar;
 mod habits;
 mod law;

@@ -18,7 +18,7 @@ use crate::ast;
 use crate::grammar::{self, Rule};
 use crate::matcher::Pairs;
 use crate::written::{Node, Part, Written};
-use crate::{habits, matcher, nesting, recover, words};
+use crate::{forms, habits, matcher, nesting, recover, words};
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 
 /// Parses one source file. What cannot be parsed is missing in the tree and told in `diagnostics`.
@@ -275,8 +275,9 @@ impl<'a> Parser<'a> {
         let diagnostic =
             Diagnostic::error(Code::Syntax, format!("expected {expected}, found {found}"))
                 .label(span, label);
-        match hint {
-            Some(hint) => diagnostic.help(hint.help),
+        let help = hint.map(|hint| hint.help);
+        match help.or_else(|| forms::of(&self.text[start..])) {
+            Some(help) => diagnostic.help(help),
             None => diagnostic,
         }
     }
