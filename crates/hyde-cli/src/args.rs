@@ -4,6 +4,7 @@ mod batch;
 mod editor;
 mod excite;
 mod export;
+mod si;
 mod study;
 mod traces;
 
@@ -18,6 +19,7 @@ pub(crate) use traces::{LookArgs, NewArgs, TemplateName};
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use hyde_study::Inputs;
+use si::{hertz, seconds};
 use std::path::PathBuf;
 use std::sync::Arc;
 
@@ -160,8 +162,8 @@ pub(crate) struct CheckArgs {
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// Stop time in s, instead of that of the experiment
-    #[arg(long, value_name = "SECONDS")]
+    /// Stop time, in s or with its unit, instead of that of the experiment
+    #[arg(long, value_name = "TIME", value_parser = seconds)]
     pub(crate) stop: Option<f64>,
     /// Relative tolerance, instead of that of the experiment
     #[arg(long)]
@@ -300,14 +302,14 @@ pub(crate) struct PlotArgs {
     /// Resolution of a PNG in pixels per inch
     #[arg(long, value_name = "N", default_value_t = 300.0)]
     pub(crate) dpi: f64,
-    /// Start of the plot in s
-    #[arg(long, value_name = "SECONDS")]
+    /// Start of the plot, in s or with its unit
+    #[arg(long, value_name = "TIME", value_parser = seconds)]
     pub(crate) from: Option<f64>,
-    /// End of the plot in s
-    #[arg(long, value_name = "SECONDS")]
+    /// End of the plot, in s or with its unit
+    #[arg(long, value_name = "TIME", value_parser = seconds)]
     pub(crate) to: Option<f64>,
-    /// Sampling period in s of records without a time column
-    #[arg(long, value_name = "SECONDS")]
+    /// Sampling period, in s or with its unit, of records without a time column
+    #[arg(long, value_name = "TIME", value_parser = seconds)]
     pub(crate) every: Option<f64>,
 }
 
@@ -363,8 +365,8 @@ pub(crate) struct ModesArgs {
     /// Also list real poles, which do not oscillate
     #[arg(long)]
     pub(crate) real: bool,
-    /// List only modes below this frequency in Hz
-    #[arg(long, value_name = "HZ")]
+    /// List only modes below this frequency, in Hz or with its unit
+    #[arg(long, value_name = "FREQUENCY", value_parser = hertz)]
     pub(crate) below: Option<f64>,
     /// Also list the modes of another experiment of the file (repeatable)
     #[arg(long, value_name = "EXPERIMENT")]

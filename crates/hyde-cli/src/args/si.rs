@@ -1,0 +1,62 @@
+//! A time or a frequency as an option has it: `0.5`, which is in the SI unit, or `500 [ms]`.
+
+use hyde_study::settings;
+use hyde_units::{Agreement, NamedUnit};
+
+/// A time in s.
+///
+/// # Errors
+/// What to write instead, where it is no time.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    value(text, "s").ok_or_else(|| wanted("a time in s, `0.5`", "500 [ms]"))
+}
+
+/// A frequency in Hz.
+///
+/// # Errors
+/// What to write instead, where it is no frequency.
+pub(crate) fn hertz(text: &str) -> Result<f64, String> {
+    value(text, "Hz").ok_or_else(|| wanted("a frequency in Hz, `500`", "0.5 [kHz]"))
+}
+
+fn wanted(plain: &str, with_unit: &str) -> String {
+    format!("write {plain}, or with its unit, `'{with_unit}'`")
+}
+
+/// The value of a text whose unit, if it has one, is of the dimension of this SI unit.
+fn value(text: &str, si: &str) -> Option<f64> {
+    let setting = settings::parse(&format!("value={text}")).ok()?;
+    let expected = NamedUnit::parse(si).ok()?.unit().dimension;
+    let agrees = setting.unit.as_ref().is_none_or(|unit| {
+        let own = unit.unit().dimension;
+        own.agreement(expected) == Agreement::Same
+    });
+    let number = !setting.truth && setting.value.is_finite();
+    (agrees && number).then_some(setting.value)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_time_may_have_its_unit() {
+        for text in ["0.5", "5e-1", "0.5 [s]", "500 [ms]"] {
+            assert!((seconds(text).unwrap() - 0.5).abs() < 1e-15, "{text}");
+        }
+        for text in ["soon", "0.5 [m]", "0.5 [Hz]", "true", "inf", ""] {
+            assert!(seconds(text).unwrap_err().contains("500 [ms]"), "{text}");
+        }
+    }
+
+    #[test]
+    fn a_frequency_may_have_its_unit() {
+        for text in ["500", "500 [Hz]", "0.5 [kHz]", "30000 [1/min]"] {
+            assert!((hertz(text).unwrap() - 500.0).abs() < 1e-9, "{text}");
+        }
+        // An angular frequency is another quantity.
+        for text in ["500 [rad/s]", "500 [s]"] {
+            assert!(hertz(text).unwrap_err().contains("0.5 [kHz]"), "{text}");
+        }
+    }
+}
