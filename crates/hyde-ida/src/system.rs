@@ -32,6 +32,11 @@ pub trait System {
         values: &mut [f64],
     ) -> Result<(), Recoverable>;
 
+    /// Whether `F` is affine in `y` and `y'`, with coefficients that are the same wherever a run goes on from its last start.
+    fn is_affine(&self) -> bool {
+        false
+    }
+
     /// The number of root functions; asked once, when the solver is made.
     fn n_roots(&self) -> usize {
         0

@@ -1,5 +1,6 @@
 //! [`Dae`]: what can be solved. `0 = F(t, y, y', z, u, p)` with one residual an unknown, everything else ordered.
 
+mod affine;
 mod arithmetic;
 mod clock;
 mod equation;

@@ -189,6 +189,8 @@ pub struct Program {
     pub n_unknowns: usize,
     /// Length of the memory.
     pub n_memory: usize,
+    /// Whether the residual is affine in the unknowns and their derivatives, with coefficients that change at events alone.
+    pub affine: bool,
     /// Length of the workspace.
     pub n_work: usize,
     /// Length of the parameter vector.

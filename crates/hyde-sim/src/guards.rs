@@ -145,6 +145,14 @@ pub(crate) fn first_change(
 /// Halvings of a piece of a step in which a root function may reach zero between two points.
 const MAX_HALVINGS: usize = 12;
 
+/// So many rounds a search by secants may take until its bracket is half as wide.
+const SLOW_ROUNDS: usize = 3;
+
+/// At an event a root function is zero; so is what is smaller by this than its neighbour.
+const AT_ZERO: f64 = 1e-3;
+/// Between two points it is straight if its slope changes by less than this part.
+const STRAIGHT: f64 = 0.5;
+
 /// The search for the first change.
 struct Search<'s> {
     probe: Probe<'s>,
@@ -164,11 +172,11 @@ impl Search<'_> {
     ) -> bool {
         let state = integrator.state();
         // A force may have the kinks of a record, which the ends of steps do not show.
-        let kinks = !state.program.columns.is_empty() || !state.program.delays.is_empty();
+        let smooth = is_smooth(state);
         let arithmetic = |watched: &Watched| {
             let relation = state.program.relations.get(watched.number);
             relation.is_some_and(|relation| relation.arithmetic)
-                && (!kinks || state.is_of_states(watched.number))
+                && (smooth || state.is_of_states(watched.number))
         };
         let mut pairs = self.watched.iter().zip(at_end);
         let [a, b, c] = before else { return false };
@@ -197,12 +205,23 @@ impl Search<'_> {
     ) -> Option<Crossing> {
         let at_start = at_start.unwrap_or_else(|| self.values(integrator, start));
         let found = self.first(integrator, (start, at_start), (end, at_end.to_vec()))?;
-        if self.shows(integrator, &found) {
+        let state = integrator.state();
+        let mut numbers = found.relations.iter();
+        // What states alone decide is on the interpolant what it is.
+        if numbers.any(|number| state.is_of_states(*number)) {
             return Some(found);
         }
         self.probe.exact = true;
-        let at_start = self.values(integrator, start);
+        let at_found = self.values(integrator, found.t);
+        if !self.changed(&at_found).is_empty() {
+            return Some(found);
+        }
         let at_end = self.values(integrator, end);
+        if is_smooth(integrator.state()) && !self.changed(&at_end).is_empty() {
+            // The interpolant crosses a little before its time.
+            return Some(self.locate(integrator, (found.t, &at_found), (end, &at_end)));
+        }
+        let at_start = self.values(integrator, start);
         self.first(integrator, (start, at_start), (end, at_end))
     }
 
@@ -237,20 +256,6 @@ impl Search<'_> {
         None
     }
 
-    /// Whether consistent values show a change where it was found. What states alone decide they do not change.
-    fn shows(&mut self, integrator: &mut Integrator<'_>, found: &Crossing) -> bool {
-        let state = integrator.state();
-        let mut numbers = found.relations.iter();
-        if numbers.any(|number| state.is_of_states(*number)) {
-            return true;
-        }
-        self.probe.exact = true;
-        let roots = self.values(integrator, found.t);
-        self.probe.exact = false;
-        let mut pairs = self.watched.iter().zip(roots);
-        pairs.any(|(watched, root)| !watched.holds(root))
-    }
-
     /// The first change after `a` and up to `b`, halving where the curvature is large enough for an excursion to zero.
     fn between(
         &mut self,
@@ -259,12 +264,8 @@ impl Search<'_> {
         b: (f64, &[f64]),
         depth: usize,
     ) -> Option<Crossing> {
-        let pairs = self.watched.iter().zip(b.1);
-        let changed: Vec<Watched> = pairs
-            .filter(|(watched, root)| !watched.holds(**root))
-            .map(|(watched, _)| *watched)
-            .collect();
-        if changed.is_empty() && depth > MAX_HALVINGS {
+        let changes = !self.changed(b.1).is_empty();
+        if !changes && depth > MAX_HALVINGS {
             return None;
         }
         let t = 0.5 * (a.0 + b.0);
@@ -275,17 +276,87 @@ impl Search<'_> {
                 (t, middle.clone()),
                 (b.0, b.1.to_vec()),
             ];
-            let mut pairs = self.watched.iter().zip(&middle);
-            let turned = pairs.any(|(watched, root)| !watched.holds(*root));
-            if turned || self.may_reach_zero(&points) {
+            if self.may_reach_zero(&points) {
                 let left = self.between(integrator, a, (t, &middle), depth + 1);
                 return left.or_else(|| self.between(integrator, (t, &middle), b, depth + 1));
             }
+            if !self.changed(&middle).is_empty() {
+                return Some(self.locate(integrator, a, (t, &middle)));
+            }
         }
-        if changed.is_empty() {
-            return None;
+        changes.then(|| self.locate(integrator, a, b))
+    }
+
+    /// Which of the watched have changed, by their values: their places among them.
+    fn changed(&self, values: &[f64]) -> Vec<usize> {
+        let pairs = self.watched.iter().zip(values).enumerate();
+        pairs
+            .filter(|(_, (watched, root))| !watched.holds(**root))
+            .map(|(place, _)| place)
+            .collect()
+    }
+
+    /// The first of several changes between `low`, where none has happened, and `high`, where all have that count.
+    fn locate(
+        &mut self,
+        integrator: &mut Integrator<'_>,
+        low: (f64, &[f64]),
+        high: (f64, &[f64]),
+    ) -> Crossing {
+        let (mut a, mut b) = (low.0, high.0);
+        let mut remaining = self.changed(high.1);
+        // Values of the one whose secant guides the search.
+        let mut at_a = Some(low.1[remaining[0]]);
+        let mut at_b = high.1[remaining[0]];
+        let mut side = 0_i32;
+        let mut widths = [f64::INFINITY; SLOW_ROUNDS];
+        for round in 0..200 {
+            let tolerance = 4.0 * f64::EPSILON * b.abs().max(a.abs()) + 1e-15 * (high.0 - low.0);
+            if b - a <= tolerance {
+                break;
+            }
+            let secant = at_a
+                .map(|at_a| b - at_b * (b - a) / (at_b - at_a))
+                .filter(|t| *t > a && *t < b);
+            // Where secants have not halved the bracket for some rounds, it is halved.
+            let slow = b - a > 0.5 * widths[round % SLOW_ROUNDS];
+            widths[round % SLOW_ROUNDS] = b - a;
+            let t = secant.filter(|_| !slow).unwrap_or(0.5 * (a + b));
+            // A secant that lands on an end moves by the tolerance, so that the bracket closes from that side.
+            let t = t.clamp(a + 0.5 * tolerance, b - 0.5 * tolerance);
+            let values = self.values(integrator, t);
+            let changed: Vec<usize> = remaining
+                .iter()
+                .copied()
+                .filter(|&place| !self.watched[place].holds(values[place]))
+                .collect();
+            if changed.is_empty() {
+                a = t;
+                at_a = Some(values[remaining[0]]);
+                if side == -1 {
+                    // Illinois: the end that stays twice counts half.
+                    at_b *= 0.5;
+                }
+                side = -1;
+            } else {
+                let same = changed[0] == remaining[0];
+                b = t;
+                at_b = values[changed[0]];
+                if side == 1 {
+                    at_a = at_a.map(|value| 0.5 * value);
+                }
+                if !same {
+                    at_a = None;
+                }
+                side = 1;
+                remaining = changed;
+            }
         }
-        Some(locate(integrator, &mut self.probe, &changed, a.0, b.0))
+        let relations = remaining.iter();
+        Crossing {
+            t: b,
+            relations: relations.map(|&place| self.watched[place].number).collect(),
+        }
     }
 
     /// Whether a root function bends so much between neighbouring points that it may touch zero between them.
@@ -294,10 +365,23 @@ impl Search<'_> {
             let [a, b, c] = three else { return false };
             let part = (b.0 - a.0) / (c.0 - a.0);
             (0..self.watched.len()).any(|k| {
-                let chord = a.1[k] + part * (c.1[k] - a.1[k]);
-                let bend = (b.1[k] - chord).abs();
-                let nearest = a.1[k].abs().min(b.1[k].abs()).min(c.1[k].abs());
-                nearest < 2.0 * bend && bend > 1e-9 * (a.1[k].abs() + c.1[k].abs())
+                let (at_a, at_b, at_c) = (a.1[k], b.1[k], c.1[k]);
+                let chord = at_a + part * (at_c - at_a);
+                let bend = (at_b - chord).abs();
+                // Straight away from a zero where the piece begins, or straight to one where it ends, it meets no other.
+                let straight = |zero: f64, first: f64, second: f64| {
+                    let rise = (at_b - zero).abs() / first;
+                    zero.abs() <= AT_ZERO * at_b.abs() && bend / second < STRAIGHT * rise
+                };
+                let (first, second) = (b.0 - a.0, c.0 - b.0);
+                let mut nearest = at_b.abs();
+                if !straight(at_a, first, second) {
+                    nearest = nearest.min(at_a.abs());
+                }
+                if !straight(at_c, second, first) {
+                    nearest = nearest.min(at_c.abs());
+                }
+                nearest < 2.0 * bend && bend > 1e-9 * (at_a.abs() + at_c.abs())
             })
         })
     }
@@ -310,6 +394,11 @@ impl Search<'_> {
             .map(|watched| roots[watched.number])
             .collect()
     }
+}
+
+/// Whether forces have no kinks of a record or of the past within a step.
+fn is_smooth(state: &State<'_>) -> bool {
+    state.program.columns.is_empty() && state.program.delays.is_empty()
 }
 
 /// A relation that is watched: its number, its truth, and how far from zero its root function says nothing.
@@ -325,67 +414,6 @@ impl Watched {
     fn holds(&self, root: f64) -> bool {
         root.abs() <= self.band || (root > 0.0) == self.truth
     }
-}
-
-/// The first of several changes between `low`, where none has happened, and `high`, where all have.
-fn locate(
-    integrator: &mut Integrator<'_>,
-    probe: &mut Probe<'_>,
-    relations: &[Watched],
-    low: f64,
-    high: f64,
-) -> Crossing {
-    let (mut a, mut b) = (low, high);
-    let mut remaining: Vec<Watched> = relations.to_vec();
-    // Values of the one whose secant guides the search.
-    let mut at_a: Option<f64> = None;
-    let mut at_b = probe.roots(integrator, b)[remaining[0].number];
-    let mut side = 0_i32;
-    for round in 0..200 {
-        let tolerance = 4.0 * f64::EPSILON * b.abs().max(a.abs()) + 1e-15 * (high - low);
-        if b - a <= tolerance {
-            break;
-        }
-        let secant = at_a
-            .map(|at_a| b - at_b * (b - a) / (at_b - at_a))
-            .filter(|t| *t > a && *t < b);
-        let middle = 0.5 * (a + b);
-        let mut t = match secant {
-            Some(t) if round % 3 != 2 => t,
-            _ => middle,
-        };
-        // A secant that lands on an end moves by the tolerance, so that the bracket closes from that side.
-        t = t.clamp(a + 0.5 * tolerance, b - 0.5 * tolerance);
-        let roots = probe.roots(integrator, t);
-        let changed: Vec<Watched> = remaining
-            .iter()
-            .copied()
-            .filter(|watched| !watched.holds(roots[watched.number]))
-            .collect();
-        if changed.is_empty() {
-            a = t;
-            at_a = Some(roots[remaining[0].number]);
-            if side == -1 {
-                // Illinois: the end that stays twice counts half.
-                at_b *= 0.5;
-            }
-            side = -1;
-        } else {
-            let same = changed[0].number == remaining[0].number;
-            b = t;
-            at_b = roots[changed[0].number];
-            if side == 1 {
-                at_a = at_a.map(|value| 0.5 * value);
-            }
-            if !same {
-                at_a = None;
-            }
-            side = 1;
-            remaining = changed;
-        }
-    }
-    let relations = remaining.iter().map(|watched| watched.number).collect();
-    Crossing { t: b, relations }
 }
 
 /// Evaluates root functions on the interpolant, and the margins of slides.

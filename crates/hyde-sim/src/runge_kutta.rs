@@ -13,7 +13,7 @@ mod stages;
 mod tableau;
 
 use hyde_ida::{Error, Failure, FailureKind, LinearMethod, SparseSolver, Statistics, System};
-use passes::{correct, inside, sum_of_squares};
+use passes::{correct, inside, keep_largest, sum_of_squares, weights};
 use stages::Obstacle;
 use tableau::{BUBBLE, GAMMA, STAGES};
 
@@ -169,21 +169,12 @@ impl<S: System> RungeKutta<S> {
         self.from = self.t;
         std::mem::swap(&mut self.before, &mut self.y);
         self.slopes.swap(0, LAST);
-        let kinds = self.differential.iter().zip(&self.counts);
-        let sizes = self.before.iter().zip(&self.largest).zip(&self.atol);
-        let weights = self.weights.iter_mut().zip(&mut self.counted);
-        for ((weight, counted), ((differential, counts), ((before, largest), atol))) in
-            weights.zip(kinds.zip(sizes))
-        {
-            // An algebraic variable is the difference of large ones wherever it passes zero.
-            let size = if *differential {
-                before.abs()
-            } else {
-                *largest
-            };
-            *weight = 1.0 / (self.rtol * size + atol);
-            *counted = if *counts { *weight } else { 0.0 };
-        }
+        weights(
+            (&mut self.weights, &mut self.counted),
+            (&self.differential, &self.counts),
+            (&self.before, &self.largest),
+            (self.rtol, &self.atol),
+        );
         let (wanted, left) = (self.next_step_s.min(self.max_step_s), stop - self.from);
         let step = self.fitting(wanted, left);
         let grown = self.take(step, stop)?;
@@ -236,9 +227,7 @@ impl<S: System> RungeKutta<S> {
                         let whole = to_stop && obstacle.is_none();
                         self.t = if whole { stop } else { self.from + step };
                         self.statistics.steps += 1;
-                        for (largest, value) in self.largest.iter_mut().zip(&self.y) {
-                            *largest = largest.max(value.abs());
-                        }
+                        keep_largest(&mut self.largest, &self.y);
                         let most = if obstacle.is_some() { 1.0 } else { GROW };
                         let factor = factor.clamp(SHRINK, most);
                         let keep = (1.0..KEEP).contains(&factor);

@@ -446,6 +446,10 @@ fn all_finite(values: &[f64]) -> bool {
 }
 
 impl System for State<'_> {
+    fn is_affine(&self) -> bool {
+        self.program.affine && self.slides.is_empty() && self.loose.is_empty()
+    }
+
     fn residual(
         &mut self,
         t: f64,

@@ -1,6 +1,7 @@
 //! Tests across crates: every example through every stage and on both backends, and small models with a closed form.
 #![allow(clippy::unwrap_used, reason = "tests unwrap what must be there")]
 
+mod affine;
 mod arrays;
 mod backends;
 mod bar;

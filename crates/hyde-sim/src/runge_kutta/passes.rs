@@ -55,6 +55,113 @@ fn add(to: &mut [f64], factors: &[f64], slopes: &[Vec<f64>]) {
     }
 }
 
+/// A first guess of a stage: a slope that goes on `part` of the way from the first to the second, and with it
+/// `stage = base + diagonal*slope`.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn guess(
+    (stage, slope): (&mut [f64], &mut [f64]),
+    base: &[f64],
+    (first, second): (&[f64], &[f64]),
+    (part, diagonal): (f64, f64),
+) {
+    let guesses = stage.iter_mut().zip(slope.iter_mut());
+    let known = base.iter().zip(first).zip(second);
+    for ((stage, slope), ((base, first), second)) in guesses.zip(known) {
+        *slope = first + part * (second - first);
+        *stage = base + diagonal * *slope;
+    }
+}
+
+/// 1 over the tolerance of each unknown, and the same where its error counts. The size of a state is its own, that of an
+/// algebraic variable its largest: it is the difference of large ones wherever it passes zero.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn weights(
+    (weights, counted): (&mut [f64], &mut [f64]),
+    (differential, counts): (&[bool], &[bool]),
+    (before, largest): (&[f64], &[f64]),
+    (rtol, atol): (f64, &[f64]),
+) {
+    let kinds = differential.iter().zip(counts);
+    let sizes = before.iter().zip(largest).zip(atol);
+    let vectors = weights.iter_mut().zip(counted.iter_mut());
+    for ((weight, counted), ((differential, counts), ((before, largest), atol))) in
+        vectors.zip(kinds.zip(sizes))
+    {
+        let size = if *differential {
+            before.abs()
+        } else {
+            *largest
+        };
+        *weight = 1.0 / (rtol * size + atol);
+        *counted = if *counts { *weight } else { 0.0 };
+    }
+}
+
+/// Keeps the largest size of each value.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn keep_largest(largest: &mut [f64], values: &[f64]) {
+    for (largest, value) in largest.iter_mut().zip(values) {
+        *largest = larger(value.abs(), *largest);
+    }
+}
+
+/// What is beyond the interpolant's cubic, in parts of `seen` of the largest that an unknown has been: of each that
+/// counts.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn unseen(
+    parts: &mut [f64],
+    (h, seen): (f64, f64),
+    (largest, stage): (&[f64], &[f64]),
+    (atol, counted): (&[f64], &[f64]),
+) {
+    let sizes = largest.iter().zip(stage).zip(atol).zip(counted);
+    for (part, (((largest, stage), atol), counted)) in parts.iter_mut().zip(sizes) {
+        let largest = larger(*largest, stage.abs());
+        let all = h * part.abs() / (seen * largest + atol);
+        *part = if *counted > 0.0 { all } else { 0.0 };
+    }
+}
+
+/// Makes of estimated errors of slopes the slopes whose residual the estimated error of values follows from,
+/// `end + cj*h*error`. Returns the largest error in units of the tolerance.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn erroneous(
+    errors: &mut [f64],
+    end: &[f64],
+    weights: &[f64],
+    (h, cj): (f64, f64),
+) -> f64 {
+    let mut lanes = [0.0; LANES];
+    for ((errors, end), weights) in
+        (errors.chunks_mut(LANES).zip(end.chunks(LANES))).zip(weights.chunks(LANES))
+    {
+        let all = lanes.iter_mut().zip(errors).zip(end).zip(weights);
+        for (((lane, error), end), weight) in all {
+            *lane = larger((h * *error * weight).abs(), *lane);
+            *error = end + cj * h * *error;
+        }
+    }
+    lanes.into_iter().fold(0.0, larger)
+}
+
+/// The largest of values that are not negative.
+#[multiversion(targets("x86_64+avx2"))]
+pub(super) fn largest_of(values: &[f64]) -> f64 {
+    let mut lanes = [0.0; LANES];
+    for values in values.chunks(LANES) {
+        for (lane, value) in lanes.iter_mut().zip(values) {
+            *lane = larger(*value, *lane);
+        }
+    }
+    lanes.into_iter().fold(0.0, larger)
+}
+
+/// The larger of two; the second where the first is no number.
+#[inline(always)]
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
+}
+
 /// `to = sum(parts[j]*slopes[j])`, summed from the last one on and then from the first.
 #[multiversion(targets("x86_64+avx2"))]
 pub(super) fn weigh(to: &mut [f64], slopes: &[Vec<f64>], parts: &[f64; STAGES]) {

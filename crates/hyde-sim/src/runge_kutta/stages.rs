@@ -6,9 +6,12 @@
 //!
 //! K[0] is y' where the step begins. All stages share one matrix, `dF/dy + 1/(h*gamma) dF/dy'`: it is factored when the
 //! step changes, and when the iteration contracts slowly. A linear system is solved by the first iteration, so the
-//! contraction measured last decides whether one is enough; the last stage is always iterated twice, which measures it.
+//! contraction measured last decides whether one is enough. The last stage is iterated twice, which measures it; but for an
+//! affine system it is what it was where the run started.
 
-use super::passes::{are_finite, combine, correct, sum_of_squares, weigh};
+use super::passes::{
+    are_finite, combine, correct, erroneous, guess, largest_of, sum_of_squares, unseen, weigh,
+};
 use super::tableau::{A, C, ERROR, GAMMA, INSIDE, STAGES};
 use super::{LAST, RungeKutta};
 use hyde_ida::System;
@@ -45,7 +48,7 @@ pub(super) enum Obstacle {
 
 impl<S: System> RungeKutta<S> {
     /// The stages of a step of `h` s from where it begins. Leaves its end in `stage`; returns the estimated error in units
-    /// of the tolerance, and the unknown with the largest.
+    /// of the tolerance, and the unknown with the largest if that is more than 1.
     pub(super) fn attempt(&mut self, h: f64) -> Result<(f64, usize), Obstacle> {
         self.fresh = false;
         loop {
@@ -114,13 +117,12 @@ impl<S: System> RungeKutta<S> {
         let factors = A[i].map(|weight| h * weight);
         combine(&mut self.base, &self.before, &factors[..i], earlier);
         let (first, second) = (&earlier[0], &earlier[1.min(i - 1)]);
-        let (part, diagonal) = (C[i] / C[1], h * GAMMA);
-        let guesses = self.stage.iter_mut().zip(&mut slope[0]);
-        let known = self.base.iter().zip(first).zip(second);
-        for ((stage, slope), ((base, first), second)) in guesses.zip(known) {
-            *slope = first + part * (second - first);
-            *stage = base + diagonal * *slope;
-        }
+        guess(
+            (&mut self.stage, &mut slope[0]),
+            &self.base,
+            (first, second),
+            (C[i] / C[1], h * GAMMA),
+        );
     }
 
     /// Newton's method for a stage. Returns the size of the only correction, or 0 if there were more.
@@ -157,7 +159,7 @@ impl<S: System> RungeKutta<S> {
                     return Ok(0.0);
                 }
             }
-            let measures = i + 1 == STAGES && iteration == 0;
+            let measures = i + 1 == STAGES && iteration == 0 && !self.system.is_affine();
             let converged = self
                 .contraction
                 .is_some_and(|rate| rate < TOO_SLOW && rate * size <= LEFT * (1.0 - rate));
@@ -180,7 +182,7 @@ impl<S: System> RungeKutta<S> {
         Err(Obstacle::Convergence(unknown, left))
     }
 
-    /// The root mean square of the estimated errors that count, and the unknown with the largest.
+    /// The root mean square of the estimated errors that count, and the unknown with the largest if that is more than 1.
     ///
     /// The difference of the two formulas is one of states, and too large where they are stiff (L. F. Shampine, Math. Comp.
     /// 33 (1979) 521: it grows with h times the Jacobian). What Newton's method makes of it as a change of y' is right
@@ -190,22 +192,16 @@ impl<S: System> RungeKutta<S> {
         let (error, inside) = (&mut self.base, &mut self.correction);
         weigh(error, &self.slopes, &ERROR);
         weigh(inside, &self.slopes, &INSIDE);
-        let mut unseen = (0.0, 0);
-        let largest = self.largest.iter().zip(&self.stage).zip(&self.atol);
-        let counted = inside.iter().zip(largest).zip(&self.counts).enumerate();
-        for (index, ((inside, ((largest, stage), atol)), counts)) in counted {
-            let largest = largest.max(stage.abs());
-            let part = h * inside.abs() / (SEEN * largest + atol);
-            if *counts && part > unseen.0 {
-                unseen = (part, index);
-            }
-        }
-        let mut rough = 0.0_f64;
-        let end = self.slopes[LAST].iter().zip(&self.weights);
-        for (slope, (end, weight)) in error.iter_mut().zip(end) {
-            rough = rough.max((h * *slope * weight).abs());
-            *slope = end + cj * h * *slope;
-        }
+        unseen(
+            inside,
+            (h, SEEN),
+            (&self.largest, &self.stage),
+            (&self.atol, &self.counted),
+        );
+        let most = largest_of(inside);
+        let of_most = || inside.iter().position(|part| *part >= most);
+        let most_at = (most > 1.0).then(of_most).flatten();
+        let rough = erroneous(error, &self.slopes[LAST], &self.weights, (h, cj));
         self.smooth = rough <= 1.0;
         self.statistics.residual_evaluations += 1;
         self.system
@@ -216,10 +212,10 @@ impl<S: System> RungeKutta<S> {
         if !error.is_finite() {
             return Err(Obstacle::Residual(None));
         }
-        Ok(if unseen.0 > error {
-            unseen
-        } else {
-            (error, self.most_corrected())
+        Ok(match most_at {
+            Some(unknown) if most > error => (most, unknown),
+            _ if error > 1.0 => (error, self.most_corrected()),
+            _ => (error.max(most), 0),
         })
     }
 
