@@ -152,7 +152,7 @@ impl Row {
 const ELIMINATE: &str = "\
 /* ---- Linear equations: factors in a fixed order ---------------------------------------------------------------- */
 
-/* The fixed order serves as long as the numbers by which rows are multiplied are no larger than this, and no pivot is smaller than the
+/* The fixed order serves as long as the multiples of rows that are subtracted are at most this, and no pivot is smaller than the
    inverse of the second; both of rows whose largest number is 1. */
 #define HY_FACTOR 100.0
 #define HY_SINGULAR 1e12

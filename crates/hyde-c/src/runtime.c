@@ -1,7 +1,8 @@
 /* ---- The step: implicit Euler, then what happens at its end --------------------------------------------------- */
 
 /* Newton's method ends where changes are below this part of the largest values so far, or where the next one will be, as fast as they
-   become smaller; or where they are small and become no smaller with a new matrix: then they are rounding. */
+   become smaller from the second on: the first also corrects what is affine. It ends too where they are small and become no smaller
+   with a new matrix: then they are rounding. */
 #define HY_RELATIVE 1e-12
 #define HY_ABSOLUTE 1e-14
 #define HY_ROUNDING 1e6
@@ -126,7 +127,7 @@ static int hy_solve(@NAME@ *m, double t, double h, int kind)
         size = hy_size(m, m->residual);
         rate = size / last;
         stalls = rate > 0.25;
-        if (size <= 1.0 || (iteration > 0 && !stalls && size * rate <= 0.25) || (size <= HY_ROUNDING && stalls && since < 2)) {
+        if (size <= 1.0 || (iteration > 1 && !stalls && size * rate <= 0.25) || (size <= HY_ROUNDING && stalls && since < 2)) {
             hy_apply_pins(m);
             return @NAME@_OK;
         }
