@@ -19,6 +19,9 @@ pub(crate) struct Factors {
 struct Row {
     equation: usize,
     unknown: usize,
+    /// The name of the unknown, and whether it is a state, whose rate is solved for.
+    name: String,
+    state: bool,
     /// What the matrix has there: by rates and algebraic unknowns, and by states, as numbers of partial derivatives.
     terms: BTreeMap<usize, [Vec<usize>; 2]>,
     /// Where the number of a column is.
@@ -34,6 +37,8 @@ impl Factors {
             .map(|(&equation, &unknown)| Row {
                 equation,
                 unknown,
+                name: program.unknown_name(unknown),
+                state: differential[unknown],
                 terms: BTreeMap::new(),
                 place: BTreeMap::new(),
             })
@@ -78,11 +83,18 @@ impl Factors {
             text.push_str(";\n");
         }
         for (k, row) in self.rows.iter().enumerate().rev() {
-            let _ = write!(text, "    const double x{k} = (c{k}");
+            let mut value = format!("c{k}");
             for (column, place) in row.above(k) {
-                let _ = write!(text, " - f[{place}] * x{column}");
+                let _ = write!(value, " - f[{place}] * x{column}");
             }
-            let _ = writeln!(text, ") * f[{}];", row.place[&k]);
+            if row.above(k).next().is_some() {
+                value = format!("({value})");
+            }
+            let _ = writeln!(
+                text,
+                "    const double x{k} = {value} * f[{}];",
+                row.place[&k]
+            );
         }
         for (k, row) in self.rows.iter().enumerate() {
             let _ = writeln!(text, "    b[{}] = x{k};", row.unknown);
@@ -94,8 +106,10 @@ impl Factors {
     fn eliminate(&self, text: &mut String, k: usize, row: &Row) {
         let _ = writeln!(
             text,
-            "    /* The equation {} for the unknown {}. */",
-            row.equation, row.unknown
+            "    /* Equation {} for `{}`{}. */",
+            row.equation,
+            row.name,
+            if row.state { ", its rate" } else { "" }
         );
         for (column, place) in &row.place {
             let terms = row.terms.get(column).into_iter();

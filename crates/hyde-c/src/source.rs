@@ -119,10 +119,13 @@ fn runs(program: &Program) -> Vec<(usize, usize, bool)> {
 
 /// Whether the matrix changes with an input, itself or by parameters that follow from it.
 fn is_coefficient(model: &FixedStep<'_>, place: usize, coefficients: &Coefficients) -> bool {
-    let kernels = &model.program.kernels;
-    let directions = kernels.parameter_directions(&[place], model.parameters);
-    let mut used = coefficients.parameters.iter();
-    used.any(|&own| own == place || directions.iter().any(|along| along[own] != 0.0))
+    let used = &coefficients.parameters;
+    used.contains(&place) || {
+        let kernels = &model.program.kernels;
+        let directions = kernels.parameter_directions(&[place], model.parameters);
+        let mut along = directions.iter();
+        along.any(|along| used.iter().any(|&own| along[own] != 0.0))
+    }
 }
 
 fn structure(text: &mut String, program: &Program, order: &Elimination) {
