@@ -1,4 +1,5 @@
-/* Steps a model and prints its outputs after every step: `steps COUNT [INPUTS]`, with a line of inputs for each step. */
+/* Steps a model and prints its outputs after every step: `steps COUNT [INPUTS|- [CHANGES]]`, with a line of inputs for each step, and
+   a line `STEP p|in NUMBER VALUE` for each parameter or input that is set before a step, in the order of the steps. */
 #include "model.h"
 
 #include <stdio.h>
@@ -18,6 +19,12 @@ int main(int argc, char **argv)
 {
     const long count = argc > 1 ? atol(argv[1]) : 0;
     FILE *inputs = argc > 2 ? fopen(argv[2], "r") : NULL;
+    FILE *changes = argc > 3 ? fopen(argv[3], "r") : NULL;
+    long at = -1;
+    char kind[4] = "";
+    int number = 0;
+    double changed = 0.0;
+    int more = changes != NULL && fscanf(changes, "%ld %3s %d %lf", &at, kind, &number, &changed) == 4;
     int status = model_init(&m);
     if (status != model_OK) {
         fprintf(stderr, "start: %s\n", model_message(&m, status));
@@ -33,6 +40,13 @@ int main(int argc, char **argv)
             if (model_set(&m, input, value) != model_OK) {
                 return 3;
             }
+        }
+        while (more && at == k) {
+            const int set = kind[0] == 'p' ? model_set_parameter(&m, number, changed) : model_set(&m, number, changed);
+            if (set != model_OK) {
+                return 5;
+            }
+            more = fscanf(changes, "%ld %3s %d %lf", &at, kind, &number, &changed) == 4;
         }
         status = model_step(&m);
         if (status != model_OK) {

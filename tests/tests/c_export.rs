@@ -26,6 +26,9 @@ fn hyde(arguments: &[&str]) -> Output {
         .unwrap()
 }
 
+/// What is set before a step: its number, the kind `p` or `in`, the name, the value.
+type Change<'a> = (usize, &'a str, &'a str, f64);
+
 /// A model as a program that steps it.
 struct Built {
     folder: tempfile::TempDir,
@@ -34,11 +37,24 @@ struct Built {
 
 impl Built {
     fn new(file: &str, experiment: &str, step: &str, outputs: &str) -> Self {
+        Self::with_inputs(file, experiment, step, outputs, &[])
+    }
+
+    /// With stimuli that the program sets.
+    fn with_inputs(
+        file: &str,
+        experiment: &str,
+        step: &str,
+        outputs: &str,
+        inputs: &[&str],
+    ) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().to_string_lossy().into_owned();
         let model = ["export", "c", file, experiment, "--step", step];
         let others = ["--name", "model", "--output", outputs, "--out", &path];
-        let output = hyde(&[&model[..], &others].concat());
+        let released = inputs.iter().flat_map(|name| ["--input", name]);
+        let released: Vec<&str> = released.collect();
+        let output = hyde(&[&model[..], &others, &released].concat());
         assert!(output.status.success(), "{output:?}");
         let mut compiler = Command::new("cc");
         compiler.current_dir(folder.path()).args([
@@ -66,13 +82,30 @@ impl Built {
 
     /// The outputs in the program's order, after every step.
     fn run(&self, steps: usize, inputs: &[Vec<f64>]) -> Result<Vec<Vec<f64>>, String> {
+        self.run_changed(steps, inputs, &[])
+    }
+
+    fn run_changed(
+        &self,
+        steps: usize,
+        inputs: &[Vec<f64>],
+        changes: &[Change<'_>],
+    ) -> Result<Vec<Vec<f64>>, String> {
         let mut command = Command::new(self.program());
         command.arg(steps.to_string());
-        if !inputs.is_empty() {
-            let path = self.folder.path().join("inputs");
+        let path = self.folder.path().join("inputs");
+        if inputs.is_empty() {
+            command.arg("-");
+        } else {
             std::fs::write(&path, lines(inputs)).unwrap();
             command.arg(path);
         }
+        let path = self.folder.path().join("changes");
+        let line = |(step, kind, name, value): &Change<'_>| {
+            format!("{step} {kind} {} {value:?}\n", self.number(kind, name))
+        };
+        std::fs::write(&path, changes.iter().map(line).collect::<String>()).unwrap();
+        command.arg(path);
         let output = command.output().unwrap();
         if !output.status.success() {
             return Err(String::from_utf8_lossy(&output.stderr).into_owned());
@@ -84,6 +117,24 @@ impl Built {
                 .collect()
         };
         Ok(text.lines().map(row).collect())
+    }
+
+    /// The number of a parameter or an input in its enumeration.
+    fn number(&self, kind: &str, name: &str) -> usize {
+        let header = std::fs::read_to_string(self.folder.path().join("model.h")).unwrap();
+        let of_kind = |line: &&str| line.starts_with(&format!("    model_{kind}_"));
+        let mut lines = header.lines().filter(of_kind);
+        let named = |line: &str| line.contains(&format!("/* {name} "));
+        lines.position(named).unwrap()
+    }
+
+    /// How many equations bend.
+    fn curved(&self) -> usize {
+        let source = std::fs::read_to_string(self.folder.path().join("model.c")).unwrap();
+        let line = source
+            .lines()
+            .find_map(|line| line.strip_prefix("#define HY_CURVED "));
+        line.unwrap().parse().unwrap()
     }
 
     fn program(&self) -> PathBuf {
@@ -102,9 +153,20 @@ impl Built {
     }
 }
 
-/// Compares a model with the reference; gives back how many values were compared and how often the outputs changed.
+/// Compares a model with the reference; gives back how many values were compared.
 fn compare(file: &str, experiment: &str, step: &str, outputs: &str, steps: usize) -> usize {
     let built = Built::new(file, experiment, step, outputs);
+    compare_built(&built, (file, experiment, step), steps, &[])
+}
+
+/// The same for a model that is built, with parameters and inputs that are set during the run. The reference sets the
+/// parameters; its inputs are stimuli.
+fn compare_built(
+    built: &Built,
+    (file, experiment, step): (&str, &str, &str),
+    steps: usize,
+    changes: &[Change<'_>],
+) -> usize {
     let example = Example::load(file, Some(experiment)).unwrap();
     let tables = example.parse().unwrap().tables;
     let program = example.compile(Backend::Native).unwrap().program;
@@ -113,14 +175,20 @@ fn compare(file: &str, experiment: &str, step: &str, outputs: &str, steps: usize
     let step_s: f64 = step.parse().unwrap();
     let times: Vec<f64> = (1..=steps).map(|k| start_s + k as f64 * step_s).collect();
     let inputs = inputs(&program, &tables, &times).unwrap();
-    let found = built.run(steps, &inputs).unwrap();
+    let found = built.run_changed(steps, &inputs, changes).unwrap();
     assert_eq!(found.len(), steps + 1);
     let start = hyde_sim::known_start(&program, &tables, &p, start_s, &[]).unwrap();
     let mut reference = FixedStep::new(&program, p, (start_s, step_s), start).unwrap();
     let numbers = built.numbers(&program);
     let mut expected = Vec::new();
+    let mut set = Vec::new();
     for k in 0..=steps {
         if k > 0 {
+            for (_, _, name, value) in changes.iter().filter(|own| own.0 == k - 1 && own.1 == "p") {
+                let (parameter, element) = program.parameter(name).unwrap();
+                set.push((parameter.place + element, *value));
+                program.kernels.parameters(&set, &mut reference.p);
+            }
             for (column, value) in inputs.get(k - 1).into_iter().flatten().enumerate() {
                 reference.u[2 * column] = *value;
                 reference.u[2 * column + 1] = *value;
@@ -188,6 +256,70 @@ fn the_bench_axis_agrees_with_the_reference() {
         6000,
     );
     assert!(compared == 5 * 6001);
+}
+
+const STEPPED: &str = "tests/models/fixed_step.hyde";
+
+#[test]
+fn masses_that_stick_and_slip_need_one_iteration_in_each_mode() {
+    for (step, steps) in [("1e-3", 1000), ("0.25e-3", 4000)] {
+        let outputs = "first.s,first.v,second.v,under.a.f,spring.F";
+        let built = Built::new(STEPPED, "sliding", step, outputs);
+        assert_eq!(built.curved(), 0);
+        let compared = compare_built(&built, (STEPPED, "sliding", step), steps, &[]);
+        assert_eq!(compared, 5 * (steps + 1));
+    }
+}
+
+#[test]
+fn equations_that_bend_are_iterated() {
+    let built = Built::new(STEPPED, "swinging", "1e-3", "phi,w,torque,friction");
+    assert_eq!(built.curved(), 2);
+    let compared = compare_built(&built, (STEPPED, "swinging", "1e-3"), 1000, &[]);
+    assert_eq!(compared, 4 * 1001);
+}
+
+#[test]
+fn a_coefficient_of_a_clock_or_a_when_clause_is_followed() {
+    let outputs = "x,v,gain,damping,control.reading";
+    let built = Built::new(STEPPED, "scheduled", "1e-3", outputs);
+    assert_eq!(built.curved(), 1);
+    let compared = compare_built(&built, (STEPPED, "scheduled", "1e-3"), 2000, &[]);
+    assert_eq!(compared, 5 * 2001);
+}
+
+#[test]
+fn rows_are_exchanged_where_no_order_serves_all_modes() {
+    let built = Built::new(STEPPED, "exchanging", "1e-3", "x,a,b,c");
+    assert_eq!(built.curved(), 0);
+    let compared = compare_built(&built, (STEPPED, "exchanging", "1e-3"), 500, &[]);
+    assert_eq!(compared, 4 * 501);
+}
+
+#[test]
+fn a_parameter_that_is_set_makes_the_factors_anew() {
+    let outputs = "first.s,first.v,second.v,under.a.f,spring.F";
+    let built = Built::new(STEPPED, "sliding", "1e-3", outputs);
+    let changes = [
+        (300, "p", "spring.c", 9000.0),
+        (301, "p", "first.M", 0.5),
+        (500, "p", "under.F", 2.0),
+    ];
+    let model = (STEPPED, "sliding", "1e-3");
+    assert_eq!(compare_built(&built, model, 1000, &changes), 5 * 1001);
+    // The changes matter: without them the model moves otherwise.
+    let plain = built.run(1000, &[]).unwrap();
+    let changed = built.run_changed(1000, &[], &changes).unwrap();
+    assert!((plain[900][0] - changed[900][0]).abs() > 1e-3);
+}
+
+#[test]
+fn an_input_that_is_a_coefficient_makes_the_factors_anew() {
+    let built = Built::with_inputs(STEPPED, "loaded", "1e-3", "x,v", &["load"]);
+    assert_eq!(built.curved(), 0);
+    let changes = [(0, "in", "load", 0.0), (250, "in", "load", 5.0)];
+    let model = (STEPPED, "loaded", "1e-3");
+    assert_eq!(compare_built(&built, model, 1000, &changes), 2 * 1001);
 }
 
 #[test]

@@ -1,15 +1,13 @@
-/* ---- Linear equations: sparse factors of a dense matrix --------------------------------------------------------- */
+/* ---- Linear equations: factors with an exchange of rows, where the fixed order does not serve ------------------- */
 
 /* A pivot of the order of elimination is taken if it is not smaller than this part of the largest in its column. */
 #define HY_PIVOT 0.1
 
-/* The matrix of Newton's method, by rates of states and by the other unknowns, as triangular factors. Equations and unknowns are
-   in the order of `equation_at` and `unknown_at`, in which few numbers are not zero; rows are scaled, and exchanged where a pivot
-   is small. */
-static int hy_factor(@NAME@ *m, double t, double h, int kind)
+/* The same matrix. Equations and unknowns are in the order of `equation_at` and `unknown_at`; rows are scaled, and exchanged where a
+   pivot is small. */
+static int hy_factor_exchanging(@NAME@ *m, double h, int kind)
 {
     double *a = m->matrix[kind];
-    hy_residual_partials(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->partials);
     memset(a, 0, sizeof m->matrix[kind]);
     for (int k = 0; k < HY_PARTIALS; ++k) {
         double *value = &a[hy_partial_row[k] * HY_N + hy_partial_column[k]];
@@ -89,7 +87,7 @@ static int hy_factor(@NAME@ *m, double t, double h, int kind)
     return @NAME@_OK;
 }
 
-static void hy_substitute(@NAME@ *m, int kind, double *b)
+static void hy_substitute_exchanged(@NAME@ *m, int kind, double *b)
 {
     double *x = m->solution;
     for (int row = 0; row < HY_N; ++row) {
@@ -114,5 +112,41 @@ static void hy_substitute(@NAME@ *m, int kind, double *b)
     }
     for (int k = 0; k < HY_N; ++k) {
         b[hy_unknown_at[k]] = x[k];
+    }
+}
+
+/* ---- Linear equations: the factors that are kept ---------------------------------------------------------------- */
+
+/* Whether the factors that are kept are those of the present modes and truths of relations. */
+static int hy_keeps(const @NAME@ *m, int kind)
+{
+    int same = m->fresh[kind];
+    for (int k = 0; k < HY_MODES; ++k) {
+        same &= m->mode[kind][k] == m->z[hy_mode_place[k]];
+    }
+    return same;
+}
+
+static int hy_factor(@NAME@ *m, double t, double h, int kind)
+{
+    int status = @NAME@_OK;
+    hy_residual_partials(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->partials);
+    m->in_order[kind] = (unsigned char)hy_eliminate(m->partials, h, m->factors[kind]);
+    if (!m->in_order[kind]) {
+        status = hy_factor_exchanging(m, h, kind);
+    }
+    for (int k = 0; k < HY_MODES; ++k) {
+        m->mode[kind][k] = m->z[hy_mode_place[k]];
+    }
+    m->fresh[kind] = status == @NAME@_OK;
+    return status;
+}
+
+static void hy_substitute(@NAME@ *m, int kind, double *b)
+{
+    if (m->in_order[kind]) {
+        hy_substitute_in_order(m->factors[kind], b);
+    } else {
+        hy_substitute_exchanged(m, kind, b);
     }
 }

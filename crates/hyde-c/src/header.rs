@@ -1,11 +1,17 @@
 //! The header: what a program in C sees of the model.
 
+use crate::factors::Factors;
 use crate::fixed_step::FixedStep;
 use crate::names::Names;
+use hyde_program::Coefficients;
 use std::fmt::Write as _;
 
 /// The text of `NAME.h`.
-pub(crate) fn text(model: &FixedStep<'_>, names: &Names) -> String {
+pub(crate) fn text(
+    model: &FixedStep<'_>,
+    names: &Names,
+    (factors, coefficients): (&Factors, &Coefficients),
+) -> String {
     let name = &model.name;
     let mut text = format!(
         "/* The model {} with a fixed step, written by Hyde {}. All values are in SI units.\n\n\
@@ -48,7 +54,7 @@ pub(crate) fn text(model: &FixedStep<'_>, names: &Names) -> String {
         let _ = writeln!(text, "    {name}_{status}, /* {what} */");
     }
     text.push_str("};\n\n");
-    structure(&mut text, model);
+    structure(&mut text, model, (factors, coefficients));
     let _ = write!(
         text,
         "#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n\
@@ -87,7 +93,11 @@ fn enumeration<'n>(
 }
 
 /// Arrays of C have one element at least.
-fn structure(text: &mut String, model: &FixedStep<'_>) {
+fn structure(
+    text: &mut String,
+    model: &FixedStep<'_>,
+    (factors, coefficients): (&Factors, &Coefficients),
+) {
     let (program, name) = (model.program, &model.name);
     let n = program.n_unknowns.max(1);
     let at_least = |count: usize| count.max(1);
@@ -106,19 +116,21 @@ fn structure(text: &mut String, model: &FixedStep<'_>) {
         "/* All of a model. Nothing of it is for others to read or write. */\n\
          typedef struct {name} {{\n\
          \x20   long long count, unsettled, pending_at[{holds}], before_pending_at[{holds}];\n\
-         \x20   int set, broken, fresh[2], first[2][{n}], last[2][{n}];\n\
+         \x20   int set, quiet, broken, fresh[2], first[2][{n}], last[2][{n}];\n\
          \x20   double y[{n}], yp[{n}], z[{z}], u[{u}], p[{p}], w[{w}], out[{out}];\n\
          \x20   double before_y[{n}], before_yp[{n}], before_z[{z}], left_y[{n}], left_yp[{n}], left_z[{z}];\n\
-         \x20   double now_z[{z}], after_z[{z}], base[{n}], largest[{n}], residual[{n}], solution[{n}], scale[2][{n}], inverse[2][{n}], matrix[2][{square}];\n\
+         \x20   double now_z[{z}], after_z[{z}], base[{n}], largest[{n}], residual[{n}], solution[{n}], scale[2][{n}], inverse[2][{n}], matrix[2][{square}], factors[2][{factors}], mode[2][{modes}];\n\
          \x20   double partials[{partials}], roots[{relations}], later[{relations}], truths[{reactions}], values[{values}];\n\
          \x20   double pin_value[{pins}], before_pin_value[{pins}], pending[{holds}], before_pending[{holds}];\n\
          \x20   unsigned short column[2][{square}], equation[2][{n}];\n\
-         \x20   unsigned char given[{p}], conditions[{reactions}], before_conditions[{reactions}], flipped[{relations}];\n\
+         \x20   unsigned char in_order[2], given[{p}], conditions[{reactions}], before_conditions[{reactions}], flipped[{relations}];\n\
          \x20   unsigned char fired[{reactions}], pin_on[{pins}], before_pin_on[{pins}], left[{automata}], clause[{clauses}];\n\
          }} {name};\n\n",
         w = at_least(program.n_work),
-        out = at_least(program.outputs.len()),
+        out = at_least(model.outputs.len()),
         square = n * n,
+        factors = at_least(factors.count),
+        modes = at_least(coefficients.modes.len()),
         partials = at_least(program.partials(hyde_program::Function::Residual).len()),
     );
 }

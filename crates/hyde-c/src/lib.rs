@@ -5,15 +5,18 @@
 //! fixed_step   what a program is with a fixed step, or why it cannot be       fixed_step.rs
 //! names        names of C for inputs, parameters and outputs                  names.rs
 //! elimination  the order in which equations are eliminated                    elimination.rs, elimination.c
+//! factors      the factors of the matrix in this order, as straight lines     factors.rs
 //! header       the header: the interface                                      header.rs
 //! source       tables and kernels around the runtime                          source.rs
 //! runtime.c    the step itself, the same for every model                      runtime.c
 //! ```
-//! A step is one of implicit Euler with Newton's method, whose matrix is kept while it converges. What happens in a step
+//! A step is one of implicit Euler with Newton's method. The factors of its matrix are kept for the modes that they are of; where
+//! all equations are affine, one iteration is a step. Otherwise they are kept while they converge. What happens in a step
 //! happens at its end: modes change, conditions become true, clocks tick on the values before (as in hyde-sim). Start values
 //! are those that the exporting machine found consistent.
 
 mod elimination;
+mod factors;
 mod fixed_step;
 mod header;
 mod names;
@@ -34,8 +37,11 @@ pub struct Written {
 #[must_use]
 pub fn written(model: &FixedStep<'_>, kernels: &str) -> Written {
     let names = names::Names::of(model);
+    let order = elimination::Elimination::of(model);
+    let factors = factors::Factors::of(model.program, &order);
+    let coefficients = model.program.kernels.coefficients();
     Written {
-        header: header::text(model, &names),
-        source: source::text(model, &names, kernels),
+        header: header::text(model, &names, (&factors, &coefficients)),
+        source: source::text(model, &names, (&order, &factors, &coefficients), kernels),
     }
 }

@@ -1,7 +1,8 @@
 /* ---- The step: implicit Euler, then what happens at its end --------------------------------------------------- */
 
-/* Newton's method ends where changes are below this part of the largest values so far, or where they are small and become no smaller with
-   a new matrix: then they are rounding. */
+/* Newton's method ends where changes are below this part of the largest values so far, or where the next one will be, as fast as they
+   become smaller from the second on: the first also corrects what is affine. It ends too where they are small and become no smaller
+   with a new matrix: then they are rounding. */
 #define HY_RELATIVE 1e-12
 #define HY_ABSOLUTE 1e-14
 #define HY_ROUNDING 1e6
@@ -43,13 +44,52 @@ static void hy_pin(@NAME@ *m, double t)
     hy_apply_pins(m);
 }
 
-static double hy_largest(double a, double b)
+/* Takes a change of the rates and of the other unknowns back; whether all of it is finite. */
+static int hy_take(@NAME@ *m, double h, const double *change)
 {
-    return b > a ? b : a;
+    double sum = 0.0;
+    for (int run = 0; run < HY_RUNS; ++run) {
+        if (hy_run_differential[run]) {
+            for (int k = hy_run_first[run]; k < hy_run_end[run]; ++k) {
+                sum += change[k];
+                m->yp[k] -= change[k];
+                m->y[k] = m->base[k] + h * m->yp[k];
+            }
+        } else {
+            for (int k = hy_run_first[run]; k < hy_run_end[run]; ++k) {
+                sum += change[k];
+                m->y[k] -= change[k];
+            }
+        }
+    }
+    return fabs(sum) < HUGE_VAL;
+}
+
+/* The largest part of a change, relative to what counts as none. */
+static double hy_size(@NAME@ *m, const double *change)
+{
+    double size = 0.0;
+    for (int run = 0; run < HY_RUNS; ++run) {
+        for (int k = hy_run_first[run]; k < hy_run_end[run]; ++k) {
+            const double value = hy_run_differential[run] ? m->yp[k] : m->y[k];
+            double small;
+            m->largest[k] = hy_largest(m->largest[k], fabs(value));
+            small = HY_RELATIVE * m->largest[k] + HY_ABSOLUTE;
+            if (hy_run_differential[run]) {
+                /* What matters of a rate is what it makes of its state in a step. */
+                small = hy_largest(small, (HY_RELATIVE * fabs(m->y[k]) + HY_ABSOLUTE) * (1.0 / @NAME@_STEP));
+            }
+            if (fabs(change[k]) > size * small) {
+                size = fabs(change[k]) / small;
+            }
+        }
+    }
+    return size;
 }
 
 /* Solves for the rates of the states and the other unknowns; with a step (kind 0) the states are base + h rate, without one
-   (kind 1, h = 0) they stay. */
+   (kind 1, h = 0) they stay. If all equations are affine in the unknowns (HY_CURVED is 0), one iteration with the factors of the
+   present modes solves them. */
 static int hy_solve(@NAME@ *m, double t, double h, int kind)
 {
     double last = HUGE_VAL;
@@ -65,43 +105,29 @@ static int hy_solve(@NAME@ *m, double t, double h, int kind)
         }
     }
     for (int iteration = 0; iteration < HY_ITERATIONS; ++iteration) {
-        double size = 0.0;
+        double size, rate;
         int stalls;
         since += since < 2;
         hy_residual(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->residual);
-        if (!m->fresh[kind]) {
+        if (!hy_keeps(m, kind)) {
             const int status = hy_factor(m, t, h, kind);
             if (status != @NAME@_OK) {
                 return status;
             }
-            m->fresh[kind] = 1;
             since = 0;
         }
         hy_substitute(m, kind, m->residual);
-        for (int k = 0; k < HY_N; ++k) {
-            double *value = hy_differential[k] ? &m->yp[k] : &m->y[k];
-            const double change = m->residual[k];
-            *value -= change;
-            if (hy_differential[k]) {
-                m->y[k] = m->base[k] + h * m->yp[k];
-            }
-            double small, part;
-            m->largest[k] = hy_largest(m->largest[k], fabs(*value));
-            small = HY_RELATIVE * m->largest[k] + HY_ABSOLUTE;
-            if (hy_differential[k]) {
-                /* What matters of a rate is what it makes of its state in a step. */
-                small = hy_largest(small, (HY_RELATIVE * fabs(m->y[k]) + HY_ABSOLUTE) * (1.0 / @NAME@_STEP));
-            }
-            part = fabs(change) / small;
-            if (!(part <= size)) {
-                size = part;
-            }
-        }
-        if (!(size < HUGE_VAL)) {
+        if (!hy_take(m, h, m->residual)) {
             return @NAME@_NOT_FINITE;
         }
-        stalls = size > 0.25 * last;
-        if (size <= 1.0 || (size <= HY_ROUNDING && stalls && since < 2)) {
+        if (HY_CURVED == 0) {
+            hy_apply_pins(m);
+            return @NAME@_OK;
+        }
+        size = hy_size(m, m->residual);
+        rate = size / last;
+        stalls = rate > 0.25;
+        if (size <= 1.0 || (iteration > 1 && !stalls && size * rate <= 0.25) || (size <= HY_ROUNDING && stalls && since < 2)) {
             hy_apply_pins(m);
             return @NAME@_OK;
         }
@@ -136,7 +162,7 @@ static int hy_settle(@NAME@ *m, double t, int at_start)
         return @NAME@_OK;
     }
     for (int round = 0; round < HY_ROUNDS; ++round) {
-        int any = 0, edges = 0;
+        int any = 0, edges = 0, changed = 0;
         const int first = at_start && round == 0;
         hy_roots(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->roots);
         if (HY_SCHEDULED) {
@@ -149,10 +175,16 @@ static int hy_settle(@NAME@ *m, double t, int at_start)
             m->flipped[k] = 0;
             if (hy_matters(m, k) && m->z[k] != truth) {
                 m->z[k] = truth;
+                changed = 1;
                 m->flipped[k] = (unsigned char)hy_relation_equation[k];
                 any |= hy_relation_equation[k];
             }
         }
+        if (m->quiet && !changed) {
+            /* Conditions are made of the memory, which is as it was when nothing fired. */
+            return @NAME@_OK;
+        }
+        m->quiet = 0;
         hy_conditions(t, m->y, m->yp, m->z, m->u, m->p, m->w, m->truths);
         for (int k = 0; k < HY_REACTIONS; ++k) {
             if (hy_reaction_kind[k] == 2) {
@@ -188,6 +220,7 @@ static int hy_settle(@NAME@ *m, double t, int at_start)
                     m->z[hy_reaction_a[k]] = 0.0;
                 }
             }
+            m->quiet = !edges;
             return @NAME@_OK;
         }
         hy_turn(m);
@@ -205,7 +238,9 @@ static int hy_settle(@NAME@ *m, double t, int at_start)
                 m->z[hy_automaton_place[hy_reaction_a[k]]] = (double)hy_reaction_to[k];
             }
         }
-        m->fresh[0] = m->fresh[1] = 0;
+        if (HY_CURVED > 0) {
+            m->fresh[0] = m->fresh[1] = 0;
+        }
         hy_pin(m, t);
         const int status = hy_solve(m, t, 0.0, 1);
         if (status != @NAME@_OK) {
@@ -216,19 +251,24 @@ static int hy_settle(@NAME@ *m, double t, int at_start)
     return @NAME@_OK;
 }
 
-/* Clocks tick on the values before the events of the instant; whether something that equations read has changed. */
-static int hy_tick(@NAME@ *m, double t)
+/* Whether a clock ticks or a held value changes at this instant. */
+static int hy_due(const @NAME@ *m)
 {
-    int changed = 0, due = 0;
+    int due = 0;
     for (int k = 0; k < HY_CLOCKS; ++k) {
         due |= (m->count + hy_clock_period[k] - hy_clock_phase[k]) % hy_clock_period[k] == 0 && m->count >= hy_clock_phase[k];
     }
     for (int k = 0; k < HY_HOLDS; ++k) {
         due |= m->pending_at[k] == m->count;
     }
-    if (!due) {
-        return 0;
-    }
+    return due;
+}
+
+/* Clocks tick on the values before the events of the instant; whether something that equations read has changed. */
+static int hy_tick(@NAME@ *m, double t)
+{
+    int changed = 0;
+    m->quiet = 0;
     memcpy(m->now_z, m->z, sizeof m->z);
     memcpy(m->z, m->left_z, sizeof m->z);
     for (int k = 0; k < HY_CLOCKS; ++k) {
@@ -265,12 +305,15 @@ static int hy_tick(@NAME@ *m, double t)
 static int hy_instant(@NAME@ *m, int at_start)
 {
     const double t = hy_time(m, m->count);
+    const int due = hy_due(m);
     int status;
-    memcpy(m->left_y, m->y, sizeof m->y);
-    memcpy(m->left_yp, m->yp, sizeof m->yp);
-    memcpy(m->left_z, m->z, sizeof m->z);
+    if (due) {
+        memcpy(m->left_y, m->y, sizeof m->y);
+        memcpy(m->left_yp, m->yp, sizeof m->yp);
+        memcpy(m->left_z, m->z, sizeof m->z);
+    }
     status = hy_settle(m, t, at_start);
-    if (status == @NAME@_OK && hy_tick(m, t)) {
+    if (status == @NAME@_OK && due && hy_tick(m, t)) {
         status = hy_solve(m, t, 0.0, 1);
         if (status == @NAME@_OK) {
             status = hy_settle(m, t, 0);
@@ -303,7 +346,7 @@ int @NAME@_step(@NAME@ *m)
     int status;
     if (m->set) {
         hy_parameters(m->given, m->p);
-        m->set = 0;
+        m->set = m->quiet = 0;
     }
     memcpy(m->before_y, m->y, sizeof m->y);
     memcpy(m->before_yp, m->yp, sizeof m->yp);
@@ -313,8 +356,8 @@ int @NAME@_step(@NAME@ *m)
     memcpy(m->before_pin_value, m->pin_value, sizeof m->pin_value);
     memcpy(m->before_pending, m->pending, sizeof m->pending);
     memcpy(m->before_pending_at, m->pending_at, sizeof m->pending_at);
-    for (int k = 0; k < HY_N; ++k) {
-        if (hy_differential[k]) {
+    for (int run = 0; run < HY_RUNS; ++run) {
+        for (int k = hy_run_first[run]; hy_run_differential[run] && k < hy_run_end[run]; ++k) {
             m->y[k] += @NAME@_STEP * m->yp[k];
         }
     }
@@ -334,6 +377,7 @@ int @NAME@_step(@NAME@ *m)
         memcpy(m->pending, m->before_pending, sizeof m->pending);
         memcpy(m->pending_at, m->before_pending_at, sizeof m->pending_at);
         m->fresh[0] = m->fresh[1] = 0;
+        m->quiet = 0;
         return status;
     }
     m->count += 1;
@@ -355,6 +399,9 @@ int @NAME@_set(@NAME@ *m, int input, double value)
         m->u[hy_input_place[input]] = value;
         m->u[hy_input_place[input] + 1] = value;
     } else {
+        if (hy_input_coefficient[input] && m->p[hy_input_place[input]] != value) {
+            m->fresh[0] = m->fresh[1] = 0;
+        }
         m->p[hy_input_place[input]] = value;
         m->set = 1;
     }
@@ -380,7 +427,7 @@ double @NAME@_get_parameter(const @NAME@ *m, int parameter)
 
 double @NAME@_get(const @NAME@ *m, int output)
 {
-    return output < 0 || output >= @NAME@_OUTPUTS ? (double)NAN : m->out[hy_output_place[output]];
+    return output < 0 || output >= @NAME@_OUTPUTS ? (double)NAN : m->out[output];
 }
 
 long long @NAME@_unsettled(const @NAME@ *m)

@@ -1,16 +1,22 @@
 //! The source: tables of the model, its kernels, and the runtime that steps them.
 
-use crate::elimination::{Elimination, places};
+use crate::elimination::{Elimination, differential, places};
+use crate::factors::Factors;
 use crate::fixed_step::FixedStep;
 use crate::names::Names;
-use hyde_program::{Function, Program, ReactionKind, RelationUse, Target, Wrt};
+use hyde_program::{Coefficients, Function, Program, ReactionKind, RelationUse, Target, Wrt};
 use std::fmt::{Display, Write as _};
 
 /// The solution of linear equations and the step, the same for every model; `@NAME@` is the name of the model.
 const RUNTIME: [&str; 2] = [include_str!("elimination.c"), include_str!("runtime.c")];
 
 /// The text of `NAME.c`.
-pub(crate) fn text(model: &FixedStep<'_>, names: &Names, kernels: &str) -> String {
+pub(crate) fn text(
+    model: &FixedStep<'_>,
+    names: &Names,
+    (order, factors, coefficients): (&Elimination, &Factors, &Coefficients),
+    kernels: &str,
+) -> String {
     let (program, name) = (model.program, &model.name);
     let mut text = format!(
         "/* The model {} with a fixed step, written by Hyde {}: see {name}.h. */\n\n\
@@ -30,6 +36,9 @@ pub(crate) fn text(model: &FixedStep<'_>, names: &Names, kernels: &str) -> Strin
         ("HOLDS", program.holds.iter().map(|hold| hold.len).sum()),
         ("PARTIALS", program.partials(Function::Residual).len()),
         ("SCHEDULED", usize::from(scheduled)),
+        ("MODES", coefficients.modes.len()),
+        ("CURVED", coefficients.curved.len()),
+        ("RUNS", runs(program).len()),
     ] {
         let _ = writeln!(text, "#define HY_{size} {value}");
     }
@@ -39,11 +48,18 @@ pub(crate) fn text(model: &FixedStep<'_>, names: &Names, kernels: &str) -> Strin
     ticks(&mut text, program);
     text.push_str("\n/* ---- What the numbers mean ---- */\n\n");
     start(&mut text, model);
-    structure(&mut text, program);
+    structure(&mut text, program, order);
+    table(&mut text, "int", "mode_place", coefficients.modes.iter());
     events(&mut text, program);
     clocks(&mut text, model);
     interface(&mut text, model, names);
+    let coefficient = model
+        .inputs
+        .iter()
+        .map(|input| u8::from(!input.column && is_coefficient(model, input.place, coefficients)));
+    table(&mut text, "unsigned char", "input_coefficient", coefficient);
     text.push('\n');
+    text.push_str(&factors.text());
     text.push_str(&RUNTIME.join("\n").replace("@NAME@", name));
     text
 }
@@ -89,18 +105,36 @@ fn start(text: &mut String, model: &FixedStep<'_>) {
     table(text, "unsigned char", "given", given);
 }
 
-fn structure(text: &mut String, program: &Program) {
-    let mut differential = vec![false; program.n_unknowns];
-    for block in program.unknowns.iter().filter(|block| block.differential) {
-        differential[block.offset..block.offset + block.len].fill(true);
+/// Successive unknowns that are all states or all others: the first, the end, and which.
+fn runs(program: &Program) -> Vec<(usize, usize, bool)> {
+    let mut found: Vec<(usize, usize, bool)> = Vec::new();
+    for (place, own) in differential(program).into_iter().enumerate() {
+        match found.last_mut() {
+            Some((_, end, differential)) if *differential == own => *end = place + 1,
+            _ => found.push((place, place + 1, own)),
+        }
     }
-    table(
-        text,
-        "unsigned char",
-        "differential",
-        differential.iter().map(|own| u8::from(*own)),
-    );
-    let order = Elimination::of(program);
+    found
+}
+
+/// Whether the matrix changes with an input, itself or by parameters that follow from it.
+fn is_coefficient(model: &FixedStep<'_>, place: usize, coefficients: &Coefficients) -> bool {
+    let used = &coefficients.parameters;
+    used.contains(&place) || {
+        let kernels = &model.program.kernels;
+        let directions = kernels.parameter_directions(&[place], model.parameters);
+        let mut along = directions.iter();
+        along.any(|along| used.iter().any(|&own| along[own] != 0.0))
+    }
+}
+
+fn structure(text: &mut String, program: &Program, order: &Elimination) {
+    let differential = differential(program);
+    let runs = runs(program);
+    table(text, "int", "run_first", runs.iter().map(|own| own.0));
+    table(text, "int", "run_end", runs.iter().map(|own| own.1));
+    let states = runs.iter().map(|own| u8::from(own.2));
+    table(text, "unsigned char", "run_differential", states);
     let [row_at, column_at] = [places(&order.equations), places(&order.unknowns)];
     let entries = program.partials(Function::Residual);
     // 0 by an unknown, 1 by a rate, 2 by neither, 3 by a state, which its rate changes.
@@ -320,7 +354,6 @@ fn interface(text: &mut String, model: &FixedStep<'_>, names: &Names) {
         "parameter_place",
         model.settable.iter().map(|own| own.place),
     );
-    table(text, "int", "output_place", model.outputs.iter());
 }
 
 fn whole(number: usize) -> i64 {

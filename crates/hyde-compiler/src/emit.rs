@@ -43,10 +43,14 @@ pub fn emit(request: &Request<'_>, stage: Stage, diagnostics: &mut Diagnostics) 
     })
 }
 
-/// The kernels as C.
+/// The kernels as C, with some of the outputs, by number.
 ///
 /// `None` if there were errors; all of them are in `diagnostics`.
-pub fn kernels_as_c(request: &Request<'_>, diagnostics: &mut Diagnostics) -> Option<String> {
+pub fn kernels_as_c(
+    request: &Request<'_>,
+    outputs: &[usize],
+    diagnostics: &mut Diagnostics,
+) -> Option<String> {
     let dae = analyze(request, diagnostics)?;
-    Some(hyde_jit::emit_c(&dae))
+    Some(hyde_jit::emit_c(&dae, outputs))
 }

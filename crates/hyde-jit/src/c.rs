@@ -24,10 +24,10 @@ static double hy_max(double a, double b) { return b > a ? b : a; }
 ";
 
 /// The functions of all kernels that a fixed-step run needs: `hy_residual`, `hy_residual_partials`, `hy_roots`,
-/// `hy_assignments`, `hy_conditions`, `hy_outputs`, `hy_tick_0` and so on, and `hy_parameters`, which computes the parameters
-/// that follow from others and are not given.
+/// `hy_assignments`, `hy_conditions`, `hy_outputs` (those chosen, in their order), `hy_tick_0` and so on, and `hy_parameters`,
+/// which computes the parameters that follow from others and are not given.
 #[must_use]
-pub fn emit_c(dae: &Dae) -> String {
+pub fn emit_c(dae: &Dae, outputs: &[usize]) -> String {
     let mut text = String::new();
     let wanted = [
         "residual",
@@ -35,7 +35,6 @@ pub fn emit_c(dae: &Dae) -> String {
         "roots",
         "assignments",
         "conditions",
-        "outputs",
     ];
     let made = routines(dae);
     let mut body = String::new();
@@ -45,6 +44,9 @@ pub fn emit_c(dae: &Dae) -> String {
             None => body.push_str(&function(dae, &Routine::plain(name, Vec::new()))),
         }
     }
+    let mut chosen = Routine::some_rows(dae, hyde_ir::dae::Function::Outputs, outputs);
+    "outputs".clone_into(&mut chosen.name);
+    body.push_str(&function(dae, &chosen));
     for routine in made.iter().filter(|routine| routine.tick.is_some()) {
         body.push_str(&function(dae, routine));
     }

@@ -8,7 +8,8 @@ use crate::still::Still;
 use hyde_ir::dae::{self, Dae, Space};
 use hyde_ir::{ClockId, Expr, ExprId, Id as _, Index, ParamId, VariableKind};
 use hyde_program::{
-    Constant, Function, Kernels, PartialEntry, Point, SomeRows, TickWrt, Workspace, Wrt,
+    Coefficients, Constant, Function, Kernels, PartialEntry, Point, SomeRows, TickWrt, Workspace,
+    Wrt,
 };
 use std::collections::BTreeMap;
 use std::sync::OnceLock;
@@ -204,6 +205,10 @@ impl Kernels for Compiled {
     fn bending_rows(&self) -> &[usize] {
         self.bending
             .get_or_init(|| crate::bending::bending_rows(&self.dae))
+    }
+
+    fn coefficients(&self) -> Coefficients {
+        crate::bending::coefficients(&self.dae)
     }
 
     fn entries(&self, function: Function) -> Vec<PartialEntry> {

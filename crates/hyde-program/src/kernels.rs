@@ -148,6 +148,18 @@ pub trait SomeRows: Send + Sync {
     fn evaluate(&self, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]);
 }
 
+/// What the derivatives of the residual by unknowns and their rates depend on: see [`Kernels::coefficients`].
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Coefficients {
+    /// Rows that are not affine in the unknowns and their rates while modes, truths of relations and parameters stay, or with
+    /// a coefficient that time, a record column or another value of the memory changes; ascending.
+    pub curved: Vec<usize>,
+    /// Positions in the memory of the modes and the truths of relations that coefficients read, ascending.
+    pub modes: Vec<usize>,
+    /// Positions in the parameter vector that coefficients read, ascending.
+    pub parameters: Vec<usize>,
+}
+
 /// The numbers of a program.
 ///
 /// `out` is always completely written. Explicit variables lie in the workspace during a call.
@@ -178,6 +190,9 @@ pub trait Kernels: Send + Sync {
     /// The rows of the residual that bend, rising. All others are linear in the unknowns and their rates, with coefficients
     /// that nothing but modes and relations changes, and read no time, record column or delayed value.
     fn bending_rows(&self) -> &[usize];
+
+    /// What a matrix of the residual's derivatives by unknowns and their rates depends on, for those who keep one.
+    fn coefficients(&self) -> Coefficients;
 
     /// The places of a function's derivatives, in the order in which [`Kernels::partials`] writes them.
     fn entries(&self, function: Function) -> Vec<PartialEntry>;

@@ -39,7 +39,7 @@ pub use experiment::{
 pub use foreign::{Foreign, ForeignInstance, ForeignPart, ForeignTick, Stopped};
 pub use given::{Given, Misfit};
 pub use jacobian::{Jacobian, JacobianEntry};
-pub use kernels::{Constant, Function, Kernels, Point, SomeRows, TickWrt, Workspace};
+pub use kernels::{Coefficients, Constant, Function, Kernels, Point, SomeRows, TickWrt, Workspace};
 pub use ledger::{Account, AccountKind, Ledger, Port, PortKind};
 pub use program::{
     Column, Derivatives, Output, Parameter, PartialEntry, Prior, Program, RecordValue,

@@ -267,9 +267,9 @@ impl Aim {
 }
 
 impl Project {
-    /// The kernels of what [`Project::compile`] makes for [`Aim::Export`], as C; what is wrong stays in the project's
-    /// diagnostics.
-    pub fn kernels_as_c(&mut self) -> Option<String> {
+    /// The kernels of what [`Project::compile`] makes for [`Aim::Export`], as C, with some of the outputs, by number; what is
+    /// wrong stays in the project's diagnostics.
+    pub fn kernels_as_c(&mut self, outputs: &[usize]) -> Option<String> {
         let settings: BTreeMap<String, f64> = self.set().into_iter().collect();
         let headers = records::headers(&self.records);
         let request = Request {
@@ -277,7 +277,7 @@ impl Project {
             ..self.request(&settings, &headers, Form::Run)
         };
         let mut diagnostics = Diagnostics::new();
-        let found = hyde_compiler::kernels_as_c(&request, &mut diagnostics);
+        let found = hyde_compiler::kernels_as_c(&request, outputs, &mut diagnostics);
         if found.is_none() {
             self.diagnostics = diagnostics;
         }

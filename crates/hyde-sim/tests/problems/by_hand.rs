@@ -4,8 +4,8 @@
 
 use hyde_diag::{InstancePath, Origin, Sources, Span};
 use hyde_program::{
-    Constant, Derivatives, Experiment, Function, InitialCondition, Kernels, Output, PartialEntry,
-    Point, Program, SomeRows, TickWrt, UnknownBlock, Workspace, Wrt,
+    Coefficients, Constant, Derivatives, Experiment, Function, InitialCondition, Kernels, Output,
+    PartialEntry, Point, Program, SomeRows, TickWrt, UnknownBlock, Workspace, Wrt,
 };
 use hyde_sim::{Failure, Results, Setup, simulate};
 use hyde_units::{Dimension, NamedUnit};
@@ -238,6 +238,10 @@ impl<E: Equations> Kernels for ByHand<E> {
 
     fn bending_rows(&self) -> &[usize] {
         panic!("no problem here is asked what bends")
+    }
+
+    fn coefficients(&self) -> Coefficients {
+        panic!("no problem here is asked for its coefficients")
     }
 
     fn entries(&self, function: Function) -> Vec<PartialEntry> {

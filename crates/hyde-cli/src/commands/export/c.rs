@@ -65,13 +65,13 @@ fn left(args: &CArgs) -> Result<String, Exit> {
         &p,
         (start_s, start),
         (&name, args.step),
-        (outputs, given),
+        (outputs.clone(), given),
     );
     let model = model.map_err(|diagnostic| {
         project.diagnostics.push(*diagnostic);
         project.finish_with_errors(own)
     })?;
-    let Some(kernels) = project.kernels_as_c() else {
+    let Some(kernels) = project.kernels_as_c(&outputs) else {
         return Err(project.finish_with_errors(own));
     };
     let text = written(&model, &kernels);
