@@ -10,6 +10,7 @@ mod clock;
 mod command_line;
 mod command_start;
 mod compile;
+mod csv_reading;
 mod demo;
 mod diagnosis;
 mod differential;
@@ -44,6 +45,7 @@ mod traces;
 mod travelling_nut;
 mod two_mass;
 
+pub use csv_reading::read_record;
 pub use promise::{Figure, Measured, Promise, Session};
 pub use selftest::record;
 pub use start::{START, first_step};
@@ -90,6 +92,8 @@ pub const FIGURES: &[Figure] = &[
     demo::FIGURE,
     traces::LAYOUTS,
     traces::MUTATED,
+    csv_reading::RATE,
+    csv_reading::MEMORY,
     event_suite::FIGURE,
     events::P2,
     events::P3,

@@ -4,6 +4,7 @@ use crate::calendar::{self, Origin};
 use crate::heading::{Heading, Place};
 use crate::instants;
 use crate::layout::Layout;
+use crate::texts::Texts;
 use crate::time_error::TimeError;
 use crate::{Column, Note, Table, TableError, declared};
 use std::fmt;
@@ -25,7 +26,7 @@ pub(crate) enum Cells {
     /// Whole numbers.
     Integers(Vec<i64>),
     /// Texts.
-    Texts(Vec<String>),
+    Texts(Texts),
 }
 
 impl Cells {

@@ -1,5 +1,6 @@
 //! Stamps that count from elsewhere: dates, times of day, and numbers of digits that doubles do not hold.
 
+use crate::texts::Texts;
 use chrono::{DateTime, NaiveDate};
 
 /// What the clock of a record showed at the instant from which its time counts.
@@ -28,12 +29,9 @@ const NANOSECONDS: i128 = 1_000_000_000;
 const DAY: i128 = 86_400 * NANOSECONDS;
 
 /// Dates or times of day as seconds from the first one, with what that one was; else the first cell that is neither.
-pub(crate) fn of_texts(cells: &[String]) -> Result<(Vec<f64>, Origin), usize> {
+pub(crate) fn of_texts(cells: &Texts) -> Result<(Vec<f64>, Origin), usize> {
     let mut stamps = Vec::with_capacity(cells.len());
-    let first = cells
-        .first()
-        .and_then(|cell| Stamp::of(cell))
-        .ok_or(0_usize)?;
+    let first = cells.first().and_then(Stamp::of).ok_or(0_usize)?;
     let mut days = 0;
     for (row, cell) in cells.iter().enumerate() {
         let stamp = Stamp::of(cell).filter(|stamp| stamp.zone == first.zone);
@@ -149,7 +147,7 @@ fn day(date: &str) -> Option<i32> {
 }
 
 /// Numbers as seconds from the first one: their digits are subtracted, for doubles do not hold them all.
-pub(crate) fn of_digits(cells: &[String], unit_s: f64) -> Option<(Vec<f64>, Origin)> {
+pub(crate) fn of_digits(cells: &Texts, unit_s: f64) -> Option<(Vec<f64>, Origin)> {
     let first = decimal(cells.first()?)?;
     let each = cells.iter().map(|cell| {
         let (digits, places) = decimal(cell)?;
@@ -252,8 +250,8 @@ fn decimal(cell: &str) -> Option<(i128, u32)> {
 mod tests {
     use super::*;
 
-    fn texts(cells: &[&str]) -> Vec<String> {
-        cells.iter().map(|&cell| cell.to_owned()).collect()
+    fn texts(cells: &[&str]) -> Texts {
+        cells.iter().collect()
     }
 
     #[test]

@@ -6,6 +6,7 @@ use crate::heading::{Temporal, is_time_unit, temporal};
 use crate::layout::DeclaredColumn;
 use crate::statistics::median;
 use crate::table::may_be_first;
+use crate::texts::Texts;
 use crate::time_error::{Candidate, TimeError};
 use crate::{Note, declared, gaps, wrap};
 use hyde_units::{Dimension, NamedUnit};
@@ -195,8 +196,8 @@ pub(crate) fn wraps(values: &[f64], declared: Option<&DeclaredColumn>) -> Option
 }
 
 /// The numbers of cells; else the first that is none.
-fn numbers(texts: &[String]) -> Result<Vec<f64>, usize> {
-    let number = |(row, text): (usize, &String)| {
+fn numbers(texts: &Texts) -> Result<Vec<f64>, usize> {
+    let number = |(row, text): (usize, &str)| {
         let value: Option<f64> = text.trim().parse().ok();
         value.filter(|value| value.is_finite()).ok_or(row)
     };
@@ -296,9 +297,10 @@ fn unit_text(written: &str) -> String {
 
 fn is_dates(cells: &Cells) -> bool {
     match cells {
-        Cells::Texts(texts) => texts
-            .get(..1)
-            .is_some_and(|first| numbers(first).is_err() && calendar::of_texts(first).is_ok()),
+        Cells::Texts(texts) => {
+            let first: Texts = texts.first().into_iter().collect();
+            !first.is_empty() && numbers(&first).is_err() && calendar::of_texts(&first).is_ok()
+        }
         Cells::Numbers(..) | Cells::Sparse(..) | Cells::Integers(_) => false,
     }
 }

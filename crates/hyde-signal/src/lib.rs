@@ -46,6 +46,7 @@ mod record;
 mod series;
 mod signal;
 mod table;
+mod texts;
 mod time_error;
 
 pub use assemble::{Fault, Unusable, align};

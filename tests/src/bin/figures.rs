@@ -23,6 +23,20 @@ fn main() -> ExitCode {
         println!("{}", most.unwrap_or(0));
         return code;
     }
+    if let [reads, file] = &names[..]
+        && reads == "--read-record"
+    {
+        return match hyde_tests::figures::read_record(file.as_ref()) {
+            Ok(said) => {
+                println!("{said}");
+                ExitCode::SUCCESS
+            }
+            Err(reason) => {
+                eprintln!("{reason}");
+                ExitCode::FAILURE
+            }
+        };
+    }
     let mut session = Session::new(hyde_tests::data());
     if let Some(at) = names.iter().position(|name| name == "--seed") {
         let Some(seed) = names.get(at + 1).and_then(|seed| seed.parse().ok()) else {

@@ -1,5 +1,6 @@
 //! Arguments of `hyde export`.
 
+use super::si::seconds;
 use super::{AboutArgs, ModelArgs};
 use clap::{Args, Subcommand, ValueEnum};
 use std::path::PathBuf;
@@ -95,8 +96,8 @@ pub(crate) struct StateSpaceArgs {
 pub(crate) struct CArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
-    /// The step in s; the periods and delays of all clocks are multiples of it
-    #[arg(long, value_name = "SECONDS")]
+    /// The step, in s or with its unit; the periods and delays of all clocks are multiples of it
+    #[arg(long, value_name = "TIME", value_parser = seconds)]
     pub(crate) step: f64,
     /// Inputs that a stimulus of the experiment drives; the stimulus is left out: `--input r,inject`
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]

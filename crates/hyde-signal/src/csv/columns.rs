@@ -10,6 +10,7 @@ use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::heading::{Heading, Place};
 use crate::layout::{DeclaredColumn, Layout};
 use crate::statistics::median;
+use crate::texts::Texts;
 use crate::{Fault, Note, Table, TimeError, declared};
 
 /// The lines of so many missing readings are told.
@@ -40,19 +41,29 @@ struct Column {
 /// The time of a group, and whether its rows ended above those of others.
 struct OfGroup {
     group: Group,
-    instants: Vec<String>,
+    instants: Texts,
     ended: bool,
 }
 
 impl Columns {
-    pub(super) fn of(headings: &[Heading], groups: &[Group], decimal: Option<char>) -> Self {
+    /// Without cells, with room for about so many rows: what is not used of it is never touched.
+    pub(super) fn of(
+        headings: &[Heading],
+        groups: &[Group],
+        decimal: Option<char>,
+        rows: usize,
+    ) -> Self {
+        let column = |_: &Heading| Column {
+            values: Vec::with_capacity(rows),
+            ..Column::default()
+        };
         Self {
-            of: headings.iter().map(|_| Column::default()).collect(),
+            of: headings.iter().map(column).collect(),
             groups: groups
                 .iter()
                 .map(|group| OfGroup {
                     group: group.clone(),
-                    instants: Vec::new(),
+                    instants: Texts::default(),
                     ended: false,
                 })
                 .collect(),
@@ -85,10 +96,10 @@ impl Columns {
                     // Dates have commas of their own; numbers have points from here on.
                     let number = self.numbers.read(cell).is_some();
                     self.of[at].thousands.see(cell);
-                    group.instants.push(match number {
-                        true => plain(cell).into_owned(),
-                        false => (*cell).to_owned(),
-                    });
+                    match number {
+                        true => group.instants.push(&plain(cell)),
+                        false => group.instants.push(cell),
+                    }
                     continue;
                 }
                 let column = &mut self.of[at];
@@ -160,27 +171,30 @@ impl Columns {
             .enumerate()
             .map(|(at, (column, heading))| Some(column.raw(at, heading.clone(), declared, both)))
             .collect();
-        let instants: Vec<Vec<String>> = self
+        let mut instants: Vec<Texts> = self
             .groups
             .into_iter()
             .map(|group| group.instants)
             .collect();
         declared::check(raw.iter().flatten(), &layout.columns)?;
         let mut tables = Vec::new();
+        let mut joined = vec![false; groups.len()];
         for (at, group) in groups.iter().enumerate() {
-            // Groups whose instants are written alike have one time.
             let timed = group.time.is_some();
-            let same = |other: &usize| timed && instants[*other] == instants[at];
-            if (timed && instants[at].is_empty()) || (0..at).any(|other| same(&other)) {
+            if joined[at] || (timed && instants[at].is_empty()) {
                 continue;
             }
-            let also: Vec<usize> = (at + 1..groups.len()).filter(same).collect();
+            // Groups whose instants are written alike have one time.
+            let also: Vec<usize> = (at + 1..groups.len())
+                .filter(|&other| timed && !joined[other] && instants[other] == instants[at])
+                .collect();
+            also.iter().for_each(|&other| joined[other] = true);
             let mut columns: Vec<Raw> = taken(&mut raw, group).collect();
             if let Some(time) = group.time.map(|time| &mut columns[time - group.first]) {
                 if let Cells::Numbers(_, Some(fault)) | Cells::Sparse(_, fault) = &time.cells {
                     return Err(TimeError::Doubtful(fault.clone()).into());
                 }
-                time.cells = Cells::Texts(instants[at].clone());
+                time.cells = Cells::Texts(std::mem::take(&mut instants[at]));
                 said_unit(
                     time,
                     group.period.as_ref(),
@@ -274,7 +288,7 @@ fn said_unit(
     let Some(unit) = &period.unit else {
         return Ok(());
     };
-    let numbers: Vec<f64> = cells.iter().map_while(|cell| any_number(cell)).collect();
+    let numbers: Vec<f64> = cells.iter().map_while(any_number).collect();
     let steps = numbers.windows(2).map(|pair| pair[1] - pair[0]);
     let steps: Vec<f64> = steps.filter(|step| *step > 0.0).collect();
     let Some(step) = median(&steps) else {

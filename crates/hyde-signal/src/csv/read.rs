@@ -41,8 +41,9 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
         notes.push(runs::choose(&mut grid, run, time, layout.time.as_ref())?);
     }
     let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
-    let mut columns = Columns::of(&grid.headings, &groups, layout.decimal);
-    let (mut positions, mut width) = (Vec::new(), None);
+    let expected = expected_rows(&grid.rows, grid.headings.len());
+    let mut columns = Columns::of(&grid.headings, &groups, layout.decimal, expected);
+    let (mut positions, mut width) = (Vec::with_capacity(expected), None);
     while rows.advance()? {
         if rows.is_end_mark() {
             break;
@@ -65,6 +66,14 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     notes.extend(columns.notes(&grid.headings));
     let place = |row: usize| format!("line {}", rows.line_at(positions[row]));
     columns.tables(&grid, &groups, &layout, notes, &place)
+}
+
+/// About how many rows a text has, by the length of its first ones: a cell has a character and its separator at least.
+fn expected_rows(text: &str, columns: usize) -> usize {
+    let first: Vec<&str> = text.lines().take(16).collect();
+    let length = first.iter().map(|line| line.len() + 1).sum::<usize>();
+    let length = length.max(2 * columns * first.len()).max(1);
+    text.len() * first.len() / length + first.len()
 }
 
 /// The group of all columns; a column that is named as the time must be there.

@@ -2,7 +2,7 @@
 
 use super::ReadError;
 use crate::heading::Heading;
-use ::csv::{ReaderBuilder, StringRecord, Trim};
+use ::csv::{ReaderBuilder, StringRecord};
 
 /// Goes through the rows of a text.
 pub(super) struct Rows<'a> {
@@ -40,8 +40,11 @@ impl<'a> Rows<'a> {
             if self.quoted && !self.is_well_quoted(start) {
                 return Err(ReadError::Quotes { line: self.line() });
             }
-            let comment = self.record.get(0).is_some_and(|cell| cell.starts_with('%'));
-            if !comment && self.record.iter().any(|cell| !cell.is_empty()) {
+            let comment = self
+                .cells()
+                .next()
+                .is_some_and(|cell| cell.starts_with('%'));
+            if !comment && self.cells().any(|cell| !cell.is_empty()) {
                 return Ok(true);
             }
         }
@@ -76,7 +79,7 @@ impl<'a> Rows<'a> {
 
     /// The cells of the row, without blanks and quotes round them.
     pub(super) fn cells(&self) -> impl Iterator<Item = &str> {
-        self.record.iter()
+        self.record.iter().map(str::trim)
     }
 
     /// Whether the row only says that the file ends, as TwinCAT's does.
@@ -145,7 +148,7 @@ impl<'a> Rows<'a> {
 pub(super) fn cells_of(line: &str, separator: u8) -> Vec<String> {
     let mut record = StringRecord::new();
     match reader(line, separator).read_record(&mut record) {
-        Ok(true) => record.iter().map(str::to_owned).collect(),
+        Ok(true) => record.iter().map(|cell| cell.trim().to_owned()).collect(),
         Ok(false) | Err(_) => Vec::new(),
     }
 }
@@ -156,7 +159,6 @@ fn reader(text: &str, separator: u8) -> ::csv::Reader<&[u8]> {
         .comment(Some(COMMENT))
         .has_headers(false)
         .flexible(true)
-        .trim(Trim::All)
         .from_reader(text.as_bytes())
 }
 

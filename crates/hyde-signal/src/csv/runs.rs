@@ -95,7 +95,7 @@ fn returns(clock: &[String], declared: Option<&DeclaredColumn>) -> Vec<bool> {
     let times = match numbers {
         Some(values) if instants::wraps(&values, declared).is_some() => return Vec::new(),
         Some(values) => values,
-        None => match calendar::of_texts(clock) {
+        None => match calendar::of_texts(&clock.iter().collect()) {
             Ok((seconds, _)) => seconds,
             Err(_) => return Vec::new(),
         },

@@ -36,7 +36,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
                     None => Cells::Numbers(values, None),
                 },
                 Values::Integers(values) => Cells::Integers(values),
-                Values::Texts(values) => Cells::Texts(values),
+                Values::Texts(values) => Cells::Texts(values.into_iter().collect()),
             },
             heading: Heading {
                 written: field.name.clone(),
