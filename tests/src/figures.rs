@@ -40,10 +40,13 @@ mod residual_cost;
 mod selftest;
 mod start;
 mod stick;
+mod thresholds;
 mod traces;
 mod travelling_nut;
 mod two_mass;
 
+pub(crate) use clock::now;
+pub(crate) use diagnosis::is_right;
 pub use promise::{Figure, Measured, Promise, Session};
 pub use selftest::record;
 pub use start::{START, first_step};
@@ -132,4 +135,5 @@ pub const FIGURES: &[Figure] = &[
     diagnosis::WINDOWS,
     diagnosis::FREE_RUN,
     diagnosis::MINUTES,
+    thresholds::FIGURE,
 ];
