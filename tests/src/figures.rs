@@ -45,8 +45,8 @@ mod traces;
 mod travelling_nut;
 mod two_mass;
 
-pub(crate) use clock::now;
 pub(crate) use diagnosis::is_right;
+pub(crate) use process::cpu_s;
 pub use promise::{Figure, Measured, Promise, Session};
 pub use selftest::record;
 pub use start::{START, first_step};

@@ -210,8 +210,6 @@ fn reason(rejection: Rejection) -> &'static str {
         Rejection::Folds => "not cross-validated",
         Rejection::Bound => "at a bound",
         Rejection::Behind => "worse than the best",
-        Rejection::TooGood => "implausibly large",
-        Rejection::Twice => "already in the model",
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::change::Change;
 use super::results::Result as Row;
-use crate::figures::{is_right, now};
+use crate::figures::{cpu_s, is_right};
 use crate::root;
 use hyde_calibrate::{Asked as Cases, Claim, Outcome, Planting, Size, Thresholds, Verdict};
 use hyde_compiler::{Candidate, DiagnosisPlan, Laws};
@@ -45,7 +45,8 @@ impl Suite {
 /// # Errors
 /// The model or its records cannot be diagnosed.
 pub fn measured(change: &Change, suite: &Suite) -> Result<Row, String> {
-    let begin = now();
+    let spent = || cpu_s(false).unwrap_or(f64::NAN);
+    let before = spent();
     let answers = match suite {
         Suite::Bench(number, folder) => {
             let data = folder.join(format!("bench-{number}"));
@@ -62,7 +63,7 @@ pub fn measured(change: &Change, suite: &Suite) -> Result<Row, String> {
         cases: answers.len(),
         right: count(&|own| own.right),
         false_alarms: count(&|own| own.false_alarm),
-        seconds: begin.elapsed().as_secs_f64(),
+        seconds: spent() - before,
         answers: texts.join("; "),
     })
 }

@@ -17,7 +17,7 @@ pub struct Result {
     pub right: usize,
     /// False alarms among them.
     pub false_alarms: usize,
-    /// The time they took, s.
+    /// The time that they took processors, s.
     pub seconds: f64,
     /// The answers, case by case.
     pub answers: String,

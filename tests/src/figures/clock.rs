@@ -4,6 +4,6 @@ use std::time::Instant;
 
 /// The present instant.
 #[allow(clippy::disallowed_methods, reason = "time is what is measured")]
-pub(crate) fn now() -> Instant {
+pub(super) fn now() -> Instant {
     Instant::now()
 }

@@ -81,7 +81,7 @@ fn refine(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial]) {
     let fine = |trial: &Trial| trial.rejected.is_none();
     let best = trials.iter().filter(|trial| fine(trial));
     let best = best.map(|trial| trial.gain).fold(0.0, f64::max);
-    let contends = |trial: &Trial| fine(trial) && trial.gain >= ground.thresholds.contending * best;
+    let contends = |trial: &Trial| fine(trial) && trial.gain >= ground.thresholds.rival * best;
     if trials.iter().filter(|trial| contends(trial)).count() < 2 {
         return;
     }
@@ -101,10 +101,7 @@ fn judge(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial], gates: Gates)
         trial.rejected = trial
             .rejected
             .or((trial.score < gate).then_some(Rejection::Score))
-            .or(
-                (trial.gain < gate || !trial.is_told(ground.thresholds.not_told))
-                    .then_some(Rejection::Gain),
-            )
+            .or((trial.gain < gate || !trial.is_told()).then_some(Rejection::Gain))
             .or(behind.then_some(Rejection::Behind));
         if trial.rejected.is_some() {
             continue;

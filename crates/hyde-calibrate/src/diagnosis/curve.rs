@@ -315,7 +315,7 @@ fn best(
     let mut best: Option<(Over, f64)> = None;
     for over in all {
         let share = share(runs, kind, over);
-        if best.is_none_or(|(_, known)| share > known + thresholds.curve_alike) {
+        if best.is_none_or(|(_, known)| share > known + thresholds.negligible) {
             best = Some((over, share));
         }
     }

@@ -98,7 +98,7 @@ impl<'s> Forward<'s> {
             hypotheses: self.hypotheses,
             build: self.build,
             gate: self.gates.gain(1),
-            fitted: 2 * self.ground.thresholds.survivors,
+            fitted: 4 * self.ground.thresholds.few,
         }
     }
 
@@ -230,18 +230,19 @@ impl<'s> Forward<'s> {
     /// the best leaves something, as many more that score nearly as much are fitted beside it.
     fn fitted(&self, stage: &Stage, scores: &[Score]) -> Contest {
         let thresholds = self.ground.thresholds;
-        let most = thresholds.survivors;
+        let most = 2 * thresholds.few;
         let best = scores.first().map_or(0.0, Score::gain);
-        let with = |part: f64| {
-            let least = (part * best).max(self.gates.gain(1));
-            scores.iter().take_while(move |score| score.gain() >= least)
-        };
-        let survivors = with(thresholds.surviving).take(most).collect();
+        let with = |least: f64| scores.iter().take_while(move |score| score.gain() >= least);
+        let gate = self.gates.gain(1);
+        let survivors = with(gate).take(most).collect();
         let first = self.contest(stage, survivors, Vec::new());
         let solution = |best: usize| &first.trials[best].stage.solution;
         let accepted = first.accepted.as_ref();
         let left = accepted.is_some_and(|(best, _)| !explained(solution(*best), thresholds));
-        let more: Vec<&Score> = with(thresholds.contender).skip(most).take(most).collect();
+        let more: Vec<&Score> = with(gate.max(thresholds.contender * best))
+            .skip(most)
+            .take(most)
+            .collect();
         if left && !more.is_empty() {
             self.contest(stage, more, first.trials)
         } else {

@@ -45,11 +45,7 @@ pub(crate) fn pair(scanner: &Scanner<'_>, scores: &[Score], gates: Gates) -> Opt
         .into_par_iter()
         .flat_map_iter(|a| (0..a).map(move |b| (a, b)))
         .filter_map(|(a, b)| promise(scanner, &halves[a], &halves[b]))
-        .filter(|promise| {
-            let [a, b] = promise.halves.map(|half| half.score.gain().max(0.0));
-            promise.gain >= gates.gain(2) * inflation
-                && promise.gain >= gates.thresholds.pair_more * (a + b)
-        })
+        .filter(|promise| promise.gain >= gates.gain(2) * inflation)
         .collect();
     promises.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     promises.truncate(gates.thresholds.few);

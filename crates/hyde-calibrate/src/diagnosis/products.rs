@@ -35,10 +35,10 @@ impl Products {
     }
 
     /// What a shape would gain if each part of a second had sizes of its own, parameters standing still, less what chance
-    /// makes of as many parts: of a sum of squares of normal numbers that is their number, and so many times the root of twice of it.
-    pub(crate) fn apart(&self, shape: usize, deviations: f64) -> f64 {
+    /// makes of as many parts: of a sum of squares of normal numbers that is their number.
+    pub(crate) fn apart(&self, shape: usize) -> f64 {
         let freedoms = (self.parts * self.sizes) as f64;
-        self.apart[shape] - freedoms - deviations * (2.0 * freedoms).sqrt()
+        self.apart[shape] - freedoms
     }
 
     /// Adds the rows of a record as they come: see [`Adding`].

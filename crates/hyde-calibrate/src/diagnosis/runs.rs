@@ -35,10 +35,9 @@ impl Runs<'_> {
         plain: &DVector<f64>,
     ) -> Option<DVector<f64>> {
         let set = self.set(sizes, shapes);
-        let limit = self.ground.thresholds.hopeless * plain.norm_squared();
         let run = |recording: &Recording| {
             let observer = self.ground.observer;
-            Innovations::within(self.program, recording, observer, &set, limit).ok()?
+            Innovations::of(self.program, recording, observer, &set).ok()
         };
         let each: Option<Vec<Innovations>> = self.ground.recordings.par_iter().map(run).collect();
         Some(DVector::from_vec(flat(&each?)) - plain)

@@ -147,7 +147,7 @@ impl Scanner<'_> {
             {
                 break;
             }
-            let few: Vec<Promised> = rest.by_ref().take(thresholds.at_a_time).collect();
+            let few: Vec<Promised> = rest.by_ref().take(2 * thresholds.few).collect();
             let tried = few.into_par_iter().map(|promised| self.tried(promised));
             scores.extend(tried.collect::<Vec<Score>>());
             best = scores.iter().map(Score::gain).fold(best, f64::max);
@@ -188,7 +188,7 @@ impl Scanner<'_> {
         promised.nodes = coarse.nodes;
         promised.detectable = coarse.seen;
         // The peak of a period is the narrower, the further the axis goes; over a part of a second it is wide.
-        let fine = grid.fine(&coarse.apart, self.ground.thresholds.places);
+        let fine = grid.fine(&coarse.apart, self.ground.thresholds.few);
         if !fine.is_empty() {
             let fine = self.look(&promised, &fine)?;
             promised.nodes.extend(fine.nodes);
@@ -252,9 +252,9 @@ impl Scanner<'_> {
                     linear: true,
                 };
                 nodes.push(node);
-                apart.push(products.apart(number, self.ground.thresholds.beyond));
+                apart.push(products.apart(number));
                 let reaches = answer.reaches(self.gate, 0);
-                if reaches < self.ground.thresholds.far * largest(&hypothesis.sizes[0]).abs() {
+                if reaches < self.ground.thresholds.room * largest(&hypothesis.sizes[0]).abs() {
                     seen = seen.min(reaches);
                 }
             }
@@ -315,7 +315,6 @@ impl Scanner<'_> {
             if node.gain < thresholds.passable * self.gate {
                 continue;
             }
-            let expected = node.gain;
             node.gain = f64::NEG_INFINITY;
             for factor in [1.0, 0.5, 2.0] {
                 let pairs = node.sizes.iter().zip(&hypothesis.sizes);
@@ -324,7 +323,7 @@ impl Scanner<'_> {
                 if gain > node.gain {
                     (node.gain, node.sizes, node.parameters) = (gain, sizes, parameters);
                 }
-                if node.gain > thresholds.as_expected * expected {
+                if node.gain > 0.0 {
                     break;
                 }
                 linear = false;

@@ -235,7 +235,7 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
         // A further effect that promises most of what is left is looked at before a law.
         if !explained(&branch.stage.solution, thresholds) {
             let left = excess(&branch.stage.solution);
-            if search.promise(&mut branch)? >= thresholds.promising * left {
+            if search.promise(&mut branch)? >= thresholds.mostly * left {
                 search.step(&mut branch)?;
             }
         }

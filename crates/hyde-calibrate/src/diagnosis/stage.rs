@@ -1,6 +1,5 @@
 //! [`Stage`]: the model as far as the search has come: effects taken in, parameters calibrated with them.
 
-use super::hypothesis::Hypothesis;
 use super::profile::profiled;
 use super::thresholds::Thresholds;
 use crate::fit::{Fold, Linearised, MAX_STEPS, Objective, Problem, Slopes, Solution, Varied};
@@ -119,23 +118,6 @@ impl Stage {
     /// The same, and others behind them.
     pub(crate) fn numbers_with(&self, others: &[usize]) -> Vec<usize> {
         [self.numbers().as_slice(), others].concat()
-    }
-
-    /// Whether an effect is there twice with nearly the same period, order or frequency: one of another course, not two.
-    pub(crate) fn has_one_twice(&self, hypotheses: &[Hypothesis], near: f64) -> bool {
-        let values = self.values();
-        let recurring = |(number, path): &(usize, String)| -> Option<(usize, f64)> {
-            let hypothesis = hypotheses.get(*number)?;
-            let shape = hypothesis.periodic.or(hypothesis.resonant)?;
-            let name = format!("{path}.{}", hypothesis.shapes[shape].name);
-            let (_, value) = values.iter().rev().find(|(known, _)| *known == name)?;
-            Some((*number, value.abs()))
-        };
-        let each: Vec<(usize, f64)> = self.effects.iter().filter_map(recurring).collect();
-        let alike = |(one, a): (usize, f64), (other, b): (usize, f64)| {
-            one == other && (a - b).abs() <= near * a.max(b)
-        };
-        (0..each.len()).any(|i| each[..i].iter().any(|&other| alike(each[i], other)))
     }
 
     /// Whether a hypothesis is among those taken in.

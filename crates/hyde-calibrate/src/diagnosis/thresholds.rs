@@ -100,35 +100,15 @@ thresholds! {
     explained_likeness: f64 = 0.1,
         because "rounding of an encoder correlates neighbouring samples without a missing effect",
         removed 0.0;
-    /// Share of the residual in excess of noise that findings must explain, or the verdict is unknown; share of an effect that must be a function of one variable to be drawn as a curve.
+    /// Share of the residual in excess of noise that findings must explain, or the verdict is unknown; that an effect must promise to be tried before a law; of what a law could explain that it must; of an effect that must be a function of one variable to be drawn as a curve.
     mostly: f64 = 0.5,
         because "most is more than half",
         removed 0.0;
-    /// Share of what can be explained that an effect or a law must promise to be taken for the explanation.
-    promising: f64 = 0.6,
-        because "the linear prediction of an effect that explains all falls short of its fit where a shape moves",
-        removed 0.0;
-    /// Share of the residual in excess of noise that an effect beside an unknown rest must explain.
+    /// Share below which a part is not worth a word: of the residual beside an unknown rest; of the first term's improvement in the third of a law, which is a series otherwise.
     a_part: f64 = 0.1,
-        because "what a smaller share means depends on the rest, which is unknown",
+        because "a tenth changes no conclusion",
         removed 0.0;
-    /// Probability at which the sizes of a linear effect are distinguished from 0.
-    not_told: f64 = 0.05,
-        because "the level of all intervals, 95 %",
-        removed 1.0;
-    /// Factor by which a fit may exceed the predicted improvement of a linear effect.
-    too_good: f64 = 3.0,
-        because "the prediction of a linear effect is good to a factor of two; more is a better fit of everything else",
-        removed f64::INFINITY;
-    /// Improvement per innovation above which a fit may exceed the prediction by any factor.
-    remainder: f64 = 0.02,
-        because "ten times the material improvement: a larger effect is no longer linear",
-        removed 0.0;
-    /// Relative distance of two periods, orders or frequencies below which they are one.
-    alike: f64 = 0.1,
-        because "the same effect twice, with nearly the same period, imitates one with another course",
-        removed 0.0;
-    /// Factor beyond its range up to which a size on its bound is fitted.
+    /// Factor beyond its range up to which a size on its bound is fitted, and a detectable size is stated.
     room: f64 = 10.0,
         because "the ranges of the library are usual values; one decade more is still the same effect",
         removed 1.0;
@@ -136,23 +116,15 @@ thresholds! {
     grown: f64 = 0.25,
         because "a cost that grows by a quarter of the prediction has an interval twice as wide",
         removed 0.0;
-    /// Hypotheses that are fitted in a round, and as many more if the best leaves a residual.
-    survivors: usize = 6,
-        because "effects at one site that resemble each other come in groups of two to five",
-        removed 1.0;
-    /// Share of the best score that a hypothesis must have to be fitted.
-    surviving: f64 = 0.05,
-        because "the prediction is never wrong by a factor of 20 for an effect that explains the residual",
-        removed 0.0;
-    /// Share of the best improvement above which a hypothesis may still become the best: of scores, of fits after a few steps, of rivals beside a residual.
+    /// Share of the best improvement above which a hypothesis may still become the best: of scores, of fits after a few steps, of rivals beside a residual, of terms whose constants are not refined.
     contender: f64 = 0.5,
         because "the linear prediction is good to a factor of two",
         removed 1.0;
-    /// Share of the improvement of an accepted effect above which another one, or another site, is its rival.
+    /// Share of the best improvement above which another effect, another site or another first term of a law is a rival of the best, and is fitted as far.
     rival: f64 = 0.8,
         because "an effect bends towards what is missing beside it by up to a fifth of its improvement",
         removed 1.0;
-    /// Alternatives that are fitted at most: places of an effect, pairs, rivals, sites of a law.
+    /// Alternatives that are pursued at most: places of an effect or of a period, pairs, rivals, sites of a law; twice as many hypotheses or terms are fitted in a round.
     few: usize = 3,
         because "the linear prediction orders candidates well enough that the answer is among the first three",
         removed 1.0;
@@ -160,15 +132,7 @@ thresholds! {
     retries: usize = 2,
         because "each attempt costs a round or a whole search and has fewer hypotheses left",
         removed 0.0;
-    /// Share of the best improvement above which fits are continued by differences before they are compared.
-    contending: f64 = 0.95,
-        because "fits by tangents along one trajectory end within a few percent of their improvement",
-        removed 2.0;
-    /// Factor by which a pair must promise more than its two effects alone.
-    pair_more: f64 = 2.0,
-        because "two effects that do not hide each other are found one after the other",
-        removed 0.0;
-    /// Share of the best improvement below which a hypothesis, or a further term of a law, is not pursued.
+    /// Share of the best improvement below which a hypothesis, or a further term of a law, is not pursued; advantage of a variable over a better known one for a curve.
     negligible: f64 = 0.01,
         because "what gains a hundredth of the best is found in a later round, if it is there",
         removed 0.0;
@@ -176,42 +140,6 @@ thresholds! {
     passable: f64 = 0.25,
         because "a simulation gains at most a few times what its prediction promises",
         removed 0.0;
-    /// Share of the predicted improvement above which a simulation confirms it.
-    as_expected: f64 = 0.7,
-        because "half and twice the size of a linear effect improve by less than this",
-        removed 0.0;
-    /// Hypotheses that are simulated before the best score is updated, and forms of a term that are refined.
-    at_a_time: usize = 8,
-        because "two cores have several each, and the best score is known early",
-        removed f64::INFINITY;
-    /// Factor of the sum of squares beyond which a simulation is given up.
-    hopeless: f64 = 100.0,
-        because "no parameter answers a change of the innovations by ten times their size",
-        removed f64::INFINITY;
-    /// Standard deviations by which parts of a record must improve beyond chance to look finely for a period.
-    beyond: f64 = 5.0,
-        because "some thousand nodes are compared, and one among them exceeds four deviations by chance",
-        removed 0.0;
-    /// Places around which a period is looked for finely.
-    places: usize = 4,
-        because "what else is missing leads the first place astray",
-        removed 1.0;
-    /// Factor of the range of a size beyond which the smallest detectable size is not stated.
-    far: f64 = 1e6,
-        because "a tangent has no meaning at a size a million times its range",
-        removed f64::INFINITY;
-    /// Share of the best first term's improvement above which another first term of a law is fitted beside it.
-    law_rival: f64 = 0.9,
-        because "the linear answer orders the terms of a law to about ten percent",
-        removed 1.0;
-    /// Other first terms of a law that are fitted at most.
-    law_rivals: usize = 2,
-        because "the dictionary has two or three shapes of each course",
-        removed 0.0;
-    /// Share of the best term's improvement above which the constants of a term are refined.
-    law_contender: f64 = 0.4,
-        because "refining its constants can double what a term gains",
-        removed 1.0;
     /// Sum of the costs of two shapes that are multiplied.
     law_cost: usize = 2,
         because "the dictionary grows with the square of its shapes, and so does what chance finds in it",
@@ -220,18 +148,6 @@ thresholds! {
     law_terms: usize = 3,
         because "a law of more terms is a series, which explains nothing",
         removed 1.0;
-    /// Share of the first term's improvement that the last of three terms must not reach.
-    slow: f64 = 0.1,
-        because "improvements that fall slowly are those of a series",
-        removed f64::INFINITY;
-    /// Share of the residual in excess of noise that a law may leave before its last fit.
-    law_left: f64 = 0.05,
-        because "the last fit by differences removes a few percent of the residual",
-        removed 0.0;
-    /// Advantage in share of a variable over a better known one to be preferred for a curve.
-    curve_alike: f64 = 0.02,
-        because "groups of samples explain a hundredth of any effect by chance",
-        removed 0.0;
     /// Share of the best knot's information that a knot of a curve must have.
     shown: f64 = 1e-4,
         because "a point whose deviation is a hundred times that of the best one says nothing",

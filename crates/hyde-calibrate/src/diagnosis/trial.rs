@@ -12,16 +12,15 @@ use crate::fit::{
 };
 use crate::observer::Innovations;
 use hyde_program::Program;
-use hyde_signal::statistics::distributions::{TWO_SIDED, chi_squared};
+use hyde_signal::statistics::distributions::{OUTSIDE, TWO_SIDED, chi_squared};
 use nalgebra::DVector;
 use std::ops::Range;
 
 /// Numerics: a shape is visibly another by this part of its value or its range.
 const VISIBLE_SHAPE: f64 = 0.03;
-/// Numerics: steps from a node before nodes are compared.
+/// Numerics: steps from a node before nodes are compared, and twice as many from the whole fit to that of a half: laws that are
+/// far from linear need more than one or two.
 const FIRST_STEPS: usize = 3;
-/// Numerics: steps from the whole fit to that of a half: laws that are far from linear need more than one or two.
-const FOLD_STEPS: usize = 6;
 
 /// A refit, what it varied, and the shapes it kept fixed.
 type Refit = (Solution, Vec<Varied>, Vec<(String, f64)>);
@@ -39,10 +38,6 @@ pub enum Rejection {
     Bound,
     /// Another one gains more.
     Behind,
-    /// The fit gains far more than the scan, which a linear effect cannot.
-    TooGood,
-    /// The same effect is there already, with nearly the same period, order or frequency.
-    Twice,
 }
 
 /// A hypothesis after its fit.
@@ -97,7 +92,7 @@ impl Trial {
 
     /// Whether its sizes are told from 0 beyond chance by the slopes too, its shapes held, where it is linear: a fit that was stuck before
     /// gains by every column that moves it on. Only what makes it what it is counts.
-    pub(super) fn is_told(&self, chance: f64) -> bool {
+    pub(super) fn is_told(&self) -> bool {
         if !self.linear {
             return true;
         }
@@ -113,7 +108,7 @@ impl Trial {
         let own = covariance.view((sizes.start, sizes.start), (count, count));
         let inverse = own.into_owned().try_inverse();
         inverse.is_some_and(|inverse| {
-            (values.transpose() * inverse * values)[0] >= chi_squared(count, chance)
+            (values.transpose() * inverse * values)[0] >= chi_squared(count, OUTSIDE)
         })
     }
 
@@ -309,14 +304,10 @@ pub(crate) fn finish(
             own.is_some_and(|shape| shape.is_at_bound(solution.values[number]))
         });
     let gain = solution.gain_over(&stage.solution);
-    let innovations = solution.innovations.iter().map(Innovations::count);
-    let remainder = ground.thresholds.remainder * innovations.sum::<usize>() as f64;
     let rejected = if !worth {
         Some(Rejection::Behind)
     } else if at_bound {
         Some(Rejection::Bound)
-    } else if score.linear && gain > ground.thresholds.too_good * score.gain() && gain < remainder {
-        Some(Rejection::TooGood)
     } else {
         None
     };
@@ -333,10 +324,6 @@ pub(crate) fn finish(
         kept,
         solution,
     };
-    let twice = || {
-        new.has_one_twice(hypotheses, ground.thresholds.alike)
-            .then_some(Rejection::Twice)
-    };
     Some(Trial {
         hypothesis: score.hypothesis,
         score: score.gain(),
@@ -349,7 +336,7 @@ pub(crate) fn finish(
         essential: hypothesis.essential(),
         linear: score.linear,
         refined: false,
-        rejected: rejected.or_else(twice),
+        rejected,
         values: values_of(&names, &new),
         names,
         stage: new,
@@ -389,7 +376,7 @@ pub(crate) fn unseen(ground: &Ground<'_>, stage: &Stage) -> Option<f64> {
         let fold = Fold { odd };
         let seen = ground.problem(&stage.program, &stage.varied, &set, Some(fold));
         let solution = seen
-            .solve_in(&stage.solution.values, FOLD_STEPS, Slopes::Tangents)
+            .solve_in(&stage.solution.values, 2 * FIRST_STEPS, Slopes::Tangents)
             .ok()?;
         let other = ground.problem(&stage.program, &stage.varied, &set, Some(fold.other()));
         let innovations = other.innovations(&solution.values).ok()?;

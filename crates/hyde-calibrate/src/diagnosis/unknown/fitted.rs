@@ -10,7 +10,7 @@ use super::regression::{Selected, select};
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::projection::{Projection, change, dot};
 use crate::diagnosis::scan::{Node, Score, VISIBLE};
-use crate::diagnosis::search::{Gates, excess, explained};
+use crate::diagnosis::search::{Gates, explained};
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::trial::{Trial, trial, unseen};
 
@@ -24,7 +24,7 @@ pub(super) struct Wanted {
     pub(super) terms: usize,
     /// What its first term gains in the linear answer at least.
     pub(super) least: f64,
-    /// It explains all, or would if its fit went on.
+    /// It explains all.
     pub(super) all: bool,
 }
 
@@ -60,14 +60,13 @@ impl Fitting<'_> {
         let gains = &begun.selected.gains;
         if let [first, .., before, last] = gains.as_slice()
             && gains.len() == thresholds.law_terms
-            && last - before > thresholds.slow * first
+            && last - before > thresholds.a_part * first
         {
             return None;
         }
         self.shortest(begun).filter(|(trial, _)| {
             let fitted = &trial.stage.solution;
-            let nearly = || excess(fitted) <= thresholds.law_left * excess(&self.stage.solution);
-            !self.wanted.all || explained(fitted, thresholds) || nearly()
+            !self.wanted.all || explained(fitted, thresholds)
         })
     }
 
@@ -90,9 +89,9 @@ impl Fitting<'_> {
         let (felt, projection) = (self.felt, self.projection);
         let (first, gain) = (own.law.terms[0].clone(), own.gains[0]);
         let thresholds = &self.gates.thresholds;
-        let near = |(_, other): &&(Summand, f64)| *other >= thresholds.law_rival * gain;
+        let near = |(_, other): &&(Summand, f64)| *other >= thresholds.rival * gain;
         let rivals = own.others.iter().filter(near);
-        let rivals = rivals.take(thresholds.law_rivals);
+        let rivals = rivals.take(thresholds.few);
         let rivals: Vec<(Summand, f64)> = rivals.cloned().collect();
         if rivals.is_empty() {
             return Begun {
@@ -144,7 +143,7 @@ impl Fitting<'_> {
         let gates = own.gates(self.gates);
         let mut best: Option<(Trial, Selected)> = None;
         for (number, gain) in own.gains.iter().enumerate() {
-            if *gain < self.gates.thresholds.promising * self.most {
+            if *gain < self.gates.thresholds.mostly * self.most {
                 continue;
             }
             let part = own.with_first(number + 1, self.felt, self.projection);

@@ -62,7 +62,7 @@ impl<'a> Places<'a> {
     pub(crate) fn plain_law(&self, other: &Stage, gates: Gates) -> Option<Best> {
         let wanted = Wanted {
             terms: 1,
-            least: gates.thresholds.promising * excess(&self.stage.solution),
+            least: gates.thresholds.mostly * excess(&self.stage.solution),
             all: true,
         };
         self.best(wanted, gates).filter(|best| {

@@ -72,9 +72,9 @@ pub(crate) fn select(
         let before = gains.last().copied().unwrap_or(0.0);
         let mut forms: Vec<(Summand, f64)> = Vec::new();
         for (term, gain) in scored {
-            let worth = gain - before >= thresholds.law_contender * (most - before);
+            let worth = gain - before >= thresholds.contender * (most - before);
             let new = !forms.iter().any(|(known, _)| same_form(known, &term));
-            if worth && new && forms.len() < thresholds.at_a_time {
+            if worth && new && forms.len() < 2 * thresholds.few {
                 forms.push((term, gain));
             }
         }
