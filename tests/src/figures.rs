@@ -41,11 +41,14 @@ mod residual_cost;
 mod selftest;
 mod start;
 mod stick;
+mod thresholds;
 mod traces;
 mod travelling_nut;
 mod two_mass;
 
 pub use csv_reading::read_record;
+pub(crate) use diagnosis::is_right;
+pub(crate) use process::cpu_s;
 pub use promise::{Figure, Measured, Promise, Session};
 pub use selftest::record;
 pub use start::{START, first_step};
@@ -136,4 +139,5 @@ pub const FIGURES: &[Figure] = &[
     diagnosis::WINDOWS,
     diagnosis::FREE_RUN,
     diagnosis::MINUTES,
+    thresholds::FIGURE,
 ];

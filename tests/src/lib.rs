@@ -1,5 +1,6 @@
 //! What the tests across crates and the figures share: the examples, compiled as the command line compiles them.
 
+pub mod ablation;
 pub mod batches;
 pub mod bench_axis;
 pub mod cases;

@@ -2,6 +2,7 @@
 //!
 //! ```text
 //! hypothesis     an effect at a site, with sizes and shapes; a model with some put on     diagnosis/hypothesis.rs
+//! thresholds     every number that decides an answer                                 diagnosis/thresholds.rs
 //! inquiry        a model on records, with all that may be missing of it                diagnosis/inquiry.rs
 //! projection     what a change of innovations gains once parameters have answered it      diagnosis/projection.rs
 //! grid           the values of its shapes that are tried                                   diagnosis/grid.rs
@@ -49,6 +50,7 @@ mod runs;
 mod scan;
 mod search;
 mod stage;
+mod thresholds;
 mod trial;
 mod undetermined;
 mod unknown;
@@ -65,6 +67,7 @@ pub use hypothesis::{Built, Hypothesis, Knob};
 pub use inquiry::{Author, Inquiry};
 pub use scan::Score;
 pub use search::{Diagnosis, Gates, Round, Verdict, diagnose};
+pub use thresholds::{TABLE, Threshold, Thresholds};
 pub use trial::{Rejection, Trial};
 pub use unknown::{
     Factor, FoundLaw, Kind, LatentForce, Law, LawVariable, Map, Panel, Scales, Seen, Site, Summand,

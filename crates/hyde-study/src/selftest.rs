@@ -17,7 +17,8 @@ pub use kept::{Kept, word};
 
 use crate::{Calibration, Progress, Store, diagnosis, unknown};
 use hyde_calibrate::{
-    Asked, Axis, Case, Hypothesis, Planting, SelftestError, Tally, Written, cases, tally,
+    Asked, Axis, Case, Hypothesis, Planting, SelftestError, Tally, Thresholds, Written, cases,
+    tally,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Laws};
 use hyde_diag::Diagnostic;
@@ -53,6 +54,8 @@ pub struct Subject<'a> {
     pub candidates: Vec<Candidate>,
     /// Where a law may act on the model, and what it may be made of.
     pub laws: Laws,
+    /// What decides in each diagnosis.
+    pub thresholds: Thresholds,
 }
 
 /// What a self-test found.
@@ -102,10 +105,9 @@ pub fn selftest<T>(
             calibration,
             candidates,
             hypotheses,
-            records,
             ..
         } = ready;
-        let identity = identity(calibration, plan, seed, records);
+        let identity = identity(ready);
         let store = keep(&identity).map_err(Ended::Asked)?;
         let outcomes = work::outcomes(axis, all, store.as_deref(), progress)?;
         let found: Vec<_> = outcomes
@@ -154,6 +156,7 @@ struct Ready<'a> {
     candidates: &'a [Candidate],
     hypotheses: &'a [Hypothesis],
     records: &'a [BTreeMap<String, Table>],
+    thresholds: Thresholds,
     seed: u64,
 }
 
@@ -168,6 +171,7 @@ fn on_axis<T>(
         calibration,
         candidates,
         laws,
+        thresholds,
     } = subject;
     let sites: Vec<_> = laws.sites.into_iter().map(unknown::site).collect();
     let shapes: Vec<_> = laws.shapes.into_iter().map(Arc::new).collect();
@@ -201,19 +205,21 @@ fn on_axis<T>(
         seed,
         Arc::clone(&options.interrupted),
     );
-    let axis = axis.map_err(|error| match error {
+    let mut axis = axis.map_err(|error| match error {
         SelftestError::Interrupted => Ended::Interrupted(None),
         SelftestError::Simulation(_)
         | SelftestError::Model
         | SelftestError::Record(_)
         | SelftestError::Unsupported(_) => Ended::Cannot(Box::new(work::cannot(&error, plan.span))),
     })?;
+    axis.thresholds = thresholds;
     let ready = Ready {
         plan,
         calibration,
         candidates: &candidates,
         hypotheses: &hypotheses,
         records: &records,
+        thresholds,
         seed,
     };
     with(&axis, &ready, all)
@@ -277,12 +283,15 @@ fn siteless(
 }
 
 /// What decides the outcome of a case beside its name: all texts of the model and the library, the records, the seed.
-fn identity(
-    calibration: &Calibration,
-    plan: &DiagnosisPlan,
-    seed: u64,
-    records: &[BTreeMap<String, Table>],
-) -> Identity {
+fn identity(ready: &Ready<'_>) -> Identity {
+    let Ready {
+        plan,
+        calibration,
+        records,
+        thresholds,
+        seed,
+        ..
+    } = ready;
     let sources: Vec<&[u8]> = calibration
         .project
         .sources
@@ -303,7 +312,7 @@ fn identity(
         );
     }
     let set = calibration.project.set();
-    let order = json!({ "diagnosis": plan.name, "seed": seed, "set": set, "hyde": env!("CARGO_PKG_VERSION") });
+    let order = json!({ "diagnosis": plan.name, "seed": seed, "set": set, "thresholds": format!("{thresholds:?}"), "hyde": env!("CARGO_PKG_VERSION") });
     digest(&[
         &digest(&sources).0,
         &digest(&[&numbers]).0,

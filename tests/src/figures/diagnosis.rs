@@ -332,6 +332,13 @@ fn mean(values: impl Iterator<Item = f64>) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
+/// Whether a report on a set, by number, has its answer.
+pub(crate) fn is_right(set: usize, report: &Value) -> bool {
+    ANSWERS
+        .get(set)
+        .is_some_and(|answer| right(report, answer.as_ref()))
+}
+
 fn right(report: &Value, answer: Option<&Answer>) -> bool {
     let Some(answer) = answer else {
         return report["verdict"] == "none";

@@ -19,7 +19,7 @@ pub(super) fn released() -> Result<PathBuf, String> {
 
 /// CPU time in s so far, of this process or of its children that have ended.
 #[allow(clippy::disallowed_methods, reason = "time is what is measured")]
-pub(super) fn cpu_s(of_children: bool) -> Option<f64> {
+pub(crate) fn cpu_s(of_children: bool) -> Option<f64> {
     let text = std::fs::read_to_string("/proc/self/stat").ok()?;
     // Behind the name in brackets: state is field 3, utime and stime 14 and 15, those of children 16 and 17; 100 a second.
     let fields: Vec<&str> = text.rsplit_once(") ")?.1.split(' ').collect();

@@ -1,8 +1,10 @@
 //! The house rules that a program can check: which crate may depend on which, which [folder](folders) on which, how files
-//! open, what they are called, how long they are, and what stands in none of them.
+//! open, what they are called, how long they are, what stands in none of them, and that every number that decides a diagnosis is
+//! in [one table](thresholds).
 #![allow(clippy::unwrap_used, reason = "tests unwrap what must be there")]
 
 mod folders;
+mod thresholds;
 
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};

@@ -8,9 +8,6 @@ use super::trial::Trial;
 use crate::fit::rows_of_a_block;
 use crate::records::Recording;
 
-/// What would take more records than this is told apart by no motion of this kind.
-const MOST: f64 = 1000.0;
-
 /// A hypothesis that the records cannot tell from the one taken in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alternative {
@@ -31,12 +28,13 @@ pub struct Experiment {
     pub second_s: f64,
 }
 
-/// What would tell two trials apart, for a gain that is to be reached.
+/// What would tell two trials apart, for a gain that is to be reached, with so many records at most.
 pub(super) fn telling(
     recordings: &[Recording],
     one: &Trial,
     other: &Trial,
     gate: f64,
+    most_records: f64,
 ) -> Option<Experiment> {
     let pairs = one.stage.solution.innovations.iter();
     let pairs = pairs.zip(&other.stage.solution.innovations);
@@ -58,5 +56,5 @@ pub(super) fn telling(
         }
     });
     each.min_by(|a, b| a.times.total_cmp(&b.times))
-        .filter(|best| best.times <= MOST)
+        .filter(|best| best.times <= most_records)
 }

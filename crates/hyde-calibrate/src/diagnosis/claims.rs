@@ -14,9 +14,6 @@ use super::stage::{Ground, Stage};
 use crate::plant::Unsupported;
 use hyde_program::Program;
 
-/// The part of what is more than noise that an effect explains beside an `unknown`, or it is no part of that.
-const A_PART: f64 = 0.1;
-
 /// A model with effects, everything in it fitted.
 pub struct FoundModel {
     stage: Stage,
@@ -95,17 +92,21 @@ impl Diagnosis {
             unknown.found = None;
         }
         self.take(stage, &hypotheses);
-        self.unexplained = !explained(&self.after);
+        self.unexplained = !explained(&self.after, inquiry.thresholds);
         self.verdict = match self.law() {
             Some(_) => Verdict::Unknown,
-            None => verdict(&self.findings, &self.before, &self.after),
+            None => verdict(
+                &self.findings,
+                (&self.before, &self.after),
+                inquiry.thresholds,
+            ),
         };
     }
 
     /// Whether what the model has beside one with fewer findings explains a part of what is missing that is worth a word.
-    fn explains_a_part_beside(&self, less: &FoundModel) -> bool {
+    fn explains_a_part_beside(&self, less: &FoundModel, part: f64) -> bool {
         let gained = excess(&less.stage.solution) - excess(&self.after);
-        gained >= A_PART * excess(&self.before)
+        gained >= part * excess(&self.before)
     }
 }
 
@@ -127,7 +128,7 @@ pub(super) fn only_told(
         && number < diagnosis.findings.len()
     {
         let less = diagnosis.without(inquiry, number)?;
-        if diagnosis.explains_a_part_beside(&less) {
+        if diagnosis.explains_a_part_beside(&less, inquiry.thresholds.a_part) {
             number += 1;
         } else {
             diagnosis.keep(inquiry, less);

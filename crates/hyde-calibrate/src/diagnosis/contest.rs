@@ -8,11 +8,6 @@ use super::stage::{Ground, Stage};
 use super::trial::{Begun, Rejection, Trial, begin, finish, unseen};
 use rayon::prelude::*;
 
-/// Of all only these are fitted to the end that have this part of the best gain after a few steps.
-const WORTH: f64 = 0.5;
-/// Trials that gain this part of the best are told apart by the last steps of their fits only.
-const CONTENDING: f64 = 0.95;
-
 /// How a contest ended.
 pub(crate) struct Contest {
     /// What was fitted, the best first.
@@ -45,7 +40,7 @@ impl Forward<'_> {
         let ahead = gains.fold(0.0, f64::max);
         let mut trials = earlier;
         trials.par_extend(begun.into_par_iter().filter_map(|begun| {
-            let worth = begun.gain >= WORTH * ahead;
+            let worth = begun.gain >= ground.thresholds.contender * ahead;
             finish(ground, stage, hypotheses, begun, worth)
         }));
         refine(ground, stage, &mut trials);
@@ -66,7 +61,13 @@ impl Forward<'_> {
             let gate = own.gate(gates);
             let other = |other: usize| Alternative {
                 hypothesis: trials[other].hypothesis,
-                experiment: telling(ground.recordings, own, &trials[other], gate),
+                experiment: telling(
+                    ground.recordings,
+                    own,
+                    &trials[other],
+                    gate,
+                    ground.thresholds.more_records,
+                ),
             };
             (best, others.into_iter().map(other).collect())
         });
@@ -80,7 +81,7 @@ fn refine(ground: &Ground<'_>, stage: &Stage, trials: &mut [Trial]) {
     let fine = |trial: &Trial| trial.rejected.is_none();
     let best = trials.iter().filter(|trial| fine(trial));
     let best = best.map(|trial| trial.gain).fold(0.0, f64::max);
-    let contends = |trial: &Trial| fine(trial) && trial.gain >= CONTENDING * best;
+    let contends = |trial: &Trial| fine(trial) && trial.gain >= ground.thresholds.rival * best;
     if trials.iter().filter(|trial| contends(trial)).count() < 2 {
         return;
     }

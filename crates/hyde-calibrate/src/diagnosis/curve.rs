@@ -15,6 +15,7 @@ use super::inquiry::Inquiry;
 use super::projection::dot;
 use super::search::Diagnosis;
 use super::stage::{Ground, flat};
+use super::thresholds::Thresholds;
 use super::unknown::{CURVE_PROBE, Felt, Kind, PROBE_SIZES, Site, Variable, probe, strongest};
 use crate::fit::inflation;
 use crate::observer::{Direction, Innovations, Own, Track, Vectors, When};
@@ -24,18 +25,12 @@ use hyde_signal::statistics::distributions::TWO_SIDED;
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::f64::consts::TAU;
 
-/// Knots of the data.
+/// Numerics: knots of the data.
 const KNOTS: usize = 25;
-/// Points of the law between each two knots.
+/// Numerics: points of the law between each two knots.
 const FINE: usize = 8;
-/// Groups of rows by which it is judged of which variable the effect is a function.
+/// Numerics: groups of rows by which it is judged of which variable the effect is a function.
 const GROUPS: usize = 64;
-/// An effect that is less a function of every variable than this has no curve.
-const A_FUNCTION: f64 = 0.5;
-/// A variable that says less than this of the effect beyond a better known one is not preferred to it.
-const ALIKE: f64 = 0.02;
-/// A knot counts that the records show this part of what they show of the best one.
-const SHOWN: f64 = 1e-4;
 
 /// Of what an effect is a function.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,12 +121,18 @@ impl Diagnosis {
             ..inquiry.ground()
         };
         let runs = self.along(inquiry, &ground, (number, hypothesis), site)?;
-        let (over, share) = best(&runs, &site.kind, period(hypothesis, finding))?;
+        let (over, share) = best(
+            &runs,
+            &site.kind,
+            period(hypothesis, finding),
+            ground.thresholds,
+        )?;
         let felt = self.felt(inquiry, &ground, site)?;
         let knots = knots(&runs, &site.kind, over)?;
         let fine = finer(&knots);
         let law: Vec<f64> = mean_force(&runs, &site.kind, over, &fine);
-        let asked = asked(&felt, &runs, &site.kind, over, &knots)?;
+        let shown = ground.thresholds.shown;
+        let asked = asked(&felt, &runs, &site.kind, over, &knots, shown)?;
         let at_knots = mean_force(&runs, &site.kind, over, &knots);
         let each = knots.iter().zip(&at_knots).zip(asked);
         let data = each.filter_map(|((&at, &force), more)| {
@@ -297,7 +298,12 @@ fn period(hypothesis: &Hypothesis, finding: &Finding) -> Option<f64> {
 }
 
 /// The variable of which the effect is a function most, and how much; of those that are alike the first.
-fn best(runs: &[Along], kind: &Kind, period: Option<f64>) -> Option<(Over, f64)> {
+fn best(
+    runs: &[Along],
+    kind: &Kind,
+    period: Option<f64>,
+    thresholds: &Thresholds,
+) -> Option<(Over, f64)> {
     let places = || runs.iter().flat_map(|run| run.place.iter().copied());
     let travel = places().fold(f64::MIN, f64::max) - places().fold(f64::MAX, f64::min);
     let mut all: Vec<Over> = period.map(Over::Period).into_iter().collect();
@@ -309,11 +315,11 @@ fn best(runs: &[Along], kind: &Kind, period: Option<f64>) -> Option<(Over, f64)>
     let mut best: Option<(Over, f64)> = None;
     for over in all {
         let share = share(runs, kind, over);
-        if best.is_none_or(|(_, known)| share > known + ALIKE) {
+        if best.is_none_or(|(_, known)| share > known + thresholds.negligible) {
             best = Some((over, share));
         }
     }
-    best.filter(|(_, share)| *share >= A_FUNCTION)
+    best.filter(|(_, share)| *share >= thresholds.mostly)
 }
 
 /// The part of the square of an effect that its mean over a variable has: 1 of a function of it.
@@ -431,6 +437,7 @@ fn asked(
     kind: &Kind,
     over: Over,
     knots: &[f64],
+    part: f64,
 ) -> Option<Vec<Option<(f64, f64)>>> {
     let forces = runs.iter().map(|run| {
         let mut lists = vec![vec![0.0; run.time.len()]; knots.len()];
@@ -447,7 +454,7 @@ fn asked(
     let squares: Vec<f64> = columns.iter().map(|column| dot(column, column)).collect();
     let most = squares.iter().copied().fold(0.0, f64::max);
     let shown: Vec<usize> = (0..knots.len())
-        .filter(|&knot| squares[knot] > SHOWN * most)
+        .filter(|&knot| squares[knot] > part * most)
         .collect();
     let count = shown.len();
     let gram = DMatrix::from_fn(count, count, |i, j| {

@@ -7,19 +7,18 @@
 use super::hypothesis::brings_modes;
 use super::search::{excess, explained};
 use super::stage::Stage;
-
-/// The part that may be left.
-const LEFT: f64 = 2e-3;
+use super::thresholds::Thresholds;
 
 /// What effects that a stage has beyond the declared model may leave of the sum of squares; 0 of those without modes.
-pub(super) fn left_at_edges(declared: &Stage, stage: &Stage) -> f64 {
+pub(super) fn left_at_edges(declared: &Stage, stage: &Stage, thresholds: &Thresholds) -> f64 {
     match brings_modes(&stage.program, &declared.program) {
-        true => LEFT * (declared.solution.data - stage.solution.data).max(0.0),
+        true => thresholds.material * (declared.solution.data - stage.solution.data).max(0.0),
         false => 0.0,
     }
 }
 
 /// Whether a stage leaves nothing to seek another kind of answer for: innovations are noise, but for what edges leave.
-pub(super) fn settled(declared: &Stage, stage: &Stage) -> bool {
-    explained(&stage.solution) || excess(&stage.solution) <= left_at_edges(declared, stage)
+pub(super) fn settled(declared: &Stage, stage: &Stage, thresholds: &Thresholds) -> bool {
+    explained(&stage.solution, thresholds)
+        || excess(&stage.solution) <= left_at_edges(declared, stage, thresholds)
 }

@@ -14,12 +14,6 @@ use super::search::explained;
 use super::stage::Stage;
 use crate::plant::Unsupported;
 
-/// A rival gained this part of what the effect did when it was taken in: of a stage that is explained, and of one that is
-/// not.
-const RIVAL: [f64; 2] = [0.8, 0.5];
-/// Rivals at most, the effect itself among them.
-const MOST: usize = 4;
-
 impl Forward<'_> {
     /// Exchanges effects of a branch, or their shapes; whether any was.
     pub(super) fn exchange(&mut self, branch: &mut Branch) -> Result<bool, Unsupported> {
@@ -31,7 +25,7 @@ impl Forward<'_> {
                 continue;
             };
             let rivals = self.rivals(effect, taken[number].round, stage);
-            let left = !explained(&stage.solution);
+            let left = !explained(&stage.solution, self.ground.thresholds);
             if rivals.len() < 2 && !left {
                 continue;
             }
@@ -80,11 +74,10 @@ impl Forward<'_> {
     fn rivals(&self, effect: usize, round: usize, stage: &Stage) -> Vec<usize> {
         let trials = &self.rounds[round].trials;
         let own = trials.iter().find(|trial| trial.hypothesis == effect);
-        let [explained_part, left_part] = RIVAL;
-        let part = if explained(&stage.solution) {
-            explained_part
-        } else {
-            left_part
+        let thresholds = self.ground.thresholds;
+        let part = match explained(&stage.solution, thresholds) {
+            true => thresholds.rival,
+            false => thresholds.contender,
         };
         let least = part * own.map_or(f64::INFINITY, |trial| trial.gain);
         let mut near: Vec<_> = trials
@@ -93,6 +86,8 @@ impl Forward<'_> {
             .collect();
         near.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         let near = near.into_iter().map(|trial| trial.hypothesis);
-        std::iter::once(effect).chain(near.take(MOST - 1)).collect()
+        std::iter::once(effect)
+            .chain(near.take(thresholds.few))
+            .collect()
     }
 }

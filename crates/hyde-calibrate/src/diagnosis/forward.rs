@@ -19,16 +19,6 @@ use super::trial::Trial;
 use crate::observer::Track;
 use crate::plant::Unsupported;
 
-/// Hypotheses fitted in a round at first, and the part of the best score that they must have.
-const SURVIVORS: usize = 6;
-const SURVIVING: f64 = 0.05;
-/// Of as many more, those that have this part of it, where something is left beside the best.
-const NEARLY: f64 = 0.5;
-/// Rounds beside one an effect.
-const MORE_ROUNDS: usize = 2;
-/// A runner-up has gained this part of what the best did.
-const RUNNER_UP: f64 = 0.8;
-
 /// An effect that was taken in.
 pub(crate) struct Taken {
     /// The number of the round.
@@ -108,14 +98,14 @@ impl<'s> Forward<'s> {
             hypotheses: self.hypotheses,
             build: self.build,
             gate: self.gates.gain(1),
-            fitted: 2 * SURVIVORS,
+            fitted: 4 * self.ground.thresholds.few,
         }
     }
 
     /// The end of a branch, or that of its first round's runner-up, if that is better.
     pub(crate) fn followed(&mut self, branch: Branch) -> Result<Branch, Unsupported> {
         let first = self.follow(branch)?;
-        if settled(self.declared, &first.stage) {
+        if settled(self.declared, &first.stage, self.ground.thresholds) {
             return Ok(first);
         }
         let Some(second) = self.runner_up(&first)? else {
@@ -142,7 +132,8 @@ impl<'s> Forward<'s> {
         let trials = &self.rounds[taken.round].trials;
         let best = trials.iter().filter(|trial| has(trial));
         let best = best.map(|trial| trial.gain).fold(0.0, f64::max);
-        let fine = |trial: &&Trial| trial.passed() && trial.gain >= RUNNER_UP * best && !has(trial);
+        let least = self.ground.thresholds.rival * best;
+        let fine = |trial: &&Trial| trial.passed() && trial.gain >= least && !has(trial);
         let next = trials.iter().filter(fine);
         let Some(next) = next.max_by(|a, b| a.gain.total_cmp(&b.gain)) else {
             return Ok(None);
@@ -160,11 +151,13 @@ impl<'s> Forward<'s> {
     /// Follows a branch to its end.
     fn follow(&mut self, mut branch: Branch) -> Result<Branch, Unsupported> {
         // An effect that is dropped again makes room for another: so many rounds more at most.
-        let most = self.rounds.len() + self.max_effects + MORE_ROUNDS;
+        let most = self.rounds.len() + self.max_effects + self.ground.thresholds.retries;
         while !branch.ended && self.rounds.len() < most {
             self.step(&mut branch)?;
         }
-        if explained(&branch.stage.solution) && self.exchange(&mut branch)? {
+        if explained(&branch.stage.solution, self.ground.thresholds)
+            && self.exchange(&mut branch)?
+        {
             self.prune(&mut branch);
         }
         Ok(branch)
@@ -179,7 +172,7 @@ impl<'s> Forward<'s> {
     /// The gates of what is added to a stage.
     pub(super) fn gates_on(&self, stage: &Stage) -> Gates {
         Gates {
-            left: left_at_edges(self.declared, stage),
+            left: left_at_edges(self.declared, stage, self.ground.thresholds),
             ..self.gates
         }
     }
@@ -219,7 +212,7 @@ impl<'s> Forward<'s> {
     /// not built upon.
     pub(crate) fn settle(&mut self, branch: &mut Branch) -> Result<(), Unsupported> {
         self.prune(branch);
-        if !explained(&branch.stage.solution) && self.exchange(branch)? {
+        if !explained(&branch.stage.solution, self.ground.thresholds) && self.exchange(branch)? {
             self.prune(branch);
         }
         branch.end_in_a_circle(self.gates.of_one(&branch.stage.solution));
@@ -236,17 +229,20 @@ impl<'s> Forward<'s> {
     /// Fits what scores best on a stage. Effects that are alike where each is large score alike, whichever is there: where
     /// the best leaves something, as many more that score nearly as much are fitted beside it.
     fn fitted(&self, stage: &Stage, scores: &[Score]) -> Contest {
+        let thresholds = self.ground.thresholds;
+        let most = 2 * thresholds.few;
         let best = scores.first().map_or(0.0, Score::gain);
-        let with = |part: f64| {
-            let least = (part * best).max(self.gates.gain(1));
-            scores.iter().take_while(move |score| score.gain() >= least)
-        };
-        let survivors = with(SURVIVING).take(SURVIVORS).collect();
+        let with = |least: f64| scores.iter().take_while(move |score| score.gain() >= least);
+        let gate = self.gates.gain(1);
+        let survivors = with(gate).take(most).collect();
         let first = self.contest(stage, survivors, Vec::new());
         let solution = |best: usize| &first.trials[best].stage.solution;
         let accepted = first.accepted.as_ref();
-        let left = accepted.is_some_and(|(best, _)| !explained(solution(*best)));
-        let more: Vec<&Score> = with(NEARLY).skip(SURVIVORS).take(SURVIVORS).collect();
+        let left = accepted.is_some_and(|(best, _)| !explained(solution(*best), thresholds));
+        let more: Vec<&Score> = with(gate.max(thresholds.contender * best))
+            .skip(most)
+            .take(most)
+            .collect();
         if left && !more.is_empty() {
             self.contest(stage, more, first.trials)
         } else {
@@ -271,7 +267,9 @@ impl<'s> Forward<'s> {
                 let next = trials[best].stage.polished(self.ground)?;
                 Some((next, vec![alternatives]))
             }
-            None if !explained(&stage.solution) && stage.effects.len() + 2 <= self.max_effects => {
+            None if !explained(&stage.solution, self.ground.thresholds)
+                && stage.effects.len() + 2 <= self.max_effects =>
+            {
                 pair(&scanner, &scores, gates).map(|next| (next, vec![Vec::new(); 2]))
             }
             None => None,

@@ -7,17 +7,15 @@
 
 use super::hypothesis::{Hypothesis, Knob};
 
-/// Nodes of a shape at most, and of a resonance.
+/// Numerics: nodes of a shape at most.
 const NODES: usize = 12;
-const RESONANT_NODES: usize = 24;
-/// Nodes of a period or an order: so many by ratio, so many evenly spread over orders, and whole orders.
-const PERIODIC_NODES: usize = 64;
-/// Nodes nearer than this to a whole order are it.
-const WHOLE: f64 = 0.02;
-/// Best places around which a period is looked for finely, and values tried at each.
-const PLACES: usize = 4;
+/// Numerics: nodes of a resonance, and of a period around each place that is looked at finely.
 const FINE: usize = 24;
-/// Nodes are beside each other up to so many steps.
+/// Numerics: nodes of a period or an order: so many by ratio, so many evenly spread over orders, and whole orders.
+const PERIODIC_NODES: usize = 64;
+/// Numerics: nodes nearer than this to a whole order are it.
+const WHOLE: f64 = 0.02;
+/// Numerics: nodes are beside each other up to so many steps.
 const BESIDE: f64 = 1.5;
 
 /// The values that are tried.
@@ -53,8 +51,8 @@ impl<'h> Grid<'h> {
         }
     }
 
-    /// Around the places of the grid that gain most where parts of a second are apart, for what is periodic.
-    pub(crate) fn fine(&self, gains: &[f64]) -> Vec<Vec<f64>> {
+    /// Around so many places at most of the grid that gain most where parts of a second are apart, for what is periodic.
+    pub(crate) fn fine(&self, gains: &[f64], most: usize) -> Vec<Vec<f64>> {
         let Some(axis) = self.hypothesis.periodic else {
             return Vec::new();
         };
@@ -62,7 +60,7 @@ impl<'h> Grid<'h> {
         order.sort_by(|&a, &b| gains[b].total_cmp(&gains[a]));
         let mut places: Vec<usize> = Vec::new();
         for k in order {
-            if places.len() < PLACES && places.iter().all(|place| place.abs_diff(k) > 1) {
+            if places.len() < most && places.iter().all(|place| place.abs_diff(k) > 1) {
                 places.push(k);
             }
         }
@@ -187,7 +185,7 @@ impl<'h> Grid<'h> {
         let (low, high) = shape.range;
         let most = match (self.hypothesis.periodic, self.hypothesis.resonant) {
             (Some(_), _) => PERIODIC_NODES,
-            (None, Some(_)) => RESONANT_NODES,
+            (None, Some(_)) => FINE,
             (None, None) => NODES,
         };
         if shape.integer && high - low < (2 * most) as f64 {

@@ -3,7 +3,7 @@
 use hyde_program::Program;
 use hyde_units::NamedUnit;
 
-/// Values are on a bound that are so near it, of the range.
+/// Numerics: values are on a bound that are so near it, of the range.
 const NEAR: f64 = 1e-6;
 
 /// A size or a shape.

@@ -2,6 +2,7 @@
 
 use super::hypothesis::{Built, Hypothesis};
 use super::stage::Ground;
+use super::thresholds::Thresholds;
 use super::unknown::{Site, Written};
 use crate::fit::Varied;
 use crate::observer::Observer;
@@ -35,6 +36,8 @@ pub struct Inquiry<'a> {
     pub max_effects: usize,
     /// Numbers of hypotheses that are not tried: what an earlier search took in and could not tell from its neutral value.
     pub barred: &'a [usize],
+    /// What decides: those of the method, or others to see what each is worth.
+    pub thresholds: &'a Thresholds,
 }
 
 impl Inquiry<'_> {
@@ -43,6 +46,7 @@ impl Inquiry<'_> {
             recordings: self.recordings,
             observer: self.observer,
             set: self.set,
+            thresholds: self.thresholds,
         }
     }
 }

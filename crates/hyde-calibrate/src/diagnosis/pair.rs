@@ -15,11 +15,6 @@ use super::trial::{together, unseen};
 use crate::fit::{inflation, inflation_of};
 use rayon::prelude::*;
 
-/// Pairs that are fitted.
-const FITTED: usize = 3;
-/// What a pair promises is to be this many times what its halves promise, or it is no pair.
-const MORE: f64 = 2.0;
-
 /// A hypothesis at its best node.
 struct Half<'s> {
     score: &'s Score,
@@ -50,13 +45,10 @@ pub(crate) fn pair(scanner: &Scanner<'_>, scores: &[Score], gates: Gates) -> Opt
         .into_par_iter()
         .flat_map_iter(|a| (0..a).map(move |b| (a, b)))
         .filter_map(|(a, b)| promise(scanner, &halves[a], &halves[b]))
-        .filter(|promise| {
-            let [a, b] = promise.halves.map(|half| half.score.gain().max(0.0));
-            promise.gain >= gates.gain(2) * inflation && promise.gain >= MORE * (a + b)
-        })
+        .filter(|promise| promise.gain >= gates.gain(2) * inflation)
         .collect();
     promises.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-    promises.truncate(FITTED);
+    promises.truncate(gates.thresholds.few);
     let plain = (!promises.is_empty()).then(|| unseen(ground, stage))??;
     let fitted = promises.into_par_iter().filter_map(|promise| {
         let (a, b) = promise.sizes.split_at(promise.halves[0].node.sizes.len());

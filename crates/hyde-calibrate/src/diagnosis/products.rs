@@ -4,12 +4,10 @@
 use super::projection::dot;
 use nalgebra::{Cholesky, DMatrix, DMatrixView, DVector};
 
-/// Rows summed at once.
+/// Numerics: rows summed at once.
 const BLOCK: usize = 32;
-/// Parts with sizes of their own, in s.
+/// Numerics: parts with sizes of their own, in s.
 const PART_S: f64 = 0.25;
-/// A sum over parts is more than chance by so many standard deviations.
-const BEYOND: f64 = 5.0;
 
 /// Sums over all records of products with the changes by each size of some shapes.
 pub(crate) struct Products {
@@ -37,10 +35,10 @@ impl Products {
     }
 
     /// What a shape would gain if each part of a second had sizes of its own, parameters standing still, less what chance
-    /// makes of as many parts: of a sum of squares of normal numbers that is their number, and the root of twice of it.
+    /// makes of as many parts: of a sum of squares of normal numbers that is their number.
     pub(crate) fn apart(&self, shape: usize) -> f64 {
         let freedoms = (self.parts * self.sizes) as f64;
-        self.apart[shape] - freedoms - BEYOND * (2.0 * freedoms).sqrt()
+        self.apart[shape] - freedoms
     }
 
     /// Adds the rows of a record as they come: see [`Adding`].

@@ -13,22 +13,20 @@ use crate::fit::{Problem, Solution};
 use crate::plant::Unsupported;
 use nalgebra::{DMatrix, DVector};
 
-/// Costs are compared this many standard deviations apart, and the bottom is looked for so far from them.
+/// Numerics: costs are compared this many standard deviations apart, and the bottom is looked for twice as far.
 const APART: f64 = 2.0;
-const FURTHEST: f64 = 2.0 * APART;
-/// A bottom so near is reached, in standard deviations.
+/// Numerics: a bottom so near is reached, in standard deviations.
 const REACHED: f64 = 0.3;
-/// The cost is to grow by this part of what its curvature says; so often twice as far is looked for that.
-const GROWN: f64 = 0.25;
-const DOUBLINGS: i32 = 6;
-/// Parabolas at most for one number.
-const ROUNDS: usize = 6;
+/// Numerics: parabolas at most for one number, and doublings of the distance in which its cost is to grow.
+const STEPS: i32 = 6;
 
-/// The solution with some of what is varied, by number, at the bottom of their profiles.
+/// The solution with some of what is varied, by number, at the bottom of their profiles. An interval is wider where the cost does
+/// not grow by the part `grown` of what the curvature says.
 pub(crate) fn profiled(
     problem: &Problem<'_>,
     mut solution: Solution,
     numbers: impl Iterator<Item = usize>,
+    grown: f64,
 ) -> Result<Solution, Unsupported> {
     let Some(covariance) = solution.inverse_curvature() else {
         return Ok(solution);
@@ -37,7 +35,7 @@ pub(crate) fn profiled(
         let Some(direction) = direction(&covariance, number) else {
             continue;
         };
-        for _ in 0..ROUNDS {
+        for _ in 0..STEPS {
             let (low, high) = rayon::join(
                 || problem.moved_by(&solution, &(-APART * &direction)),
                 || problem.moved_by(&solution, &(APART * &direction)),
@@ -55,7 +53,7 @@ pub(crate) fn profiled(
                 Some(_) | None => break,
             }
         }
-        solution.wider[number] = wider(problem, &solution, number, &direction)?;
+        solution.wider[number] = wider(problem, &solution, number, &direction, grown)?;
         solution.converged &= solution.wider[number].is_finite();
     }
     Ok(solution)
@@ -68,9 +66,10 @@ fn wider(
     solution: &Solution,
     number: usize,
     direction: &DVector<f64>,
+    part: f64,
 ) -> Result<f64, Unsupported> {
     let scale = problem.varied[number].scale();
-    for doubling in 0..=DOUBLINGS {
+    for doubling in 0..=STEPS {
         let times = 2.0_f64.powi(doubling);
         let grown = |far: f64| -> Result<f64, Unsupported> {
             let there = problem.moved_by(solution, &(far * direction))?;
@@ -82,7 +81,7 @@ fn wider(
         };
         let far = APART * times;
         let (low, high) = rayon::join(|| grown(-far), || grown(far));
-        if low?.min(high?) >= GROWN * APART * APART {
+        if low?.min(high?) >= part * APART * APART {
             return Ok(times);
         }
     }
@@ -102,9 +101,9 @@ fn bottom(low: f64, here: f64, high: f64) -> Option<f64> {
         0.5 * APART * (low - high) / bend
     } else {
         // No bottom between them: on towards the lower one.
-        FURTHEST * (low - high).signum()
+        2.0 * APART * (low - high).signum()
     };
-    let place = place.clamp(-FURTHEST, FURTHEST);
+    let place = place.clamp(-2.0 * APART, 2.0 * APART);
     (place.is_finite() && place.abs() > REACHED).then_some(place)
 }
 
@@ -118,6 +117,6 @@ mod tests {
         let found = bottom(cost(-APART), cost(0.0), cost(APART)).unwrap();
         assert!((found - 1.3).abs() < 1e-12, "{found}");
         assert_eq!(bottom(1.0, 0.5, 1.0), None);
-        assert_eq!(bottom(3.0, 2.0, 1.0), Some(FURTHEST));
+        assert_eq!(bottom(3.0, 2.0, 1.0), Some(2.0 * APART));
     }
 }

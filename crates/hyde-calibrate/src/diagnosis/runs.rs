@@ -11,10 +11,8 @@ use hyde_program::Program;
 use nalgebra::{DMatrixView, DVector};
 use rayon::prelude::*;
 
-/// The part of its range that a size is given to differentiate by it.
+/// Numerics: the part of its range that a size is given to differentiate by it.
 const SMALL: f64 = 1e-4;
-/// Innovations whose sum of squares is so many times what it is without the effect are not looked at to their end.
-const HOPELESS: f64 = 100.0;
 
 /// Innovations of a model with the effect at some sizes.
 pub(crate) struct Runs<'s> {
@@ -37,10 +35,9 @@ impl Runs<'_> {
         plain: &DVector<f64>,
     ) -> Option<DVector<f64>> {
         let set = self.set(sizes, shapes);
-        let limit = HOPELESS * plain.norm_squared();
         let run = |recording: &Recording| {
             let observer = self.ground.observer;
-            Innovations::within(self.program, recording, observer, &set, limit).ok()?
+            Innovations::of(self.program, recording, observer, &set).ok()
         };
         let each: Option<Vec<Innovations>> = self.ground.recordings.par_iter().map(run).collect();
         Some(DVector::from_vec(flat(&each?)) - plain)

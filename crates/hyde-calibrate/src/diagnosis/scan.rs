@@ -15,22 +15,11 @@ use hyde_program::Program;
 use nalgebra::DVector;
 use rayon::prelude::*;
 
-/// A visible change of innovations: the sum of its squares.
-const VISIBLE: f64 = 100.0;
-/// A size that would be seen only from so many times its range on is not told: slopes have no meaning there.
-const FAR: f64 = 1e6;
-/// A gain is looked at from this part of the gate on, and where it promises this part of the best.
-const PASSABLE: f64 = 0.25;
-const WORTHWHILE: f64 = 0.01;
-/// So many are tried before the best is known better.
-const AT_A_TIME: usize = 8;
-/// A run that gains this part of what tangents promise is as expected.
-const AS_EXPECTED: f64 = 0.7;
-/// Shapes scored at once.
+/// Numerics: the sum of squares of a visible change of innovations, by which sizes are scaled in a fit.
+pub(crate) const VISIBLE: f64 = 100.0;
+/// Numerics: shapes scored at once.
 const CHUNK: usize = 96;
-/// Nodes kept of each effect: where it is fitted from.
-const KEPT: usize = 3;
-/// Sizes tried of an effect with modes of its own: halves of its range.
+/// Numerics: sizes tried of an effect with modes of its own: halves of its range.
 const HALVINGS: i32 = 9;
 
 /// Where an effect gains, and how much.
@@ -147,15 +136,18 @@ impl Scanner<'_> {
             each.filter_map(|&number| self.promised(number)).collect();
         promised.sort_by(|a, b| b.gain().total_cmp(&a.gain()));
         let mut rest = promised.into_iter().peekable();
+        let thresholds = self.ground.thresholds;
         let mut scores: Vec<Score> = Vec::new();
         let mut best = 0.0;
         while let Some(next) = rest.peek() {
             let ahead = scores.iter().filter(|score| score.gain() > next.gain());
             let enough = ahead.count() >= self.fitted;
-            if enough || next.gain() < (WORTHWHILE * best).max(PASSABLE * self.gate) {
+            if enough
+                || next.gain() < (thresholds.negligible * best).max(thresholds.passable * self.gate)
+            {
                 break;
             }
-            let few: Vec<Promised> = rest.by_ref().take(AT_A_TIME).collect();
+            let few: Vec<Promised> = rest.by_ref().take(2 * thresholds.few).collect();
             let tried = few.into_par_iter().map(|promised| self.tried(promised));
             scores.extend(tried.collect::<Vec<Score>>());
             best = scores.iter().map(Score::gain).fold(best, f64::max);
@@ -196,7 +188,7 @@ impl Scanner<'_> {
         promised.nodes = coarse.nodes;
         promised.detectable = coarse.seen;
         // The peak of a period is the narrower, the further the axis goes; over a part of a second it is wide.
-        let fine = grid.fine(&coarse.apart);
+        let fine = grid.fine(&coarse.apart, self.ground.thresholds.few);
         if !fine.is_empty() {
             let fine = self.look(&promised, &fine)?;
             promised.nodes.extend(fine.nodes);
@@ -205,7 +197,7 @@ impl Scanner<'_> {
         if promised.own_modes {
             self.try_sizes(&mut promised);
         }
-        promised.nodes = peaks(&grid, promised.nodes);
+        promised.nodes = peaks(&grid, promised.nodes, self.ground.thresholds.few);
         Some(promised)
     }
 
@@ -262,7 +254,7 @@ impl Scanner<'_> {
                 nodes.push(node);
                 apart.push(products.apart(number));
                 let reaches = answer.reaches(self.gate, 0);
-                if reaches < FAR * largest(&hypothesis.sizes[0]).abs() {
+                if reaches < self.ground.thresholds.room * largest(&hypothesis.sizes[0]).abs() {
                     seen = seen.min(reaches);
                 }
             }
@@ -315,14 +307,14 @@ impl Scanner<'_> {
                 promised.nodes.extend(found.nodes);
             }
         }
-        promised.nodes = peaks(&grid, promised.nodes);
+        promised.nodes = peaks(&grid, promised.nodes, self.ground.thresholds.few);
+        let thresholds = self.ground.thresholds;
         let mut linear = !promised.own_modes;
         let mut nodes = std::mem::take(&mut promised.nodes);
         for node in &mut nodes {
-            if node.gain < PASSABLE * self.gate {
+            if node.gain < thresholds.passable * self.gate {
                 continue;
             }
-            let expected = node.gain;
             node.gain = f64::NEG_INFINITY;
             for factor in [1.0, 0.5, 2.0] {
                 let pairs = node.sizes.iter().zip(&hypothesis.sizes);
@@ -331,7 +323,7 @@ impl Scanner<'_> {
                 if gain > node.gain {
                     (node.gain, node.sizes, node.parameters) = (gain, sizes, parameters);
                 }
-                if node.gain > AS_EXPECTED * expected {
+                if node.gain > 0.0 {
                     break;
                 }
                 linear = false;
@@ -382,8 +374,8 @@ fn best_first(nodes: &mut [Node]) {
     nodes.sort_by(|a, b| b.gain.total_cmp(&a.gain));
 }
 
-/// The best nodes, without those that lie beside a better one: fits from there end at the same place.
-fn peaks(grid: &Grid<'_>, mut nodes: Vec<Node>) -> Vec<Node> {
+/// So many of the best nodes, without those that lie beside a better one: fits from there end at the same place.
+fn peaks(grid: &Grid<'_>, mut nodes: Vec<Node>, most: usize) -> Vec<Node> {
     best_first(&mut nodes);
     let mut kept: Vec<Node> = Vec::new();
     for node in nodes {
@@ -391,7 +383,7 @@ fn peaks(grid: &Grid<'_>, mut nodes: Vec<Node>) -> Vec<Node> {
         let beside = |better: &Node| {
             better.linear && node.linear && grid.beside(&better.shapes, &node.shapes)
         };
-        if kept.len() < KEPT && !kept.iter().any(beside) {
+        if kept.len() < most && !kept.iter().any(beside) {
             kept.push(node);
         }
     }

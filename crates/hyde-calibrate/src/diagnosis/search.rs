@@ -16,24 +16,15 @@ use super::hypothesis::{Built, Hypothesis};
 use super::inquiry::Inquiry;
 use super::scan::Score;
 use super::stage::{Ground, Stage};
+use super::thresholds::Thresholds;
 use super::trial::Trial;
 use super::unknown::{Places, beside, propose, take_in};
 use super::whole::whole;
 use crate::fit::{Solution, Varied, inflation};
-use crate::observer::{Innovations, MATERIAL, Observer};
+use crate::observer::{Innovations, Observer};
 use crate::plant::Unsupported;
 use crate::records::{Frozen, frozen};
 use hyde_signal::statistics::{autocorrelation, distributions};
-
-/// One of this many sets of records without an effect may pass a single gate by chance, and the margin above that.
-const CHANCE: f64 = 0.01;
-const MARGIN: f64 = 2.0;
-/// Innovations that are explained: their mean square, and their correlation, of what is smaller than noise a part.
-const EXPLAINED: (f64, f64) = (1.05, 0.1);
-/// What gains this part of what is more than noise, in the linear answer, may explain all once it is fitted.
-pub(super) const PROMISING: f64 = 0.6;
-/// Where effects taken in explain a smaller part than this of what is more than noise, the answer is none of them.
-const MOSTLY: f64 = 0.5;
 
 /// What gains have to reach.
 #[derive(Clone, Copy, Debug)]
@@ -44,13 +35,16 @@ pub struct Gates {
     pub innovations: usize,
     /// What effects known so far may leave, which is no gain of another one.
     pub left: f64,
+    /// What the gates are made of.
+    pub thresholds: Thresholds,
 }
 
 impl Gates {
     /// What a gain of a hypothesis with so many sizes and shapes has to reach.
     #[must_use]
     pub fn gain(&self, freedoms: usize) -> f64 {
-        MARGIN * distributions::chi_squared(freedoms.max(1), CHANCE / self.tried.max(1) as f64)
+        let Thresholds { chance, margin, .. } = self.thresholds;
+        margin * distributions::chi_squared(freedoms.max(1), chance / self.tried.max(1) as f64)
     }
 
     /// What a gain over a model has to reach that a single number is worth.
@@ -61,7 +55,8 @@ impl Gates {
     /// What a gain on what was not fitted has to reach beside that.
     #[must_use]
     pub fn material(&self) -> f64 {
-        self.left.max(MATERIAL * self.innovations as f64)
+        self.left
+            .max(self.thresholds.material * self.innovations as f64)
     }
 }
 
@@ -178,9 +173,6 @@ pub fn diagnose(inquiry: &Inquiry<'_>) -> Result<Diagnosis, Unsupported> {
     search_by(inquiry, By::Declared)
 }
 
-/// The search begins again without effects that were dropped for not being told, so many at most.
-const MOST_BARRED: usize = 2;
-
 /// Whose observer all models are compared by.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum By {
@@ -189,7 +181,7 @@ enum By {
 }
 
 fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
-    let ground = inquiry.ground();
+    let (ground, thresholds) = (inquiry.ground(), inquiry.thresholds);
     let frozen = frozen(inquiry.recordings);
     let build = |numbers: &[usize]| (inquiry.author)(numbers, &[]);
     let declared = calibrated(inquiry, &ground)?;
@@ -205,6 +197,7 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
             tried: 1,
             innovations,
             left: 0.0,
+            thresholds: *thresholds,
         },
         declared: &declared,
         rounds: Vec::new(),
@@ -226,7 +219,7 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
     }
     // A law of one term that explains what no effect does alone, or beside another, spares the rest of the search.
     let (mut law, mut places) = (None, None);
-    if frozen.is_empty() && !settled(&declared, &branch.stage) {
+    if frozen.is_empty() && !settled(&declared, &branch.stage, thresholds) {
         places = Places::of(inquiry, &declared)?;
         let looked = places.as_ref();
         let best = looked.and_then(|own| own.plain_law(&branch.stage, search.gates));
@@ -240,13 +233,13 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
             search.step(&mut branch)?;
         }
         // A further effect that promises most of what is left is looked at before a law.
-        if !explained(&branch.stage.solution) {
+        if !explained(&branch.stage.solution, thresholds) {
             let left = excess(&branch.stage.solution);
-            if search.promise(&mut branch)? >= PROMISING * left {
+            if search.promise(&mut branch)? >= thresholds.mostly * left {
                 search.step(&mut branch)?;
             }
         }
-        if frozen.is_empty() && !settled(&declared, &branch.stage) {
+        if frozen.is_empty() && !settled(&declared, &branch.stage, thresholds) {
             law = beside(inquiry, &search.rounds[0], &branch.stage, search.gates)?;
         }
         if law.is_none() {
@@ -258,9 +251,9 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
     let stage = whole(&ground, inquiry.hypotheses, stage)?;
     let findings = findings(&stage, inquiry.hypotheses, taken);
     let before = &declared.solution;
-    let unexplained = !explained(&stage.solution);
+    let unexplained = !explained(&stage.solution, thresholds);
     let mut diagnosis = Diagnosis {
-        verdict: verdict(&findings, before, &stage.solution),
+        verdict: verdict(&findings, (before, &stage.solution), thresholds),
         findings,
         effects: stage.effects,
         rounds,
@@ -282,7 +275,7 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
     calibrate_found(inquiry, &mut diagnosis)?;
     let dropped = only_told(inquiry, &mut diagnosis)?;
     let nothing = diagnosis.findings.is_empty() && diagnosis.unexplained && !dropped.is_empty();
-    if nothing && inquiry.barred.len() < MOST_BARRED {
+    if nothing && inquiry.barred.len() < thresholds.retries {
         // What stood in for another effect, better than this where both were begun, is out of its way.
         let barred = [inquiry.barred, &dropped].concat();
         let own = Inquiry {
@@ -298,12 +291,16 @@ fn search_by(inquiry: &Inquiry<'_>, by: By) -> Result<Diagnosis, Unsupported> {
 }
 
 /// What findings come to, of a model that went from one solution to another by them.
-pub(super) fn verdict(findings: &[Finding], before: &Solution, after: &Solution) -> Verdict {
-    let unexplained = !explained(after);
+pub(super) fn verdict(
+    findings: &[Finding],
+    (before, after): (&Solution, &Solution),
+    thresholds: &Thresholds,
+) -> Verdict {
+    let unexplained = !explained(after, thresholds);
     match findings {
         [] if unexplained => Verdict::Unknown,
         [] => Verdict::None,
-        _ if unexplained && share(before, after) < MOSTLY => Verdict::Unknown,
+        _ if unexplained && share(before, after) < thresholds.mostly => Verdict::Unknown,
         list if list.iter().any(|finding| !finding.alternatives.is_empty()) => Verdict::OneOf,
         _ => Verdict::Effect,
     }
@@ -341,14 +338,14 @@ pub(super) fn excess(solution: &Solution) -> f64 {
 
 /// Whether innovations are what the noise makes of them: no channel of a record is materially larger, or more like itself
 /// from row to row, beyond what chance makes of so many rows.
-pub(super) fn explained(solution: &Solution) -> bool {
+pub(super) fn explained(solution: &Solution, thresholds: &Thresholds) -> bool {
     let records = || solution.innovations.iter();
     let channels: usize = records().map(|own| own.channels.len()).sum();
-    let chance = distributions::normal(CHANCE / channels.max(1) as f64);
+    let chance = distributions::normal(thresholds.chance / channels.max(1) as f64);
     records().flat_map(Innovations::sizes).all(|(list, size)| {
         let rows = list.len().max(1) as f64;
-        let (largest, likeness) = EXPLAINED;
-        size <= largest + chance * (2.0 / rows).sqrt()
-            && autocorrelation(&list, 1) * size.clamp(0.0, 1.0) <= likeness + chance / rows.sqrt()
+        size <= thresholds.explained_size + chance * (2.0 / rows).sqrt()
+            && autocorrelation(&list, 1) * size.clamp(0.0, 1.0)
+                <= thresholds.explained_likeness + chance / rows.sqrt()
     })
 }

@@ -2,14 +2,12 @@
 
 use super::hypothesis::Hypothesis;
 use super::profile::profiled;
+use super::thresholds::Thresholds;
 use crate::fit::{Fold, Linearised, MAX_STEPS, Objective, Problem, Slopes, Solution, Varied};
 use crate::observer::{Innovations, Observer, Track};
 use crate::plant::Unsupported;
 use crate::records::Recording;
 use hyde_program::Program;
-
-/// Two periods, orders or frequencies are nearly the same that are apart by this part.
-const ALIKE: f64 = 0.1;
 
 /// What never changes in a diagnosis.
 #[derive(Clone, Copy)]
@@ -18,6 +16,7 @@ pub(crate) struct Ground<'a> {
     pub(crate) observer: &'a Observer,
     /// Values set from outside, by name, SI.
     pub(crate) set: &'a [(String, f64)],
+    pub(crate) thresholds: &'a Thresholds,
 }
 
 /// The model as far as the search has come.
@@ -100,7 +99,12 @@ impl Stage {
         let own = self.varied.iter().enumerate();
         let of_effects = own.filter(|(_, varied)| self.is_of_effect(&varied.name));
         let solution = problem.solve(start)?;
-        let solution = profiled(&problem, solution, of_effects.map(|(number, _)| number))?;
+        let solution = profiled(
+            &problem,
+            solution,
+            of_effects.map(|(number, _)| number),
+            ground.thresholds.grown,
+        )?;
         Ok(Self {
             solution,
             ..self.clone()
@@ -118,7 +122,7 @@ impl Stage {
     }
 
     /// Whether an effect is there twice with nearly the same period, order or frequency: one of another course, not two.
-    pub(crate) fn has_one_twice(&self, hypotheses: &[Hypothesis]) -> bool {
+    pub(crate) fn has_one_twice(&self, hypotheses: &[Hypothesis], near: f64) -> bool {
         let values = self.values();
         let recurring = |(number, path): &(usize, String)| -> Option<(usize, f64)> {
             let hypothesis = hypotheses.get(*number)?;
@@ -129,7 +133,7 @@ impl Stage {
         };
         let each: Vec<(usize, f64)> = self.effects.iter().filter_map(recurring).collect();
         let alike = |(one, a): (usize, f64), (other, b): (usize, f64)| {
-            one == other && (a - b).abs() <= ALIKE * a.max(b)
+            one == other && (a - b).abs() <= near * a.max(b)
         };
         (0..each.len()).any(|i| each[..i].iter().any(|&other| alike(each[i], other)))
     }

@@ -12,25 +12,15 @@ use crate::fit::{
 };
 use crate::observer::Innovations;
 use hyde_program::Program;
-use hyde_signal::statistics::distributions::{TWO_SIDED, chi_squared};
+use hyde_signal::statistics::distributions::{OUTSIDE, TWO_SIDED, chi_squared};
 use nalgebra::DVector;
 use std::ops::Range;
 
-/// A shape is visibly another by this part of its value or its range.
+/// Numerics: a shape is visibly another by this part of its value or its range.
 const VISIBLE_SHAPE: f64 = 0.03;
-/// Steps from a node before nodes are compared.
+/// Numerics: steps from a node before nodes are compared, and twice as many from the whole fit to that of a half: laws that are
+/// far from linear need more than one or two.
 const FIRST_STEPS: usize = 3;
-/// Steps from the whole fit to that of a half: laws that are far from linear need more than one or two.
-const FOLD_STEPS: usize = 6;
-/// A fit that gains this much more than the scan promised did not find the effect but a better fit of all else, as long as
-/// it gains less than a part of the number of innovations: above that it has moved a shape, or answered what is not small.
-const TOO_GOOD: f64 = 3.0;
-const REMAINDER: f64 = 0.02;
-
-/// Sizes that end on a bound are fitted on up to so many times it.
-const ROOM: f64 = 10.0;
-/// Sizes are told from 0 where chance makes as much of none once in so many times.
-const NOT_TOLD: f64 = 0.05;
 
 /// A refit, what it varied, and the shapes it kept fixed.
 type Refit = (Solution, Vec<Varied>, Vec<(String, f64)>);
@@ -104,7 +94,7 @@ impl Trial {
         gates.gain(self.freedoms) * self.inflation
     }
 
-    /// Whether its sizes are told from 0 by the slopes too, its shapes held, where it is linear: a fit that was stuck before
+    /// Whether its sizes are told from 0 beyond chance by the slopes too, its shapes held, where it is linear: a fit that was stuck before
     /// gains by every column that moves it on. Only what makes it what it is counts.
     pub(super) fn is_told(&self) -> bool {
         if !self.linear {
@@ -122,7 +112,7 @@ impl Trial {
         let own = covariance.view((sizes.start, sizes.start), (count, count));
         let inverse = own.into_owned().try_inverse();
         inverse.is_some_and(|inverse| {
-            (values.transpose() * inverse * values)[0] >= chi_squared(count, NOT_TOLD)
+            (values.transpose() * inverse * values)[0] >= chi_squared(count, OUTSIDE)
         })
     }
 
@@ -208,7 +198,7 @@ pub(crate) fn begin<'s>(
     };
     // A few steps from every node, the rest from the best of them.
     let nodes = score.nodes.iter();
-    let nodes = nodes.filter(|node| node.gain >= 0.5 * score.gain());
+    let nodes = nodes.filter(|node| node.gain >= ground.thresholds.contender * score.gain());
     let mut best = nodes.filter_map(from).fold(None, better);
     let gains = |(own, ..): &Refit| own.gain_over(&stage.solution) > 0.0;
     if anew && !best.as_ref().is_some_and(gains) {
@@ -288,7 +278,12 @@ pub(crate) fn finish(
     let mut own = stage.varied.len()..varied.len();
     let sizes = own.start..own.start + hypothesis.sizes.len().min(own.len());
     // A size may be larger than any that is usual, and is found then, though not without doubt.
-    let large = worth && widen(&mut varied[sizes.clone()], &solution.values[sizes.clone()]);
+    let large = worth
+        && widen(
+            &mut varied[sizes.clone()],
+            &solution.values[sizes.clone()],
+            ground.thresholds.room,
+        );
     if large {
         solution = fit(&solution.values, &varied, &kept, Slopes::Tangents)?;
     }
@@ -314,12 +309,12 @@ pub(crate) fn finish(
         });
     let gain = solution.gain_over(&stage.solution);
     let innovations = solution.innovations.iter().map(Innovations::count);
-    let remainder = REMAINDER * innovations.sum::<usize>() as f64;
+    let remainder = ground.thresholds.remainder * innovations.sum::<usize>() as f64;
     let rejected = if !worth {
         Some(Rejection::Behind)
     } else if at_bound {
         Some(Rejection::Bound)
-    } else if score.linear && gain > TOO_GOOD * score.gain() && gain < remainder {
+    } else if score.linear && gain > ground.thresholds.too_good * score.gain() && gain < remainder {
         Some(Rejection::TooGood)
     } else {
         None
@@ -337,7 +332,10 @@ pub(crate) fn finish(
         kept,
         solution,
     };
-    let twice = || new.has_one_twice(hypotheses).then_some(Rejection::Twice);
+    let twice = || {
+        new.has_one_twice(hypotheses, ground.thresholds.alike)
+            .then_some(Rejection::Twice)
+    };
     Some(Trial {
         hypothesis: score.hypothesis,
         score: score.gain(),
@@ -357,15 +355,15 @@ pub(crate) fn finish(
     })
 }
 
-/// Gives sizes that stand on a bound other than 0 more room beyond it; whether any does.
-fn widen(sizes: &mut [Varied], values: &[f64]) -> bool {
+/// Gives sizes that stand on a bound other than 0 room beyond it, so many times as far; whether any does.
+fn widen(sizes: &mut [Varied], values: &[f64], times: f64) -> bool {
     let mut any = false;
     for (size, &value) in sizes.iter_mut().zip(values) {
         if is_on_bound(value, size.bounds) && value != 0.0 {
             let (low, high) = size.bounds;
             size.bounds = match value > 0.0 {
-                true => (low, ROOM * high),
-                false => (ROOM * low, high),
+                true => (low, times * high),
+                false => (times * low, high),
             };
             any = true;
         }
@@ -390,7 +388,7 @@ pub(crate) fn unseen(ground: &Ground<'_>, stage: &Stage) -> Option<f64> {
         let fold = Fold { odd };
         let seen = ground.problem(&stage.program, &stage.varied, &set, Some(fold));
         let solution = seen
-            .solve_in(&stage.solution.values, FOLD_STEPS, Slopes::Tangents)
+            .solve_in(&stage.solution.values, 2 * FIRST_STEPS, Slopes::Tangents)
             .ok()?;
         let other = ground.problem(&stage.program, &stage.varied, &set, Some(fold.other()));
         let innovations = other.innovations(&solution.values).ok()?;

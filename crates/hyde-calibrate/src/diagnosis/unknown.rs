@@ -48,10 +48,6 @@ use super::stage::{Stage, below};
 use super::trial::Trial;
 use crate::plant::Unsupported;
 
-/// Effects of the first round that gained this part of what the best did may have a law beside them, so many at most.
-const FIRST: f64 = 0.8;
-const FIRST_ONES: usize = 3;
-
 /// What is missing where no effect known is it.
 pub struct Unknown {
     /// The map of the site that explains most, with bands: the signature.
@@ -103,7 +99,7 @@ pub(super) fn propose(
     gates: Gates,
 ) -> Result<(), Unsupported> {
     let last = diagnosis.stage();
-    if settled(declared, &last) && !is_chain(inquiry, diagnosis) {
+    if settled(declared, &last, inquiry.thresholds) && !is_chain(inquiry, diagnosis) {
         return Ok(());
     }
     let places = match places {
@@ -133,7 +129,11 @@ pub(super) fn propose(
         })
     };
     let mut answer = Some(alone).filter(better);
-    let explains = |alone: &Answer| alone.solution().is_some_and(|(own, _)| explained(own));
+    let explains = |alone: &Answer| {
+        alone
+            .solution()
+            .is_some_and(|(own, _)| explained(own, inquiry.thresholds))
+    };
     let room = last.effects.len() < inquiry.max_effects;
     if room && diagnosis.unexplained && !answer.as_ref().is_some_and(explains) {
         let both = Places::of(inquiry, &last)?.map(law);
@@ -163,7 +163,7 @@ pub(super) fn beside(
 ) -> Result<Option<Answer>, Unsupported> {
     let fine = |trial: &&Trial| trial.passed() || trial.would_pass(first.gates);
     let best = first.trials.iter().filter(fine).map(|trial| trial.gain);
-    let least = FIRST * best.fold(0.0, f64::max);
+    let least = inquiry.thresholds.rival * best.fold(0.0, f64::max);
     let ones = first.trials.iter().filter(fine);
     let ones = ones.filter(|trial| trial.gain >= least);
     let law = |inquiry: &Inquiry<'_>, trial: &Trial| -> Result<Option<Answer>, Unsupported> {
@@ -178,7 +178,7 @@ pub(super) fn beside(
         found.map_or(0.0, |(own, _)| own.gain_over(&last.solution))
     };
     let mut found: Option<Answer> = None;
-    for trial in ones.take(FIRST_ONES) {
+    for trial in ones.take(inquiry.thresholds.few) {
         // Beside another first one the law is sought at its site, and everywhere only if it does better there.
         if let Some(known) = &found {
             let there = Inquiry {
@@ -232,7 +232,7 @@ pub(super) fn take_in(inquiry: &Inquiry<'_>, diagnosis: &mut Diagnosis, answer: 
         let stage = trial.stage;
         let mut hypotheses = inquiry.hypotheses.to_vec();
         hypotheses.push(own.hypothesis.clone());
-        diagnosis.unexplained = !explained(&stage.solution);
+        diagnosis.unexplained = !explained(&stage.solution, inquiry.thresholds);
         diagnosis.verdict = Verdict::Unknown;
         diagnosis.take(stage, &hypotheses);
     }

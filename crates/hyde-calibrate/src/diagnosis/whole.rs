@@ -15,9 +15,6 @@ use super::stage::{Ground, Stage};
 use crate::fit::{Solution, covariance, inflation};
 use crate::plant::Unsupported;
 
-/// A whole number further off than this many standard deviations is not tried.
-const FURTHEST: f64 = 6.0;
-
 /// The stage with every order at the whole number beside it where that is likelier.
 pub(crate) fn whole(
     ground: &Ground<'_>,
@@ -34,7 +31,7 @@ pub(crate) fn whole(
         let value = stage.solution.values[number];
         let order = value.round().max(1.0);
         let apart = (value - order).abs() / deviation;
-        if apart > FURTHEST || !likelier(apart * apart, deviation) {
+        if !likelier(apart * apart, deviation) {
             continue;
         }
         let fixed = fixed(ground, &stage, number, order)?;

@@ -6,7 +6,9 @@
 //! Continuous Univariate Distributions 2, 1995, ch. 29). An effect is said to show where that passes the gate in 39 of 40
 //! sets of noise: `G - 4*sqrt(G) >= gate`.
 
-use crate::diagnosis::{Author, Built, Gates, Ground, Hypothesis, Projection, Stage, flat};
+use crate::diagnosis::{
+    Author, Built, Gates, Ground, Hypothesis, Projection, Stage, Thresholds, flat,
+};
 use crate::fit::{Objective, Slopes, Varied};
 use crate::observer::{Innovations, Observer};
 use crate::plant::Unsupported;
@@ -48,10 +50,12 @@ impl Reference {
             })
             .collect();
         let observer = Observer::new(program, &recordings, &places)?;
+        let thresholds = Thresholds::default();
         let ground = Ground {
             recordings: &recordings,
             observer: &observer,
             set,
+            thresholds: &thresholds,
         };
         let start: Vec<f64> = varied.iter().map(|varied| varied.nominal).collect();
         let solution =
@@ -75,6 +79,7 @@ impl Reference {
                 tried: NODES,
                 innovations,
                 left: 0.0,
+                thresholds,
             },
             recordings,
             observer,
@@ -188,6 +193,7 @@ impl Effect<'_> {
             recordings: &reference.recordings,
             observer: &reference.observer,
             set: &reference.set,
+            thresholds: &reference.gates.thresholds,
         };
         let set = ground.set_in(&self.program, &values);
         let of =

@@ -3,7 +3,9 @@
 use super::case::{Case, Planting, Size};
 use super::expected::{Reference, shows, size_of};
 use super::simulated::{Faulty, Simulated, simulated};
-use crate::diagnosis::{Author, Built, Hypothesis, Inquiry, Site, Verdict, Written, diagnose};
+use crate::diagnosis::{
+    Author, Built, Hypothesis, Inquiry, Site, Thresholds, Verdict, Written, diagnose,
+};
 use crate::fit::Varied;
 use crate::observer::Observer;
 use crate::plant::Unsupported;
@@ -43,6 +45,8 @@ pub struct Axis<'a> {
     pub simulate: &'a Simulate<'a>,
     /// How many effects a diagnosis claims at most.
     pub max_effects: usize,
+    /// What decides in a diagnosis: those of the method as long as none are set.
+    pub thresholds: Thresholds,
     /// What random numbers begin with.
     pub seed: u64,
     /// Set from outside to end the work.
@@ -156,6 +160,7 @@ impl<'a> Axis<'a> {
             author: laws.2,
             simulate,
             max_effects,
+            thresholds: Thresholds::default(),
             seed,
             interrupted,
             reference,
@@ -212,6 +217,7 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         author: &author,
         max_effects: axis.max_effects,
         barred: &[],
+        thresholds: &axis.thresholds,
     };
     let found = diagnose(&inquiry).map_err(SelftestError::Unsupported)?;
     if axis.interrupted.load(Ordering::Relaxed) {

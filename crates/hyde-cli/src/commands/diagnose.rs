@@ -4,6 +4,7 @@ use crate::args::DiagnoseArgs;
 use crate::exit::Exit;
 use crate::project::{Told as _, complain, print_output};
 use crate::{clock, files, study};
+use hyde_calibrate::Thresholds;
 use hyde_present::diagnosed;
 use hyde_study::diagnosis::{Diagnosed, search};
 use hyde_study::left_model;
@@ -31,7 +32,9 @@ fn told(args: &DiagnoseArgs) -> Result<Exit, Exit> {
     // A terminal does not show the curves.
     let curves = args.out.is_some() || args.study.json;
     let tell = |told: &Diagnosed<'_>| tell(args, told);
-    let told = search(&plan, &mut calibration, candidates, laws, curves, tell);
+    let missing = (candidates, laws);
+    let method = Thresholds::default();
+    let told = search(&plan, &mut calibration, missing, &method, curves, tell);
     told.map_err(|diagnostic| {
         calibration.project.diagnostics.push(*diagnostic);
         calibration.project.finish_with_errors(&model_args)

@@ -8,7 +8,7 @@ use crate::files;
 use crate::interruption;
 use crate::project::{Told as _, complain, print_error, print_output};
 use crate::study;
-use hyde_calibrate::{Asked, Size};
+use hyde_calibrate::{Asked, Size, Thresholds};
 use hyde_experiment::batch::{Identity, digest};
 use hyde_present::selftest::{json, text};
 use hyde_study::Store;
@@ -36,6 +36,7 @@ fn told(args: &SelftestArgs) -> Result<Exit, Exit> {
         calibration: &calibration,
         candidates,
         laws,
+        thresholds: Thresholds::default(),
     };
     let told = match (&args.case, &args.out) {
         (Some(name), Some(folder)) => {

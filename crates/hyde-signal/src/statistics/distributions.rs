@@ -38,6 +38,9 @@ pub fn chi_squared(freedoms: usize, probability: f64) -> f64 {
     }
 }
 
+/// The probability outside of the intervals that reports give, which are of 95 %.
+pub const OUTSIDE: f64 = 0.05;
+
 /// Half the width of a 95 % interval of a normal number, in standard deviations.
 pub const TWO_SIDED: f64 = 1.96;
 

@@ -3,14 +3,14 @@
 use super::{Diagnosed, agreed};
 use crate::{Calibration, unknown, unobservable};
 use hyde_calibrate::{
-    Cause, Hypothesis, Inquiry, Knob, Site, Solution, Unsupported, fitted_parameters,
+    Cause, Hypothesis, Inquiry, Knob, Site, Solution, Thresholds, Unsupported, fitted_parameters,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Form, Laws};
 use hyde_diag::Diagnostic;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// Searches, and gives what was found to `tell`. `candidates` and `laws` are those of the model; `curves` asks for each
+/// Searches by some thresholds, and gives what was found to `tell`. `candidates` and `laws` are those of the model; `curves` asks for each
 /// finding as a curve, which takes time. The calibration gets the observer that the search ended with.
 ///
 /// # Errors
@@ -18,12 +18,19 @@ use std::sync::Arc;
 pub fn search<T>(
     plan: &DiagnosisPlan,
     calibration: &mut Calibration,
-    candidates: Vec<Candidate>,
-    laws: Laws,
+    (candidates, laws): (Vec<Candidate>, Laws),
+    thresholds: &Thresholds,
     curves: bool,
     tell: impl FnOnce(&Diagnosed<'_>) -> T,
 ) -> Result<T, Box<Diagnostic>> {
-    match searched(plan, calibration, candidates, laws, curves, tell) {
+    match searched(
+        plan,
+        calibration,
+        (candidates, laws),
+        thresholds,
+        curves,
+        tell,
+    ) {
         Ok(told) => told,
         Err(error) => Err(Box::new(unobservable::unsupported(&error, plan.span))),
     }
@@ -32,8 +39,8 @@ pub fn search<T>(
 fn searched<T>(
     plan: &DiagnosisPlan,
     calibration: &mut Calibration,
-    candidates: Vec<Candidate>,
-    laws: Laws,
+    (candidates, laws): (Vec<Candidate>, Laws),
+    thresholds: &Thresholds,
     curves: bool,
     tell: impl FnOnce(&Diagnosed<'_>) -> T,
 ) -> Result<Result<T, Box<Diagnostic>>, Unsupported> {
@@ -63,6 +70,7 @@ fn searched<T>(
             author: &author,
             max_effects: plan.max_effects,
             barred: &[],
+            thresholds,
         };
         let mut found = hyde_calibrate::diagnose(&inquiry)?;
         let agreed = agreed(calibration, &candidates, &inquiry, &mut found)?;

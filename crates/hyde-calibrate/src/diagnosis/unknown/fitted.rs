@@ -6,27 +6,16 @@
 use super::FoundLaw;
 use super::felt::Felt;
 use super::law::Summand;
-use super::regression::{MOST_TERMS, Selected, select};
+use super::regression::{Selected, select};
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::projection::{Projection, change, dot};
-use crate::diagnosis::scan::{Node, Score};
-use crate::diagnosis::search::{Gates, excess, explained};
+use crate::diagnosis::scan::{Node, Score, VISIBLE};
+use crate::diagnosis::search::{Gates, explained};
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::trial::{Trial, trial, unseen};
 
 /// What the written effect is called.
 const NAME: &str = "Found";
-/// A law is refused that gains less than this part of what its map says that one can.
-const LEAST_SHARE: f64 = 0.6;
-/// Other first terms that gain this part of the best one are fitted beside it, so many at most.
-const RIVAL: f64 = 0.9;
-const RIVALS: usize = 2;
-/// Gains that fall slowly: the last of the most terms a law may have still gains this part of the first.
-const SLOW: f64 = 0.1;
-/// What leaves this part of what is more than noise may explain all at the end of its fit.
-const LEFT: f64 = 0.05;
-/// A change of innovations that can be seen: the sum of its squares.
-const VISIBLE: f64 = 100.0;
 
 /// What a law is to be.
 #[derive(Clone, Copy)]
@@ -35,7 +24,7 @@ pub(super) struct Wanted {
     pub(super) terms: usize,
     /// What its first term gains in the linear answer at least.
     pub(super) least: f64,
-    /// It explains all, or would if its fit went on.
+    /// It explains all.
     pub(super) all: bool,
 }
 
@@ -67,14 +56,17 @@ impl Fitting<'_> {
             return None;
         }
         let begun = self.with_best_first(own, gate);
+        let thresholds = &self.gates.thresholds;
         let gains = &begun.selected.gains;
-        if gains.len() == MOST_TERMS && gains[2] - gains[1] > SLOW * gains[0] {
+        if let [first, .., before, last] = gains.as_slice()
+            && gains.len() == thresholds.law_terms
+            && last - before > thresholds.a_part * first
+        {
             return None;
         }
         self.shortest(begun).filter(|(trial, _)| {
             let fitted = &trial.stage.solution;
-            let nearly = || excess(fitted) <= LEFT * excess(&self.stage.solution);
-            !self.wanted.all || explained(fitted) || nearly()
+            !self.wanted.all || explained(fitted, thresholds)
         })
     }
 
@@ -88,6 +80,7 @@ impl Fitting<'_> {
             gate,
             self.wanted.terms,
             first,
+            &self.gates.thresholds,
         )
     }
 
@@ -95,8 +88,10 @@ impl Fitting<'_> {
     fn with_best_first(&self, mut own: Selected, gate: f64) -> Begun {
         let (felt, projection) = (self.felt, self.projection);
         let (first, gain) = (own.law.terms[0].clone(), own.gains[0]);
-        let near = |(_, other): &&(Summand, f64)| *other >= RIVAL * gain;
-        let rivals = own.others.iter().filter(near).take(RIVALS);
+        let thresholds = &self.gates.thresholds;
+        let near = |(_, other): &&(Summand, f64)| *other >= thresholds.rival * gain;
+        let rivals = own.others.iter().filter(near);
+        let rivals = rivals.take(thresholds.few);
         let rivals: Vec<(Summand, f64)> = rivals.cloned().collect();
         if rivals.is_empty() {
             return Begun {
@@ -148,7 +143,7 @@ impl Fitting<'_> {
         let gates = own.gates(self.gates);
         let mut best: Option<(Trial, Selected)> = None;
         for (number, gain) in own.gains.iter().enumerate() {
-            if *gain < LEAST_SHARE * self.most {
+            if *gain < self.gates.thresholds.mostly * self.most {
                 continue;
             }
             let part = own.with_first(number + 1, self.felt, self.projection);

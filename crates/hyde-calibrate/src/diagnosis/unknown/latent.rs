@@ -276,7 +276,7 @@ pub(crate) fn strongest(added: &DMatrix<f64>) -> Option<Vec<f64>> {
     )
 }
 
-/// Knots of a smoothed force in a record at most.
+/// Numerics: knots of a smoothed force in a record at most.
 const KNOTS: usize = 200;
 
 /// A force at a site over a record, smoothed.

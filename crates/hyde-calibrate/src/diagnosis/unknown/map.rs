@@ -80,9 +80,9 @@ impl Map {
     }
 }
 
-/// Pieces of a function.
+/// Numerics: pieces of a function.
 const KNOTS: usize = 16;
-/// Shifts of the innovations: the greatest gain of so many is a band of 95 %.
+/// Numerics: shifts of the innovations: the greatest gain of so many is a band of 95 %.
 const SHIFTS: usize = 19;
 
 /// The map of a site, without bands.

@@ -4,21 +4,17 @@ use super::felt::Felt;
 use super::fitted::{Fitting, Wanted};
 use super::latent;
 use super::map::{self, Map};
-use super::regression::{MOST_TERMS, Selected};
+use super::regression::Selected;
 use super::site::Site;
 use super::{FoundLaw, Unknown};
 use crate::diagnosis::inquiry::Inquiry;
 use crate::diagnosis::projection::Projection;
-use crate::diagnosis::search::{Gates, PROMISING, excess, explained};
+use crate::diagnosis::search::{Gates, excess, explained};
 use crate::diagnosis::stage::Stage;
 use crate::diagnosis::trial::Trial;
 use crate::fit::Solution;
 use crate::plant::Unsupported;
 use rayon::prelude::*;
-
-/// Sites whose map gains this part of the best one's are searched for a law, so many at most.
-const NEAR: f64 = 0.8;
-const SITES: usize = 3;
 
 /// The sites of a stage.
 pub(crate) struct Places<'a> {
@@ -66,12 +62,12 @@ impl<'a> Places<'a> {
     pub(crate) fn plain_law(&self, other: &Stage, gates: Gates) -> Option<Best> {
         let wanted = Wanted {
             terms: 1,
-            least: PROMISING * excess(&self.stage.solution),
+            least: gates.thresholds.mostly * excess(&self.stage.solution),
             all: true,
         };
         self.best(wanted, gates).filter(|best| {
             let solution = &best.trial.stage.solution;
-            explained(solution)
+            explained(solution, &gates.thresholds)
                 && solution.gain_over(&other.solution) >= gates.of_one(&other.solution)
         })
     }
@@ -79,7 +75,7 @@ impl<'a> Places<'a> {
     /// The law that explains most.
     pub(crate) fn law(self, gates: Gates) -> Answer {
         let wanted = Wanted {
-            terms: MOST_TERMS,
+            terms: gates.thresholds.law_terms,
             least: 0.0,
             all: false,
         };
@@ -91,8 +87,8 @@ impl<'a> Places<'a> {
     fn best(&self, wanted: Wanted, gates: Gates) -> Option<Best> {
         let gate = gates.of_one(&self.stage.solution);
         let most = self.sites.first()?.1.gain();
-        let near = self.sites.iter().enumerate().take(SITES);
-        let near = near.filter(|(_, (_, map))| map.gain() >= NEAR * most);
+        let near = self.sites.iter().enumerate().take(gates.thresholds.few);
+        let near = near.filter(|(_, (_, map))| map.gain() >= gates.thresholds.rival * most);
         let mut fitted: Vec<(usize, Fitting<'_>, Trial, Selected)> = near
             .filter_map(|(site, (felt, map))| {
                 let fitting = Fitting {

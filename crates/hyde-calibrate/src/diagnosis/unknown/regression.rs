@@ -7,21 +7,12 @@ use super::latent::Carrier;
 use super::law::{Law, Summand};
 use crate::diagnosis::projection::{Projection, Sums};
 use crate::diagnosis::search::Gates;
+use crate::diagnosis::thresholds::Thresholds;
 use crate::linear::SIDE_BY_SIDE;
 use hyde_ir::LawShape;
 use rayon::prelude::*;
 use std::cell::LazyCell;
 use std::sync::Arc;
-
-/// Terms of a law at most.
-pub(crate) const MOST_TERMS: usize = 3;
-/// A further term is to gain this part of the first.
-const LEAST_PART: f64 = 0.01;
-/// Terms whose constants are refined in a round, and the part of the best one's gain that they must have before.
-const REFINED: usize = 8;
-const PROMISING: f64 = 0.4;
-/// Two shapes are multiplied if their costs are this together at most.
-const MOST_COST: u32 = 2;
 
 /// A law with what it gains in the linear answer.
 #[derive(Clone, Debug)]
@@ -43,8 +34,9 @@ pub(crate) fn select(
     gate: f64,
     most_terms: usize,
     first: Option<(Summand, f64)>,
+    thresholds: &Thresholds,
 ) -> Option<Selected> {
-    let dictionary = dictionary(shapes, felt);
+    let dictionary = dictionary(shapes, felt, thresholds.law_cost);
     // Of terms alone, as many as are run side by side at a time; nothing where the first one is given and no other asked.
     let each = LazyCell::new(|| -> Vec<Sums> {
         let several = dictionary.par_chunks(SIDE_BY_SIDE);
@@ -80,9 +72,9 @@ pub(crate) fn select(
         let before = gains.last().copied().unwrap_or(0.0);
         let mut forms: Vec<(Summand, f64)> = Vec::new();
         for (term, gain) in scored {
-            let worth = gain - before >= PROMISING * (most - before);
+            let worth = gain - before >= thresholds.contender * (most - before);
             let new = !forms.iter().any(|(known, _)| same_form(known, &term));
-            if worth && new && forms.len() < REFINED {
+            if worth && new && forms.len() < 2 * thresholds.few {
                 forms.push((term, gain));
             }
         }
@@ -94,7 +86,7 @@ pub(crate) fn select(
         let best = refined.first()?.1;
         let least = gains
             .first()
-            .map_or(gate, |first: &f64| gate.max(LEAST_PART * first));
+            .map_or(gate, |first: &f64| gate.max(thresholds.negligible * first));
         if best - before < least {
             break;
         }
@@ -223,8 +215,8 @@ fn refine(
     (best, most)
 }
 
-/// The terms that are tried at a site: shapes of speed times shapes of something else.
-fn dictionary(shapes: &[Arc<LawShape>], felt: &Felt) -> Vec<Summand> {
+/// The terms that are tried at a site: shapes of speed times shapes of something else, of so much cost together at most.
+fn dictionary(shapes: &[Arc<LawShape>], felt: &Felt, most_cost: usize) -> Vec<Summand> {
     let seen = &felt.seen;
     let tried = shapes
         .iter()
@@ -238,7 +230,7 @@ fn dictionary(shapes: &[Arc<LawShape>], felt: &Felt) -> Vec<Summand> {
     for speed in &of_speed {
         for other in others
             .iter()
-            .filter(|other| speed.cost + other.cost <= MOST_COST)
+            .filter(|other| (speed.cost + other.cost) as usize <= most_cost)
         {
             let most = match other.cost {
                 0 => [usize::MAX; 2],
