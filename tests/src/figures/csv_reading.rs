@@ -79,6 +79,7 @@ pub fn read_record(file: &Path) -> Result<String, String> {
 }
 
 /// The file, written if it is not there yet.
+#[allow(clippy::disallowed_methods, reason = "a file to be read is written")]
 fn written() -> Result<PathBuf, String> {
     let folder = root().join("target/csv");
     let file = folder.join("long.csv");
@@ -106,7 +107,7 @@ fn written() -> Result<PathBuf, String> {
             48.0 * noise * sine,
             1000.0 * noise,
             100.0 * cosine,
-            t % 6.28
+            t % std::f64::consts::TAU
         )
         .map_err(|error| error.to_string())?;
         out.write_all(line.as_bytes()).map_err(failed)?;

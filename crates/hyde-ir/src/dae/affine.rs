@@ -65,10 +65,13 @@ impl Dae {
                 Expr::Unary(UnaryOp::Neg, value) => of(value),
                 Expr::Unary(_, value) => bent(of(value)),
                 Expr::Binary(op, a, b) => joined(op, of(a), of(b)),
-                Expr::If(condition, then, other) => match of(condition) {
-                    Fixed => of(then).max(of(other)),
-                    given => bent(given.max(of(then)).max(of(other))),
-                },
+                Expr::If(condition, then, other) => {
+                    let (condition, branches) = (of(condition), of(then).max(of(other)));
+                    match condition == Fixed {
+                        true => branches,
+                        false => bent(condition.max(branches)),
+                    }
+                }
                 // Its relations change between events.
                 Expr::NoEvent(_) => Bent,
             };
@@ -79,13 +82,11 @@ impl Dae {
 }
 
 fn joined(op: BinaryOp, a: Dependence, b: Dependence) -> Dependence {
+    let straight = [BinaryOp::Add, BinaryOp::Sub].contains(&op)
+        || (op == BinaryOp::Mul && a.min(b) == Fixed)
+        || (op == BinaryOp::Div && b == Fixed);
     let more = a.max(b);
-    match op {
-        BinaryOp::Add | BinaryOp::Sub => more,
-        BinaryOp::Mul if a.min(b) == Fixed => more,
-        BinaryOp::Div if b == Fixed => more,
-        _ => bent(more),
-    }
+    if straight { more } else { bent(more) }
 }
 
 /// What any other operation makes of a value.
