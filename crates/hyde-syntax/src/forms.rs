@@ -242,7 +242,7 @@ mod tests {
                 own += usize::from(code.contains(form.word));
                 let text = put(form.place, &code.replace('…', ""));
                 let mut sources = Sources::new();
-                let file = sources.add("form.hyde", &format!("package forms;\n{text}\n"));
+                let file = sources.add("form.hyde", format!("package forms;\n{text}\n"));
                 let mut diagnostics = Diagnostics::new();
                 crate::parse(&sources, file, &mut diagnostics);
                 assert!(!diagnostics.has_errors(), "{code}: {diagnostics:?}");
