@@ -23,16 +23,19 @@ fn wanted(plain: &str, with_unit: &str) -> String {
     format!("write {plain}, or with its unit, `'{with_unit}'`")
 }
 
-/// The value of a text whose unit, if it has one, is of the dimension of this SI unit.
+/// The value of a text whose unit, if it has one, is of the dimension of this SI unit. What is not finite is a number too:
+/// the command says why it cannot be meant.
 fn value(text: &str, si: &str) -> Option<f64> {
+    if let Ok(plain) = text.trim().parse() {
+        return Some(plain);
+    }
     let setting = settings::parse(&format!("value={text}")).ok()?;
     let expected = NamedUnit::parse(si).ok()?.unit().dimension;
     let agrees = setting.unit.as_ref().is_none_or(|unit| {
         let own = unit.unit().dimension;
         own.agreement(expected) == Agreement::Same
     });
-    let number = !setting.truth && setting.value.is_finite();
-    (agrees && number).then_some(setting.value)
+    (agrees && !setting.truth).then_some(setting.value)
 }
 
 #[cfg(test)]
@@ -44,7 +47,7 @@ mod tests {
         for text in ["0.5", "5e-1", "0.5 [s]", "500 [ms]"] {
             assert!((seconds(text).unwrap() - 0.5).abs() < 1e-15, "{text}");
         }
-        for text in ["soon", "0.5 [m]", "0.5 [Hz]", "true", "inf", ""] {
+        for text in ["soon", "0.5 [m]", "0.5 [Hz]", "true", ""] {
             assert!(seconds(text).unwrap_err().contains("500 [ms]"), "{text}");
         }
     }
