@@ -6,7 +6,7 @@
 //! them. Where there is none, the one that serves the most of them is taken; in the others the step exchanges rows.
 
 use crate::fixed_step::FixedStep;
-use hyde_program::{Function, Point, Program, Workspace, Wrt};
+use hyde_program::{Function, PartialEntry, Point, Program, Workspace, Wrt};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A pivot is at least this part of the largest number in its column.
@@ -155,10 +155,8 @@ fn sampled_rows(model: &FixedStep<'_>) -> Vec<Row> {
     }
     let mut rows = vec![Row::new(); program.n_unknowns];
     for (number, entry) in entries.iter().enumerate() {
-        let (column, by_state) = match entry.wrt {
-            Wrt::Unknown(column) => (column, differential[column]),
-            Wrt::Derivative(column) => (column, false),
-            Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => continue,
+        let Some((column, by_state)) = column_of(entry, &differential) else {
+            continue;
         };
         let zeros = || vec![0.0; samples.len()];
         let values = rows[entry.row].entry(column).or_insert_with(zeros);
@@ -206,6 +204,15 @@ fn combinations(program: &Program, start: &[f64]) -> Vec<Vec<f64>> {
         found.extend(each.take(COMBINATIONS));
     }
     found
+}
+
+/// The unknown that a derivative is by or by whose rate, and whether it is by a state: the matrix takes it times the step then.
+pub(crate) fn column_of(entry: &PartialEntry, differential: &[bool]) -> Option<(usize, bool)> {
+    match entry.wrt {
+        Wrt::Unknown(column) => Some((column, differential[column])),
+        Wrt::Derivative(column) => Some((column, false)),
+        Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => None,
+    }
 }
 
 /// Which unknowns are states.

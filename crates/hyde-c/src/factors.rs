@@ -3,8 +3,8 @@
 //! One pattern serves all modes. The numbers of the factors lie row by row: those below the diagonal, by which the rows of
 //! earlier pivots are multiplied; the inverse of the pivot; those above the diagonal.
 
-use crate::elimination::{Elimination, differential, places};
-use hyde_program::{Function, Program, Wrt};
+use crate::elimination::{Elimination, column_of, differential, places};
+use hyde_program::{Function, Program};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
@@ -44,10 +44,8 @@ impl Factors {
             })
             .collect();
         for (number, entry) in program.partials(Function::Residual).iter().enumerate() {
-            let (column, by_state) = match entry.wrt {
-                Wrt::Unknown(column) => (column, differential[column]),
-                Wrt::Derivative(column) => (column, false),
-                Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => continue,
+            let Some((column, by_state)) = column_of(entry, &differential) else {
+                continue;
             };
             let terms = rows[row_at[entry.row]].terms.entry(column_at[column]);
             terms.or_default()[usize::from(by_state)].push(number);

@@ -251,12 +251,18 @@ static int hy_settle(@NAME@ *m, double t, int at_start)
     return @NAME@_OK;
 }
 
+/* Whether a clock ticks at this instant. */
+static int hy_ticks_now(const @NAME@ *m, int clock)
+{
+    return m->count >= hy_clock_phase[clock] && (m->count - hy_clock_phase[clock]) % hy_clock_period[clock] == 0;
+}
+
 /* Whether a clock ticks or a held value changes at this instant. */
 static int hy_due(const @NAME@ *m)
 {
     int due = 0;
     for (int k = 0; k < HY_CLOCKS; ++k) {
-        due |= (m->count + hy_clock_period[k] - hy_clock_phase[k]) % hy_clock_period[k] == 0 && m->count >= hy_clock_phase[k];
+        due |= hy_ticks_now(m, k);
     }
     for (int k = 0; k < HY_HOLDS; ++k) {
         due |= m->pending_at[k] == m->count;
@@ -273,7 +279,7 @@ static int hy_tick(@NAME@ *m, double t)
     memcpy(m->z, m->left_z, sizeof m->z);
     for (int k = 0; k < HY_CLOCKS; ++k) {
         const int clock = hy_clock_order[k];
-        if (m->count < hy_clock_phase[clock] || (m->count - hy_clock_phase[clock]) % hy_clock_period[clock] != 0) {
+        if (!hy_ticks_now(m, clock)) {
             continue;
         }
         memcpy(m->after_z, m->z, sizeof m->z);

@@ -169,29 +169,8 @@ impl<'a> Values<'a> {
 
 /// Whether an operation jumps.
 fn jumps(expr: Expr) -> bool {
-    match expr {
-        Expr::Unary(op, _) => matches!(op, UnaryOp::Floor | UnaryOp::Ceil),
-        Expr::Binary(op, ..) => matches!(
-            op,
-            BinaryOp::FloorTo
-                | BinaryOp::RoundTo
-                | BinaryOp::Lt
-                | BinaryOp::Le
-                | BinaryOp::Gt
-                | BinaryOp::Ge
-                | BinaryOp::Eq
-                | BinaryOp::Ne
-        ),
-        Expr::Const(_)
-        | Expr::Time
-        | Expr::Counter
-        | Expr::Param(..)
-        | Expr::Var(..)
-        | Expr::Der(..)
-        | Expr::Pre(..)
-        | Expr::Relation(_)
-        | Expr::InMode(..)
-        | Expr::If(..)
-        | Expr::NoEvent(_) => false,
-    }
+    let binary =
+        |op: BinaryOp| op.is_comparison() || matches!(op, BinaryOp::FloorTo | BinaryOp::RoundTo);
+    matches!(expr, Expr::Unary(UnaryOp::Floor | UnaryOp::Ceil, _))
+        || matches!(expr, Expr::Binary(op, ..) if binary(op))
 }

@@ -26,8 +26,7 @@ impl Texts {
     }
 
     pub(crate) fn get(&self, row: usize) -> Option<&str> {
-        let start = row.checked_sub(1).map_or(0, |before| self.ends[before]);
-        self.all.get(start..*self.ends.get(row)?)
+        (row < self.len()).then(|| &self[row])
     }
 
     pub(crate) fn first(&self) -> Option<&str> {

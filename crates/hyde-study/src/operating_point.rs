@@ -4,7 +4,7 @@ use crate::settings;
 use hyde_experiment::LinearizeError;
 use hyde_program::{Moment, Program};
 use hyde_sim::PointTime;
-use hyde_units::{Agreement, Dimension};
+use hyde_units::Dimension;
 
 /// `0.3 [s]`, `start` or `steady`.
 pub fn point_time(text: Option<&str>) -> Result<PointTime, String> {
@@ -14,14 +14,9 @@ pub fn point_time(text: Option<&str>) -> Result<PointTime, String> {
         Some(text) => {
             let help =
                 || format!("`--at {text}`: write `--at '0.3 [s]'`, `--at start` or `--at steady`");
-            let setting = settings::parse(&format!("t={text}")).map_err(|_| help())?;
-            let unit = setting.unit.as_ref();
-            let time = unit.map_or(Dimension::TIME, |unit| unit.unit().dimension);
-            let fits = time.agreement(Dimension::TIME) == Agreement::Same;
-            match fits && setting.value >= 0.0 {
-                true => Ok(PointTime::At(setting.value)),
-                false => Err(help()),
-            }
+            let time = settings::quantity(text, Dimension::TIME);
+            let time = time.filter(|time| *time >= 0.0);
+            time.map(PointTime::At).ok_or_else(help)
         }
     }
 }

@@ -1,7 +1,7 @@
 //! `--set path=value [unit]`.
 
 use hyde_program::{Given, Parameter};
-use hyde_units::NamedUnit;
+use hyde_units::{Agreement, Dimension, NamedUnit};
 
 /// A value set from outside.
 #[derive(Clone, Debug, PartialEq)]
@@ -61,6 +61,14 @@ pub fn parse(text: &str) -> Result<Setting, String> {
     }
     let unit = NamedUnit::parse(unit).map_err(|error| format!("`{text}`: {error}"))?;
     Ok(Setting::of(path, unit.unit().to_si(number), Some(unit)))
+}
+
+/// The value, SI, of a number whose unit, if it has one, is of this dimension; none of anything else.
+pub fn quantity(text: &str, dimension: Dimension) -> Option<f64> {
+    let setting = parse(&format!("value={text}")).ok()?;
+    let own = setting.unit.map_or(dimension, |unit| unit.unit().dimension);
+    let fits = own.agreement(dimension) == Agreement::Same;
+    (fits && !setting.truth).then_some(setting.value)
 }
 
 /// Whether a setting fits a parameter; what to write instead if not.

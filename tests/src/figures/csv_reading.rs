@@ -5,7 +5,7 @@
 //! doubles a row; the most memory that the process had, with all of the file's text, is compared with it.
 
 use super::process::{cpu_s, memory_kb, this_program};
-use super::promise::{Figure, Measured, Promise, Session};
+use super::promise::{Figure, Measured, Promise};
 use crate::fmu::succeed;
 use crate::root;
 use std::fmt::Write as _;
@@ -26,7 +26,7 @@ pub(super) const MEMORY: Figure = Figure {
     name: "csv_memory_over_kept",
     unit: "ratio",
     promise: Promise::AtMost(3.0),
-    measure: |_: &Session| Ok(Measured::Value(read()?.over_kept)),
+    measure: |_| Ok(Measured::Value(read()?.over_kept)),
 };
 
 const ROWS: u32 = 10_000_000;

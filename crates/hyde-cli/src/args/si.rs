@@ -1,14 +1,14 @@
 //! A time or a frequency as an option has it: `0.5`, which is in the SI unit, or `500 [ms]`.
 
 use hyde_study::settings;
-use hyde_units::{Agreement, NamedUnit};
+use hyde_units::Dimension;
 
 /// A time in s.
 ///
 /// # Errors
 /// What to write instead, where it is no time.
 pub(crate) fn seconds(text: &str) -> Result<f64, String> {
-    value(text, "s").ok_or_else(|| wanted("a time in s, `0.5`", "500 [ms]"))
+    value(text, Dimension::TIME).ok_or_else(|| wanted("a time in s, `0.5`", "500 [ms]"))
 }
 
 /// A frequency in Hz.
@@ -16,26 +16,17 @@ pub(crate) fn seconds(text: &str) -> Result<f64, String> {
 /// # Errors
 /// What to write instead, where it is no frequency.
 pub(crate) fn hertz(text: &str) -> Result<f64, String> {
-    value(text, "Hz").ok_or_else(|| wanted("a frequency in Hz, `500`", "0.5 [kHz]"))
+    value(text, Dimension::FREQUENCY).ok_or_else(|| wanted("a frequency in Hz, `500`", "0.5 [kHz]"))
 }
 
 fn wanted(plain: &str, with_unit: &str) -> String {
     format!("write {plain}, or with its unit, `'{with_unit}'`")
 }
 
-/// The value of a text whose unit, if it has one, is of the dimension of this SI unit. What is not finite is a number too:
-/// the command says why it cannot be meant.
-fn value(text: &str, si: &str) -> Option<f64> {
-    if let Ok(plain) = text.trim().parse() {
-        return Some(plain);
-    }
-    let setting = settings::parse(&format!("value={text}")).ok()?;
-    let expected = NamedUnit::parse(si).ok()?.unit().dimension;
-    let agrees = setting.unit.as_ref().is_none_or(|unit| {
-        let own = unit.unit().dimension;
-        own.agreement(expected) == Agreement::Same
-    });
-    (agrees && !setting.truth).then_some(setting.value)
+/// The value of a text. What is not finite is a number too: the command says why it cannot be meant.
+fn value(text: &str, dimension: Dimension) -> Option<f64> {
+    let plain = text.trim().parse().ok();
+    plain.or_else(|| settings::quantity(text, dimension))
 }
 
 #[cfg(test)]
