@@ -4,8 +4,8 @@
 //! the last steps show that they bend too little to reach zero between, that is all. Else they are evaluated at a few
 //! Chebyshev points of the step's interpolant as well, and in between where they bend enough to reach zero; a change of
 //! sign between two of them brackets a crossing, which is located on the interpolant. Where consistent values do not show
-//! it there, they are looked at over the whole step: if it went over a kink of a record, the interpolant of a force bends
-//! to a crossing that there is not, or later.
+//! it there, or where the step may have gone over a kink of a record, they are looked at over the whole step: the interpolant
+//! of a force bends there to a crossing that there is not, or that is earlier or later.
 
 use crate::consistent::Consistent;
 use crate::integrator::Integrator;
@@ -212,17 +212,25 @@ impl Search<'_> {
             return Some(found);
         }
         self.probe.exact = true;
+        let smooth = is_smooth(integrator.state());
         let at_found = self.values(integrator, found.t);
-        if !self.changed(&at_found).is_empty() {
+        let shown = !self.changed(&at_found).is_empty();
+        if smooth && shown {
             return Some(found);
         }
         let at_end = self.values(integrator, end);
-        if is_smooth(integrator.state()) && !self.changed(&at_end).is_empty() {
+        if smooth && !self.changed(&at_end).is_empty() {
             // The interpolant crosses a little before its time.
             return Some(self.locate(integrator, (found.t, &at_found), (end, &at_end)));
         }
+        // Behind a kink the interpolant crosses before its time or late.
         let at_start = self.values(integrator, start);
-        self.first(integrator, (start, at_start), (end, at_end))
+        let last = if shown {
+            (found.t, at_found)
+        } else {
+            (end, at_end)
+        };
+        self.first(integrator, (start, at_start), last)
     }
 
     /// The first change in a step.

@@ -5,28 +5,22 @@
 //!
 //! Six implicit stages ([`stages`]) of order 5; the last stage is the end of the step, so algebraic variables satisfy
 //! their equations there, and what is infinitely stiff is damped out at once ([`tableau`]). The step follows the estimated
-//! error (Hairer, Wanner, Solving Ordinary Differential Equations II, section IV.8), but is kept while it is nearly
-//! right, for each new one takes a factorization.
+//! errors ([`step_size`]), but is kept while it is nearly right, for each new one takes a factorization.
 
 mod passes;
 mod stages;
+mod step_size;
 mod tableau;
 
 use hyde_ida::{Error, Failure, FailureKind, LinearMethod, SparseSolver, Statistics, System};
 use passes::{correct, inside, keep_largest, sum_of_squares, weights};
 use stages::Obstacle;
+use step_size::StepSize;
 use tableau::{BUBBLE, GAMMA, STAGES};
 
-/// Of the step that the estimated error allows, the part that is taken.
-const SAFETY: f64 = 0.9;
-/// The factors between which a step may be to the one before. After a step that failed it does not grow.
-const SHRINK: f64 = 0.2;
-const GROW: f64 = 6.0;
-/// A step that could be longer by less is kept.
-const KEEP: f64 = 1.2;
 /// So many steps at most before a stop are made to fit; and how much longer they might be without being so.
 const MOST_FITTED: f64 = 8.0;
-const SERVES: f64 = 1.6;
+const SERVES: f64 = 1.25;
 /// What an obstacle other than the error makes of a step.
 const RETREAT: f64 = 0.25;
 /// A correction of the interpolant that is no more of the tolerance leaves the solution.
@@ -59,6 +53,7 @@ pub(crate) struct RungeKutta<S> {
     largest: Vec<f64>,
     max_step_s: f64,
     next_step_s: f64,
+    step_size: StepSize,
     from: f64,
     before: Vec<f64>,
     t: f64,
@@ -109,6 +104,7 @@ impl<S: System> RungeKutta<S> {
             largest: y.iter().map(|value| value.abs()).collect(),
             max_step_s,
             next_step_s: f64::INFINITY,
+            step_size: StepSize::default(),
             from: t,
             before: y.to_vec(),
             t,
@@ -161,6 +157,7 @@ impl<S: System> RungeKutta<S> {
         self.next_step_s = self.next_step_s.min(first_step_s);
         // The factors may serve on: where only a held value has changed they do. The contraction tells.
         self.contraction = None;
+        self.step_size.forget();
         self.statistics.restarts += 1;
     }
 
@@ -221,20 +218,16 @@ impl<S: System> RungeKutta<S> {
             }
             let met = match self.attempt(step) {
                 Ok((error, worst)) => {
-                    let factor = SAFETY * error.max(f64::MIN_POSITIVE).powf(-0.2);
                     if error <= 1.0 {
                         std::mem::swap(&mut self.y, &mut self.stage);
                         let whole = to_stop && obstacle.is_none();
                         self.t = if whole { stop } else { self.from + step };
                         self.statistics.steps += 1;
                         keep_largest(&mut self.largest, &self.y);
-                        let most = if obstacle.is_some() { 1.0 } else { GROW };
-                        let factor = factor.clamp(SHRINK, most);
-                        let keep = (1.0..KEEP).contains(&factor);
-                        return Ok(if keep { step } else { step * factor });
+                        return Ok(self.step_size.after(step, error, obstacle.is_some()));
                     }
                     self.statistics.error_test_failures += 1;
-                    step *= factor.clamp(SHRINK, SAFETY);
+                    step = StepSize::retry(step, error);
                     Obstacle::Error(worst)
                 }
                 Err(met) => {

@@ -37,7 +37,7 @@ pub(crate) struct Multistep<'a> {
 
 /// Of the step that is right for order 1, how many times it a Runge-Kutta method may begin with (measured on axes with a
 /// clock: between 10 and 100 it makes little difference, and a step too long is only taken again).
-const LONGER_FIRST_STEP: f64 = 20.0;
+const LONGER_FIRST_STEP: f64 = 40.0;
 
 /// Of the tolerance, what a step of IDA is given: so the instants of events are as exact as the tolerance, as they are in a
 /// program written by hand, whose unknowns are states alone (backlash: 1.3e-5 s at rtol 1e-6 without it, 6e-6 s with it).
