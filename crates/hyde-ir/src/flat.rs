@@ -259,14 +259,14 @@ pub struct Measure {
     pub origin: Origin,
 }
 
-/// What an account of the energy ledger says of its component.
+/// What an account says of its component.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AccountKind {
-    /// An energy that it has.
+    /// An energy that it has, in J.
     Stored,
-    /// A power that it turns into heat.
+    /// A power that it turns into heat, in W.
     Dissipated,
-    /// A power that it has from outside the model.
+    /// A power that it has from outside the model, in W.
     Supplied,
 }
 
@@ -328,11 +328,11 @@ pub struct Flow {
 /// How the continuous equations are integrated.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// `ida`: backward differentiation.
+    /// Backward differentiation of variable order, by IDA of SUNDIALS.
     Ida,
-    /// `esdirk`: a Runge-Kutta method.
+    /// An implicit Runge-Kutta method of order 5, which starts anew at an event at no cost.
     Esdirk,
-    /// `auto`: what suits the model, the default.
+    /// What suits the program.
     #[default]
     Auto,
 }

@@ -28,7 +28,7 @@ pub enum Backend {
 pub(crate) struct Compiled {
     pub(crate) dae: Dae,
     backend: Backend,
-    /// One for each function, in the order of [`dae::Function::ALL`].
+    /// One for each function, in the order of [`Function::ALL`].
     values: Vec<Kernel>,
     partials: Vec<Kernel>,
     ticks: Vec<Kernel>,
@@ -85,12 +85,12 @@ impl Compiled {
             count,
             code: OnceLock::new(),
         };
-        let values = dae::Function::ALL
+        let values = Function::ALL
             .into_iter()
             .map(|f| kernel(Routine::values(&dae, f), dae.rows(f)))
             .collect();
         let entries = |f| dae.partials(f).iter().map(|partial| partial.range.len());
-        let partials = dae::Function::ALL
+        let partials = Function::ALL
             .into_iter()
             .map(|f| kernel(partials_of(&dae, f), entries(f).sum()))
             .collect();
@@ -190,11 +190,10 @@ impl Kernels for Compiled {
         workspace: &mut Workspace,
         out: &mut [f64],
     ) {
-        self.run(&self.values[in_dae(function) as usize], at, workspace, out);
+        self.run(&self.values[function as usize], at, workspace, out);
     }
 
     fn some_rows(&self, function: Function, rows: &[usize]) -> Box<dyn SomeRows + '_> {
-        let function = in_dae(function);
         Box::new(Chosen {
             compiled: self,
             code: self.some_rows.code(&self.dae, function, rows, self.backend),
@@ -212,7 +211,7 @@ impl Kernels for Compiled {
     }
 
     fn entries(&self, function: Function) -> Vec<PartialEntry> {
-        entries(self.dae.partials(in_dae(function)))
+        entries(self.dae.partials(function))
     }
 
     fn sliding_cells(&self) -> Vec<(usize, usize)> {
@@ -226,16 +225,11 @@ impl Kernels for Compiled {
         workspace: &mut Workspace,
         out: &mut [f64],
     ) {
-        self.run(
-            &self.partials[in_dae(function) as usize],
-            at,
-            workspace,
-            out,
-        );
+        self.run(&self.partials[function as usize], at, workspace, out);
     }
 
     fn still_entries(&self, function: Function) -> Vec<PartialEntry> {
-        self.still().entries(in_dae(function)).to_vec()
+        self.still().entries(function).to_vec()
     }
 
     fn still_partials(
@@ -247,7 +241,7 @@ impl Kernels for Compiled {
     ) {
         self.check(at, workspace);
         let still = self.still();
-        still.partials(in_dae(function), at, workspace, out);
+        still.partials(function, at, workspace, out);
     }
 
     fn parameter_directions(&self, chosen: &[usize], p: &[f64]) -> Vec<Vec<f64>> {
@@ -391,7 +385,7 @@ impl Compiled {
 /// Every routine of a DAE, for printing.
 pub(crate) fn routines(dae: &Dae) -> Vec<Routine> {
     let mut list = Vec::new();
-    for function in dae::Function::ALL {
+    for function in Function::ALL {
         list.push(Routine::values(dae, function));
         list.push(partials_of(dae, function));
     }
@@ -425,20 +419,9 @@ pub(crate) fn entries(partials: &[dae::Partial]) -> Vec<PartialEntry> {
 }
 
 /// The routine of a function's derivatives.
-fn partials_of(dae: &Dae, function: dae::Function) -> Routine {
+fn partials_of(dae: &Dae, function: Function) -> Routine {
     let name = format!("{}_partials", routine::name(function));
     Routine::partials(dae, name, dae.partials(function))
-}
-
-pub(crate) fn in_dae(function: Function) -> dae::Function {
-    match function {
-        Function::Residual => dae::Function::Residual,
-        Function::Roots => dae::Function::Roots,
-        Function::Assignments => dae::Function::Assignments,
-        Function::Outputs => dae::Function::Outputs,
-        Function::Initial => dae::Function::Initial,
-        Function::Delayed => dae::Function::Delayed,
-    }
 }
 
 /// Start values of the vector, then of the memory.

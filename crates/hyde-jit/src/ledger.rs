@@ -1,7 +1,7 @@
 //! The table of the energy ledger: which outputs its accounts and ports are.
 
 use hyde_ir::flat;
-use hyde_program::{Account, AccountKind, Ledger, Port, PortKind};
+use hyde_program::{Account, Ledger, Port};
 
 /// Entries of the ledger among the outputs of a DAE: one a piece of an account, two a port.
 pub(crate) fn outputs(ledger: &flat::Ledger) -> usize {
@@ -25,11 +25,7 @@ pub(crate) fn ledger(ledger: &flat::Ledger, first: usize) -> Ledger {
     let accounts = ledger.accounts.iter().map(|account| Account {
         component: account.component.to_string(),
         name: account.name.clone(),
-        kind: match account.kind {
-            flat::AccountKind::Stored => AccountKind::Stored,
-            flat::AccountKind::Dissipated => AccountKind::Dissipated,
-            flat::AccountKind::Supplied => AccountKind::Supplied,
-        },
+        kind: account.kind,
         outputs: take(size(account)),
     });
     let accounts = accounts.collect();
@@ -37,11 +33,7 @@ pub(crate) fn ledger(ledger: &flat::Ledger, first: usize) -> Ledger {
         let flow = take(2).start;
         Port {
             component: port.component.to_string(),
-            kind: match port.kind {
-                flat::PortKind::Work => PortKind::Work,
-                flat::PortKind::Power => PortKind::Power,
-                flat::PortKind::Heat => PortKind::Heat,
-            },
+            kind: port.kind,
             flow,
             potential: flow + 1,
         }

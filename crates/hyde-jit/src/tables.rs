@@ -9,9 +9,9 @@ use crate::{figures, ledger};
 use hyde_ir::dae::{self, Dae};
 use hyde_ir::{ExprId, Id as _, Interpolation, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Clock, Column, Derivatives, Firmness, ForeignPart, Hold,
-    InitialCondition, Output, Parameter, Pin, Prior, Program, Reaction, ReactionKind, RecordValue,
-    RecordValueKind, Relation, RelationUse, Selection, Target, UnknownBlock,
+    Assignment, Automaton, Clock, Column, Derivatives, ForeignPart, Hold, InitialCondition, Output,
+    Parameter, Pin, Program, Reaction, ReactionKind, RecordValue, RecordValueKind, Relation,
+    RelationUse, UnknownBlock,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -43,10 +43,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
             .assignments
             .iter()
             .map(|assignment| Assignment {
-                target: match assignment.target {
-                    dae::Target::State(position) => Target::State(position),
-                    dae::Target::Memory(position) => Target::Memory(position),
-                },
+                target: assignment.target,
                 origin: assignment.origin.clone(),
             })
             .collect(),
@@ -60,16 +57,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
                 origin: pin.origin.clone(),
             })
             .collect(),
-        selections: dae
-            .selections
-            .iter()
-            .map(|selection| Selection {
-                candidates: selection.candidates.clone(),
-                constraints: selection.constraints.clone(),
-                weights: selection.weights.clone(),
-                factors: selection.factors,
-            })
-            .collect(),
+        selections: dae.selections.clone(),
         clocks: dae
             .ticks
             .iter()
@@ -163,10 +151,7 @@ fn parameters(dae: &Dae) -> Vec<Parameter> {
             structural: parameter.structural,
             is_final: parameter.is_final,
             found: parameter.found,
-            prior: parameter.prior.map(|prior| match prior {
-                hyde_ir::Prior::Relative(part) => Prior::Relative(part),
-                hyde_ir::Prior::Absolute(spread) => Prior::Absolute(spread),
-            }),
+            prior: parameter.prior,
             is_size: parameter.role == hyde_ir::Role::Size,
             allowed: parameter.allowed,
             range: parameter.range,
@@ -336,13 +321,7 @@ fn initial(dae: &Dae, condition: &dae::InitialCondition) -> InitialCondition {
         } => InitialCondition::Fixed {
             state: *state,
             len: *len,
-            firmness: match firmness {
-                dae::Firmness::Free => Firmness::Free,
-                dae::Firmness::Open => Firmness::Open,
-                dae::Firmness::Guess => Firmness::Guess,
-                dae::Firmness::Default => Firmness::Default,
-                dae::Firmness::Given => Firmness::Given,
-            },
+            firmness: *firmness,
             yields: *yields,
             origin: origin.clone(),
         },

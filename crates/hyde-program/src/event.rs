@@ -1,6 +1,7 @@
 //! What happens at events: relations, automata, reactions, pins, clocks and held values.
 
 use hyde_diag::Origin;
+use hyde_ir::dae::{Firmness, Target};
 
 /// What a relation is for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -46,15 +47,6 @@ pub struct Automaton {
     pub place: usize,
     /// Where it is written.
     pub origin: Origin,
-}
-
-/// Where an event writes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Target {
-    /// A state, by its position in the solver's vector.
-    State(usize),
-    /// A position in the memory.
-    Memory(usize),
 }
 
 /// One thing an event sets; its value is of the same number in [`crate::Function::Assignments`].
@@ -117,22 +109,6 @@ pub struct Pin {
     pub origin: Origin,
 }
 
-/// Variables of one order that constraints tie to each other: as many as there are no constraints for are states, and
-/// the run chooses which. With S states among the m candidates the factors are S rows of m numbers, in each row a one at
-/// the variable chosen and zeros elsewhere.
-#[derive(Clone, Debug)]
-pub struct Selection {
-    /// Positions of the variables in the solver's vector.
-    pub candidates: Vec<usize>,
-    /// Rows of the constraints in the residual.
-    pub constraints: Vec<usize>,
-    /// What each variable's column of the constraints' Jacobian is multiplied by before columns are picked: 0 keeps a
-    /// variable a state, a large factor makes it none.
-    pub weights: Vec<f64>,
-    /// Position of the first factor in the memory.
-    pub factors: usize,
-}
-
 /// A clocked part; its times are [`crate::Constant`]s.
 #[derive(Clone, Debug)]
 pub struct Clock {
@@ -169,21 +145,6 @@ pub struct Delay {
     pub held: bool,
     /// Where it is written.
     pub origin: Origin,
-}
-
-/// How firmly a state holds its start value. Where initial equations determine states, the loosest yield first.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Firmness {
-    /// `fixed = false` is said.
-    Free,
-    /// Nothing is said.
-    Open,
-    /// `start` is said: a guess.
-    Guess,
-    /// Declared fixed by a part, for every use of it.
-    Default,
-    /// Declared fixed for this model: it never yields.
-    Given,
 }
 
 /// A condition at the start, for one or more states.

@@ -2,18 +2,8 @@
 
 use crate::ledger::Ledger;
 use hyde_diag::Origin;
+use hyde_ir::flat::{Method, Preparation, ReductionKind};
 use hyde_units::NamedUnit;
-
-/// A step of preparing a measured column.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Preparation {
-    /// Butterworth low-pass of order 4, forwards and backwards, corner in Hz.
-    Lowpass(f64),
-    /// Central differences over time.
-    Slope,
-    /// Multiplied by a number, SI.
-    Scale(f64),
-}
 
 /// A measured channel.
 #[derive(Clone, Debug)]
@@ -34,29 +24,6 @@ pub struct Measured {
     pub unit: NamedUnit,
     /// Where it is written.
     pub origin: Origin,
-}
-
-/// How a signal over time becomes one number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum ReductionKind {
-    /// Largest value.
-    Max,
-    /// Smallest value.
-    Min,
-    /// Root mean square over time.
-    Rms,
-    /// Mean over time.
-    Mean,
-    /// Integral over time.
-    Integral,
-    /// The first value, where there is a condition the one at the first instant at which it holds.
-    First,
-    /// The last value, where there is a condition the one at the last instant at which it holds.
-    Last,
-    /// The instant from which the signal stays at zero or below, in s; infinite if it never does.
-    Settling,
-    /// The frequency at which the spectrum is highest, in Hz.
-    Resonance,
 }
 
 /// A reduction of an output.
@@ -222,18 +189,6 @@ pub struct Flow {
 pub struct Stepped {
     /// The output, by its number in the response, whose amplitude is not to be above a level.
     pub keep: Option<usize>,
-}
-
-/// How the continuous equations are integrated.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Method {
-    /// Backward differentiation of variable order, by IDA of SUNDIALS.
-    Ida,
-    /// An implicit Runge-Kutta method of order 5, which starts anew at an event at no cost.
-    Esdirk,
-    /// What suits the program.
-    #[default]
-    Auto,
 }
 
 /// What an experiment asks of a run.

@@ -1,6 +1,7 @@
 //! [`Kernels`]: the numbers of a program.
 
 use crate::program::{PartialEntry, Wrt};
+use hyde_ir::dae::Function;
 use std::collections::BTreeMap;
 
 /// Where functions are evaluated. Lengths are those of the [`crate::Program`].
@@ -33,35 +34,6 @@ impl Workspace {
     pub fn new(n: usize) -> Self {
         Self { work: vec![0.0; n] }
     }
-}
-
-/// The functions of a program that have derivatives (S2).
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-pub enum Function {
-    /// `F`, one value an unknown.
-    Residual,
-    /// Root functions, one a relation.
-    Roots,
-    /// What events assign, then the values of the pins.
-    Assignments,
-    /// Reported quantities.
-    Outputs,
-    /// Conditions at the start that are equations.
-    Initial,
-    /// What is delayed, as it is now.
-    Delayed,
-}
-
-impl Function {
-    /// All of them.
-    pub const ALL: [Self; 6] = [
-        Self::Residual,
-        Self::Roots,
-        Self::Assignments,
-        Self::Outputs,
-        Self::Initial,
-        Self::Delayed,
-    ];
 }
 
 /// By what a tick is differentiated.

@@ -1,17 +1,7 @@
 //! What the energy ledger adds up during a run.
 
+use hyde_ir::flat::{AccountKind, PortKind};
 use std::ops::Range;
-
-/// What an account says of its component.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum AccountKind {
-    /// An energy that it has, in J.
-    Stored,
-    /// A power that it turns into heat, in W.
-    Dissipated,
-    /// A power that it has from outside the model, in W.
-    Supplied,
-}
 
 /// What a component says of its energy.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -24,17 +14,6 @@ pub struct Account {
     pub kind: AccountKind,
     /// The outputs whose sum it is.
     pub outputs: Range<usize>,
-}
-
-/// How the variables of a connector make a power.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum PortKind {
-    /// Flow times the derivative of the potential: force and position.
-    Work,
-    /// Flow times potential: current and voltage.
-    Power,
-    /// The flow itself: heat.
-    Heat,
 }
 
 /// Where energy enters a component.

@@ -11,6 +11,8 @@
 //!
 //! What events do to memory and states is the same for all who run a program: [`Program::firing`] and its neighbours.
 //!
+//! What a program takes over as it is in the IR, a [`Method`] or the [`Firmness`] of a start, is the type of the IR.
+//!
 //! Numbers come from [`Kernels`], everything about them from the tables of the [`Program`]. There are three implementers
 //! of the trait: machine code, the interpreter of the IR, and problems written by hand for tests. A kernel has no state:
 //! equal arguments give equal results, from any thread.
@@ -29,19 +31,22 @@ mod program;
 mod reacting;
 
 pub use event::{
-    Assignment, Automaton, Clock, Delay, Firmness, Hold, InitialCondition, Pin, Reaction,
-    ReactionKind, Relation, RelationUse, Selection, Target,
+    Assignment, Automaton, Clock, Delay, Hold, InitialCondition, Pin, Reaction, ReactionKind,
+    Relation, RelationUse,
 };
 pub use experiment::{
     Bode, Curve, Cut, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse,
-    Method, Moment, Preparation, RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped,
+    Moment, RecordedResponse, Reduction, ScaledColumn, Stepped,
 };
 pub use foreign::{Foreign, ForeignInstance, ForeignPart, ForeignTick, Stopped};
 pub use given::{Given, Misfit};
+pub use hyde_ir::Prior;
+pub use hyde_ir::dae::{Firmness, Function, Selection, Target};
+pub use hyde_ir::flat::{AccountKind, Method, PortKind, Preparation, ReductionKind};
 pub use jacobian::{Jacobian, JacobianEntry};
-pub use kernels::{Coefficients, Constant, Function, Kernels, Point, SomeRows, TickWrt, Workspace};
-pub use ledger::{Account, AccountKind, Ledger, Port, PortKind};
+pub use kernels::{Coefficients, Constant, Kernels, Point, SomeRows, TickWrt, Workspace};
+pub use ledger::{Account, Ledger, Port};
 pub use program::{
-    Column, Derivatives, Output, Parameter, PartialEntry, Prior, Program, RecordValue,
-    RecordValueKind, UnknownBlock, Wrt,
+    Column, Derivatives, Output, Parameter, PartialEntry, Program, RecordValue, RecordValueKind,
+    UnknownBlock, Wrt,
 };

@@ -1,13 +1,15 @@
 //! [`Program`]: the kernels and everything that is to be known of their numbers.
 
 use crate::event::{
-    Assignment, Automaton, Clock, Delay, Hold, InitialCondition, Pin, Reaction, Relation, Selection,
+    Assignment, Automaton, Clock, Delay, Hold, InitialCondition, Pin, Reaction, Relation,
 };
 use crate::experiment::Experiment;
 use crate::foreign::ForeignPart;
 use crate::jacobian::{Jacobian, JacobianEntry};
-use crate::kernels::{Function, Kernels};
+use crate::kernels::Kernels;
 use hyde_diag::{Origin, Span};
+use hyde_ir::Prior;
+use hyde_ir::dae::{Function, Selection};
 use hyde_units::{Allowed, Dimension, Kind, NamedUnit};
 use std::sync::{Arc, OnceLock};
 
@@ -43,15 +45,6 @@ pub struct Output {
     pub auxiliary: bool,
     /// The first output that has the same value by its equations, if that is another: the ends of joined parts are one.
     pub same_as: Option<usize>,
-}
-
-/// The spread of an uncertain number.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Prior {
-    /// Value times (1 ± this).
-    Relative(f64),
-    /// Value ± this, SI.
-    Absolute(f64),
 }
 
 /// A parameter.

@@ -11,7 +11,7 @@
 //! ```
 //! Where root functions come from, when rounds end, and what is exactly at zero along the flow each of the two knows itself.
 
-use crate::event::{Pin, ReactionKind, Relation, RelationUse, Target};
+use crate::event::{Pin, ReactionKind, Relation, RelationUse};
 use crate::program::Program;
 
 impl Relation {
@@ -30,16 +30,6 @@ impl RelationUse {
         match self {
             Self::Exit(automaton, mode) => in_mode(automaton, mode),
             Self::Equation | Self::When | Self::Assert => true,
-        }
-    }
-}
-
-impl Target {
-    /// Writes a value to the solver's vector or to the memory.
-    pub fn set(self, value: f64, y: &mut [f64], memory: &mut [f64]) {
-        match self {
-            Self::State(position) => y[position] = value,
-            Self::Memory(position) => memory[position] = value,
         }
     }
 }

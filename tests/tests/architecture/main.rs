@@ -21,7 +21,7 @@ const EDGES: &[(&str, &[&str])] = &[
     ("format", &["diag", "syntax"]),
     ("ir", &["diag", "units"]),
     ("signal", &["units"]),
-    ("program", &["diag", "units"]),
+    ("program", &["diag", "ir", "units"]),
     ("flatten", &["diag", "ir", "syntax", "units"]),
     ("analysis", &["diag", "ir", "units"]),
     // On analysis, for the derivatives by a chosen set of parameters, which are made when they are asked for (S2).

@@ -23,10 +23,20 @@ pub struct AutomatonInfo {
 /// Where an event writes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Target {
-    /// The solver's vector.
+    /// A state, by its position in the solver's vector.
     State(usize),
-    /// The memory.
+    /// A position in the memory.
     Memory(usize),
+}
+
+impl Target {
+    /// Writes a value to the solver's vector or to the memory.
+    pub fn set(self, value: f64, y: &mut [f64], memory: &mut [f64]) {
+        match self {
+            Self::State(position) => y[position] = value,
+            Self::Memory(position) => memory[position] = value,
+        }
+    }
 }
 
 /// One thing an event sets.

@@ -33,14 +33,14 @@ pub struct Partial {
     pub value: ExprId,
 }
 
-/// The functions that a program offers with their derivatives (S2).
+/// The functions of a program that have derivatives (S2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Function {
-    /// `F`.
+    /// `F`, one value an unknown.
     Residual,
-    /// Root functions of the relations.
+    /// Root functions, one a relation.
     Roots,
-    /// Values that events assign, then the values of the pins.
+    /// What events assign, then the values of the pins.
     Assignments,
     /// Reported quantities.
     Outputs,

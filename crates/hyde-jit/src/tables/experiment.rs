@@ -6,8 +6,8 @@ use hyde_ir::dae::Dae;
 use hyde_ir::flat;
 use hyde_ir::{Expr, ExprId, Id as _, VariableKind};
 use hyde_program::{
-    Bode, Cut, Experiment, Measure, Measured, MeasuredResponse, Method, Moment, Preparation,
-    RecordedResponse, Reduction, ReductionKind, ScaledColumn, Stepped,
+    Bode, Cut, Experiment, Measure, Measured, MeasuredResponse, Moment, RecordedResponse,
+    Reduction, ScaledColumn, Stepped,
 };
 
 /// What is asked of a run, with the outputs that it reads.
@@ -38,15 +38,7 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
                     let column = &dae.columns[measured.column];
                     (column.record.clone(), column.column.clone())
                 },
-                preparation: measured
-                    .preparation
-                    .iter()
-                    .map(|step| match step {
-                        flat::Preparation::Lowpass(corner) => Preparation::Lowpass(*corner),
-                        flat::Preparation::Slope => Preparation::Slope,
-                        flat::Preparation::Scale(factor) => Preparation::Scale(*factor),
-                    })
-                    .collect(),
+                preparation: measured.preparation.clone(),
                 output,
                 clocked: measured.clocked,
                 late: measured.late.clone(),
@@ -59,17 +51,7 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
             .iter()
             .zip(first_reduction..)
             .map(|(reduction, output)| Reduction {
-                kind: match reduction.kind {
-                    flat::ReductionKind::Max => ReductionKind::Max,
-                    flat::ReductionKind::Min => ReductionKind::Min,
-                    flat::ReductionKind::Rms => ReductionKind::Rms,
-                    flat::ReductionKind::Mean => ReductionKind::Mean,
-                    flat::ReductionKind::First => ReductionKind::First,
-                    flat::ReductionKind::Last => ReductionKind::Last,
-                    flat::ReductionKind::Integral => ReductionKind::Integral,
-                    flat::ReductionKind::Settling => ReductionKind::Settling,
-                    flat::ReductionKind::Resonance => ReductionKind::Resonance,
-                },
+                kind: reduction.kind,
                 text: dae.variables[reduction.var].name.to_string(),
                 output,
                 condition: reduction.condition.and_then(|_| conditions_before.next()),
@@ -148,11 +130,7 @@ pub(super) fn experiment(dae: &Dae) -> Experiment {
             .map(|measured| measured_response(dae, measured))
             .collect(),
         ledger: ledger::ledger(&known.ledger, first_account),
-        method: match known.method {
-            flat::Method::Ida => Method::Ida,
-            flat::Method::Esdirk => Method::Esdirk,
-            flat::Method::Auto => Method::Auto,
-        },
+        method: known.method,
         conserve: known.conserve,
     }
 }
