@@ -1,6 +1,7 @@
 //! A self-test in lines of at most 80 columns.
 
 use super::json::{shown, sums};
+use crate::lines::wrapped;
 use hyde_calibrate::{Designed, Found, Planting, Row};
 use hyde_study::diagnosis::verdict;
 use hyde_study::selftest::Tested;
@@ -130,7 +131,7 @@ fn designed(out: &mut String, told: &Tested<'_>) {
     };
     let (one_of, resolved) = told.table.designed;
     let what = "verdict `one of`: resolved by one designed record";
-    let _ = writeln!(out, "\n  {what:<60} {resolved:>4} of {one_of}");
+    let _ = writeln!(out, "  {what:<60} {resolved:>4} of {one_of}");
     for (case, kept) in told.outcomes {
         let (Planting::Planted(number, _), Ok(outcome)) = (&case.kind, kept) else {
             continue;
@@ -160,18 +161,25 @@ fn designed(out: &mut String, told: &Tested<'_>) {
             }
         };
     }
+    if one_of == 0 {
+        return;
+    }
     for (name, reason) in designs.unmade() {
         let reason = reason.lines().next().unwrap_or_default();
-        let _ = writeln!(out, "    no {name}:\n      {reason}");
+        let text = format!("{name}: {reason}");
+        for (number, line) in wrapped(&text, WIDTH - 6).iter().enumerate() {
+            let head = if number == 0 { "    - " } else { "      " };
+            let _ = writeln!(out, "{head}{line}");
+        }
     }
     let assumed = &designs.wished().assumed;
     if !assumed.is_empty() {
         let _ = writeln!(
             out,
-            "  assumed of the designed record, as no option says otherwise:"
+            "    assumed for the designed record, as no option says otherwise:"
         );
         for option in assumed {
-            let _ = writeln!(out, "    {option}");
+            let _ = writeln!(out, "      {option}");
         }
     }
 }

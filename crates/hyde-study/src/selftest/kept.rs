@@ -8,7 +8,7 @@ pub type Kept = Result<Outcome, String>;
 
 #[derive(Serialize, Deserialize)]
 enum Stored {
-    Outcome(StoredOutcome),
+    Outcome(Box<StoredOutcome>),
     Failed(String),
 }
 
@@ -78,7 +78,7 @@ fn claims(stored: Vec<StoredClaim>) -> Vec<Claim> {
 pub(super) fn encoded(kept: &Kept) -> Vec<u8> {
     let kept = match kept {
         Err(reason) => Stored::Failed(reason.clone()),
-        Ok(outcome) => Stored::Outcome(StoredOutcome {
+        Ok(outcome) => Stored::Outcome(Box::new(StoredOutcome {
             planted: outcome.planted.clone(),
             size: outcome.size,
             detectable: outcome.detectable,
@@ -101,7 +101,7 @@ pub(super) fn encoded(kept: &Kept) -> Vec<u8> {
                     stored(claims),
                 ),
             }),
-        }),
+        })),
     };
     serde_json::to_vec(&kept).unwrap_or_default()
 }
