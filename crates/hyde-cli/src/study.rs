@@ -48,7 +48,7 @@ pub(crate) fn designs(
         ..args.model_args()
     };
     loaded(&model_args, |loaded, asked| {
-        Designs::new(loaded, asked, calibration, options)
+        Designs::new(&loaded, asked, calibration, options)
     })
 }
 

@@ -333,8 +333,7 @@ fn identity(ready: &Ready<'_>) -> Identity {
     let set = calibration.project.set();
     let mut order = json!({ "diagnosis": plan.name, "seed": seed, "set": set, "thresholds": format!("{thresholds:?}"), "hyde": env!("CARGO_PKG_VERSION") });
     if let Some(designs) = designs {
-        order["designs"] =
-            json!({ "wish": format!("{:?}", designs.wished().wish), "column": designs.column() });
+        order["designs"] = json!(designs.identity());
     }
     digest(&[
         &digest(&sources).0,

@@ -87,6 +87,20 @@ impl Axis {
         }
     }
 
+    /// Less current than it has in its own records.
+    fn current(self) -> &'static str {
+        match self {
+            Self::Small => "10 [A]",
+            Self::Rack => "15 [A]",
+            Self::Linear => "3 [A]",
+        }
+    }
+
+    /// The arguments that ask for designed records.
+    fn designed(self) -> Vec<&'static str> {
+        [&DESIGNED[..], &[self.current()]].concat()
+    }
+
     /// Where its cases are kept below the folder of a seed.
     fn folder(self) -> &'static str {
         match self {
@@ -101,8 +115,8 @@ impl Axis {
 const TYPICAL: &str = "0.05";
 /// Effects at sites of the small axis that are tried in a measurement.
 const SAMPLED: [&str; 6] = ["--only", "planted", "--sizes", TYPICAL, "--sample", "24"];
-/// A record is designed for each verdict `one of`, within what all three axes do in their own records.
-const DESIGNED: [&str; 11] = [
+/// A record is designed for each verdict `one of`, of a motion that all three axes make in their own records, or of a current.
+const DESIGNED: [&str; 12] = [
     "--designed",
     "--travel",
     "100 [mm]",
@@ -114,6 +128,7 @@ const DESIGNED: [&str; 11] = [
     "1000 [m/s3]",
     "--duration",
     "15 [s]",
+    "--current",
 ];
 /// All there is: half of what shows, what is typical, and what nobody overlooks; and every control.
 const WHOLE: [&str; 4] = ["--sizes", "0.5x,0.05,0.3", "--empties", "100"];
@@ -181,7 +196,7 @@ fn coverage(session: &Session) -> Result<Measured, String> {
 
 /// The report of the planted effects.
 pub(super) fn planted(session: &Session, axis: Axis) -> Result<Value, String> {
-    report(session, axis, &[&SAMPLED[..], &DESIGNED[..]].concat())
+    report(session, axis, &[&SAMPLED[..], &axis.designed()].concat())
 }
 
 /// The cases of a report.
@@ -216,7 +231,7 @@ fn told(session: &Session, axis: Axis, value: f64) -> Measured {
 pub fn record(session: &Session) -> Result<PathBuf, String> {
     // Named before hours pass in which they may change.
     let sources = sources();
-    let whole = [&WHOLE[..], &DESIGNED[..]].concat();
+    let whole = [&WHOLE[..], &Axis::Small.designed()].concat();
     let table = output(session, Axis::Small, &whole)?;
     let folder = root().join("tests/selftest");
     let path = folder.join(format!("seed-{}.txt", session.seed));
@@ -256,7 +271,7 @@ fn sources() -> String {
 /// The report of some cases on an axis, or of all of them on the small one where all are asked for.
 fn report(session: &Session, axis: Axis, some: &[&str]) -> Result<Value, String> {
     let whole = session.whole && axis == Axis::Small;
-    let all = [&WHOLE[..], &DESIGNED[..]].concat();
+    let all = [&WHOLE[..], &axis.designed()].concat();
     let cases = if whole { &all } else { some };
     let printed = output(session, axis, &[cases, &["--json"]].concat())?;
     serde_json::from_slice(&printed).map_err(|error| error.to_string())

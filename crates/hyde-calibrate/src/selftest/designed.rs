@@ -132,3 +132,36 @@ fn fitted(found: &Diagnosis, finding: &Finding, number: usize, hypothesis: &Hypo
         },
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn only_the_planted_effect_alone_resolves_a_verdict() {
+        let claim = |hypothesis: usize, alternatives: &[usize]| Claim {
+            hypothesis: Some(hypothesis),
+            alternatives: alternatives.to_vec(),
+            size: 1.0,
+            interval: (0.9, 1.1),
+        };
+        let diagnosed = |verdict, claims: &[Claim]| Designed::Diagnosed {
+            signal: "jogs".to_owned(),
+            apart: 2.0,
+            verdict,
+            claims: claims.to_vec(),
+        };
+        assert!(diagnosed(Verdict::Effect, &[claim(3, &[])]).resolves(3));
+        for other in [
+            diagnosed(Verdict::Effect, &[claim(4, &[])]),
+            diagnosed(Verdict::OneOf, &[claim(3, &[4])]),
+            diagnosed(Verdict::Effect, &[claim(3, &[]), claim(5, &[])]),
+            diagnosed(Verdict::Unknown, &[claim(3, &[])]),
+            diagnosed(Verdict::None, &[]),
+            Designed::Unrecorded("jogs".to_owned()),
+            Designed::NoSignal,
+        ] {
+            assert!(!other.resolves(3), "{other:?}");
+        }
+    }
+}

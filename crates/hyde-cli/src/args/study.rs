@@ -128,7 +128,7 @@ pub(crate) struct SelftestArgs {
     /// Band of a multisine or chirp of the designed record: `--band '1 .. 100 [Hz]'`
     #[arg(long, value_name = "FROM..TO [Hz]", requires = "designed")]
     pub(crate) band: Option<String>,
-    /// Column of the designed record [default: the first one that a stimulus reads]
+    /// Column of the designed record [default: the first one that a stimulus reads in the unit of the limits]
     #[arg(long, value_name = "NAME", requires = "designed")]
     pub(crate) column: Option<String>,
     #[command(flatten, next_help_heading = "Limits of the designed record")]

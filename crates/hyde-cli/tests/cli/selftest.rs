@@ -217,7 +217,7 @@ fn a_designed_record_distinguishes_what_the_records_cannot() {
         // The strokes at several speeds, on which the two are far apart.
         assert_eq!(
             (&own["signal"], &own["resolved"]),
-            (&"jogs".into(), &true.into()),
+            (&"jogs of `r`".into(), &true.into()),
             "{case:#}"
         );
         assert_eq!(own["effects"][0]["claimed"], case["planted"], "{case:#}");
@@ -253,15 +253,8 @@ fn limits_are_those_of_a_designed_record() {
         "{}",
         errors(&output)
     );
-    // A current is no motion: the column does not fit.
-    let output = hyde(&[
-        "selftest",
-        AXIS,
-        "quick",
-        "--designed",
-        "--current",
-        "1 [A]",
-    ]);
+    // A motion does not fit the column of a current.
+    let output = hyde(&["selftest", AXIS, "quick", "--designed", "--column", "i_inj"]);
     assert_eq!(status(&output), 1, "{}", errors(&output));
 }
 

@@ -68,8 +68,7 @@ pub fn report(told: &Tested<'_>) -> Value {
         report["designed"] = json!({
             "one_of": one_of,
             "resolved": resolved,
-            "column": designs.column(),
-            "assumed": designs.wished().assumed,
+            "assumed": designs.assumed(),
             "unmade": unmade.collect::<Vec<_>>(),
         });
     }

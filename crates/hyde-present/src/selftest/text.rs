@@ -172,7 +172,7 @@ fn designed(out: &mut String, told: &Tested<'_>) {
             let _ = writeln!(out, "{head}{line}");
         }
     }
-    let assumed = &designs.wished().assumed;
+    let assumed = designs.assumed();
     if !assumed.is_empty() {
         let _ = writeln!(
             out,
