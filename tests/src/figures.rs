@@ -12,6 +12,7 @@ mod command_start;
 mod compile;
 mod csv_reading;
 mod demo;
+mod designed_record;
 mod diagnosis;
 mod differential;
 mod emps;
@@ -134,6 +135,7 @@ pub const FIGURES: &[Figure] = &[
     selftest::TOP1_LINEAR,
     selftest::HOLDS_ZERO,
     selftest::COVERAGE,
+    designed_record::FIGURE,
     diagnosis::RIGHT,
     diagnosis::CHI,
     diagnosis::WINDOWS,

@@ -47,6 +47,7 @@ pub use plan::{CalibrationPlan, Label, LabelValue, Per, Source, Vary};
 pub use plant::Unsupported;
 pub use records::{Frozen, RecordError, Recording, Uneven, frozen};
 pub use selftest::{
-    Asked, Axis, Case, Claim, Fault, Faulty, Found, Outcome, Planting, Row, SelftestError,
-    Separation, Simulated, Size, Tally, cases, separation, simulated, tables_of, tally, try_case,
+    Asked, Axis, Case, Claim, Designed, Designer, Fault, Faulty, Found, Linearised, Outcome,
+    Planting, Point, Row, SelftestError, Separation, Signal, Simulated, Size, Tally, cases,
+    simulated, tables_of, tally, try_case,
 };

@@ -10,7 +10,7 @@ mod traces;
 
 pub(crate) use batch::{Engine, SweepArgs};
 pub(crate) use editor::{ExplainArgs, FmtArgs, LiveArgs, LspArgs, McpArgs};
-pub(crate) use excite::{Criterion, ExciteArgs, SignalFormat, SignalName};
+pub(crate) use excite::{Criterion, ExciteArgs, LimitArgs, SignalFormat, SignalName};
 pub(crate) use export::{
     CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, ModelicaArgs, ReferenceRun, StateSpaceArgs,
 };

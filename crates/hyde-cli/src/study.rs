@@ -5,6 +5,7 @@ use crate::exit::Exit;
 use crate::project::{self, Asked, Loaded, Told as _, complain};
 use hyde_compiler::DiagnosisPlan;
 use hyde_study::excitation::{self, Comparison, Options, Wished};
+use hyde_study::selftest::Designs;
 use hyde_study::{Calibration, JointCalibration, Project, Refused};
 
 /// Loads the calibration that the arguments name.
@@ -34,6 +35,21 @@ pub(crate) fn diagnosis(args: &StudyArgs) -> Result<(DiagnosisPlan, Calibration)
     })?;
     calibration.project.print_warnings(&model_args);
     Ok((plan, calibration))
+}
+
+/// Makes the signals of a self-test on the model of its calibration. Effects of all packages may be put on the model.
+pub(crate) fn designs(
+    args: &StudyArgs,
+    calibration: &Calibration,
+    options: Options,
+) -> Result<Designs, Exit> {
+    let model_args = ModelArgs {
+        whole_library: true,
+        ..args.model_args()
+    };
+    loaded(&model_args, |loaded, asked| {
+        Designs::new(&loaded, asked, calibration, options)
+    })
 }
 
 /// Compares signals on the model of a calibration.

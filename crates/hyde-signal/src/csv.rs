@@ -20,6 +20,7 @@ mod head;
 mod labview;
 mod number;
 mod pairs;
+mod plain_rows;
 mod read;
 mod rows;
 mod runs;

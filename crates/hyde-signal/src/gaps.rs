@@ -1,7 +1,7 @@
 //! Rows that are missing, that stand at one instant, or that are not evenly spaced: told, for nobody sees them in a curve.
 
 use crate::Note;
-use crate::statistics::median;
+use crate::statistics::median_of;
 
 /// From this multiple of the usual distance on, a distance of rows that are else even is a gap.
 const GAP: f64 = 1.5;
@@ -21,7 +21,7 @@ pub(crate) fn told(time_s: &[f64]) -> Vec<Note> {
     let mut notes = Vec::new();
     let mut steps: Vec<f64> = time_s.windows(2).map(|pair| pair[1] - pair[0]).collect();
     steps.retain(|step| *step > 0.0);
-    let Some(usual) = median(&steps) else {
+    let Some(usual) = median_of(&mut steps) else {
         return notes;
     };
     let near = |step: &&f64| (**step - usual).abs() <= SLACK * usual;
@@ -44,7 +44,10 @@ pub(crate) fn told(time_s: &[f64]) -> Vec<Note> {
         )));
     }
     if !even {
-        let (least, most) = (steps[0], steps[steps.len() - 1]);
+        let bounds = (f64::INFINITY, f64::NEG_INFINITY);
+        let (least, most) = (steps.iter()).fold(bounds, |(least, most), step| {
+            (least.min(*step), most.max(*step))
+        });
         notes.push(Note::new(format!(
             "its samples are not evenly spaced: {} to {} apart, median {}",
             seconds(least),
@@ -121,5 +124,8 @@ mod tests {
         assert!(notes(&[0.0, 1.0, 1.0, 2.0]).starts_with("1 sample has the time"));
         let uneven: Vec<f64> = (0..50).map(|k| f64::from(k * k)).collect();
         assert!(notes(&uneven).contains("not evenly spaced: 1 s to 97 s apart"));
+        // The shortest and the longest distance, wherever they are.
+        let slower = [0.0, 2.0, 3.0, 8.0, 12.0, 15.0];
+        assert!(notes(&slower).contains("not evenly spaced: 1 s to 5 s apart, median 3 s"));
     }
 }

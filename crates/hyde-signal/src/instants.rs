@@ -2,6 +2,7 @@
 
 use crate::assemble::{Cells, Raw};
 use crate::calendar::{self, Origin};
+use crate::decimal::decimal;
 use crate::heading::{Temporal, is_time_unit, temporal};
 use crate::layout::DeclaredColumn;
 use crate::statistics::median;
@@ -72,7 +73,7 @@ pub(crate) fn read(
                 )));
                 let mut values = values;
                 wrap::unwrap(&mut values, period);
-                shifted(&values, &si, None)
+                shifted(values, &si, None)
             }
             Ok(values) => {
                 let far = values.first().is_some_and(|first| is_far(*first));
@@ -80,7 +81,7 @@ pub(crate) fn read(
                     calendar::of_digits(texts, factor)
                         .or_else(|| calendar::of_doubles(&values, factor))
                 });
-                shifted(&values, &si, exact.flatten())
+                shifted(values, &si, exact.flatten())
             }
             Err(row) => {
                 let dates = calendar::of_texts(texts)
@@ -93,22 +94,16 @@ pub(crate) fn read(
             #[allow(clippy::cast_precision_loss, reason = "far ones are subtracted first")]
             let doubles: Vec<f64> = values.iter().map(|value| *value as f64).collect();
             let far = doubles.first().is_some_and(|first| is_far(*first));
-            shifted(
-                &doubles,
-                &si,
-                far.then(|| calendar::of_integers(values, factor)).flatten(),
-            )
+            let exact = far.then(|| calendar::of_integers(values, factor));
+            shifted(doubles, &si, exact.flatten())
         }
         Cells::Numbers(values, _) | Cells::Sparse(values, _) => {
             if let Some(row) = values.iter().position(|value| !value.is_finite()) {
                 return Err(no_time(row, ""));
             }
             let far = values.first().is_some_and(|first| is_far(*first));
-            shifted(
-                values,
-                &si,
-                far.then(|| calendar::of_doubles(values, factor)).flatten(),
-            )
+            let exact = far.then(|| calendar::of_doubles(values, factor));
+            shifted(values.clone(), &si, exact.flatten())
         }
     };
     let shown = |row: usize| match (&raw[at].cells, &origin) {
@@ -158,13 +153,16 @@ pub(crate) fn read(
 }
 
 fn shifted(
-    values: &[f64],
+    mut values: Vec<f64>,
     si: &dyn Fn(f64) -> f64,
     exact: Option<(Vec<f64>, Origin)>,
 ) -> (Vec<f64>, Option<Origin>) {
     match exact {
         Some((seconds, origin)) => (seconds, Some(origin)),
-        None => (values.iter().map(|value| si(*value)).collect(), None),
+        None => {
+            values.iter_mut().for_each(|value| *value = si(*value));
+            (values, None)
+        }
     }
 }
 
@@ -197,11 +195,14 @@ pub(crate) fn wraps(values: &[f64], declared: Option<&DeclaredColumn>) -> Option
 
 /// The numbers of cells; else the first that is none.
 fn numbers(texts: &Texts) -> Result<Vec<f64>, usize> {
-    let number = |(row, text): (usize, &str)| {
-        let value: Option<f64> = text.trim().parse().ok();
-        value.filter(|value| value.is_finite()).ok_or(row)
-    };
-    texts.iter().enumerate().map(number).collect()
+    let mut numbers = Vec::with_capacity(texts.len());
+    for (row, text) in texts.iter().enumerate() {
+        let text = text.trim();
+        let value = decimal(text).map(|(value, _)| value);
+        let value = value.or_else(|| text.parse::<f64>().ok());
+        numbers.push(value.filter(|value| value.is_finite()).ok_or(row)?);
+    }
+    Ok(numbers)
 }
 
 /// The unit of the time, whether the file or the declaration says it, and what was taken for granted.

@@ -33,6 +33,7 @@ pub mod wrap;
 mod assemble;
 mod calendar;
 mod column;
+mod decimal;
 mod declared;
 mod foreign;
 mod frame;

@@ -26,9 +26,13 @@ pub fn mean_square(values: &[f64]) -> f64 {
 /// The median, of an even number of values the upper one of the two in the middle; `None` of none.
 #[must_use]
 pub fn median(values: &[f64]) -> Option<f64> {
-    let mut sorted = values.to_vec();
-    sorted.sort_unstable_by(f64::total_cmp);
-    middle(&sorted)
+    median_of(&mut values.to_vec())
+}
+
+/// The [median] of values whose order does not matter any more.
+pub(crate) fn median_of(values: &mut [f64]) -> Option<f64> {
+    let at = values.len() / 2;
+    (!values.is_empty()).then(|| *values.select_nth_unstable_by(at, f64::total_cmp).1)
 }
 
 /// The [median] of sorted values.

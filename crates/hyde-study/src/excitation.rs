@@ -28,8 +28,11 @@ mod wish;
 
 pub use bench::{Bench, Failed, Told, bench};
 pub use between::Apart;
+pub(crate) use between::{Effects, apart};
 pub use candidates::{Candidate, Unmade, candidates};
+pub(crate) use columns::driven;
 pub use compared::{Compared, Comparison, compared};
+pub(crate) use compared::{Signals, none, signals};
 pub use held::Room;
-pub use options::{Criterion, Options};
+pub use options::{Criterion, Options, PLACES, SIZE, SPEEDS};
 pub use wish::{Wished, of as wished};

@@ -5,20 +5,23 @@
 //! models        programs of the axis with effects put on, the observed ones made once   selftest/models.rs
 //! work          what is missing, case by case, on all cores, kept as it finishes        selftest/work.rs
 //! kept          an outcome as bytes and back                                            selftest/kept.rs
+//! designs       signals within the limits, to distinguish effects                       selftest/designs.rs
 //! records       the simulated records of one case as files                              selftest/records.rs
 //! ```
 
+mod designs;
 mod kept;
 mod models;
 mod records;
 mod work;
 
+pub use designs::Designs;
 pub use kept::{Kept, word};
 
 use crate::{Calibration, Progress, Store, diagnosis, unknown};
 use hyde_calibrate::{
-    Asked, Axis, Case, Hypothesis, Planting, SelftestError, Tally, Thresholds, Written, cases,
-    tally,
+    Asked, Axis, Case, Designer, Hypothesis, Planting, Point, SelftestError, Tally, Thresholds,
+    Written, cases, tally,
 };
 use hyde_compiler::{Candidate, DiagnosisPlan, Laws};
 use hyde_diag::Diagnostic;
@@ -56,6 +59,8 @@ pub struct Subject<'a> {
     pub laws: Laws,
     /// What decides in each diagnosis.
     pub thresholds: Thresholds,
+    /// Signals for the verdicts `one of` of planted effects, if these are to be diagnosed again with one more record.
+    pub designs: Option<&'a Designs>,
 }
 
 /// What a self-test found.
@@ -74,6 +79,8 @@ pub struct Tested<'a> {
     pub table: &'a Tally,
     /// Effects of the diagnosis that fit nowhere on the model.
     pub siteless: Vec<String>,
+    /// The signals that designed records are made of, if there are any.
+    pub designs: Option<&'a Designs>,
 }
 
 /// Why there is no self-test.
@@ -105,6 +112,7 @@ pub fn selftest<T>(
             calibration,
             candidates,
             hypotheses,
+            designs,
             ..
         } = ready;
         let identity = identity(ready);
@@ -127,6 +135,7 @@ pub fn selftest<T>(
             siteless: siteless(calibration, plan, candidates),
             hypotheses,
             outcomes: &outcomes,
+            designs: *designs,
         }))
     })
 }
@@ -157,6 +166,7 @@ struct Ready<'a> {
     hypotheses: &'a [Hypothesis],
     records: &'a [BTreeMap<String, Table>],
     thresholds: Thresholds,
+    designs: Option<&'a Designs>,
     seed: u64,
 }
 
@@ -172,6 +182,7 @@ fn on_axis<T>(
         candidates,
         laws,
         thresholds,
+        designs,
     } = subject;
     let sites: Vec<_> = laws.sites.into_iter().map(unknown::site).collect();
     let shapes: Vec<_> = laws.shapes.into_iter().map(Arc::new).collect();
@@ -213,6 +224,12 @@ fn on_axis<T>(
         | SelftestError::Unsupported(_) => Ended::Cannot(Box::new(work::cannot(&error, plan.span))),
     })?;
     axis.thresholds = thresholds;
+    let like = records.first();
+    let best = designs.zip(like).map(|(designs, like)| {
+        let effects = (candidates.as_slice(), hypotheses.as_slice());
+        move |points: &[Point]| designs.best(effects, points, like)
+    });
+    axis.designer = best.as_ref().map(|best| best as &Designer<'_>);
     let ready = Ready {
         plan,
         calibration,
@@ -220,6 +237,7 @@ fn on_axis<T>(
         hypotheses: &hypotheses,
         records: &records,
         thresholds,
+        designs,
         seed,
     };
     with(&axis, &ready, all)
@@ -289,6 +307,7 @@ fn identity(ready: &Ready<'_>) -> Identity {
         calibration,
         records,
         thresholds,
+        designs,
         seed,
         ..
     } = ready;
@@ -312,7 +331,10 @@ fn identity(ready: &Ready<'_>) -> Identity {
         );
     }
     let set = calibration.project.set();
-    let order = json!({ "diagnosis": plan.name, "seed": seed, "set": set, "thresholds": format!("{thresholds:?}"), "hyde": env!("CARGO_PKG_VERSION") });
+    let mut order = json!({ "diagnosis": plan.name, "seed": seed, "set": set, "thresholds": format!("{thresholds:?}"), "hyde": env!("CARGO_PKG_VERSION") });
+    if let Some(designs) = designs {
+        order["designs"] = json!(designs.identity());
+    }
     digest(&[
         &digest(&sources).0,
         &digest(&[&numbers]).0,

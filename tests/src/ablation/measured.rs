@@ -196,6 +196,7 @@ fn cases(
         candidates,
         laws,
         thresholds,
+        designs: None,
     };
     let options = Options {
         asked,

@@ -67,7 +67,7 @@ pub(super) const COVERAGE: Figure = Figure {
 
 /// An axis that cases are planted on.
 #[derive(Clone, Copy, PartialEq, Eq)]
-enum Axis {
+pub(super) enum Axis {
     /// Motor and screw on a belt.
     Small,
     /// A rack and pinion with two encoders.
@@ -77,12 +77,28 @@ enum Axis {
 }
 
 impl Axis {
+    pub(super) const ALL: [Self; 3] = [Self::Small, Self::Rack, Self::Linear];
+
     fn file(self) -> &'static str {
         match self {
             Self::Small => "tests/models/small_axis/axis.hyde",
             Self::Rack => "tests/models/rack_axis/axis.hyde",
             Self::Linear => "tests/models/linear_axis/axis.hyde",
         }
+    }
+
+    /// Less current than it has in its own records.
+    fn current(self) -> &'static str {
+        match self {
+            Self::Small => "10 [A]",
+            Self::Rack => "15 [A]",
+            Self::Linear => "3 [A]",
+        }
+    }
+
+    /// The arguments that ask for designed records.
+    fn designed(self) -> Vec<&'static str> {
+        [&DESIGNED[..], &[self.current()]].concat()
     }
 
     /// Where its cases are kept below the folder of a seed.
@@ -99,6 +115,21 @@ impl Axis {
 const TYPICAL: &str = "0.05";
 /// Effects at sites of the small axis that are tried in a measurement.
 const SAMPLED: [&str; 6] = ["--only", "planted", "--sizes", TYPICAL, "--sample", "24"];
+/// A record is designed for each verdict `one of`, of a motion that all three axes make in their own records, or of a current.
+const DESIGNED: [&str; 12] = [
+    "--designed",
+    "--travel",
+    "100 [mm]",
+    "--speed",
+    "180 [mm/s]",
+    "--acceleration",
+    "4 [m/s2]",
+    "--jerk",
+    "1000 [m/s3]",
+    "--duration",
+    "15 [s]",
+    "--current",
+];
 /// All there is: half of what shows, what is typical, and what nobody overlooks; and every control.
 const WHOLE: [&str; 4] = ["--sizes", "0.5x,0.05,0.3", "--empties", "100"];
 
@@ -112,7 +143,7 @@ fn false_alarms(session: &Session, axis: Axis, sets: &str) -> Result<Measured, S
 
 /// Of the planted effects that show on this axis, those that are named first with their site.
 fn top1(session: &Session, axis: Axis) -> Result<Measured, String> {
-    let report = report(session, axis, &SAMPLED)?;
+    let report = planted(session, axis)?;
     let cases = cases(&report)?;
     let typical = |case: &&Value| {
         let name = case["name"].as_str().unwrap_or_default();
@@ -132,7 +163,7 @@ fn top1(session: &Session, axis: Axis) -> Result<Measured, String> {
 
 /// Effects that are claimed although their interval holds 0, over all cases.
 fn holds_zero(session: &Session) -> Result<Measured, String> {
-    let report = report(session, Axis::Small, &SAMPLED)?;
+    let report = planted(session, Axis::Small)?;
     let claims = cases(&report)?.iter().flat_map(|case| {
         let effects = case["effects"].as_array();
         effects.into_iter().flatten()
@@ -148,7 +179,7 @@ fn holds_zero(session: &Session) -> Result<Measured, String> {
 
 /// Of the effects planted and named first, those whose interval holds the size that was planted.
 fn coverage(session: &Session) -> Result<Measured, String> {
-    let report = report(session, Axis::Small, &SAMPLED)?;
+    let report = planted(session, Axis::Small)?;
     let (mut all, mut covered) = (0.0, 0.0);
     for case in cases(&report)? {
         let first = &case["effects"][0];
@@ -161,6 +192,11 @@ fn coverage(session: &Session) -> Result<Measured, String> {
         covered += f64::from(u8::from((low..=high).contains(&size)));
     }
     Ok(told(session, Axis::Small, 100.0 * covered / all))
+}
+
+/// The report of the planted effects.
+pub(super) fn planted(session: &Session, axis: Axis) -> Result<Value, String> {
+    report(session, axis, &[&SAMPLED[..], &axis.designed()].concat())
 }
 
 /// The cases of a report.
@@ -195,7 +231,8 @@ fn told(session: &Session, axis: Axis, value: f64) -> Measured {
 pub fn record(session: &Session) -> Result<PathBuf, String> {
     // Named before hours pass in which they may change.
     let sources = sources();
-    let table = output(session, Axis::Small, &WHOLE)?;
+    let whole = [&WHOLE[..], &Axis::Small.designed()].concat();
+    let table = output(session, Axis::Small, &whole)?;
     let folder = root().join("tests/selftest");
     let path = folder.join(format!("seed-{}.txt", session.seed));
     let text = format!(
@@ -234,7 +271,8 @@ fn sources() -> String {
 /// The report of some cases on an axis, or of all of them on the small one where all are asked for.
 fn report(session: &Session, axis: Axis, some: &[&str]) -> Result<Value, String> {
     let whole = session.whole && axis == Axis::Small;
-    let cases = if whole { &WHOLE[..] } else { some };
+    let all = [&WHOLE[..], &axis.designed()].concat();
+    let cases = if whole { &all } else { some };
     let printed = output(session, axis, &[cases, &["--json"]].concat())?;
     serde_json::from_slice(&printed).map_err(|error| error.to_string())
 }

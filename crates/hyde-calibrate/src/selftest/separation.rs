@@ -5,6 +5,7 @@
 //! parameters answer to a part and the second to another; the sum of squares of the rest, in units of noise, is what the
 //! right effect gains over the wrong one. All answers are linear.
 
+use super::case::largest;
 use super::expected::Reference;
 use crate::diagnosis::{Author, Hypothesis};
 use crate::fit::Varied;
@@ -40,76 +41,112 @@ impl Separation {
     }
 }
 
-/// How well records without any effect in them would distinguish hypotheses, by number, each at a part of its range.
-///
-/// # Errors
-/// The program has no fixed-step form.
-pub fn separation(
-    program: &Program,
-    recordings: Vec<Recording>,
-    (varied, set): (&[Varied], &[(String, f64)]),
-    hypotheses: &[Hypothesis],
-    numbers: &[usize],
-    part: f64,
-    author: &Author<'_>,
-) -> Result<Separation, Unsupported> {
-    let reference = Reference::new(program, recordings, varied, set)?;
-    let changes: Vec<Option<Vec<DVector<f64>>>> = numbers
-        .iter()
-        .map(|&number| changes(&reference, &hypotheses[number], number, part, author))
-        .collect();
-    let whole = |columns: &[DVector<f64>]| {
-        let first = columns.first()?;
-        Some(
-            columns
-                .iter()
-                .skip(1)
-                .fold(first.clone(), |sum, own| sum + own),
-        )
-    };
-    let common = |a: &DVector<f64>, b: &DVector<f64>| reference.projection().common(a, b);
-    let alone = |columns: &Option<Vec<DVector<f64>>>| {
-        let own = whole(columns.as_ref()?)?;
-        Some(common(&own, &own))
-    };
-    let over = |one: &Option<Vec<DVector<f64>>>, other: &Option<Vec<DVector<f64>>>| {
-        let (own, columns) = (whole(one.as_ref()?)?, other.as_ref()?);
-        let n = columns.len();
-        let mut m = DMatrix::from_fn(n, n, |i, j| common(&columns[i], &columns[j]));
-        let b = DVector::from_fn(n, |i, _| common(&own, &columns[i]));
-        for i in 0..n {
-            m[(i, i)] += 1e-9 * m[(i, i)] + 1e-300;
-        }
-        let answered = Cholesky::new(m).map_or(0.0, |factor| b.dot(&factor.solve(&b)));
-        Some((common(&own, &own) - answered).max(0.0))
-    };
-    Ok(Separation {
-        alone: changes.iter().map(alone).collect(),
-        over: changes
-            .iter()
-            .map(|one| changes.iter().map(|other| over(one, other)).collect())
-            .collect(),
-        thresholds: numbers
-            .iter()
-            .map(|&number| reference.gate(&hypotheses[number]))
-            .collect(),
-    })
+/// An effect at a size.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// The number of its hypothesis.
+    pub hypothesis: usize,
+    /// Its sizes, SI.
+    pub sizes: Vec<f64>,
+    /// Its shapes, SI.
+    pub shapes: Vec<f64>,
 }
 
-/// The change of innovations by each size of an effect at a part of its range, its shapes as declared.
+impl Point {
+    /// A hypothesis, by number, at a part of its range, its shapes as declared.
+    #[must_use]
+    pub fn at_part(number: usize, hypothesis: &Hypothesis, part: f64) -> Self {
+        let sizes = hypothesis.sizes.iter();
+        Self {
+            hypothesis: number,
+            sizes: sizes.map(|knob| part * largest(knob)).collect(),
+            shapes: hypothesis.shapes.iter().map(|knob| knob.value).collect(),
+        }
+    }
+}
+
+/// Records without any effect in them, linearised: asked how well they would distinguish effects.
+pub struct Linearised {
+    reference: Reference,
+}
+
+impl Linearised {
+    /// Linearises the model along some records.
+    ///
+    /// # Errors
+    /// The program has no fixed-step form.
+    pub fn new(
+        program: &Program,
+        recordings: Vec<Recording>,
+        varied: &[Varied],
+        set: &[(String, f64)],
+    ) -> Result<Self, Unsupported> {
+        let reference = Reference::new(program, recordings, varied, set)?;
+        Ok(Self { reference })
+    }
+
+    /// How well the records would distinguish effects, each at its size.
+    #[must_use]
+    pub fn separation(
+        &self,
+        hypotheses: &[Hypothesis],
+        points: &[Point],
+        author: &Author<'_>,
+    ) -> Separation {
+        let reference = &self.reference;
+        let changes: Vec<Option<Vec<DVector<f64>>>> = points
+            .iter()
+            .map(|point| changes(reference, &hypotheses[point.hypothesis], point, author))
+            .collect();
+        let common = |a: &DVector<f64>, b: &DVector<f64>| reference.projection().common(a, b);
+        let alone = |columns: &Option<Vec<DVector<f64>>>| {
+            let own = whole(columns.as_ref()?)?;
+            Some(common(&own, &own))
+        };
+        let over = |one: &Option<Vec<DVector<f64>>>, other: &Option<Vec<DVector<f64>>>| {
+            let (own, columns) = (whole(one.as_ref()?)?, other.as_ref()?);
+            let n = columns.len();
+            let mut m = DMatrix::from_fn(n, n, |i, j| common(&columns[i], &columns[j]));
+            let b = DVector::from_fn(n, |i, _| common(&own, &columns[i]));
+            for i in 0..n {
+                m[(i, i)] += 1e-9 * m[(i, i)] + 1e-300;
+            }
+            let answered = Cholesky::new(m).map_or(0.0, |factor| b.dot(&factor.solve(&b)));
+            Some((common(&own, &own) - answered).max(0.0))
+        };
+        Separation {
+            alone: changes.iter().map(alone).collect(),
+            over: changes
+                .iter()
+                .map(|one| changes.iter().map(|other| over(one, other)).collect())
+                .collect(),
+            thresholds: points
+                .iter()
+                .map(|point| reference.gate(&hypotheses[point.hypothesis]))
+                .collect(),
+        }
+    }
+}
+
+/// The sum of columns.
+fn whole(columns: &[DVector<f64>]) -> Option<DVector<f64>> {
+    let first = columns.first()?;
+    let later = columns.iter().skip(1);
+    Some(later.fold(first.clone(), |sum, own| sum + own))
+}
+
+/// The change of innovations by each size of an effect alone.
 fn changes(
     reference: &Reference,
     hypothesis: &Hypothesis,
-    number: usize,
-    part: f64,
+    point: &Point,
     author: &Author<'_>,
 ) -> Option<Vec<DVector<f64>>> {
-    let shapes: Vec<f64> = hypothesis.shapes.iter().map(|knob| knob.value).collect();
-    let effect = reference.effect(hypothesis, number, &shapes, author)?;
-    let count = hypothesis.sizes.len();
+    let effect = reference.effect(hypothesis, point.hypothesis, &point.shapes, author)?;
+    let count = point.sizes.len();
     let each = (0..count).map(|which| {
         let mut sizes = vec![0.0; count];
-        sizes[which] = part * super::case::largest(&hypothesis.sizes[which]);
+        sizes[which] = point.sizes[which];
         effect.change(&sizes)
     });
     each.collect()

@@ -71,6 +71,9 @@ pub struct Table {
     pub laws: usize,
     /// A faulty sensor: right is to claim no effect.
     pub sensor: (usize, usize),
+    /// Verdicts `one of` of planted effects that were diagnosed again with a designed record, and of these those in which the
+    /// planted effect alone was named then.
+    pub designed: (usize, usize),
     /// Keys of controls that came out wrong, with what was claimed.
     pub wrong: Vec<(String, Vec<Found>)>,
 }
@@ -88,6 +91,10 @@ pub fn tally(outcomes: &[(&Case, Outcome)], confounds: &dyn Fn(usize, usize) -> 
                 let row = rows.entry(number).or_default();
                 row.hypothesis = number;
                 count(row, outcome);
+                if let Some(designed) = &outcome.designed {
+                    table.designed.0 += 1;
+                    table.designed.1 += usize::from(designed.resolves(number));
+                }
                 continue;
             }
             Planting::Empty => (&mut table.empty, outcome.verdict == Verdict::None),

@@ -1,7 +1,9 @@
 //! [`try_case`]: simulates a case, diagnoses it, and says what was found for what was planted.
 
 use super::case::{Case, Planting, Size};
+use super::designed::{Designed, Designer, ambiguous, designed};
 use super::expected::{Reference, shows, size_of};
+use super::separation::Point;
 use super::simulated::{Faulty, Simulated, simulated};
 use crate::diagnosis::{
     Author, Built, Hypothesis, Inquiry, Site, Thresholds, Verdict, Written, diagnose,
@@ -19,7 +21,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The records of one run, by the name that the experiment gives each.
-type Records = BTreeMap<String, Table>;
+pub(super) type Records = BTreeMap<String, Table>;
 /// A table for each of the records to fit, and which of them is to be replaced.
 type Simulate<'a> = dyn Fn(&[usize], &[f64], &[f64]) -> Option<Built> + Sync + 'a;
 
@@ -47,6 +49,8 @@ pub struct Axis<'a> {
     pub max_effects: usize,
     /// What decides in a diagnosis: those of the method as long as none are set.
     pub thresholds: Thresholds,
+    /// Designs a record for what a verdict `one of` cannot distinguish, if that is wanted.
+    pub designer: Option<&'a Designer<'a>>,
     /// What random numbers begin with.
     pub seed: u64,
     /// Set from outside to end the work.
@@ -99,6 +103,8 @@ pub struct Outcome {
     pub claims: Vec<Claim>,
     /// Something is left that no effect explains.
     pub unexplained: bool,
+    /// What became of a verdict `one of` of a planted effect with a designed record, if that was wanted.
+    pub designed: Option<Designed>,
 }
 
 impl Outcome {
@@ -161,6 +167,7 @@ impl<'a> Axis<'a> {
             simulate,
             max_effects,
             thresholds: Thresholds::default(),
+            designer: None,
             seed,
             interrupted,
             reference,
@@ -177,7 +184,42 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         return Err(SelftestError::Interrupted);
     }
     let planted = planted(axis, case)?;
-    let recordings = records_of(axis, case, &planted)?;
+    let made = tables(axis, case, &planted, axis.records, 0)?;
+    let found = judged(axis, case, &made)?;
+    let is_planted = matches!(case.kind, Planting::Planted(..));
+    let designer = axis.designer;
+    let designer = designer.filter(|_| is_planted && found.verdict == Verdict::OneOf);
+    let designed = designer
+        .map(|designer| designed(axis, designer, case, &planted, made, &found.ambiguous))
+        .transpose()?;
+    Ok(Outcome {
+        size: planted.size,
+        detectable: planted.detectable,
+        expected: planted.expected,
+        planted: (planted.sizes, planted.shapes),
+        verdict: found.verdict,
+        claims: found.claims,
+        unexplained: found.unexplained,
+        designed,
+    })
+}
+
+/// What a diagnosis of a case found.
+pub(super) struct Judged {
+    pub(super) verdict: Verdict,
+    pub(super) claims: Vec<Claim>,
+    unexplained: bool,
+    /// What the records cannot distinguish.
+    ambiguous: Vec<Point>,
+}
+
+/// Diagnoses the records of a case.
+pub(super) fn judged(
+    axis: &Axis<'_>,
+    case: &Case,
+    made: &[Records],
+) -> Result<Judged, SelftestError> {
+    let recordings = recordings(axis.program, made, |tables, _| Ok(tables.clone()))?;
     let places = {
         let program = axis.program;
         let place = |(name, value): &(String, f64)| {
@@ -233,13 +275,14 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         size: finding.size.value,
         interval: finding.size.interval,
     });
-    Ok(Outcome {
-        size: planted.size,
-        detectable: planted.detectable,
-        expected: planted.expected,
-        planted: (planted.sizes, planted.shapes),
+    let ambiguous = ambiguous(&found, &hypotheses).into_iter().map(|own| Point {
+        hypothesis: known[own.hypothesis],
+        ..own
+    });
+    Ok(Judged {
         verdict: found.verdict,
         claims: claims.collect(),
+        ambiguous: ambiguous.collect(),
         unexplained: found.unexplained,
     })
 }
@@ -254,12 +297,12 @@ pub fn tables_of(
     records: &[Records],
 ) -> Result<Vec<Records>, SelftestError> {
     let planted = planted(axis, case)?;
-    tables(axis, case, &planted, records)
+    tables(axis, case, &planted, records, 0)
 }
 
 /// An effect as a case plants it.
 #[derive(Default)]
-struct Planted {
+pub(super) struct Planted {
     number: Option<usize>,
     sizes: Vec<f64>,
     shapes: Vec<f64>,
@@ -301,11 +344,13 @@ fn planted(axis: &Axis<'_>, case: &Case) -> Result<Planted, SelftestError> {
     })
 }
 
-fn tables(
+/// What records become on the axis of a case; the first has the number `first`, which decides its noise.
+pub(super) fn tables(
     axis: &Axis<'_>,
     case: &Case,
     planted: &Planted,
     records: &[Records],
+    first: usize,
 ) -> Result<Vec<Records>, SelftestError> {
     let list: Vec<usize> = planted.number.into_iter().collect();
     let Built { program, paths } =
@@ -336,20 +381,11 @@ fn tables(
         | Planting::OpenSet(..) => None,
     };
     let made = records.iter().enumerate().map(|(number, tables)| {
-        let purpose = format!("{} / record {number}", case.key);
+        let purpose = format!("{} / record {}", case.key, first + number);
         simulated(&program, tables, &options, faulty, axis.seed, &purpose)
             .map_err(|error| stopped(SelftestError::Simulation(error), &axis.interrupted))
     });
     made.collect()
-}
-
-fn records_of(
-    axis: &Axis<'_>,
-    case: &Case,
-    planted: &Planted,
-) -> Result<Vec<Recording>, SelftestError> {
-    let made = tables(axis, case, planted, axis.records)?;
-    recordings(axis.program, &made, |tables, _| Ok(tables.clone()))
 }
 
 fn recordings(

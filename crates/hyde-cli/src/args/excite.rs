@@ -1,6 +1,7 @@
 //! Arguments of `hyde excite`.
 
 use clap::{Args, ValueEnum};
+use hyde_study::excitation::{PLACES, SIZE, SPEEDS};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -29,7 +30,7 @@ pub(crate) struct ExciteArgs {
     )]
     pub(crate) between: Vec<String>,
     /// Size of the effects of `--between`, as a part of their range
-    #[arg(long, value_name = "PART", default_value_t = 0.1, requires = "between")]
+    #[arg(long, value_name = "PART", default_value_t = SIZE, requires = "between")]
     pub(crate) size: f64,
     /// Set a parameter of the model: `--set saddle.M='320 [kg]'` (repeatable)
     #[arg(long = "set", value_name = "PATH=VALUE [UNIT]", requires = "file")]
@@ -49,10 +50,10 @@ pub(crate) struct ExciteArgs {
     #[arg(long, value_name = "VALUE [UNIT]", allow_hyphen_values = true)]
     pub(crate) start: Option<String>,
     /// Number of speeds of jogs, or of sizes of pulses
-    #[arg(long, value_name = "N", default_value_t = 5)]
+    #[arg(long, value_name = "N", default_value_t = SPEEDS)]
     pub(crate) speeds: usize,
     /// Number of places of reversals
-    #[arg(long, value_name = "N", default_value_t = 3)]
+    #[arg(long, value_name = "N", default_value_t = PLACES)]
     pub(crate) places: usize,
     /// Size of a reversal; it must be larger than the backlash [default: a thousandth of the travel]
     #[arg(long, value_name = "VALUE [UNIT]")]

@@ -1,6 +1,6 @@
 //! Arguments of studies on records: calibrations and diagnoses.
 
-use super::ModelArgs;
+use super::{LimitArgs, ModelArgs};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -111,8 +111,28 @@ pub(crate) struct SelftestArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Only write the simulated records of this case, named as in the report, to the folder of `--out`
-    #[arg(long, value_name = "NAME", requires = "out")]
+    #[arg(
+        long,
+        value_name = "NAME",
+        requires = "out",
+        conflicts_with = "designed"
+    )]
     pub(crate) case: Option<String>,
+    /// Diagnose each planted effect with the verdict `one of` again, with one more record: the signal that best distinguishes
+    /// the effects, as `hyde excite` designs it
+    #[arg(long)]
+    pub(crate) designed: bool,
+    /// Length of the designed record [default: 20 s]
+    #[arg(long, value_name = "TIME", requires = "designed")]
+    pub(crate) duration: Option<String>,
+    /// Band of a multisine or chirp of the designed record: `--band '1 .. 100 [Hz]'`
+    #[arg(long, value_name = "FROM..TO [Hz]", requires = "designed")]
+    pub(crate) band: Option<String>,
+    /// Column of the designed record [default: the first one that a stimulus reads in the unit of the limits]
+    #[arg(long, value_name = "NAME", requires = "designed")]
+    pub(crate) column: Option<String>,
+    #[command(flatten, next_help_heading = "Limits of the designed record")]
+    pub(crate) limits: LimitArgs,
 }
 
 /// What is planted.

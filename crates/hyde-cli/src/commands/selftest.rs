@@ -12,6 +12,7 @@ use hyde_calibrate::{Asked, Size, Thresholds};
 use hyde_experiment::batch::{Identity, digest};
 use hyde_present::selftest::{json, text};
 use hyde_study::Store;
+use hyde_study::excitation;
 use hyde_study::selftest::{Ended, Options, Subject, Tested, records_of, selftest as tested};
 use hyde_units::counted;
 use std::path::Path;
@@ -31,12 +32,16 @@ fn told(args: &SelftestArgs) -> Result<Exit, Exit> {
     let (plan, mut calibration) = study::diagnosis(&args.study)?;
     let candidates = calibration.project.candidates_or_report(&model_args)?;
     let laws = calibration.project.laws_or_report(&model_args)?;
+    let signal = signal(args).map_err(refused)?;
+    let designs = signal.map(|signal| study::designs(&args.study, &calibration, signal));
+    let designs = designs.transpose()?;
     let subject = Subject {
         plan: &plan,
         calibration: &calibration,
         candidates,
         laws,
         thresholds: Thresholds::default(),
+        designs: designs.as_ref(),
     };
     let told = match (&args.case, &args.out) {
         (Some(name), Some(folder)) => {
@@ -113,6 +118,35 @@ fn options(args: &SelftestArgs) -> Result<Options, String> {
         seed: args.seed,
         interrupted: interruption::interrupted(),
     })
+}
+
+/// The signal that the arguments ask for, if verdicts `one of` are to be diagnosed again with a designed record.
+fn signal(args: &SelftestArgs) -> Result<Option<excitation::Options>, String> {
+    let limits = &args.limits;
+    let motion = [
+        &limits.travel,
+        &limits.speed,
+        &limits.acceleration,
+        &limits.jerk,
+    ];
+    let all = [&motion[..], &[&limits.effort]].concat();
+    if !args.designed {
+        return match all.iter().any(|own| own.is_some()) {
+            false => Ok(None),
+            true => Err(
+                "limits are those of a designed record, and none is asked for\n  help: add `--designed`"
+                    .to_owned(),
+            ),
+        };
+    }
+    Ok(Some(excitation::Options {
+        motion: motion.map(Clone::clone),
+        effort: limits.effort.clone(),
+        duration: args.duration.clone(),
+        band: args.band.clone(),
+        column: args.column.clone(),
+        ..excitation::Options::default()
+    }))
 }
 
 /// The cases that the arguments ask for.

@@ -1,7 +1,7 @@
 //! Effects planted in simulated records of a small axis, and what its diagnosis makes of them: a sample of what
 //! `./dev long` does in full.
 
-use crate::command::{Folder, errors, hyde, status, text};
+use crate::command::{Folder, errors, hyde, read, status, text};
 use serde_json::Value;
 
 const AXIS: &str = "tests/models/small_axis/axis.hyde";
@@ -142,6 +142,120 @@ fn the_records_of_a_case_are_what_its_diagnosis_reads() {
     // A twentieth of 1 kN, either way.
     let size = found["effects"][0]["size"].as_f64().unwrap();
     assert!((size.abs() - 50.0).abs() < 5.0, "{size}");
+}
+
+/// A folder with the small axis, a record of it at one speed, and a diagnosis of effects that such a record cannot distinguish.
+fn at_one_speed() -> Folder {
+    let folder = Folder::new();
+    let model = read(AXIS);
+    let (above, _) = model.split_once("diagnose quick").unwrap();
+    let few = "diagnose few of calibrate moves\n  candidates Effects.Stribeck, Effects.SaturatingDrag, Effects.Tustin;\n  \
+        max_effects 2;\n  seed 1;\nend few;\n";
+    folder.file("axis.hyde", &format!("{above}{few}"));
+    let mut record =
+        "r [um],i_inj [mA],i_ref [mA],i [mA],phi_m [rev],v_tacho [mV],x [um]\n".to_owned();
+    let (mut place, mut speed) = (0.0, 0.0_f64);
+    for (wanted, rows) in [
+        (0.0, 100),
+        (100.0, 500),
+        (0.0, 100),
+        (-100.0, 500),
+        (0.0, 100),
+    ] {
+        for _ in 0..rows {
+            // In um and ms: 2 m/s2 on the way to 100 mm/s.
+            speed += (wanted - speed).clamp(-2.0, 2.0);
+            place += speed;
+            record += &format!("{place:.0},0,0,0,0,0,0\n");
+        }
+    }
+    folder.file("fit-strokes.csv", &record);
+    folder.file("validate-strokes.csv", &record);
+    folder
+}
+
+#[test]
+fn a_designed_record_distinguishes_what_the_records_cannot() {
+    let folder = at_one_speed();
+    let (file, out) = (folder.path("axis.hyde"), folder.path("kept"));
+    let arguments = [
+        "selftest",
+        &file,
+        "few",
+        "--only",
+        "planted",
+        "--sizes",
+        "0.02",
+        "--designed",
+        "--travel",
+        "100 [mm]",
+        "--speed",
+        "200 [mm/s]",
+        "--acceleration",
+        "4 [m/s2]",
+        "--jerk",
+        "1000 [m/s3]",
+        "--duration",
+        "5 [s]",
+        "--out",
+        &out,
+    ];
+    let run = |more: &[&str]| {
+        let output = hyde(&[&arguments[..], more].concat());
+        assert_eq!(status(&output), 0, "{}", errors(&output));
+        text(&output)
+    };
+    let report = json(&run(&["--json"]));
+    let cases = report["cases"].as_array().unwrap();
+    let designed: Vec<&Value> = cases
+        .iter()
+        .filter(|case| case["verdict"] == "one_of")
+        .collect();
+    assert!(!designed.is_empty(), "{report:#}");
+    for case in &designed {
+        let own = &case["designed"];
+        // The strokes at several speeds, on which the two are far apart.
+        assert_eq!(
+            (&own["signal"], &own["resolved"]),
+            (&"jogs of `r`".into(), &true.into()),
+            "{case:#}"
+        );
+        assert_eq!(own["effects"][0]["claimed"], case["planted"], "{case:#}");
+        assert!(own["apart"].as_f64().unwrap() > 1.0, "{case:#}");
+    }
+    let others = cases.iter().filter(|case| case["verdict"] != "one_of");
+    assert!(
+        others.into_iter().all(|case| case["designed"].is_null()),
+        "{report:#}"
+    );
+    assert_eq!(report["designed"]["one_of"], designed.len());
+    assert_eq!(report["designed"]["resolved"], designed.len());
+    // What is kept says the same, and the table tells it.
+    let printed = run(&[]);
+    let line = printed
+        .lines()
+        .find(|line| line.contains("one designed record"));
+    let counts = format!("{} of {}", designed.len(), designed.len());
+    assert!(line.unwrap().ends_with(&counts), "{printed}");
+    assert!(printed.contains("--band '1 .. 100 [Hz]'"), "{printed}");
+    assert!(
+        printed.lines().all(|line| line.chars().count() <= 80),
+        "{printed}"
+    );
+}
+
+#[test]
+fn limits_are_those_of_a_designed_record() {
+    let output = hyde(&["selftest", AXIS, "quick", "--travel", "100 [mm]"]);
+    assert_eq!(status(&output), 2);
+    assert!(
+        errors(&output).contains("add `--designed`"),
+        "{}",
+        errors(&output)
+    );
+    // A motion does not fit the column of a current.
+    let output = hyde(&["selftest", AXIS, "quick", "--designed", "--column", "i_inj"]);
+    assert_eq!(status(&output), 1, "{}", errors(&output));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! A self-test as JSON; numbers are SI.
 
-use hyde_calibrate::{Case, Found, Planting, Size};
+use hyde_calibrate::{Case, Claim, Designed, Found, Planting, Size};
 use hyde_study::selftest::Tested;
 use hyde_study::selftest::{Kept, word};
 use serde_json::{Value, json};
@@ -41,7 +41,7 @@ pub fn report(told: &Tested<'_>) -> Value {
         .iter()
         .map(|(c, k)| case(told, c, k))
         .collect();
-    json!({
+    let mut report = json!({
         "ok": true,
         "diagnosis": told.plan.name,
         "seed": told.seed,
@@ -60,7 +60,19 @@ pub fn report(told: &Tested<'_>) -> Value {
         },
         "without_site": told.siteless,
         "cases": cases,
-    })
+    });
+    if let Some(designs) = told.designs {
+        let (one_of, resolved) = table.designed;
+        let unmade = designs.unmade().iter();
+        let unmade = unmade.map(|(name, reason)| json!({ "signal": name, "reason": reason }));
+        report["designed"] = json!({
+            "one_of": one_of,
+            "resolved": resolved,
+            "assumed": designs.assumed(),
+            "unmade": unmade.collect::<Vec<_>>(),
+        });
+    }
+    report
 }
 
 /// Planted cases that show, and those of them that are named right.
@@ -100,22 +112,10 @@ fn case(told: &Tested<'_>, case: &Case, kept: &Kept) -> Value {
         Err(reason) => return json!({ "name": case.key, "failed": reason }),
         Ok(outcome) => outcome,
     };
-    let claims: Vec<Value> = outcome
-        .claims
-        .iter()
-        .map(|claim| {
-            json!({
-                "claimed": claim.hypothesis.map(|n| named(told, n)),
-                "size": claim.size,
-                "interval": [claim.interval.0, claim.interval.1],
-                "one_of": claim.alternatives.iter().map(|&n| named(told, n)).collect::<Vec<_>>(),
-            })
-        })
-        .collect();
     let mut value = json!({
         "name": case.key,
         "verdict": word(outcome.verdict),
-        "effects": claims,
+        "effects": effects(told, &outcome.claims),
         "unexplained": outcome.unexplained,
     });
     if let Some(number) = planted {
@@ -128,6 +128,44 @@ fn case(told: &Tested<'_>, case: &Case, kept: &Kept) -> Value {
         value["gate"] = json!(outcome.expected.map(|(_, gate)| gate));
         value["shows"] = json!(outcome.is_visible());
         value["right"] = json!(outcome.names(number));
+        if let Some(own) = &outcome.designed {
+            value["designed"] = designed(told, own, number);
+        }
     }
     value
+}
+
+fn effects(told: &Tested<'_>, claims: &[Claim]) -> Vec<Value> {
+    let each = claims.iter().map(|claim| {
+        json!({
+            "claimed": claim.hypothesis.map(|n| named(told, n)),
+            "size": claim.size,
+            "interval": [claim.interval.0, claim.interval.1],
+            "one_of": claim.alternatives.iter().map(|&n| named(told, n)).collect::<Vec<_>>(),
+        })
+    });
+    each.collect()
+}
+
+/// What became of a verdict `one of` with a designed record.
+fn designed(told: &Tested<'_>, designed: &Designed, planted: usize) -> Value {
+    let resolved = designed.resolves(planted);
+    match designed {
+        Designed::NoSignal => json!({ "signal": null, "resolved": resolved }),
+        Designed::Unrecorded(signal) => {
+            json!({ "signal": signal, "verdict": null, "resolved": resolved })
+        }
+        Designed::Diagnosed {
+            signal,
+            apart,
+            verdict,
+            claims,
+        } => json!({
+            "signal": signal,
+            "apart": apart,
+            "verdict": word(*verdict),
+            "effects": effects(told, claims),
+            "resolved": resolved,
+        }),
+    }
 }

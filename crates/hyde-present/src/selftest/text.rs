@@ -1,7 +1,8 @@
 //! A self-test in lines of at most 80 columns.
 
 use super::json::{shown, sums};
-use hyde_calibrate::{Found, Planting, Row};
+use crate::lines::wrapped;
+use hyde_calibrate::{Designed, Found, Planting, Row};
 use hyde_study::diagnosis::verdict;
 use hyde_study::selftest::Tested;
 use hyde_units::significant;
@@ -45,6 +46,7 @@ pub fn text(told: &Tested<'_>) -> String {
         );
     }
     controls(&mut out, told);
+    designed(&mut out, told);
     refused(&mut out, told);
     out
 }
@@ -119,6 +121,66 @@ fn controls(out: &mut String, told: &Tested<'_>) {
             names => names.join(", then "),
         };
         let _ = writeln!(out, "    {key}:\n      {found}");
+    }
+}
+
+/// The verdicts `one of` that a designed record resolves, those that remain, and what the signals are made of.
+fn designed(out: &mut String, told: &Tested<'_>) {
+    let Some(designs) = told.designs else {
+        return;
+    };
+    let (one_of, resolved) = told.table.designed;
+    let what = "verdict `one of`: resolved by one designed record";
+    let _ = writeln!(out, "  {what:<60} {resolved:>4} of {one_of}");
+    for (case, kept) in told.outcomes {
+        let (Planting::Planted(number, _), Ok(outcome)) = (&case.kind, kept) else {
+            continue;
+        };
+        let Some(own) = outcome.designed.as_ref().filter(|d| !d.resolves(*number)) else {
+            continue;
+        };
+        let _ = writeln!(out, "    {}:", case.key);
+        let _ = match own {
+            Designed::NoSignal => writeln!(out, "      no signal distinguishes the effects"),
+            Designed::Unrecorded(signal) => writeln!(out, "      {signal}: it cannot be recorded"),
+            Designed::Diagnosed { signal, claims, .. } => {
+                let _ = writeln!(out, "      {signal}:");
+                let names = claims.iter().map(|claim| {
+                    let first = claim.hypothesis.map_or(Found::Law, Found::Effect);
+                    let others = claim.alternatives.iter().map(|&n| Found::Effect(n));
+                    let all = std::iter::once(first).chain(others);
+                    let all: Vec<String> = all.map(|found| found_name(told, found)).collect();
+                    all.join(" or ")
+                });
+                let names: Vec<String> = names.collect();
+                let found = match names.as_slice() {
+                    [] => "nothing".to_owned(),
+                    names => names.join(", then "),
+                };
+                writeln!(out, "        {found}")
+            }
+        };
+    }
+    if one_of == 0 {
+        return;
+    }
+    for (name, reason) in designs.unmade() {
+        let reason = reason.lines().next().unwrap_or_default();
+        let text = format!("{name}: {reason}");
+        for (number, line) in wrapped(&text, WIDTH - 6).iter().enumerate() {
+            let head = if number == 0 { "    - " } else { "      " };
+            let _ = writeln!(out, "{head}{line}");
+        }
+    }
+    let assumed = designs.assumed();
+    if !assumed.is_empty() {
+        let _ = writeln!(
+            out,
+            "    assumed for the designed record, as no option says otherwise:"
+        );
+        for option in assumed {
+            let _ = writeln!(out, "      {option}");
+        }
     }
 }
 

@@ -74,24 +74,23 @@ impl Columns {
 
     /// Takes the cells of a row. A group may end before others: then all its cells are empty.
     pub(super) fn push(&mut self, rows: &Rows<'_>, headings: &[Heading]) -> Result<(), ReadError> {
-        let cells: Vec<&str> = rows.cells().take(headings.len()).collect();
+        let count = rows.count().min(headings.len());
         let many = self.groups.len() > 1;
         for group in &mut self.groups {
-            let own = cells.get(group.group.first..group.group.end.min(cells.len()));
-            let own = own.unwrap_or_default();
-            if many && own.iter().all(|cell| cell.is_empty()) {
+            let own = group.group.first..group.group.end.min(count);
+            if many && own.clone().all(|at| rows.cell(at).is_empty()) {
                 group.ended = true;
                 continue;
             }
-            if group.ended || (many && own.len() < group.group.end - group.group.first) {
+            if group.ended || (many && own.end < group.group.end) {
                 return Err(ReadError::Ragged {
                     line: rows.line(),
-                    found: cells.len(),
+                    found: count,
                     expected: headings.len(),
                 });
             }
-            for (at, cell) in own.iter().enumerate() {
-                let at = group.group.first + at;
+            for at in own {
+                let cell = rows.cell(at);
                 if group.group.time == Some(at) {
                     // Dates have commas of their own; numbers have points from here on.
                     let number = self.numbers.read(cell).is_some();

@@ -2,6 +2,7 @@
 //! nothing else can be meant.
 
 use crate::Fault;
+use crate::decimal::decimal;
 use std::borrow::Cow;
 
 /// The decimal sign of a file, as its cells show it.
@@ -153,6 +154,9 @@ fn number(cell: &str) -> Option<Number> {
         comma,
         grouped,
     };
+    if let Some((value, point)) = decimal(cell) {
+        return Some(read(value, point.then_some(false), false));
+    }
     if let Some(value) = finite(cell) {
         return Some(read(value, cell.contains('.').then_some(false), false));
     }
@@ -167,6 +171,9 @@ fn number(cell: &str) -> Option<Number> {
 
 /// A number as a cell has it, with a point and without signs between its thousands.
 pub(super) fn plain(cell: &str) -> Cow<'_, str> {
+    if decimal(cell).is_some() {
+        return Cow::Borrowed(cell);
+    }
     match without_groups(cell) {
         Some((plain, _)) => Cow::Owned(plain),
         None if cell.contains(',') => Cow::Owned(cell.replace(',', ".")),

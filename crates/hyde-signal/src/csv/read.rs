@@ -43,12 +43,13 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
     let expected = expected_rows(&grid.rows, grid.headings.len());
     let mut columns = Columns::of(&grid.headings, &groups, layout.decimal, expected);
-    let (mut positions, mut width) = (Vec::with_capacity(expected), None);
+    // Where the last row begins, and how many cells the first one has.
+    let (mut before, mut width) = (None, None);
     while rows.advance()? {
         if rows.is_end_mark() {
             break;
         }
-        if is_cut_off(&rows, positions.last(), grid.headings.len()) {
+        if is_cut_off(&rows, before, grid.headings.len()) {
             notes.push(Note::new(format!(
                 "the file ends within line {}: this row is ignored",
                 rows.line()
@@ -58,14 +59,25 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
         let width = *width.get_or_insert(rows.count());
         check_row(&rows, &grid, width, groups.len() > 1)?;
         columns.push(&rows, &grid.headings)?;
-        positions.push(rows.position());
+        before = Some(rows.position());
     }
-    if positions.is_empty() {
+    if before.is_none() {
         return Err(ReadError::NoRows);
     }
     notes.extend(columns.notes(&grid.headings));
-    let place = |row: usize| format!("line {}", rows.line_at(positions[row]));
+    let place = |row: usize| format!("line {}", line_of(&grid, row));
     columns.tables(&grid, &groups, &layout, notes, &place)
+}
+
+/// The line of a row, from 0: the rows are counted once more, which one message asks for.
+fn line_of(grid: &Grid<'_>, row: usize) -> u64 {
+    let mut rows = Rows::new(&grid.rows, grid.separator, grid.lines_above);
+    for _ in 0..=row {
+        if !rows.advance().unwrap_or(false) {
+            break;
+        }
+    }
+    rows.line()
 }
 
 /// About how many rows a text has, by the length of its first ones: a cell has a character and its separator at least.
@@ -160,14 +172,14 @@ fn advances_by(rows: &[Vec<String>], step: f64) -> bool {
 }
 
 /// Whether the file ends within the row: it has too few cells, or a last one that is not written to its end.
-fn is_cut_off(rows: &Rows<'_>, before: Option<&u64>, columns: usize) -> bool {
+fn is_cut_off(rows: &Rows<'_>, before: Option<u64>, columns: usize) -> bool {
     if !rows.is_cut_off() {
         return false;
     }
     let Some(before) = before else {
         return true;
     };
-    let (Some(last), Some(above)) = (rows.cells().last(), rows.last_cell_at(*before)) else {
+    let (Some(last), Some(above)) = (rows.cells().last(), rows.last_cell_at(before)) else {
         return true;
     };
     let decimals = |cell: &str| cell.split_once(['.', ',']).map(|(_, places)| places.len());

@@ -1,6 +1,7 @@
 //! The rows of a CSV text, without blank lines and comments, and the line each of them is on.
 
 use super::ReadError;
+use super::plain_rows::{COMMENT, PlainRows};
 use crate::heading::Heading;
 use ::csv::{ReaderBuilder, StringRecord};
 
@@ -9,44 +10,60 @@ pub(super) struct Rows<'a> {
     text: &'a str,
     lines_above: u64,
     separator: u8,
-    /// Whether there is a quote anywhere.
-    quoted: bool,
-    reader: ::csv::Reader<&'a [u8]>,
-    record: StringRecord,
+    source: Source<'a>,
+}
+
+/// What finds the cells of a row.
+enum Source<'a> {
+    /// In a text without a quote.
+    Plain(PlainRows<'a>),
+    /// In a text that has one somewhere.
+    Quoted(Box<::csv::Reader<&'a [u8]>>, StringRecord),
 }
 
 impl<'a> Rows<'a> {
     /// Before the first row of a text that has so many lines above it.
     pub(super) fn new(text: &'a str, separator: u8, lines_above: u64) -> Self {
+        let source = match text.contains('"') {
+            false => Source::Plain(PlainRows::new(text, separator)),
+            true => Source::Quoted(Box::new(reader(text, separator)), StringRecord::new()),
+        };
         Self {
             text,
             lines_above,
             separator,
-            quoted: text.contains('"'),
-            reader: reader(text, separator),
-            record: StringRecord::new(),
+            source,
         }
     }
 
     /// Goes to the next row that is not blank; false if there is none.
     pub(super) fn advance(&mut self) -> Result<bool, ReadError> {
         loop {
-            let start = self.reader.position().byte();
-            // Text from memory, in rows of any length: the reader has nothing to refuse.
-            let more = self.reader.read_record(&mut self.record);
-            if !more.map_err(|_| ReadError::Empty)? {
+            let start = self.end();
+            let more = match &mut self.source {
+                Source::Plain(rows) => rows.advance(),
+                // Text from memory, in rows of any length: the reader has nothing to refuse.
+                Source::Quoted(reader, record) => {
+                    reader.read_record(record).map_err(|_| ReadError::Empty)?
+                }
+            };
+            if !more {
                 return Ok(false);
             }
-            if self.quoted && !self.is_well_quoted(start) {
+            if matches!(self.source, Source::Quoted(..)) && !self.is_well_quoted(start) {
                 return Err(ReadError::Quotes { line: self.line() });
             }
-            let comment = self
-                .cells()
-                .next()
-                .is_some_and(|cell| cell.starts_with('%'));
-            if !comment && self.cells().any(|cell| !cell.is_empty()) {
+            if !self.cell(0).starts_with('%') && self.cells().any(|cell| !cell.is_empty()) {
                 return Ok(true);
             }
+        }
+    }
+
+    /// Where the row ends.
+    fn end(&self) -> u64 {
+        match &self.source {
+            Source::Plain(rows) => rows.end() as u64,
+            Source::Quoted(reader, _) => reader.position().byte(),
         }
     }
 
@@ -57,7 +74,7 @@ impl<'a> Rows<'a> {
                 .unwrap_or(usize::MAX)
                 .min(self.text.len())
         };
-        let read = &self.text.as_bytes()[place(start)..place(self.reader.position().byte())];
+        let read = &self.text.as_bytes()[place(start)..place(self.end())];
         let (mut quoted, mut before) = (false, self.separator);
         let mut bytes = read.iter().copied().peekable();
         let is_border =
@@ -77,9 +94,17 @@ impl<'a> Rows<'a> {
         !quoted
     }
 
-    /// The cells of the row, without blanks and quotes round them.
+    /// A cell of the row, without blanks and quotes round it; empty behind the last one.
+    pub(super) fn cell(&self, at: usize) -> &str {
+        trimmed(match &self.source {
+            Source::Plain(rows) => rows.cell(at),
+            Source::Quoted(_, record) => record.get(at).unwrap_or(""),
+        })
+    }
+
+    /// The cells of the row.
     pub(super) fn cells(&self) -> impl Iterator<Item = &str> {
-        self.record.iter().map(str::trim)
+        (0..self.count()).map(|at| self.cell(at))
     }
 
     /// Whether the row only says that the file ends, as TwinCAT's does.
@@ -105,18 +130,23 @@ impl<'a> Rows<'a> {
 
     /// How many there are.
     pub(super) fn count(&self) -> usize {
-        self.record.len()
+        match &self.source {
+            Source::Plain(rows) => rows.count(),
+            Source::Quoted(_, record) => record.len(),
+        }
     }
 
     /// Where the row begins.
     pub(super) fn position(&self) -> u64 {
-        self.record.position().map_or(0, ::csv::Position::byte)
+        match &self.source {
+            Source::Plain(rows) => rows.begin() as u64,
+            Source::Quoted(_, record) => record.position().map_or(0, ::csv::Position::byte),
+        }
     }
 
     /// Whether the text ends within this row.
     pub(super) fn is_cut_off(&self) -> bool {
-        let end = self.reader.position().byte();
-        usize::try_from(end).is_ok_and(|end| end >= self.text.len())
+        usize::try_from(self.end()).is_ok_and(|end| end >= self.text.len())
             && !self.text.ends_with(['\n', '\r'])
     }
 
@@ -146,9 +176,15 @@ impl<'a> Rows<'a> {
 
 /// The cells of one line.
 pub(super) fn cells_of(line: &str, separator: u8) -> Vec<String> {
+    let owned = |cell: &str| trimmed(cell).to_owned();
+    if !line.contains('"') {
+        let mut rows = PlainRows::new(line, separator);
+        rows.advance();
+        return (0..rows.count()).map(|at| owned(rows.cell(at))).collect();
+    }
     let mut record = StringRecord::new();
     match reader(line, separator).read_record(&mut record) {
-        Ok(true) => record.iter().map(|cell| cell.trim().to_owned()).collect(),
+        Ok(true) => record.iter().map(owned).collect(),
         Ok(false) | Err(_) => Vec::new(),
     }
 }
@@ -162,4 +198,38 @@ fn reader(text: &str, separator: u8) -> ::csv::Reader<&[u8]> {
         .from_reader(text.as_bytes())
 }
 
-const COMMENT: u8 = b'#';
+/// Without blanks round it; most cells have none.
+fn trimmed(cell: &str) -> &str {
+    match cell.as_bytes() {
+        [b'!'..=b'~'] | [b'!'..=b'~', .., b'!'..=b'~'] => cell,
+        _ => cell.trim(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The rows of a text, each with its line and whether the text ends within it.
+    fn all(mut rows: Rows<'_>) -> Vec<(Vec<String>, u64, bool)> {
+        let mut found = Vec::new();
+        while rows.advance().unwrap() {
+            let cells = rows.cells().map(str::to_owned).collect();
+            found.push((cells, rows.line(), rows.is_cut_off()));
+        }
+        found
+    }
+
+    proptest! {
+        /// Without quotes both ways to find cells find the same.
+        #[test]
+        fn plain_rows_are_those_of_the_reader(text in "[1a;# %\u{e9}\u{a0}\t\r\n]{0,60}") {
+            let plain = Rows::new(&text, b';', 3);
+            prop_assert!(matches!(plain.source, Source::Plain(_)));
+            let source = Source::Quoted(Box::new(reader(&text, b';')), StringRecord::new());
+            let read = Rows { source, ..Rows::new(&text, b';', 3) };
+            prop_assert_eq!(all(plain), all(read));
+        }
+    }
+}

@@ -9,7 +9,7 @@ use crate::refused::{Fault, Refused};
 use crate::run_failure;
 use crate::unobservable::{unreadable, unsupported};
 use hyde_calibrate::{
-    CalibrationPlan, Information, Observer, Problem, RecordError, Recording, Simulated,
+    CalibrationPlan, Information, Linearised, Observer, Problem, RecordError, Recording, Simulated,
     Unsupported, Varied, simulated,
 };
 use hyde_compiler::{Compiled, Form};
@@ -343,6 +343,15 @@ impl Bench {
             information,
             tables: made,
         })
+    }
+
+    /// A designed record linearised, to ask what effects it would distinguish.
+    ///
+    /// # Errors
+    /// See [`Failed`].
+    pub fn linearised(&self, recording: Recording) -> Result<Linearised, Failed> {
+        let (program, set) = (&self.compiled.program, self.project.set());
+        Linearised::new(program, vec![recording], &self.varied, &set).map_err(Failed::Unsupported)
     }
 
     /// Why a designed record tells nothing, as a diagnostic.

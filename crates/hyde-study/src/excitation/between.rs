@@ -1,18 +1,19 @@
-//! Effects that a record is to distinguish: those named by `--between`.
+//! Effects that a record is to distinguish: those named by `--between`, or those that a diagnosis could not distinguish.
 
 use super::options::Options;
 use crate::diagnosis;
-use crate::excitation::{Bench, Failed};
+use crate::excitation::Bench;
 use crate::unknown;
-use hyde_calibrate::{Hypothesis, Recording, Separation, separation};
+use hyde_calibrate::{Hypothesis, Linearised, Point, Separation};
 use hyde_compiler::{Candidate, Form};
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 
-/// The effects of the model, and the numbers of those to distinguish.
-pub(super) struct Effects {
-    candidates: Vec<Candidate>,
-    hypotheses: Vec<Hypothesis>,
-    numbers: Vec<usize>,
+/// The effects of the model, and those to distinguish at their sizes.
+pub(crate) struct Effects<'a> {
+    pub(crate) candidates: Cow<'a, [Candidate]>,
+    pub(crate) hypotheses: Cow<'a, [Hypothesis]>,
+    pub(crate) points: Vec<Point>,
 }
 
 /// How far effects are apart.
@@ -29,7 +30,10 @@ pub struct Apart {
 ///
 /// # Errors
 /// A name is not one effect of the model, or there is one only.
-pub(super) fn of(options: &Options, candidates: Vec<Candidate>) -> Result<Effects, String> {
+pub(super) fn of(
+    options: &Options,
+    candidates: Vec<Candidate>,
+) -> Result<Effects<'static>, String> {
     let hypotheses: Vec<Hypothesis> = candidates.iter().map(diagnosis::hypothesis).collect();
     let mut numbers = Vec::new();
     for name in &options.between {
@@ -44,10 +48,13 @@ pub(super) fn of(options: &Options, candidates: Vec<Candidate>) -> Result<Effect
                 .to_owned(),
         );
     }
+    let points = numbers
+        .into_iter()
+        .map(|number| Point::at_part(number, &hypotheses[number], options.size));
     Ok(Effects {
-        candidates,
-        hypotheses,
-        numbers,
+        points: points.collect(),
+        candidates: Cow::Owned(candidates),
+        hypotheses: Cow::Owned(hypotheses),
     })
 }
 
@@ -83,14 +90,8 @@ fn number_of(name: &str, hypotheses: &[Hypothesis]) -> Result<usize, String> {
     }
 }
 
-/// How far a record would set the effects apart, each at a part of its range; `None` if a model with one of them cannot be
-/// observed.
-pub(super) fn apart(
-    bench: &Bench,
-    effects: &Effects,
-    recording: Recording,
-    part: f64,
-) -> Result<Option<Apart>, Failed> {
+/// How far a record would set the effects apart; `None` if a model with one of them cannot be observed.
+pub(crate) fn apart(bench: &Bench, effects: &Effects<'_>, record: &Linearised) -> Option<Apart> {
     let project = &bench.project;
     let settings: BTreeMap<String, f64> = project.set().into_iter().collect();
     let headers = crate::headers(&project.records);
@@ -98,23 +99,14 @@ pub(super) fn apart(
     let author = |known: &[usize], written: &[hyde_calibrate::Written]| {
         unknown::built(&request, &effects.candidates, known, written)
     };
-    let found = separation(
-        &bench.compiled.program,
-        vec![recording],
-        (&bench.varied, &project.set()),
-        &effects.hypotheses,
-        &effects.numbers,
-        part,
-        &author,
-    );
-    let separation = found.map_err(Failed::Unsupported)?;
-    let names = effects.numbers.iter().map(|&number| {
-        let own = &effects.hypotheses[number];
+    let separation = record.separation(&effects.hypotheses, &effects.points, &author);
+    let names = effects.points.iter().map(|point| {
+        let own = &effects.hypotheses[point.hypothesis];
         format!("{} at {}", own.effect, own.site)
     });
-    Ok(separation.least().map(|least| Apart {
-        least,
+    Some(Apart {
+        least: separation.least()?,
         names: names.collect(),
         separation,
-    }))
+    })
 }

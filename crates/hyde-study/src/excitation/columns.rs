@@ -3,7 +3,7 @@
 use hyde_syntax::ast::{Experiment, ExperimentItem, Expr, ExprKind, File};
 
 /// A record and a column of it.
-pub(super) type Source = (String, String);
+pub(crate) type Source = (String, String);
 
 /// Every column of an experiment's records that the file names.
 pub(super) fn all(file: &File, experiment: &Experiment) -> Vec<Source> {
@@ -13,7 +13,7 @@ pub(super) fn all(file: &File, experiment: &Experiment) -> Vec<Source> {
 }
 
 /// The columns that stimuli read and that are neither measured nor replayed, in the order written.
-pub(super) fn driven(experiment: &Experiment) -> Vec<Source> {
+pub(crate) fn driven(experiment: &Experiment) -> Vec<Source> {
     let (mut driven, mut recorded) = (Vec::new(), Vec::new());
     for item in &experiment.items {
         match item {

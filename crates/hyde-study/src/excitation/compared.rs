@@ -9,6 +9,7 @@ use super::refused;
 use super::wish::{self, Wished};
 use crate::{Asked, Fault, Loaded, Project, Refused};
 use hyde_calibrate::{Information, Recording};
+use hyde_diag::Diagnostic;
 use hyde_signal::excite::{Bounds, Design};
 use hyde_units::NamedUnit;
 
@@ -68,35 +69,33 @@ pub fn compared(
             None => return Err(bench.project.refused(Fault::Model)),
         },
     };
-    let (made, unmade) = candidates(wish, &options.signal);
-    let mut unmade: Vec<(String, String)> = unmade
-        .into_iter()
-        .map(|own| (own.name, refused::reason(&own.reason, &own.wish)))
-        .collect();
-    let (mut all, mut first) = (Vec::new(), None);
-    let room = room(options, &wished).map_err(Refused::Asked)?;
-    for candidate in made {
-        let name = candidate.name.clone();
-        let found = of_candidate(room.as_ref(), &bench, candidate).and_then(|found| {
-            let Some((mut own, recording)) = found else {
-                return Ok(Err("no size of it keeps the travel and the speed"));
-            };
-            if let Some(effects) = &effects {
-                match between::apart(&bench, effects, recording, options.size)? {
-                    Some(apart) => own.apart = Some(apart),
-                    None => {
-                        return Ok(Err("a model with one of the effects cannot be observed"));
-                    }
-                }
+    let signals = signals(&bench, options, &wished).map_err(Refused::Asked)?;
+    let Signals {
+        all: made,
+        mut unmade,
+        failed: mut first,
+    } = signals;
+    let mut all = Vec::new();
+    for (mut own, recording) in made {
+        let apart = match &effects {
+            None => Ok(None),
+            Some(effects) => bench
+                .linearised(recording)
+                .map(|record| Some(between::apart(&bench, effects, &record))),
+        };
+        match apart {
+            Ok(None) => all.push(own),
+            Ok(Some(Some(apart))) => {
+                own.apart = Some(apart);
+                all.push(own);
             }
-            Ok(Ok(own))
-        });
-        match found {
-            Ok(Ok(own)) => all.push(own),
-            Ok(Err(reason)) => unmade.push((name, reason.to_owned())),
+            Ok(Some(None)) => {
+                let reason = "a model with one of the effects cannot be observed";
+                unmade.push((own.name, reason.to_owned()));
+            }
             Err(failed) => {
-                let diagnostic = bench.diagnostic(&name, &failed);
-                unmade.push((name, diagnostic.message.clone()));
+                let diagnostic = bench.diagnostic(&own.name, &failed);
+                unmade.push((own.name, diagnostic.message.clone()));
                 first.get_or_insert(diagnostic);
             }
         }
@@ -107,27 +106,80 @@ pub fn compared(
         (None, Criterion::A) => own.information.spread,
     };
     let best = (0..all.len()).min_by(|&i, &j| value(&all[i]).total_cmp(&value(&all[j])));
-    if let (None, Some(diagnostic)) = (best, first) {
-        bench.project.diagnostics.push(diagnostic);
-        return Err(bench.project.refused(Fault::Model));
+    match best {
+        Some(best) => Ok(Comparison {
+            bench,
+            wished,
+            all,
+            best,
+            unmade,
+        }),
+        None => Err(none(bench, &unmade, first)),
     }
-    let Some(best) = best else {
-        let reasons = unmade
-            .iter()
-            .map(|(name, reason)| format!("  {name}: {reason}"));
-        let reasons: Vec<String> = reasons.collect();
-        return Err(Refused::Asked(format!(
-            "no signal can be designed\n{}",
-            reasons.join("\n")
-        )));
+}
+
+/// The signals that options allow, each simulated and observed on a model without effects.
+pub(crate) struct Signals {
+    /// Those that can be made, with their records.
+    pub(crate) all: Vec<(Compared, Recording)>,
+    /// Those that cannot be made or recorded, with the reason.
+    pub(crate) unmade: Vec<(String, String)>,
+    /// What is wrong with the model on the first that cannot be recorded.
+    pub(crate) failed: Option<Diagnostic>,
+}
+
+/// Makes and records the signals that options allow.
+///
+/// # Errors
+/// An option is at fault.
+pub(crate) fn signals(
+    bench: &Bench,
+    options: &Options,
+    wished: &Wished,
+) -> Result<Signals, String> {
+    let (made, unmade) = candidates(&wished.wish, &options.signal);
+    let unmade = unmade
+        .into_iter()
+        .map(|own| (own.name, refused::reason(&own.reason, &own.wish)));
+    let mut signals = Signals {
+        all: Vec::new(),
+        unmade: unmade.collect(),
+        failed: None,
     };
-    Ok(Comparison {
-        bench,
-        wished,
-        all,
-        best,
-        unmade,
-    })
+    let room = room(options, wished)?;
+    for candidate in made {
+        let name = candidate.name.clone();
+        match of_candidate(room.as_ref(), bench, candidate) {
+            Ok(Some(own)) => signals.all.push(own),
+            Ok(None) => {
+                let reason = "no size of it keeps the travel and the speed";
+                signals.unmade.push((name, reason.to_owned()));
+            }
+            Err(failed) => {
+                let diagnostic = bench.diagnostic(&name, &failed);
+                signals.unmade.push((name, diagnostic.message.clone()));
+                signals.failed.get_or_insert(diagnostic);
+            }
+        }
+    }
+    Ok(signals)
+}
+
+/// Why there is no signal at all.
+pub(crate) fn none(
+    mut bench: Bench,
+    unmade: &[(String, String)],
+    failed: Option<Diagnostic>,
+) -> Refused {
+    if let Some(diagnostic) = failed {
+        bench.project.diagnostics.push(diagnostic);
+        return bench.project.refused(Fault::Model);
+    }
+    let reasons = unmade
+        .iter()
+        .map(|(name, reason)| format!("  {name}: {reason}"));
+    let reasons: Vec<String> = reasons.collect();
+    Refused::Asked(format!("no signal can be designed\n{}", reasons.join("\n")))
 }
 
 /// One signal: made small enough, simulated, observed; `None` if no size of it is small enough.

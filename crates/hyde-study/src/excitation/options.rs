@@ -2,6 +2,13 @@
 
 use hyde_signal::excite::Shape;
 
+/// How many speeds jogs have where nothing is written.
+pub const SPEEDS: usize = 5;
+/// How many places reversals have where nothing is written.
+pub const PLACES: usize = 3;
+/// The size of effects to distinguish, as a part of their range, where nothing is written.
+pub const SIZE: f64 = 0.1;
+
 /// What is asked for. Quantities are texts with their unit: `300 [mm]`.
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -46,4 +53,28 @@ pub enum Criterion {
     D,
     /// The smallest mean square of the standard deviations.
     A,
+}
+
+impl Default for Options {
+    /// As the command line has them where nothing is written.
+    fn default() -> Self {
+        Self {
+            of_model: false,
+            signal: Vec::new(),
+            criterion: Criterion::D,
+            between: Vec::new(),
+            size: SIZE,
+            motion: [None, None, None, None],
+            effort: None,
+            band: None,
+            duration: None,
+            every: None,
+            start: None,
+            speeds: SPEEDS,
+            places: PLACES,
+            reversal: None,
+            column: None,
+            unit: None,
+        }
+    }
 }

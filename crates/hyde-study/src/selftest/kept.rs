@@ -1,6 +1,6 @@
 //! An outcome as the store keeps it.
 
-use hyde_calibrate::{Claim, Outcome, Verdict};
+use hyde_calibrate::{Claim, Designed, Outcome, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// An outcome, or why there is none.
@@ -8,7 +8,7 @@ pub type Kept = Result<Outcome, String>;
 
 #[derive(Serialize, Deserialize)]
 enum Stored {
-    Outcome(StoredOutcome),
+    Outcome(Box<StoredOutcome>),
     Failed(String),
 }
 
@@ -24,6 +24,14 @@ struct StoredOutcome {
     verdict: String,
     claims: Vec<StoredClaim>,
     unexplained: bool,
+    designed: Option<StoredDesigned>,
+}
+
+#[derive(Serialize, Deserialize)]
+enum StoredDesigned {
+    NoSignal,
+    Unrecorded(String),
+    Diagnosed(String, f64, String, Vec<StoredClaim>),
 }
 
 /// The word of a verdict, as reports have it.
@@ -36,59 +44,97 @@ pub fn word(verdict: Verdict) -> &'static str {
     }
 }
 
+/// The verdict of a word.
+fn verdict(text: &str) -> Option<Verdict> {
+    let verdicts = [
+        Verdict::None,
+        Verdict::Effect,
+        Verdict::OneOf,
+        Verdict::Unknown,
+    ];
+    verdicts.into_iter().find(|&v| word(v) == text)
+}
+
+fn stored(claims: &[Claim]) -> Vec<StoredClaim> {
+    claims
+        .iter()
+        .map(|c| (c.hypothesis, c.alternatives.clone(), c.size, c.interval))
+        .collect()
+}
+
+fn claims(stored: Vec<StoredClaim>) -> Vec<Claim> {
+    stored
+        .into_iter()
+        .map(|(hypothesis, alternatives, size, interval)| Claim {
+            hypothesis,
+            alternatives,
+            size,
+            interval,
+        })
+        .collect()
+}
+
 /// The bytes of an outcome.
 pub(super) fn encoded(kept: &Kept) -> Vec<u8> {
-    let stored = match kept {
+    let kept = match kept {
         Err(reason) => Stored::Failed(reason.clone()),
-        Ok(outcome) => Stored::Outcome(StoredOutcome {
+        Ok(outcome) => Stored::Outcome(Box::new(StoredOutcome {
             planted: outcome.planted.clone(),
             size: outcome.size,
             detectable: outcome.detectable,
             expected: outcome.expected,
             verdict: word(outcome.verdict).to_owned(),
-            claims: outcome
-                .claims
-                .iter()
-                .map(|c| (c.hypothesis, c.alternatives.clone(), c.size, c.interval))
-                .collect(),
+            claims: stored(&outcome.claims),
             unexplained: outcome.unexplained,
-        }),
+            designed: outcome.designed.as_ref().map(|designed| match designed {
+                Designed::NoSignal => StoredDesigned::NoSignal,
+                Designed::Unrecorded(signal) => StoredDesigned::Unrecorded(signal.clone()),
+                Designed::Diagnosed {
+                    signal,
+                    apart,
+                    verdict,
+                    claims,
+                } => StoredDesigned::Diagnosed(
+                    signal.clone(),
+                    *apart,
+                    word(*verdict).to_owned(),
+                    stored(claims),
+                ),
+            }),
+        })),
     };
-    serde_json::to_vec(&stored).unwrap_or_default()
+    serde_json::to_vec(&kept).unwrap_or_default()
 }
 
 /// An outcome of bytes.
 pub(super) fn decoded(bytes: &[u8]) -> Result<Kept, String> {
     let wrong = |cause: &str| format!("the journal is not that of a self-test: {cause}");
-    let stored = serde_json::from_slice(bytes).map_err(|error| wrong(&error.to_string()))?;
-    Ok(match stored {
+    let kept = serde_json::from_slice(bytes).map_err(|error| wrong(&error.to_string()))?;
+    let known = |word: &str| verdict(word).ok_or_else(|| wrong(word));
+    Ok(match kept {
         Stored::Failed(reason) => Err(reason),
-        Stored::Outcome(stored) => {
-            let verdicts = [
-                Verdict::None,
-                Verdict::Effect,
-                Verdict::OneOf,
-                Verdict::Unknown,
-            ];
-            let verdict = verdicts.into_iter().find(|&v| word(v) == stored.verdict);
-            let claims = stored.claims.into_iter();
-            Ok(Outcome {
-                planted: stored.planted,
-                size: stored.size,
-                detectable: stored.detectable,
-                expected: stored.expected,
-                verdict: verdict.ok_or_else(|| wrong(&stored.verdict))?,
-                claims: claims
-                    .map(|(hypothesis, alternatives, size, interval)| Claim {
-                        hypothesis,
-                        alternatives,
-                        size,
-                        interval,
+        Stored::Outcome(own) => Ok(Outcome {
+            planted: own.planted,
+            size: own.size,
+            detectable: own.detectable,
+            expected: own.expected,
+            verdict: known(&own.verdict)?,
+            claims: claims(own.claims),
+            unexplained: own.unexplained,
+            designed: match own.designed {
+                None => None,
+                Some(StoredDesigned::NoSignal) => Some(Designed::NoSignal),
+                Some(StoredDesigned::Unrecorded(signal)) => Some(Designed::Unrecorded(signal)),
+                Some(StoredDesigned::Diagnosed(signal, apart, verdict, list)) => {
+                    Some(Designed::Diagnosed {
+                        signal,
+                        apart,
+                        verdict: known(&verdict)?,
+                        claims: claims(list),
                     })
-                    .collect(),
-                unexplained: stored.unexplained,
-            })
-        }
+                }
+            },
+        }),
     })
 }
 
@@ -98,21 +144,38 @@ mod tests {
 
     #[test]
     fn what_is_kept_comes_back() {
+        let claim = Claim {
+            hypothesis: Some(7),
+            alternatives: vec![1, 2],
+            size: 0.3,
+            interval: (0.25, 0.35),
+        };
         let outcome = Outcome {
             planted: (vec![0.1, -2.5e-7], vec![3.0]),
             size: 0.1 + 0.2,
             detectable: Some(1.0 / 3.0),
             expected: Some((123.456, 70.0)),
             verdict: Verdict::OneOf,
-            claims: vec![Claim {
-                hypothesis: Some(7),
-                alternatives: vec![1, 2],
-                size: 0.3,
-                interval: (0.25, 0.35),
-            }],
+            claims: vec![claim.clone()],
             unexplained: true,
+            designed: None,
         };
-        for kept in [Ok(outcome), Err("no model".to_owned())] {
+        let designed = [
+            Designed::NoSignal,
+            Designed::Unrecorded("jogs".to_owned()),
+            Designed::Diagnosed {
+                signal: "jogs".to_owned(),
+                apart: 1.0 / 7.0,
+                verdict: Verdict::Effect,
+                claims: vec![claim],
+            },
+        ];
+        let with = designed.into_iter().map(|designed| Outcome {
+            designed: Some(designed),
+            ..outcome.clone()
+        });
+        let all = std::iter::once(outcome.clone()).chain(with);
+        for kept in all.map(Ok).chain([Err("no model".to_owned())]) {
             assert_eq!(decoded(&encoded(&kept)), Ok(kept));
         }
         assert!(decoded(b"{}").is_err());
