@@ -83,10 +83,6 @@ fn after(session: &Session) -> Result<Measured, String> {
     }
     let with: Vec<String> = effects.iter().map(Effect::text).collect();
     let text = model
-        .replace(
-            "import Translational.*;",
-            "import Translational.*;\nimport Effects.*;",
-        )
         .replace("of Axis(q0", "of Found(q0")
         .replace("calibrate emps of Axis", "calibrate emps of Found")
         .replace(
