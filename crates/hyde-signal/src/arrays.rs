@@ -2,7 +2,7 @@
 //! places along all others are runs.
 //!
 //! An array `u` with three columns is `u_1`, `u_2`, `u_3`. Arrays that are shorter than the longest one, as gains beside a
-//! signal, are left out and told.
+//! signal, are left out, and a note names them.
 
 mod mat;
 mod number;
@@ -11,6 +11,7 @@ mod zip;
 
 use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::heading::Heading;
+use crate::layout::Kind;
 use crate::{Fault, Layout, Note, Table, TableError, TimeError};
 use std::fmt;
 
@@ -29,7 +30,7 @@ struct Content {
     others: Vec<String>,
 }
 
-/// Why a file of arrays is no record.
+/// Why a file of arrays is not a record.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ReadError {
     /// It is damaged, or has a form that is not read: what is wrong.
@@ -44,7 +45,7 @@ pub enum ReadError {
     NoRun(usize, usize),
     /// No column is the time, or the one that should be is not.
     Time(TimeError),
-    /// The columns make no table.
+    /// The columns are not a table.
     Table(TableError),
 }
 
@@ -56,7 +57,7 @@ pub(crate) fn is_of_arrays(bytes: &[u8]) -> bool {
 /// Reads the arrays of a file as a record.
 ///
 /// # Errors
-/// If the file is damaged or its arrays are no record.
+/// If the file is damaged or its arrays are not a record.
 pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     let content = match mat::is_mat(bytes) {
         true => mat::read(bytes)?,
@@ -70,7 +71,9 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, ReadError> {
     let raw: Vec<Raw> = raw.collect();
     crate::declared::check(raw.iter(), &layout.columns).map_err(ReadError::Time)?;
     let place = |sample: usize| format!("sample {}", sample + 1);
-    assemble(raw, layout, notes, &place).map_err(|error| match error {
+    let table = assemble(raw, layout, notes, &place);
+    let table = table.map(|table| table.laid_out(Kind::Arrays));
+    table.map_err(|error| match error {
         AssembleError::Time(error) => ReadError::Time(error),
         AssembleError::Table(error) => ReadError::Table(error),
     })
@@ -91,9 +94,11 @@ fn cells(name: &str, values: Vec<f64>) -> Cells {
 
 type Named = (String, Vec<f64>);
 
-/// The columns of one run, each with its name, and what is told of the others.
+/// The columns of one run, each with its name, and a note on what is left out.
 fn columns(content: Content, run: Option<usize>) -> Result<(Vec<Named>, Vec<Note>), ReadError> {
-    let arrays: Vec<Array> = content.arrays.into_iter().map(upright).collect();
+    let arrays = content.arrays.into_iter().map(upright);
+    let (arrays, empty): (Vec<Array>, Vec<Array>) =
+        arrays.partition(|array| !array.values.is_empty());
     let samples = arrays.iter().map(|array| array.shape[0]).max();
     let samples = samples.filter(|&samples| samples > 1);
     let samples = samples.ok_or(ReadError::Empty)?;
@@ -108,6 +113,7 @@ fn columns(content: Content, run: Option<usize>) -> Result<(Vec<Named>, Vec<Note
     };
     let mut columns = Vec::new();
     let mut left_out = content.others;
+    left_out.extend(empty.into_iter().map(|array| array.name));
     for array in &arrays {
         let fits = array.shape[0] == samples && (array.runs() == 1 || run <= array.runs());
         match fits {
@@ -119,7 +125,7 @@ fn columns(content: Content, run: Option<usize>) -> Result<(Vec<Named>, Vec<Note
     if !left_out.is_empty() {
         let names: Vec<String> = left_out.iter().map(|name| format!("`{name}`")).collect();
         notes.push(Note::new(format!(
-            "{} are no columns of it: they have another length, no such run, or are no numbers",
+            "Hyde leaves out {}: another length, no such run, or not numbers",
             names.join(", ")
         )));
     }

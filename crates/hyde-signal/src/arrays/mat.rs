@@ -57,7 +57,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Content, ReadError> {
 }
 
 fn cut_off() -> ReadError {
-    ReadError::Damaged("it is cut off or no MATLAB file of level 5".to_owned())
+    ReadError::Damaged("it is cut off or not a MATLAB file of level 5".to_owned())
 }
 
 struct Element<'a> {
@@ -103,9 +103,11 @@ fn add(content: &mut Content, mut data: &[u8], big: bool) -> Result<(), ReadErro
         return Ok(());
     }
     let numbers = element(rest, big).ok_or_else(cut_off)?;
-    let values = values(&numbers, big)
-        .filter(|values| shape.iter().product::<usize>() == values.len())
-        .ok_or_else(cut_off)?;
+    let length = shape
+        .iter()
+        .try_fold(1, |all: usize, axis| all.checked_mul(*axis));
+    let values = values(&numbers, big).filter(|values| length == Some(values.len()));
+    let values = values.ok_or_else(cut_off)?;
     content.arrays.push(Array {
         name,
         values: last_axis_fastest(&values, &shape),

@@ -120,6 +120,13 @@ fn whole_numbers_other_orders_and_truncation() {
         read(&cut, &sampled(None)),
         Err(ReadError::Damaged(_))
     ));
+    let none = npy(
+        "<f8",
+        "False",
+        "2, 0, 4294967296, 4294967296, 4294967296",
+        &[],
+    );
+    assert_eq!(read(&none, &sampled(None)), Err(ReadError::Empty));
     let text = npy("<U5", "False", "3,", &[0; 60]);
     assert_eq!(read(&text, &sampled(None)), Err(ReadError::Empty));
 }
