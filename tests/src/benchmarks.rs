@@ -42,9 +42,18 @@ pub struct Row {
     /// The unit of the benchmark.
     pub unit: &'static str,
     /// The root mean square of the error, or what the unit says; or why there is none.
-    pub value: Result<f64, String>,
+    pub value: Result<f64, Reason>,
     /// How many parameters were fitted.
     pub fitted: usize,
+}
+
+/// Why a figure was not measured.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// The official file of this name is not at hand.
+    Absent(&'static str),
+    /// A run failed: what it says.
+    Failed(String),
 }
 
 /// Figures that others published, in the order of the records that have one.

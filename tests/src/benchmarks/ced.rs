@@ -7,7 +7,7 @@
 )]
 
 use super::command::fit;
-use super::{Benchmark, CHAMPNEYS, Published, Row};
+use super::{Benchmark, CHAMPNEYS, Published, Reason, Row};
 use crate::root;
 use std::path::Path;
 
@@ -59,7 +59,7 @@ fn measure(program: &Path, folder: &Path) -> Result<Vec<Row>, String> {
         fitted,
     };
     if !folder.join(RECORD).is_file() {
-        let absent = Err(format!("{RECORD} is not at hand"));
+        let absent = Err(Reason::Absent(RECORD));
         return Ok(vec![row(LOW, absent.clone(), 0), row(HIGH, absent, 0)]);
     }
     let own = tempfile::tempdir().map_err(|error| error.to_string())?;
@@ -75,7 +75,15 @@ fn measure(program: &Path, folder: &Path) -> Result<Vec<Row>, String> {
     let fitted = fit(program, &file, "ced", own.path())?;
     let number = fitted.number();
     Ok(vec![
-        row(LOW, fitted.error("low_test"), number),
-        row(HIGH, fitted.error("high_test"), number),
+        row(
+            LOW,
+            fitted.error("low_test").map_err(Reason::Failed),
+            number,
+        ),
+        row(
+            HIGH,
+            fitted.error("high_test").map_err(Reason::Failed),
+            number,
+        ),
     ])
 }

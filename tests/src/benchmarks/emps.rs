@@ -7,7 +7,7 @@
 )]
 
 use super::command::fit;
-use super::{Benchmark, CHAMPNEYS, Published, Row};
+use super::{Benchmark, CHAMPNEYS, Published, Reason, Row};
 use crate::root;
 use hyde_signal::Layout;
 use std::fmt::Write as _;
@@ -73,7 +73,7 @@ fn measure(program: &Path, folder: &Path) -> Result<Vec<Row>, String> {
             .into_iter()
             .find(|path| path.is_file())
     };
-    let absent = |names: [&str; 2]| Err(format!("{} is not at hand", names[0]));
+    let absent = |names: [&'static str; 2]| Err(Reason::Absent(names[0]));
     let all = [
         (SECOND, "%"),
         (FITTED, "mm"),
@@ -104,12 +104,22 @@ fn measure(program: &Path, folder: &Path) -> Result<Vec<Row>, String> {
     let mm = |experiment, record| Ok(1e3 * whole.errors(&file, experiment, record, "rms")?[0]);
     let force = || Ok(whole.errors(&file, "closed_pulses", None, "relative_percent")?[0]);
     let tested = |value: Result<f64, String>| match &test {
-        Some(_) => value,
+        Some(_) => value.map_err(Reason::Failed),
         None => absent(TEST),
     };
     Ok(vec![
-        row(SECOND, "%", second_half(program, &estimation), number),
-        row(FITTED, "mm", mm("open", None), number),
+        row(
+            SECOND,
+            "%",
+            second_half(program, &estimation).map_err(Reason::Failed),
+            number,
+        ),
+        row(
+            FITTED,
+            "mm",
+            mm("open", None).map_err(Reason::Failed),
+            number,
+        ),
         row(PULSES, "mm", tested(mm("open", Some(&pulses))), number),
         row(GIVEN, "mm", tested(mm("open_pulses", None)), number),
         row(FORCE, "%", tested(force()), number),

@@ -1,7 +1,7 @@
 //! CubeSpec fine steering mirror: `combined_data.npz` of its repository as it is.
 
 use super::command::{Fitted, fit};
-use super::{Benchmark, Published, Row};
+use super::{Benchmark, Published, Reason, Row};
 use crate::root;
 use std::path::Path;
 
@@ -51,14 +51,15 @@ fn measure(program: &Path, folder: &Path) -> Result<Vec<Row>, String> {
     };
     let record = folder.join(RECORD);
     if !record.is_file() {
-        let absent = || Err(format!("{RECORD} is not at hand"));
+        let absent = || Err(Reason::Absent(RECORD));
         return Ok((0..LEVELS.len())
             .map(|level| row(level, absent(), 0))
             .collect());
     }
     let file = root().join(FILE);
     let fitted = fit(program, &file, "steering_mirror", folder)?;
-    let value = |level: usize| mean(&fitted, &file, &record, EXPERIMENTS[level]);
+    let value =
+        |level: usize| mean(&fitted, &file, &record, EXPERIMENTS[level]).map_err(Reason::Failed);
     let rows = (0..LEVELS.len()).map(|level| row(level, value(level), fitted.number()));
     Ok(rows.collect())
 }

@@ -1,6 +1,6 @@
 //! Benchmarks as a table: what Hyde has for each record, and below it what others published.
 
-use super::{Benchmark, Published, Row};
+use super::{Benchmark, Published, Reason, Row};
 use std::path::Path;
 
 /// The table of a benchmark as text, with its sources, and where to put the records that are absent.
@@ -39,17 +39,20 @@ pub fn words(benchmark: &Benchmark, rows: &[Row], folder: &Path) -> String {
     for source in sources {
         out.push_str(&format!("  published in: {source}\n"));
     }
-    let mut absent: Vec<&String> = rows
+    let mut reasons: Vec<&Reason> = rows
         .iter()
         .filter_map(|row| row.value.as_ref().err())
         .collect();
-    absent.dedup();
-    for reason in absent {
-        out.push_str(&format!(
-            "  not measured: {reason}; put it into {}, examples/{}/README.md says where it is from\n",
-            folder.display(),
-            benchmark.name
-        ));
+    reasons.dedup();
+    for reason in reasons {
+        out.push_str(&match reason {
+            Reason::Absent(file) => format!(
+                "  not measured: {file} is not at hand; put it into {}, examples/{}/README.md says where it is from\n",
+                folder.display(),
+                benchmark.name
+            ),
+            Reason::Failed(reason) => format!("  failed: {reason}\n"),
+        });
     }
     out
 }

@@ -1,7 +1,7 @@
 //! `benchmarks [NAME…]`: public benchmarks in their own units, beside published figures. Exit status 1 where a fit or a run fails,
 //! 2 where there is none of that name; absent records are told and are no failure.
 
-use hyde_tests::benchmarks::{BENCHMARKS, Benchmark, words};
+use hyde_tests::benchmarks::{BENCHMARKS, Benchmark, Reason, Row, words};
 use std::process::ExitCode;
 
 #[allow(
@@ -31,7 +31,13 @@ fn main() -> ExitCode {
         let folder = hyde_tests::data().join(benchmark.name);
         let program = std::env::current_exe().map_err(|error| error.to_string());
         match program.and_then(|program| (benchmark.measure)(&program, &folder)) {
-            Ok(rows) => println!("{}", words(benchmark, &rows, &folder)),
+            Ok(rows) => {
+                println!("{}", words(benchmark, &rows, &folder));
+                let failed = |row: &Row| matches!(row.value, Err(Reason::Failed(_)));
+                if rows.iter().any(failed) {
+                    status = ExitCode::FAILURE;
+                }
+            }
             Err(reason) => {
                 eprintln!("{}: {reason}", benchmark.name);
                 status = ExitCode::FAILURE;
