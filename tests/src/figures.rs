@@ -68,6 +68,7 @@ pub const FIGURES: &[Figure] = &[
     emps::VELOCITY,
     emps::POSITION,
     emps_diagnosis::BEFORE,
+    emps_diagnosis::DIAGNOSED,
     emps_diagnosis::AFTER,
     bench::TABLE,
     bench::TACHO,

@@ -3,6 +3,7 @@
 pub mod ablation;
 pub mod batches;
 pub mod bench_axis;
+pub mod benchmarks;
 pub mod cases;
 mod closed_form;
 mod cluster;

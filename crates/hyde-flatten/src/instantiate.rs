@@ -168,7 +168,7 @@ impl<'a> Model<'a, '_> {
         if parent.is_none() {
             self.hook_additions(id);
         }
-        self.effects_of(id);
+        self.effects_of(id, &modifiers);
         let mut collected = Vec::new();
         let walk = Walk {
             id,

@@ -103,6 +103,8 @@ pub enum Kind {
     Pairs,
     /// Rows of numbers without a header.
     Numbers,
+    /// Named arrays of MATLAB or NumPy, which are not a text.
+    Arrays,
 }
 
 /// What programs write such layouts: the words of `layout WORD`.
@@ -141,6 +143,7 @@ impl fmt::Display for Kind {
             Self::Groups => "groups of columns, each with its own time column",
             Self::Pairs => "rows of names and values",
             Self::Numbers => "rows of numbers without a header",
+            Self::Arrays => "named arrays",
         })
     }
 }

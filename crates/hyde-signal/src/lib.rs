@@ -18,6 +18,7 @@
 //! # Ok::<(), csv::ReadError>(())
 //! ```
 
+pub mod arrays;
 pub mod csv;
 pub mod excite;
 pub mod filter;

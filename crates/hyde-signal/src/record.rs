@@ -1,7 +1,7 @@
 //! A record in whichever form its file has.
 
 use crate::foreign::{Foreign, foreign};
-use crate::{Frame, Layout, Note, Table, Unusable, csv, parquet, sinumerik, workbook};
+use crate::{Frame, Layout, Note, Table, Unusable, arrays, csv, parquet, sinumerik, workbook};
 use std::fmt;
 use std::io::Read as _;
 
@@ -16,6 +16,8 @@ pub enum RecordError {
     Parquet(parquet::ReadError),
     /// A mistake in a file of a Sinumerik control.
     Sinumerik(sinumerik::ReadError),
+    /// A mistake in a file of arrays.
+    Arrays(arrays::ReadError),
     /// A mistake in a workbook.
     Workbook(workbook::ReadError),
     /// A compressed file that cannot be unpacked.
@@ -35,6 +37,9 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, RecordError> {
         let mut table = read(&unpacked(bytes)?, layout)?;
         table.tell(Note::new("the file was unpacked (gzip)"));
         return Ok(table);
+    }
+    if arrays::is_of_arrays(bytes) {
+        return arrays::read(bytes, layout).map_err(RecordError::Arrays);
     }
     if workbook::is_workbook(bytes) {
         return workbook::read(bytes, layout).map_err(RecordError::Workbook);
@@ -56,7 +61,7 @@ pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, RecordError> {
     csv::read(bytes, layout).map_err(RecordError::Csv)
 }
 
-/// Runs are told apart in texts and sheets only.
+/// Runs are told apart in texts, sheets and arrays only.
 fn one_run(layout: &Layout) -> Result<(), RecordError> {
     match layout.run {
         Some(_) => Err(RecordError::Run),
@@ -127,6 +132,7 @@ impl RecordError {
             Self::Csv(error) => error.repair(record),
             Self::Parquet(error) => error.repair(record),
             Self::Sinumerik(error) => error.repair(record),
+            Self::Arrays(error) => error.repair(record),
             Self::Workbook(error) => error.repair(record),
             Self::Run => "leave `run` out, and write one file per run".to_owned(),
             Self::Unpack(_) => "unpack it, and give the file in it".to_owned(),
@@ -142,10 +148,11 @@ impl fmt::Display for RecordError {
             Self::Csv(error) => error.fmt(f),
             Self::Parquet(error) => error.fmt(f),
             Self::Sinumerik(error) => error.fmt(f),
+            Self::Arrays(error) => error.fmt(f),
             Self::Workbook(error) => error.fmt(f),
             Self::Run => write!(
                 f,
-                "a run is chosen in texts and workbooks only, not in a file of this kind"
+                "a run is chosen in texts, workbooks and files of arrays only, not in a file of this kind"
             ),
             Self::Unpack(reason) => write!(f, "the file cannot be unpacked: {reason}"),
             Self::Column(unusable) => unusable.fault.fmt(f),

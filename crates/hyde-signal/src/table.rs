@@ -125,7 +125,7 @@ impl Table {
         }
     }
 
-    /// The kind of layout that its text had, if it was a text.
+    /// The kind of layout that its file had, unless it was Parquet.
     #[must_use]
     pub fn layout(&self) -> Option<Kind> {
         self.layout

@@ -104,17 +104,17 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    /// Makes the effects of an instance that was just made, before its own members.
-    pub(super) fn effects_of(&mut self, host: InstanceId) {
+    /// Makes the effects of an instance that was just made, before its own members. Its modifications may name them.
+    pub(super) fn effects_of(&mut self, host: InstanceId, modifiers: &[Modifier<'a>]) {
         for number in 0..self.hooks.len() {
             if self.hooks[number].host == self.instances[host].path && !self.hooks[number].used {
                 self.hooks[number].used = true;
-                self.effect(host, number);
+                self.effect(host, number, modifiers);
             }
         }
     }
 
-    fn effect(&mut self, host: InstanceId, number: usize) {
+    fn effect(&mut self, host: InstanceId, number: usize, of_host: &[Modifier<'a>]) {
         let Hook {
             site,
             file,
@@ -145,7 +145,7 @@ impl<'a> Model<'a, '_> {
                 .help("give the second another name: `effect Other on … extends …`"),
             );
         }
-        let mut modifiers = Vec::new();
+        let mut modifiers = self.modifiers_for(name, of_host);
         self.modifiers_of(changes, scope, &mut modifiers);
         self.note_modified(id, &modifiers);
         let mut collected = Vec::new();
