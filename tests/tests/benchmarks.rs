@@ -8,8 +8,11 @@ use hyde_tests::benchmarks::{BENCHMARKS, Benchmark, Reason, words};
 use hyde_tests::root;
 use serde_json::Value;
 use std::fmt::Write as _;
+use std::io::{Cursor, Write as _};
 use std::path::Path;
 use std::process::Command;
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 fn program() -> &'static Path {
     Path::new(env!("CARGO_BIN_EXE_hyde-tested"))
@@ -258,27 +261,11 @@ fn the_mirror_of_the_official_layout_has_its_error() {
 
 /// A zip archive of files as `numpy.savez` stores them.
 fn stored(files: &[(&str, Vec<u8>)]) -> Vec<u8> {
-    let long = |number: usize| u32::try_from(number).unwrap().to_le_bytes();
-    let short = |number: usize| u16::try_from(number).unwrap().to_le_bytes();
-    let (mut out, mut directory) = (Vec::new(), Vec::new());
+    let options = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, data) in files {
-        let size = [long(0), long(data.len()), long(data.len())].concat();
-        let common = [[0; 10].as_slice(), &size, &short(name.len()), &short(0)].concat();
-        directory.extend([b"PK\x01\x02\x14\x00".as_slice(), &common, &[0; 10]].concat());
-        directory.extend([&long(out.len()), name.as_bytes()].concat());
-        out.extend([b"PK\x03\x04".as_slice(), &common, name.as_bytes(), data].concat());
+        archive.start_file(*name, options).unwrap();
+        archive.write_all(data).unwrap();
     }
-    let (begin, number) = (out.len(), short(files.len()));
-    out.extend(&directory);
-    let numbers = [number, number].concat();
-    let end = [
-        b"PK\x05\x06".as_slice(),
-        &[0; 4],
-        &numbers,
-        &long(directory.len()),
-        &long(begin),
-        &[0; 2],
-    ];
-    out.extend(end.concat());
-    out
+    archive.finish().unwrap().into_inner()
 }

@@ -7,7 +7,6 @@
 mod mat;
 mod number;
 mod numpy;
-mod zip;
 
 use crate::assemble::{AssembleError, Cells, Raw, assemble};
 use crate::heading::Heading;

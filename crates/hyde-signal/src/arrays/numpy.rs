@@ -3,9 +3,15 @@
 //! Layout: NumPy Enhancement Proposal 1, *A Simple File Format for NumPy Arrays*.
 
 use super::number::{Number, number};
-use super::{Array, Content, ReadError, zip};
+use super::{Array, Content, ReadError};
+use std::borrow::Cow;
+use std::io::{Cursor, Read as _};
+use zip::ZipArchive;
+use zip::result::ZipError;
 
 const MARK: &[u8] = b"\x93NUMPY";
+/// A file of an archive becomes at most so long.
+const LONGEST: u64 = 4 << 30;
 
 /// Whether a file is an array.
 pub(super) fn is_array(bytes: &[u8]) -> bool {
@@ -14,9 +20,17 @@ pub(super) fn is_array(bytes: &[u8]) -> bool {
 
 /// Whether a file is an archive of arrays alone.
 pub(super) fn is_archive(bytes: &[u8]) -> bool {
-    let entries = bytes.starts_with(b"PK").then(|| zip::entries(bytes));
-    let entries = entries.flatten().unwrap_or_default();
-    !entries.is_empty() && entries.iter().all(|entry| entry.name.ends_with(".npy"))
+    let archive = bytes
+        .starts_with(b"PK")
+        .then(|| ZipArchive::new(Cursor::new(bytes)));
+    archive.is_some_and(|archive| {
+        archive.is_ok_and(|archive| {
+            let mut names = archive.file_names();
+            let of_array =
+                |name: Result<Cow<'_, str>, _>| name.is_ok_and(|it| it.ends_with(".npy"));
+            !archive.is_empty() && names.all(of_array)
+        })
+    })
 }
 
 /// Reads either. The array of an `.npy` has no name and is called `data`.
@@ -36,8 +50,16 @@ pub(super) fn read(bytes: &[u8]) -> Result<Content, ReadError> {
         add("data", bytes)?;
         return Ok(content);
     }
-    for entry in zip::entries(bytes).unwrap_or_default() {
-        add(entry.name.trim_end_matches(".npy"), &entry.unpacked()?)?;
+    let damaged = |error: ZipError| ReadError::Damaged(error.to_string());
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(damaged)?;
+    for number in 0..archive.len() {
+        let file = archive.by_index(number).map_err(damaged)?;
+        let name = file.name().map_err(damaged)?.into_owned();
+        let mut unpacked = Vec::new();
+        file.take(LONGEST)
+            .read_to_end(&mut unpacked)
+            .map_err(|error| ReadError::Damaged(format!("`{name}`: {error}")))?;
+        add(name.trim_end_matches(".npy"), &unpacked)?;
     }
     Ok(content)
 }

@@ -3,7 +3,9 @@
 use super::{ReadError, read};
 use crate::mat::Level5;
 use crate::{Layout, Table};
-use std::io::Write as _;
+use std::io::{Cursor, Write as _};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipWriter};
 
 /// An `.npy` of version 1.
 fn npy(descr: &str, fortran: &str, shape: &str, data: &[u8]) -> Vec<u8> {
@@ -23,49 +25,17 @@ fn doubles(values: impl IntoIterator<Item = f64>) -> Vec<u8> {
 
 /// A zip archive of files, deflated or stored.
 fn archive(files: &[(&str, Vec<u8>)], deflated: bool) -> Vec<u8> {
-    let (mut out, mut directory) = (Vec::new(), Vec::new());
-    let short = |number: usize| u16::try_from(number).expect("short").to_le_bytes();
-    let long = |number: usize| u32::try_from(number).expect("short").to_le_bytes();
+    let method = match deflated {
+        true => CompressionMethod::Deflated,
+        false => CompressionMethod::Stored,
+    };
+    let options = SimpleFileOptions::default().compression_method(method);
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     for (name, plain) in files {
-        let packed = match deflated {
-            false => plain.clone(),
-            true => {
-                let fast = flate2::Compression::fast();
-                let mut packer = flate2::write::DeflateEncoder::new(Vec::new(), fast);
-                packer.write_all(plain).expect("in memory");
-                packer.finish().expect("in memory")
-            }
-        };
-        let common = [
-            short(20).as_slice(),
-            &short(0),
-            &short(if deflated { 8 } else { 0 }),
-            &[0; 8],
-            &long(packed.len()),
-            &long(plain.len()),
-            &short(name.len()),
-        ]
-        .concat();
-        directory.extend([b"PK\x01\x02\x14\x00".as_slice(), &common, &[0; 12]].concat());
-        directory.extend(long(out.len()));
-        directory.extend(name.as_bytes());
-        // The file has a longer extra field than the directory, as NumPy writes it.
-        out.extend([b"PK\x03\x04".as_slice(), &common, &short(4)].concat());
-        out.extend([name.as_bytes(), &[1, 0, 0, 0], &packed].concat());
+        archive.start_file(*name, options).expect("in memory");
+        archive.write_all(plain).expect("in memory");
     }
-    let (begin, number) = (out.len(), files.len());
-    out.extend(&directory);
-    out.extend(
-        [
-            b"PK\x05\x06".as_slice(),
-            &[0; 4],
-            &short(number),
-            &short(number),
-        ]
-        .concat(),
-    );
-    out.extend([long(directory.len()).as_slice(), &long(begin), &[0; 2]].concat());
-    out
+    archive.finish().expect("in memory").into_inner()
 }
 
 fn sampled(run: Option<usize>) -> Layout {
