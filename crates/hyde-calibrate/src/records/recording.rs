@@ -181,6 +181,15 @@ impl Recording {
         }
     }
 
+    /// When the experiment stops and when the record ends, both in s, where the record goes on: an observer uses all of it.
+    #[must_use]
+    pub fn behind_stop(&self, program: &Program, set: &[(usize, f64)]) -> Option<(f64, f64)> {
+        let p = self.parameters(program, set);
+        let stop_s = program.kernels.constant(Constant::Stop, &p)?;
+        let end_s = self.start_s + self.step_s * self.rows().saturating_sub(1) as f64;
+        (end_s > stop_s + self.step_s).then_some((stop_s, end_s))
+    }
+
     /// The whole parameter vector with some values set (position and value).
     pub(crate) fn parameters(&self, program: &Program, set: &[(usize, f64)]) -> Vec<f64> {
         parameters(program, &self.record_values, set)

@@ -283,7 +283,18 @@ end alone;
         "clear.hyde",
         &format!("{}{}", head(), block.replace("uncertain", "M, b")),
     );
-    assert!(!text(&hyde(&["fit", &clear])).contains("before the fit"));
+    let clear_text = text(&hyde(&["fit", &clear]));
+    assert!(!clear_text.contains("before the fit") && !clear_text.contains("to its end"));
+    // A stop before the end of the record is none for the observer.
+    let short = std::fs::read_to_string(&clear).unwrap();
+    let short = folder.file(
+        "short.hyde",
+        &short.replace("stop file.end", "stop 0.5 [s]"),
+    );
+    let told = text(&hyde(&["fit", &short]));
+    let note = "counts to its end at 1.999 s: the stop of `strokes` at 0.5 s bounds its runs alone";
+    let words: Vec<&str> = told.split_whitespace().collect();
+    assert!(words.join(" ").contains(note), "{told}");
 }
 
 #[test]
