@@ -36,8 +36,10 @@ pub enum ReadError {
     Damaged(String),
     /// A MATLAB file of version 7.3.
     Hdf5,
-    /// It has no array of two numbers and more.
-    Empty,
+    /// An array has more columns than samples: its name, samples and columns.
+    Lying(String, usize, usize),
+    /// It has no array of two numbers and more; what else it has, by name.
+    Empty(Vec<String>),
     /// It has so many runs, and nothing says which one is meant.
     Which(usize),
     /// It has no run of that number: the number, and how many there are.
@@ -91,6 +93,9 @@ fn cells(name: &str, values: Vec<f64>) -> Cells {
     }
 }
 
+/// More columns than this, and than samples, are samples.
+const MANY: usize = 50;
+
 type Named = (String, Vec<f64>);
 
 /// The columns of one run, each with its name, and a note on what is left out.
@@ -100,7 +105,17 @@ fn columns(content: Content, run: Option<usize>) -> Result<(Vec<Named>, Vec<Note
         arrays.partition(|array| !array.values.is_empty());
     let samples = arrays.iter().map(|array| array.shape[0]).max();
     let samples = samples.filter(|&samples| samples > 1);
-    let samples = samples.ok_or(ReadError::Empty)?;
+    let Some(samples) = samples else {
+        return Err(ReadError::Empty(content.others));
+    };
+    let is_lying = |array: &&Array| array.width() > samples.max(MANY);
+    if let Some(lying) = arrays.iter().find(is_lying) {
+        return Err(ReadError::Lying(
+            lying.name.clone(),
+            lying.shape[0],
+            lying.width(),
+        ));
+    }
     let whole = |array: &&Array| array.shape[0] == samples;
     let runs = arrays.iter().filter(whole).map(Array::runs).max();
     let runs = runs.unwrap_or(1);
@@ -178,7 +193,16 @@ impl ReadError {
                     .to_owned()
             }
             Self::Hdf5 => "save it as version 7: `save(\"log.mat\", \"-v7\")`".to_owned(),
-            Self::Empty => "save signals as arrays whose first axis is the sample".to_owned(),
+            Self::Lying(name, ..) => {
+                format!("save it transposed: `{name}.T` in Python, `{name}.'` in MATLAB")
+            }
+            Self::Empty(others) => match others.first() {
+                Some(other) => format!(
+                    "save its parts as arrays of real numbers whose first axis is the sample: of a MATLAB structure \
+                     `save(\"log.mat\", \"-struct\", \"{other}\")`"
+                ),
+                None => "save signals as arrays whose first axis is the sample".to_owned(),
+            },
             Self::Which(_) => format!("say which one: `record {record} = \"…\" (run = 1)`"),
             Self::NoRun(_, found) => format!("say one from 1 to {found}"),
             Self::Time(error) => error.repair(record),
@@ -194,7 +218,21 @@ impl fmt::Display for ReadError {
         match self {
             Self::Damaged(reason) => write!(f, "the file of arrays cannot be read: {reason}"),
             Self::Hdf5 => write!(f, "this is a MATLAB file of version 7.3, which is HDF5"),
-            Self::Empty => write!(f, "no array of the file has two samples"),
+            Self::Lying(name, samples, columns) => write!(
+                f,
+                "`{name}` has {samples} samples of {columns} columns: its first axis is the sample"
+            ),
+            Self::Empty(others) if others.is_empty() => {
+                write!(f, "no array of the file has two samples")
+            }
+            Self::Empty(others) => {
+                let names: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();
+                write!(
+                    f,
+                    "the file has no array of real numbers with two samples: {} is a structure, text, or of complex numbers",
+                    names.join(", ")
+                )
+            }
             Self::Which(runs) => write!(f, "the arrays of the file have {runs} runs"),
             Self::NoRun(asked, found) => {
                 write!(f, "the file has no run {asked}: it has {found}")

@@ -96,9 +96,17 @@ fn whole_numbers_other_orders_and_truncation() {
         "2, 0, 4294967296, 4294967296, 4294967296",
         &[],
     );
-    assert_eq!(read(&none, &sampled(None)), Err(ReadError::Empty));
+    assert_eq!(
+        read(&none, &sampled(None)),
+        Err(ReadError::Empty(Vec::new()))
+    );
     let text = npy("<U5", "False", "3,", &[0; 60]);
-    assert_eq!(read(&text, &sampled(None)), Err(ReadError::Empty));
+    let rows = npy("<f8", "False", "2, 90", &doubles([1.0; 180]));
+    let lying = ReadError::Lying("data".to_owned(), 2, 90);
+    assert_eq!(read(&rows, &sampled(None)), Err(lying));
+    let error = read(&text, &sampled(None)).expect_err("no numbers");
+    assert!(error.to_string().contains("`data` is a structure, text"));
+    assert!(error.repair("log").contains("real numbers"));
 }
 
 #[test]
