@@ -22,6 +22,12 @@ struct Array {
     values: Vec<f64>,
 }
 
+/// How many numbers an array of a shape has, if they can be counted.
+fn places(shape: &[usize]) -> Option<usize> {
+    let mut axes = shape.iter();
+    axes.try_fold(1, |all: usize, axis| all.checked_mul(*axis))
+}
+
 /// The arrays of a file, and the names of what else is in it.
 #[derive(Debug, Default, PartialEq)]
 struct Content {

@@ -50,6 +50,7 @@ mod signal;
 mod table;
 mod texts;
 mod time_error;
+mod unpack;
 
 pub use assemble::{Fault, Unusable, align};
 pub use calendar::{Origin, Since};

@@ -1,9 +1,9 @@
 //! A record in whichever form its file has.
 
 use crate::foreign::{Foreign, foreign};
+use crate::unpack::unpacked;
 use crate::{Frame, Layout, Note, Table, Unusable, arrays, csv, parquet, sinumerik, workbook};
 use std::fmt;
-use std::io::Read as _;
 
 /// Why a file is no record.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,7 +34,7 @@ pub enum RecordError {
 /// If the file is no record.
 pub fn read(bytes: &[u8], layout: &Layout) -> Result<Table, RecordError> {
     if bytes.starts_with(GZIP) {
-        let mut table = read(&unpacked(bytes)?, layout)?;
+        let mut table = read(&plain(bytes)?, layout)?;
         table.tell(Note::new("the file was unpacked (gzip)"));
         return Ok(table);
     }
@@ -71,21 +71,12 @@ fn one_run(layout: &Layout) -> Result<(), RecordError> {
 
 const GZIP: &[u8] = b"\x1f\x8b";
 
-/// A packed file becomes at most so long: more would be no record but a mistake.
-const LONGEST: u64 = 4 << 30;
-
-fn unpacked(bytes: &[u8]) -> Result<Vec<u8>, RecordError> {
-    let mut out = Vec::new();
-    let read = flate2::read::MultiGzDecoder::new(bytes)
-        .take(LONGEST)
-        .read_to_end(&mut out);
-    match read {
-        Ok(_) if out.starts_with(GZIP) => Err(RecordError::Unpack("it is packed twice".to_owned())),
-        Ok(length) if length as u64 == LONGEST => {
-            Err(RecordError::Unpack("it is longer than 4 GiB".to_owned()))
+fn plain(bytes: &[u8]) -> Result<Vec<u8>, RecordError> {
+    match unpacked(flate2::read::MultiGzDecoder::new(bytes)) {
+        Ok(out) if out.starts_with(GZIP) => {
+            Err(RecordError::Unpack("it is packed twice".to_owned()))
         }
-        Ok(_) => Ok(out),
-        Err(error) => Err(RecordError::Unpack(error.to_string())),
+        unpacked => unpacked.map_err(RecordError::Unpack),
     }
 }
 

@@ -218,18 +218,18 @@ impl Search<'_> {
         if smooth && shown {
             return Some(found);
         }
-        let at_end = self.values(integrator, end);
-        if smooth && !self.changed(&at_end).is_empty() {
-            // The interpolant crosses a little before its time.
-            return Some(self.locate(integrator, (found.t, &at_found), (end, &at_end)));
-        }
-        // Behind a kink the interpolant crosses before its time or late.
-        let at_start = self.values(integrator, start);
         let last = if shown {
             (found.t, at_found)
         } else {
+            let at_end = self.values(integrator, end);
+            if smooth && !self.changed(&at_end).is_empty() {
+                // The interpolant crosses a little before its time.
+                return Some(self.locate(integrator, (found.t, &at_found), (end, &at_end)));
+            }
             (end, at_end)
         };
+        // Behind a kink the interpolant crosses before its time or late.
+        let at_start = self.values(integrator, start);
         self.first(integrator, (start, at_start), last)
     }
 

@@ -101,6 +101,13 @@ pub(crate) struct LimitArgs {
     pub(crate) effort: Option<String>,
 }
 
+impl LimitArgs {
+    /// Those of a motion: travel, speed, acceleration, jerk.
+    pub(crate) fn motion(&self) -> [Option<String>; 4] {
+        [&self.travel, &self.speed, &self.acceleration, &self.jerk].map(Clone::clone)
+    }
+}
+
 /// What makes a signal the best one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Criterion {

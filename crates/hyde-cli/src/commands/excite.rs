@@ -94,12 +94,6 @@ fn model_args(args: &ExciteArgs) -> ModelArgs {
 
 fn options(args: &ExciteArgs) -> Options {
     let limits = &args.limits;
-    let motion = [
-        &limits.travel,
-        &limits.speed,
-        &limits.acceleration,
-        &limits.jerk,
-    ];
     let shape = |name: &SignalName| match name {
         SignalName::Multisine => Shape::Multisine,
         SignalName::Chirp => Shape::Chirp,
@@ -115,7 +109,7 @@ fn options(args: &ExciteArgs) -> Options {
         },
         between: args.between.clone(),
         size: args.size,
-        motion: motion.map(Clone::clone),
+        motion: limits.motion(),
         effort: limits.effort.clone(),
         band: args.band.clone(),
         duration: args.duration.clone(),

@@ -123,15 +123,10 @@ fn options(args: &SelftestArgs) -> Result<Options, String> {
 /// The signal that the arguments ask for, if verdicts `one of` are to be diagnosed again with a designed record.
 fn signal(args: &SelftestArgs) -> Result<Option<excitation::Options>, String> {
     let limits = &args.limits;
-    let motion = [
-        &limits.travel,
-        &limits.speed,
-        &limits.acceleration,
-        &limits.jerk,
-    ];
-    let all = [&motion[..], &[&limits.effort]].concat();
+    let motion = limits.motion();
     if !args.designed {
-        return match all.iter().any(|own| own.is_some()) {
+        let mut all = motion.iter().chain([&limits.effort]);
+        return match all.any(Option::is_some) {
             false => Ok(None),
             true => Err(
                 "limits are those of a designed record, and none is asked for\n  help: add `--designed`"
@@ -140,7 +135,7 @@ fn signal(args: &SelftestArgs) -> Result<Option<excitation::Options>, String> {
         };
     }
     Ok(Some(excitation::Options {
-        motion: motion.map(Clone::clone),
+        motion,
         effort: limits.effort.clone(),
         duration: args.duration.clone(),
         band: args.band.clone(),

@@ -3,8 +3,8 @@
 //! Layout: The MathWorks, *MAT-File Format*.
 
 use super::number::number;
-use super::{Array, Content, ReadError};
-use std::io::Read as _;
+use super::{Array, Content, ReadError, places};
+use crate::unpack::unpacked;
 
 const HEADER: usize = 128;
 const INT8: u32 = 1;
@@ -14,8 +14,6 @@ const MATRIX: u32 = 14;
 const NUMERIC: std::ops::RangeInclusive<u8> = 6..=15;
 /// The flag of an array that has an imaginary part.
 const COMPLEX: u8 = 0x08;
-/// A compressed array becomes at most so long.
-const LONGEST: u64 = 4 << 30;
 
 /// Whether a file is one of MATLAB.
 pub(super) fn is_mat(bytes: &[u8]) -> bool {
@@ -38,11 +36,8 @@ pub(super) fn read(bytes: &[u8]) -> Result<Content, ReadError> {
         let element = element(&mut rest, big).ok_or_else(cut_off)?;
         match element.kind {
             COMPRESSED => {
-                let mut plain = Vec::new();
-                let read = flate2::read::ZlibDecoder::new(element.data)
-                    .take(LONGEST)
-                    .read_to_end(&mut plain);
-                read.map_err(|error| ReadError::Damaged(error.to_string()))?;
+                let plain = unpacked(flate2::read::ZlibDecoder::new(element.data));
+                let plain = plain.map_err(ReadError::Damaged)?;
                 let mut plain = plain.as_slice();
                 let inner = self::element(&mut plain, big).ok_or_else(cut_off)?;
                 if inner.kind == MATRIX {
@@ -103,10 +98,7 @@ fn add(content: &mut Content, mut data: &[u8], big: bool) -> Result<(), ReadErro
         return Ok(());
     }
     let numbers = element(rest, big).ok_or_else(cut_off)?;
-    let length = shape
-        .iter()
-        .try_fold(1, |all: usize, axis| all.checked_mul(*axis));
-    let values = values(&numbers, big).filter(|values| length == Some(values.len()));
+    let values = values(&numbers, big).filter(|values| places(&shape) == Some(values.len()));
     let values = values.ok_or_else(cut_off)?;
     content.arrays.push(Array {
         name,

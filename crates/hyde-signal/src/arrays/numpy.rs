@@ -3,15 +3,14 @@
 //! Layout: NumPy Enhancement Proposal 1, *A Simple File Format for NumPy Arrays*.
 
 use super::number::{Number, number};
-use super::{Array, Content, ReadError};
+use super::{Array, Content, ReadError, places};
+use crate::unpack::unpacked;
 use std::borrow::Cow;
-use std::io::{Cursor, Read as _};
+use std::io::Cursor;
 use zip::ZipArchive;
 use zip::result::ZipError;
 
 const MARK: &[u8] = b"\x93NUMPY";
-/// A file of an archive becomes at most so long.
-const LONGEST: u64 = 4 << 30;
 
 /// Whether a file is an array.
 pub(super) fn is_array(bytes: &[u8]) -> bool {
@@ -55,11 +54,9 @@ pub(super) fn read(bytes: &[u8]) -> Result<Content, ReadError> {
     for number in 0..archive.len() {
         let file = archive.by_index(number).map_err(damaged)?;
         let name = file.name().map_err(damaged)?.into_owned();
-        let mut unpacked = Vec::new();
-        file.take(LONGEST)
-            .read_to_end(&mut unpacked)
-            .map_err(|error| ReadError::Damaged(format!("`{name}`: {error}")))?;
-        add(name.trim_end_matches(".npy"), &unpacked)?;
+        let array =
+            unpacked(file).map_err(|reason| ReadError::Damaged(format!("`{name}`: {reason}")))?;
+        add(name.trim_end_matches(".npy"), &array)?;
     }
     Ok(content)
 }
@@ -72,11 +69,8 @@ fn array(name: &str, bytes: &[u8]) -> Result<Option<Array>, ReadError> {
     let Some((kind, size)) = kind(&header) else {
         return Ok(None);
     };
-    let length = shape
-        .iter()
-        .try_fold(1, |all: usize, axis| all.checked_mul(*axis));
-    let length = length.filter(|length| length.checked_mul(size) == Some(data.len()));
-    if length.is_none() {
+    let bytes = places(&shape).and_then(|places| places.checked_mul(size));
+    if bytes != Some(data.len()) {
         return Err(wrong("it has fewer or more numbers than its header says"));
     }
     let mut values: Vec<f64> = data.chunks_exact(size).map(kind).collect();
