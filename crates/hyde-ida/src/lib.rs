@@ -51,6 +51,7 @@ mod convergence;
 mod dense;
 mod error;
 mod failure;
+mod few;
 mod fixed_pivots;
 mod interleave;
 mod klu;

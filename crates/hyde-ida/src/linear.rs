@@ -61,7 +61,7 @@ impl SparseSolver {
             LinearMethod::Klu => false,
         };
         let factors = if dense {
-            Factors::Dense(DenseFactors::new(pattern.n()))
+            Factors::Dense(DenseFactors::new(&pattern))
         } else {
             Factors::Klu(KluFactors::new(&pattern)?)
         };
@@ -97,9 +97,7 @@ impl SparseSolver {
         );
         self.factored = false;
         let pivots = match &mut self.factors {
-            Factors::Dense(factors) => factors
-                .factor(&self.pattern, values)
-                .map(|()| Pivots::New)?,
+            Factors::Dense(factors) => factors.factor(values).map(|()| Pivots::New)?,
             Factors::Klu(factors) => factors.factor(&self.pattern, values)?,
         };
         self.factored = true;
@@ -144,12 +142,7 @@ impl SparseSolver {
         );
         let scaled = equilibrate(&self.pattern, values);
         Ok(match &self.factors {
-            Factors::Dense(_) => {
-                let mut factors = DenseFactors::new(self.pattern.n());
-                factors
-                    .factor(&self.pattern, &scaled)
-                    .map_or(0.0, |()| factors.reciprocal_condition())
-            }
+            Factors::Dense(factors) => factors.clone().reciprocal_condition(&scaled),
             Factors::Klu(_) => {
                 KluFactors::new(&self.pattern)?.reciprocal_condition(&self.pattern, &scaled)
             }

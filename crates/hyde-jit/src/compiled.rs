@@ -70,10 +70,13 @@ impl Code {
         }
     }
 
-    pub(crate) fn run(&self, frame: &mut Frame<'_>) {
+    #[inline(always)]
+    pub(crate) fn run(&self, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]) {
         match self {
-            Self::Native(native) => native.run(frame),
-            Self::Interpreter(interpreter) => interpreter.run(frame),
+            Self::Native(native) => native.run(at, workspace, out),
+            Self::Interpreter(interpreter) => {
+                interpreter.run(&mut Frame::at(at, &mut workspace.work, out));
+            }
         }
     }
 }
@@ -128,16 +131,18 @@ impl Compiled {
         }
     }
 
+    #[inline]
     fn run(&self, kernel: &Kernel, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]) {
         let code = kernel
             .code
             .get_or_init(|| Code::new(&self.dae, &kernel.routine, self.backend));
         self.check(at, workspace);
         assert!(out.len() >= kernel.count, "room for every value");
-        code.run(&mut Frame::at(at, &mut workspace.work, out));
+        code.run(at, workspace, out);
     }
 
     /// Machine code does not check bounds: the lengths are checked here, at every call.
+    #[inline]
     pub(crate) fn check(&self, at: Point<'_>, workspace: &Workspace) {
         let dae = &self.dae;
         let enough = at.y.len() >= dae.n_unknowns

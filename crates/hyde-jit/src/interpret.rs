@@ -123,6 +123,7 @@ impl Interpreter {
 
 impl<'a> Frame<'a> {
     /// The memory at a point.
+    #[inline]
     pub(crate) fn at(point: Point<'a>, work: &'a mut [f64], out: &'a mut [f64]) -> Self {
         let Point { t, y, yp, z, u, p } = point;
         Self {

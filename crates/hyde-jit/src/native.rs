@@ -1,7 +1,6 @@
 //! Machine code in memory, and the one call into it.
 
 use crate::host;
-use crate::interpret::Frame;
 use crate::lower;
 use crate::parts::Parts;
 use crate::routine::Routine;
@@ -12,6 +11,7 @@ use cranelift_frontend::{FunctionBuilder, FunctionBuilderContext};
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{FuncId, Linkage, Module, default_libcall_names};
 use hyde_ir::{Dae, ExprId};
+use hyde_program::{Point, Workspace};
 use rustc_hash::FxHashSet;
 use std::ops::Range;
 use std::sync::Mutex;
@@ -73,19 +73,22 @@ impl Native {
         })
     }
 
-    /// Runs the code on a frame.
-    pub(crate) fn run(&self, frame: &mut Frame<'_>) {
-        let mut kept = vec![0.0; self.kept];
+    /// Runs the code at a point.
+    #[inline(always)]
+    pub(crate) fn run(&self, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]) {
+        if workspace.kept.len() < self.kept {
+            workspace.kept.resize(self.kept, 0.0);
+        }
         let raw = RawFrame {
-            t: frame.t,
-            y: frame.y.as_ptr(),
-            yp: frame.yp.as_ptr(),
-            z: frame.z.as_ptr(),
-            u: frame.u.as_ptr(),
-            p: frame.p.as_ptr(),
-            work: frame.work.as_mut_ptr(),
-            out: frame.out.as_mut_ptr(),
-            kept: kept.as_mut_ptr(),
+            t: at.t,
+            y: at.y.as_ptr(),
+            yp: at.yp.as_ptr(),
+            z: at.z.as_ptr(),
+            u: at.u.as_ptr(),
+            p: at.p.as_ptr(),
+            work: workspace.work.as_mut_ptr(),
+            out: out.as_mut_ptr(),
+            kept: workspace.kept.as_mut_ptr(),
         };
         for function in &self.functions {
             function(&raw const raw);

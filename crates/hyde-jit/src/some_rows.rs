@@ -1,7 +1,6 @@
 //! Some rows of a function as a kernel of their own: code of what they read alone, made once and kept for who asks again.
 
 use crate::compiled::{Backend, Code, Compiled};
-use crate::interpret::Frame;
 use crate::routine::Routine;
 use hyde_ir::dae::{Dae, Function};
 use hyde_program::{Point, SomeRows, Workspace};
@@ -47,6 +46,6 @@ impl SomeRows for Chosen<'_> {
     fn evaluate(&self, at: Point<'_>, workspace: &mut Workspace, out: &mut [f64]) {
         self.compiled.check(at, workspace);
         assert!(out.len() >= self.count, "room for every value");
-        self.code.run(&mut Frame::at(at, &mut workspace.work, out));
+        self.code.run(at, workspace, out);
     }
 }

@@ -93,9 +93,7 @@ impl Still {
             out.len() >= derivatives.entries.len(),
             "room for every value"
         );
-        derivatives
-            .code
-            .run(&mut Frame::at(at, &mut workspace.work, out));
+        derivatives.code.run(at, workspace, out);
     }
 
     pub(crate) fn tick_partials(
@@ -106,8 +104,7 @@ impl Still {
     ) -> Vec<(usize, TickWrt, f64)> {
         let tick = &self.ticks[clock];
         let mut values = vec![0.0; tick.places.len()];
-        tick.code
-            .run(&mut Frame::at(at, &mut workspace.work, &mut values));
+        tick.code.run(at, workspace, &mut values);
         let pairs = tick.places.iter().zip(values);
         pairs
             .map(|(&(row, wrt), value)| (row, wrt, value))

@@ -21,18 +21,23 @@ pub struct Point<'a> {
     pub p: &'a [f64],
 }
 
-/// Room for explicit variables; one a thread.
+/// Room for what kernels compute on the way; one a thread.
 #[derive(Clone, Debug, Default)]
 pub struct Workspace {
     /// Values of explicit variables, overwritten by every call.
     pub work: Vec<f64>,
+    /// What the parts of a long kernel keep for later ones; a kernel makes it as long as it needs.
+    pub kept: Vec<f64>,
 }
 
 impl Workspace {
-    /// Room for `n` values.
+    /// Room for `n` explicit variables.
     #[must_use]
     pub fn new(n: usize) -> Self {
-        Self { work: vec![0.0; n] }
+        Self {
+            work: vec![0.0; n],
+            kept: Vec::new(),
+        }
     }
 }
 

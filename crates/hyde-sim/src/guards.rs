@@ -12,6 +12,7 @@ use crate::integrator::Integrator;
 use crate::slides::margins;
 use crate::state::State;
 use hyde_program::Function;
+use smallvec::SmallVec;
 
 /// Chebyshev points inside a step.
 const INSIDE: [f64; 3] = [0.146_446_609_406_726_24, 0.5, 0.853_553_390_593_273_8];
@@ -21,12 +22,17 @@ const BEFORE: usize = 3;
 /// How many times nearer to zero than it bends within a step a root function must not come.
 const CLEARANCE: f64 = 4.0;
 
+/// Values of the watched relations; of a few they are no allocation.
+type Roots = SmallVec<[f64; 8]>;
+
 /// The root functions at the last points before a step, as long as nothing happens; and room to evaluate them.
 #[derive(Default)]
 pub(crate) struct Trail {
     watched: Vec<usize>,
     /// Time in s, and values of the watched relations; the last is where a step begins.
-    points: Vec<(f64, Vec<f64>)>,
+    points: Vec<(f64, Roots)>,
+    /// Room for what is watched in a step.
+    in_step: Vec<Watched>,
     y: Vec<f64>,
     yp: Vec<f64>,
     roots: Vec<f64>,
@@ -46,12 +52,13 @@ impl Trail {
             .is_some_and(|(t, _)| t.to_bits() == start.to_bits());
         if !leads || self.watched != watched {
             self.points.clear();
-            self.watched = watched.to_vec();
+            self.watched.clear();
+            self.watched.extend_from_slice(watched);
         }
     }
 
     /// Goes on by points of a step.
-    fn extend(&mut self, points: Vec<(f64, Vec<f64>)>) {
+    fn extend(&mut self, points: impl IntoIterator<Item = (f64, Roots)>) {
         let start = self.points.last().map(|(t, _)| *t);
         let more = points.into_iter().filter(|(t, _)| start != Some(*t));
         self.points.extend(more);
@@ -109,16 +116,18 @@ pub(crate) fn first_change(
             band: doubtful.map_or(0.0, |(_, band)| *band),
         }
     };
-    let watched: Vec<Watched> = watched.iter().map(watch).collect();
+    let mut in_step = std::mem::take(&mut trail.in_step);
+    in_step.clear();
+    in_step.extend(watched.iter().map(watch));
     let before = std::mem::take(&mut trail.points);
     let mut search = Search {
         probe: Probe::new(integrator, consistent, trail),
-        watched: &watched,
+        watched: &in_step,
         points: Vec::new(),
     };
     let at_end = search.values(integrator, end);
-    let found = if search.goes_on(integrator, &before, (end, &at_end)) {
-        search.points = vec![(end, at_end.clone())];
+    let goes_on = search.goes_on(integrator, &before, (end, &at_end));
+    let found = if goes_on {
         None
     } else {
         let at_start = before.last().map(|(_, values)| values.clone());
@@ -126,20 +135,25 @@ pub(crate) fn first_change(
     };
     let points = search.points;
     trail.points = before;
-    if found.is_some() {
-        return found;
+    if found.is_none() {
+        let doubtful = &mut integrator.state_mut().doubtful;
+        if !doubtful.is_empty() {
+            // What has left its zero is known by its sign from here on.
+            let pairs = in_step.iter().zip(&at_end);
+            doubtful.retain(|(number, _)| {
+                let left = |(watched, root): (&Watched, &f64)| {
+                    watched.number == *number && root.abs() > watched.band
+                };
+                !pairs.clone().any(left)
+            });
+        }
+        match goes_on {
+            true => trail.extend([(end, at_end)]),
+            false => trail.extend(points),
+        }
     }
-    trail.extend(points);
-    // What has left its zero is known by its sign from here on.
-    let left: Vec<usize> = watched
-        .iter()
-        .zip(&at_end)
-        .filter(|(watched, root)| root.abs() > watched.band)
-        .map(|(watched, _)| watched.number)
-        .collect();
-    let doubtful = &mut integrator.state_mut().doubtful;
-    doubtful.retain(|(number, _)| !left.contains(number));
-    None
+    trail.in_step = in_step;
+    found
 }
 
 /// Halvings of a piece of a step in which a root function may reach zero between two points.
@@ -158,7 +172,7 @@ struct Search<'s> {
     probe: Probe<'s>,
     watched: &'s [Watched],
     /// The points of the step where the root functions were evaluated.
-    points: Vec<(f64, Vec<f64>)>,
+    points: Vec<(f64, Roots)>,
 }
 
 impl Search<'_> {
@@ -167,7 +181,7 @@ impl Search<'_> {
     fn goes_on(
         &self,
         integrator: &Integrator<'_>,
-        before: &[(f64, Vec<f64>)],
+        before: &[(f64, Roots)],
         (end, at_end): (f64, &[f64]),
     ) -> bool {
         let state = integrator.state();
@@ -200,11 +214,11 @@ impl Search<'_> {
     fn first_shown(
         &mut self,
         integrator: &mut Integrator<'_>,
-        (start, at_start): (f64, Option<Vec<f64>>),
+        (start, at_start): (f64, Option<Roots>),
         (end, at_end): (f64, &[f64]),
     ) -> Option<Crossing> {
         let at_start = at_start.unwrap_or_else(|| self.values(integrator, start));
-        let found = self.first(integrator, (start, at_start), (end, at_end.to_vec()))?;
+        let found = self.first(integrator, (start, at_start), (end, at_end.into()))?;
         let state = integrator.state();
         let mut numbers = found.relations.iter();
         // What states alone decide is on the interpolant what it is.
@@ -237,8 +251,8 @@ impl Search<'_> {
     fn first(
         &mut self,
         integrator: &mut Integrator<'_>,
-        start: (f64, Vec<f64>),
-        end: (f64, Vec<f64>),
+        start: (f64, Roots),
+        end: (f64, Roots),
     ) -> Option<Crossing> {
         let (from, length) = (start.0, end.0 - start.0);
         let mut points = vec![start];
@@ -279,11 +293,7 @@ impl Search<'_> {
         let t = 0.5 * (a.0 + b.0);
         if t > a.0 && t < b.0 && depth <= MAX_HALVINGS {
             let middle = self.values(integrator, t);
-            let points = [
-                (a.0, a.1.to_vec()),
-                (t, middle.clone()),
-                (b.0, b.1.to_vec()),
-            ];
+            let points = [(a.0, a.1.into()), (t, middle.clone()), (b.0, b.1.into())];
             if self.may_reach_zero(&points) {
                 let left = self.between(integrator, a, (t, &middle), depth + 1);
                 return left.or_else(|| self.between(integrator, (t, &middle), b, depth + 1));
@@ -368,7 +378,7 @@ impl Search<'_> {
     }
 
     /// Whether a root function bends so much between neighbouring points that it may touch zero between them.
-    fn may_reach_zero(&self, points: &[(f64, Vec<f64>)]) -> bool {
+    fn may_reach_zero(&self, points: &[(f64, Roots)]) -> bool {
         points.windows(3).any(|three| {
             let [a, b, c] = three else { return false };
             let part = (b.0 - a.0) / (c.0 - a.0);
@@ -395,7 +405,7 @@ impl Search<'_> {
     }
 
     /// The watched root functions at a time.
-    fn values(&mut self, integrator: &mut Integrator<'_>, t: f64) -> Vec<f64> {
+    fn values(&mut self, integrator: &mut Integrator<'_>, t: f64) -> Roots {
         let roots = self.probe.roots(integrator, t);
         self.watched
             .iter()

@@ -11,7 +11,7 @@
 
 use crate::root_rates::rounding;
 use crate::state::State;
-use hyde_program::{Function, RelationUse, Wrt};
+use hyde_program::{Function, Point, RelationUse, Workspace, Wrt};
 
 /// How many times rounding, and how many times the tolerance, a root function goes until its relation is located again.
 const FAR: f64 = 1e3;
@@ -57,6 +57,48 @@ impl State<'_> {
             .retain(|(relation, far)| roots[*relation].abs() <= *far);
     }
 
+    /// The values of a function that has none with the memory as it is: those behind the end of a branch, if it has any there.
+    #[cold]
+    pub(crate) fn evaluate_beyond(
+        &mut self,
+        function: Function,
+        t: f64,
+        y: &[f64],
+        yp: &[f64],
+        out: &mut [f64],
+    ) {
+        let program = self.program;
+        match function {
+            Function::Residual => self.with_own_truths(t, y, yp, |state| {
+                let (at, workspace) = state.at(t, y, yp);
+                program.kernels.evaluate(function, at, workspace, out);
+            }),
+            Function::Outputs => self.replace_not_finite((t, y, yp), out, |at, workspace, own| {
+                program.kernels.evaluate(function, at, workspace, own);
+            }),
+            Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {}
+        }
+    }
+
+    /// Where there is no finite value, that with the truths which relations have at the point itself.
+    pub(crate) fn replace_not_finite(
+        &mut self,
+        (t, y, yp): (f64, &[f64], &[f64]),
+        out: &mut [f64],
+        evaluate: impl FnOnce(Point<'_>, &mut Workspace, &mut [f64]),
+    ) {
+        let mut own = out.to_vec();
+        self.with_own_truths(t, y, yp, |state| {
+            let (at, workspace) = state.at(t, y, yp);
+            evaluate(at, workspace, &mut own);
+        });
+        for (value, own) in out.iter_mut().zip(own) {
+            if !value.is_finite() {
+                *value = own;
+            }
+        }
+    }
+
     /// Evaluates with the truths that relations of equations have at a point, as they are behind the end of a branch.
     pub(crate) fn with_own_truths(
         &mut self,
@@ -82,12 +124,12 @@ impl State<'_> {
     }
 
     /// Takes the truths of followed relations from a point.
+    #[inline]
     pub(crate) fn read_loose(&mut self, t: f64, y: &[f64], yp: &[f64]) {
-        if self.loose.is_empty() {
-            return;
+        if !self.loose.is_empty() {
+            let loose: Vec<usize> = self.loose.iter().map(|(relation, _)| *relation).collect();
+            self.read_truths(t, y, yp, &loose);
         }
-        let loose: Vec<usize> = self.loose.iter().map(|(relation, _)| *relation).collect();
-        self.read_truths(t, y, yp, &loose);
     }
 
     fn read_truths(&mut self, t: f64, y: &[f64], yp: &[f64], relations: &[usize]) {

@@ -7,13 +7,15 @@
 //! their equations there, and what is infinitely stiff is damped out at once ([`tableau`]). The step follows the estimated
 //! errors ([`step_size`]), but is kept while it is nearly right, for each new one takes a factorization.
 
+mod lanes;
 mod passes;
 mod stages;
 mod step_size;
 mod tableau;
 
 use hyde_ida::{Error, Failure, FailureKind, LinearMethod, SparseSolver, Statistics, System};
-use passes::{correct, inside, keep_largest, sum_of_squares, weights};
+use lanes::Lanes;
+use passes::{correct, inside, keep_largest, weights};
 use stages::Obstacle;
 use step_size::StepSize;
 use tableau::{BUBBLE, GAMMA, STAGES};
@@ -44,31 +46,31 @@ pub(crate) struct RungeKutta<S> {
     /// What an iteration of Newton's method leaves of the error, as last measured.
     contraction: Option<f64>,
     rtol: f64,
-    atol: Vec<f64>,
+    atol: Lanes,
     /// The unknowns whose errors count, how many there are, and those that are states.
     counts: Vec<bool>,
     count: f64,
     differential: Vec<bool>,
     /// The largest value of each unknown at the end of a step.
-    largest: Vec<f64>,
+    largest: Lanes,
     max_step_s: f64,
     next_step_s: f64,
     step_size: StepSize,
     from: f64,
-    before: Vec<f64>,
+    before: Lanes,
     t: f64,
-    y: Vec<f64>,
+    y: Lanes,
     /// y' of each stage, and room for those of another step.
-    slopes: Vec<Vec<f64>>,
-    others: Vec<Vec<f64>>,
+    slopes: Vec<Lanes>,
+    others: Vec<Lanes>,
     /// Whether the interpolant of the last step is as exact as its end: so it is for what is neither stiff nor algebraic.
     smooth: bool,
     /// 1 over the tolerance of each unknown; the same, and 0 where an error does not count.
-    weights: Vec<f64>,
-    counted: Vec<f64>,
-    stage: Vec<f64>,
-    base: Vec<f64>,
-    correction: Vec<f64>,
+    weights: Lanes,
+    counted: Lanes,
+    stage: Lanes,
+    base: Lanes,
+    correction: Lanes,
     statistics: Statistics,
 }
 
@@ -84,8 +86,10 @@ impl<S: System> RungeKutta<S> {
         (t, y, yp): (f64, &[f64], &[f64]),
     ) -> Self {
         let (n, entries) = (linear.pattern().n(), linear.pattern().n_entries());
-        let mut slopes = vec![vec![0.0; n]; STAGES];
+        let mut slopes = vec![Lanes::zeros(n); STAGES];
         slopes[LAST].copy_from_slice(yp);
+        let mut largest = Lanes::from(y);
+        largest.iter_mut().for_each(|value| *value = value.abs());
         let counts: Vec<bool> = differential.iter().map(|is| *is || watched).collect();
         let count = counts.iter().filter(|counts| **counts).count();
         Self {
@@ -97,26 +101,26 @@ impl<S: System> RungeKutta<S> {
             fresh: false,
             contraction: None,
             rtol: 0.0,
-            atol: vec![1.0; n],
+            atol: Lanes::zeros(n),
             counts,
             count: count.max(1) as f64,
             differential,
-            largest: y.iter().map(|value| value.abs()).collect(),
+            largest,
             max_step_s,
             next_step_s: f64::INFINITY,
             step_size: StepSize::default(),
             from: t,
-            before: y.to_vec(),
+            before: Lanes::from(y),
             t,
-            y: y.to_vec(),
+            y: Lanes::from(y),
             others: slopes.clone(),
             slopes,
             smooth: true,
-            weights: vec![0.0; n],
-            counted: vec![0.0; n],
-            stage: vec![0.0; n],
-            base: vec![0.0; n],
-            correction: vec![0.0; n],
+            weights: Lanes::zeros(n),
+            counted: Lanes::zeros(n),
+            stage: Lanes::zeros(n),
+            base: Lanes::zeros(n),
+            correction: Lanes::zeros(n),
             statistics: Statistics::default(),
         }
     }
@@ -318,9 +322,16 @@ impl<S: System> RungeKutta<S> {
             return false;
         }
         self.linear.solve(&mut self.correction);
-        let cj = 1.0 / (GAMMA * h);
-        correct(y, yp, &self.correction, &self.weights, cj);
-        let square = sum_of_squares(&self.correction, &self.counted);
+        self.stage.copy_from_slice(y);
+        self.base.copy_from_slice(yp);
+        let square = correct(
+            (&mut self.stage, &mut self.base),
+            &self.correction,
+            (&self.weights, &self.counted),
+            1.0 / (GAMMA * h),
+        );
+        y.copy_from_slice(&self.stage);
+        yp.copy_from_slice(&self.base);
         (square / self.count).sqrt() <= NEARLY
     }
 
@@ -345,13 +356,8 @@ impl<S: System> RungeKutta<S> {
             shares[share].0 += more.0;
             shares[share].1 += more.1;
         }
-        inside(
-            (y, yp),
-            (&self.before, &self.y),
-            rise,
-            &self.slopes,
-            &shares,
-        );
+        let ends = (&self.before, &self.y);
+        inside(y, yp, ends, rise, (&self.slopes, &shares));
     }
 }
 

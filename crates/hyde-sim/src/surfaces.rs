@@ -97,10 +97,14 @@ impl State<'_> {
     }
 
     /// Puts y exactly on the surfaces: the solver meets them to its tolerance.
+    #[inline]
     pub(crate) fn put_on_surfaces(&mut self, t: f64, y: &mut [f64], yp: &[f64]) {
-        if self.slides.is_empty() {
-            return;
+        if !self.slides.is_empty() {
+            self.put_on(t, y, yp);
         }
+    }
+
+    fn put_on(&mut self, t: f64, y: &mut [f64], yp: &[f64]) {
         // Once for each slide, and again where they depend on each other or bend.
         for _ in 0..3 {
             let heights = self.heights(t, y, yp);

@@ -9,11 +9,9 @@
 //! contraction measured last decides whether one is enough. The last stage is iterated twice, which measures it; but for an
 //! affine system it is what it was where the run started.
 
-use super::passes::{
-    are_finite, combine, correct, erroneous, guess, largest_of, sum_of_squares, unseen, weigh,
-};
-use super::tableau::{A, C, ERROR, GAMMA, INSIDE, STAGES};
-use super::{LAST, RungeKutta};
+use super::RungeKutta;
+use super::passes::{Along, are_finite, correct, estimate, predict, sum_of_squares};
+use super::tableau::{A, C, GAMMA, STAGES};
 use hyde_ida::System;
 
 /// Newton iterations of a stage at most.
@@ -114,15 +112,13 @@ impl<S: System> RungeKutta<S> {
     /// What the earlier stages say of a stage, and a first guess: a slope that goes on as in the first two.
     fn predict(&mut self, i: usize, h: f64) {
         let (earlier, slope) = self.slopes.split_at_mut(i);
-        let factors = A[i].map(|weight| h * weight);
-        combine(&mut self.base, &self.before, &factors[..i], earlier);
-        let (first, second) = (&earlier[0], &earlier[1.min(i - 1)]);
-        guess(
-            (&mut self.stage, &mut slope[0]),
-            &self.base,
-            (first, second),
-            (C[i] / C[1], h * GAMMA),
-        );
+        let along = Along {
+            factors: A[i].map(|weight| h * weight),
+            part: C[i] / C[1],
+            diagonal: h * GAMMA,
+        };
+        let (stage, slope) = (self.stage.whole_mut(), slope[0].whole_mut());
+        predict(stage, slope, self.before.whole(), earlier, &along);
     }
 
     /// Newton's method for a stage. Returns the size of the only correction, or 0 if there were more.
@@ -141,9 +137,13 @@ impl<S: System> RungeKutta<S> {
                 return Err(Obstacle::Residual(row));
             }
             self.linear.solve(&mut self.correction);
-            let (stage, correction) = (&mut self.stage, &self.correction);
-            correct(stage, slope, correction, &self.weights, cj);
-            let size = (sum_of_squares(correction, &self.counted) / self.count).sqrt();
+            let square = correct(
+                (&mut self.stage, slope),
+                &self.correction,
+                (&self.weights, &self.counted),
+                cj,
+            );
+            let size = (square / self.count).sqrt();
             if !size.is_finite() {
                 break;
             }
@@ -189,20 +189,17 @@ impl<S: System> RungeKutta<S> {
     /// there, and is the error of algebraic variables as well, as far as it comes from states.
     fn error(&mut self, h: f64) -> Result<(f64, usize), Obstacle> {
         let cj = 1.0 / (GAMMA * h);
-        let (error, inside) = (&mut self.base, &mut self.correction);
-        weigh(error, &self.slopes, &ERROR);
-        weigh(inside, &self.slopes, &INSIDE);
-        unseen(
-            inside,
-            (h, SEEN),
+        let estimated = estimate(
+            (&mut self.base, &mut self.correction),
+            &self.slopes,
             (&self.largest, &self.stage),
-            (&self.atol, &self.counted),
+            (&self.atol, &self.weights, &self.counted),
+            (h, cj, SEEN),
         );
-        let most = largest_of(inside);
-        let of_most = || inside.iter().position(|part| *part >= most);
+        let most = estimated.inside;
+        let of_most = || self.correction.iter().position(|part| *part >= most);
         let most_at = (most > 1.0).then(of_most).flatten();
-        let rough = erroneous(error, &self.slopes[LAST], &self.weights, (h, cj));
-        self.smooth = rough <= 1.0;
+        self.smooth = estimated.rough <= 1.0;
         self.statistics.residual_evaluations += 1;
         self.system
             .residual(self.from + h, &self.stage, &self.base, &mut self.correction)
@@ -220,7 +217,7 @@ impl<S: System> RungeKutta<S> {
     }
 
     fn most_corrected(&self) -> usize {
-        let sizes = self.correction.iter().zip(&self.weights);
+        let sizes = self.correction.iter().zip(self.weights.iter());
         let largest = sizes
             .map(|(correction, weight)| (correction * weight).abs())
             .enumerate()
