@@ -1,5 +1,6 @@
 //! The library parsed: its texts never change, so that a process parses each of them once and not at every load.
 
+use crate::named::Sought;
 use crate::parses::counted;
 use hyde_diag::{Diagnostics, FileId, Sources};
 use hyde_library::Package;
@@ -30,10 +31,10 @@ pub(crate) fn tree(package: Package, sources: &Sources, id: FileId) -> Arc<ast::
 }
 
 /// The packages of the library that declare a class of a name, or a type where it need not be a model.
-pub(crate) fn declaring(word: &str, model: bool) -> Vec<&'static str> {
+pub(crate) fn declaring(word: &str, sought: Sought) -> Vec<&'static str> {
     let all = names().iter();
     let own = all.filter(|(_, names)| {
-        let is = |(name, class): &(String, bool)| name == word && (*class || !model);
+        let is = |(name, class): &(String, bool)| name == word && sought.takes(*class);
         names.iter().any(is)
     });
     own.map(|(package, _)| *package).collect()

@@ -1,7 +1,7 @@
 //! The user's file and the packages it names.
 
 use crate::library_trees;
-use crate::named::{packages_named, tables_named, words_named};
+use crate::named::{Sought, packages_named, tables_named, words_named};
 use crate::parses::counted;
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 use hyde_flatten::{FmuInterface, TableFile};
@@ -365,26 +365,26 @@ impl File {
 
     /// Finds the packages that have what the files name and none of them declares.
     fn look_elsewhere(&mut self, sources: &Sources, packages: &Packages<'_>) {
-        let declared = |word: &str, model: bool| {
+        let declared = |word: &str, sought: Sought| {
             ["Real", "Integer", "Boolean"].contains(&word)
                 || self
                     .files
                     .iter()
-                    .any(|(_, file)| declares(file, word, model))
+                    .any(|(_, file)| declares(file, word, sought))
         };
         let own = self.files.iter();
         let own = own.filter(|(id, _)| !of_library(sources, *id));
-        let mut missing: Vec<(String, bool)> = Vec::new();
-        for (word, model) in own.flat_map(|(_, file)| words_named(file)) {
-            if !declared(word, model) && !missing.iter().any(|(known, _)| known == word) {
-                missing.push((word.to_owned(), model));
+        let mut missing: Vec<(String, Sought)> = Vec::new();
+        for (word, sought) in own.flat_map(|(_, file)| words_named(file)) {
+            if !declared(word, sought) && !missing.iter().any(|(known, _)| known == word) {
+                missing.push((word.to_owned(), sought));
             }
         }
         if missing.is_empty() {
             return;
         }
-        for (word, model) in &missing {
-            for package in library_trees::declaring(word, *model) {
+        for (word, sought) in &missing {
+            for package in library_trees::declaring(word, *sought) {
                 if !self.has(package) {
                     let packages = self.elsewhere.entry(word.clone()).or_default();
                     packages.push(package.to_owned());
@@ -398,8 +398,8 @@ impl File {
             let mut sources = Sources::new();
             let id = sources.add(name.as_str(), text);
             let tree = hyde_syntax::parse(&sources, id, &mut Diagnostics::new());
-            for (word, model) in &missing {
-                if declares(&tree, word, *model) {
+            for (word, sought) in &missing {
+                if declares(&tree, word, *sought) {
                     let packages = self.elsewhere.entry(word.clone()).or_default();
                     packages.push(name.clone());
                 }
@@ -408,11 +408,11 @@ impl File {
     }
 }
 
-/// Whether a file declares a class of that name, or a type where it need not be a model.
-fn declares(file: &ast::File, word: &str, model: bool) -> bool {
+/// Whether a file declares a class or a type of that name, as it is sought.
+fn declares(file: &ast::File, word: &str, sought: Sought) -> bool {
     file.items.iter().any(|item| match item {
-        Item::Class(class) => class.name.text == word,
-        Item::Type(item) => !model && item.name.text == word,
+        Item::Class(class) => sought.takes(true) && class.name.text == word,
+        Item::Type(item) => sought.takes(false) && item.name.text == word,
         Item::Experiment(_) | Item::Study(_) => false,
     })
 }

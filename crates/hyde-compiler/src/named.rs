@@ -1,7 +1,7 @@
 //! The packages, the types and the tables' files that a source file names.
 
 use hyde_diag::Span;
-use hyde_syntax::ast::{self, ClassBody, Element, Expr, ExprKind, Item, Reference};
+use hyde_syntax::ast::{self, ClassBody, Element, Expr, ExprKind, Item, Prefix, Reference};
 
 /// The packages of imports and of dotted types, each with where it is named first.
 pub(crate) fn packages_named(file: &ast::File) -> Vec<(String, Span)> {
@@ -19,34 +19,40 @@ pub(crate) fn packages_named(file: &ast::File) -> Vec<(String, Span)> {
         };
         named(package, import.path.span);
     }
-    each_type(file, &mut |reference| {
+    each_type(file, &mut |reference, _| {
         named(package_of(reference), reference.span)
     });
     found
 }
 
-/// The types, models and effects that are named without a package, and whether that can only be a model.
-pub(crate) fn words_named(file: &ast::File) -> Vec<(&str, bool)> {
-    let mut found = Vec::new();
-    each_type(file, &mut |reference| {
-        found.extend(reference.as_word().map(|word| (word, false)))
-    });
-    for item in &file.items {
-        if let Item::Class(class) = item
-            && let ClassBody::Long { elements, .. } = &class.body
-        {
-            for element in elements {
-                if let Element::Declaration(declaration) = element
-                    && declaration
-                        .declarators
-                        .iter()
-                        .any(|item| item.is_modified())
-                {
-                    found.extend(declaration.type_name.as_word().map(|word| (word, true)));
-                }
-            }
+/// What a name can only be, by where it stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Sought {
+    /// A model or a quantity.
+    Either,
+    /// A model: its parts are modified.
+    Model,
+    /// A quantity, such as that of a parameter.
+    Quantity,
+}
+
+impl Sought {
+    /// Whether a model, or else a quantity, is what is sought.
+    pub(crate) fn takes(self, model: bool) -> bool {
+        match self {
+            Self::Either => true,
+            Self::Model => model,
+            Self::Quantity => !model,
         }
     }
+}
+
+/// The types, models and effects that are named without a package, and what each can only be.
+pub(crate) fn words_named(file: &ast::File) -> Vec<(&str, Sought)> {
+    let mut found = Vec::new();
+    each_type(file, &mut |reference, sought| {
+        found.extend(reference.as_word().map(|word| (word, sought)));
+    });
     found
 }
 
@@ -79,31 +85,36 @@ fn package_of(reference: &Reference) -> String {
         .map_or_else(String::new, |(package, _)| package.to_owned())
 }
 
-fn each_type<'a>(file: &'a ast::File, add: &mut impl FnMut(&'a Reference)) {
+fn each_type<'a>(file: &'a ast::File, add: &mut impl FnMut(&'a Reference, Sought)) {
     for item in &file.items {
         match item {
             Item::Class(class) => match &class.body {
                 ClassBody::Short { base, effects, .. } => {
-                    add(base);
-                    effects.iter().for_each(|used| add(&used.effect));
+                    add(base, Sought::Either);
+                    let effects = effects.iter();
+                    effects.for_each(|used| add(&used.effect, Sought::Either));
                 }
                 ClassBody::Long { elements, .. } => types_named(elements, add),
             },
-            Item::Experiment(experiment) => add(&experiment.model),
-            Item::Type(item) => add(&item.base),
+            Item::Experiment(experiment) => add(&experiment.model, Sought::Model),
+            Item::Type(item) => add(&item.base, Sought::Quantity),
             Item::Study(_) => {}
         }
     }
 }
 
-fn types_named<'a>(elements: &'a [Element], add: &mut impl FnMut(&'a Reference)) {
+fn types_named<'a>(elements: &'a [Element], add: &mut impl FnMut(&'a Reference, Sought)) {
     for element in elements {
         match element {
-            Element::Declaration(declaration) => add(&declaration.type_name),
-            Element::Extends(base, _) => add(base),
+            Element::Declaration(declaration) => {
+                add(&declaration.type_name, sought(declaration));
+            }
+            Element::Extends(base, _) => add(base, Sought::Either),
             Element::Clocked(clocked) => types_named(&clocked.elements, add),
-            Element::Replace(_, by, _) => add(by),
-            Element::Measure(measure) | Element::Account(_, measure) => add(&measure.type_name),
+            Element::Replace(_, by, _) => add(by, Sought::Either),
+            Element::Measure(measure) | Element::Account(_, measure) => {
+                add(&measure.type_name, Sought::Quantity);
+            }
             Element::Domain(_)
             | Element::Discretize(_)
             | Element::Modes(_)
@@ -115,8 +126,20 @@ fn types_named<'a>(elements: &'a [Element], add: &mut impl FnMut(&'a Reference))
             // Effects of other packages are named whole; alone, a name is that of one beside it.
             Element::Confounds(names) => {
                 let dotted = names.iter().filter(|name| name.as_word().is_none());
-                dotted.for_each(&mut *add);
+                dotted.for_each(|name| add(name, Sought::Either));
             }
         }
+    }
+}
+
+fn sought(declaration: &ast::Declaration) -> Sought {
+    let is_parameter = |prefix: &Prefix| matches!(prefix, Prefix::Parameter | Prefix::Constant);
+    let mut declarators = declaration.declarators.iter();
+    if declaration.prefixes.iter().any(is_parameter) {
+        Sought::Quantity
+    } else if declarators.any(|item| item.is_modified()) {
+        Sought::Model
+    } else {
+        Sought::Either
     }
 }

@@ -227,12 +227,18 @@ impl<'a> Model<'a, '_> {
             "floor" | "ceil" | "integer" | "mod" | "floor_to" | "round_to" => {
                 self.quantiser(name, &args, scope, span)
             }
-            "min" | "max" if args.len() == 2 => self.extremum(name == "min", &args, scope, span),
+            "min" | "max" if args.len() == 2 && !self.is_condition(args[1], scope) => {
+                self.extremum(name == "min", &args, scope, span)
+            }
             "max" | "min" | "rms" | "mean" | "first" | "last" | "settling" | "resonance" => {
                 self.reduction(name, &args, scope, span)
             }
-            // Of two arguments it is over a domain.
-            "integral" if args.len() == 1 && scope.setting == Setting::Measure => {
+            "integral"
+                if scope.setting == Setting::Measure
+                    && args
+                        .get(1)
+                        .is_none_or(|second| self.is_condition(second, scope)) =>
+            {
                 self.reduction(name, &args, scope, span)
             }
             "clamp" => self.clamp(&args, scope, span),

@@ -125,16 +125,55 @@ impl<'a> Names<'a> {
         if let Some(diagnostic) = self.not_imported(file, name, declared_name) {
             return diagnostic;
         }
+        let declare = "declare it, or import its package: `import Rotational.*;`";
+        self.nowhere(file, name, ("type or model", declare), declared_name)
+    }
+
+    /// "no such quantity", where only one can stand: behind `parameter`, before the name of a measure.
+    pub(crate) fn unknown_quantity(self, file: FileIndex, name: &Reference) -> Diagnostic {
+        match self.not_imported(file, name, quantity_name) {
+            Some(diagnostic) => diagnostic,
+            None => {
+                let declare = format!("declare it: `type {} = Real [unit];`", name.dotted());
+                self.nowhere(file, name, ("quantity", &declare), quantity_name)
+            }
+        }
+    }
+
+    /// The quantities known in a file, each with its file.
+    pub(crate) fn quantities(self, file: FileIndex) -> Vec<(FileIndex, &'a TypeItem)> {
+        let known = |other: &FileIndex| *other == file || self.imports_everything(file, *other);
+        let files = (0..self.files.len()).filter(known);
+        let items = files.flat_map(|index| {
+            let items = self.files[index].1.items.iter();
+            items.map(move |item| (index, item))
+        });
+        let quantities = items.filter_map(|(index, item)| match item {
+            Item::Type(item) => Some((index, item)),
+            Item::Class(_) | Item::Experiment(_) | Item::Study(_) => None,
+        });
+        quantities.collect()
+    }
+
+    /// "there is none here", with the nearest names that there are.
+    fn nowhere(
+        self,
+        file: FileIndex,
+        name: &Reference,
+        (what, declare): (&str, &str),
+        declared: impl Fn(&'a Item) -> Option<&'a str>,
+    ) -> Diagnostic {
+        let text = name.dotted();
         let mut known: Vec<&str> = Vec::new();
         for (index, (_, tree)) in self.files.iter().enumerate() {
             if index == file || self.imports_everything(file, index) {
-                known.extend(tree.items.iter().filter_map(declared_name));
+                known.extend(tree.items.iter().filter_map(&declared));
             }
         }
         known.extend(["Real", "Integer", "Boolean"]);
         let diagnostic = Diagnostic::error(
             Code::UnknownType,
-            format!("there is no type or model `{text}` here"),
+            format!("there is no {what} `{text}` here"),
         )
         .label(name.span, "not known in this file");
         if let Some(help) = hyde_syntax::instead_of(&text) {
@@ -142,7 +181,7 @@ impl<'a> Names<'a> {
         }
         match nearest(&text, known.iter().copied()) {
             Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-            None => diagnostic.help("declare it, or import its package: `import Rotational.*;`"),
+            None => diagnostic.help(declare),
         }
     }
 
@@ -285,6 +324,13 @@ pub(crate) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> O
         })
         .min()
         .map(|(.., candidate)| candidate)
+}
+
+fn quantity_name(item: &Item) -> Option<&str> {
+    match item {
+        Item::Type(item) => Some(&item.name.text),
+        Item::Class(_) | Item::Experiment(_) | Item::Study(_) => None,
+    }
 }
 
 fn declared_name(item: &Item) -> Option<&str> {

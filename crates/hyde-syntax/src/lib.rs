@@ -23,7 +23,7 @@ pub use format::{
     expression as format_expression, file as format, member, reference as format_reference,
 };
 pub use grammar::Rule;
-pub use habits::instead_of;
+pub use habits::{instead_of, instead_of_attribute};
 pub use law::{LawForm, LawTarget};
 pub use lookup::{FileIndex, Lookup, dotted};
 pub use parse::{parse, parse_record};

@@ -106,7 +106,9 @@ pub(crate) fn skip_statement(text: &str, start: usize) -> usize {
         }
         match token {
             "{" => depth += 1,
-            "}" if depth <= 1 && blocks == 0 => return at + 1,
+            "}" if depth <= 1 && blocks == 0 && !(depth == 1 && is_list(text, at)) => {
+                return at + 1;
+            }
             "}" => depth = depth.saturating_sub(1),
             "for" | "when" if previous != "end" && (at == start || blocks > 0) => blocks += 1,
             "if" if at == start => blocks += 1,
@@ -124,6 +126,12 @@ pub(crate) fn skip_statement(text: &str, start: usize) -> usize {
         previous = token;
     }
     text.len()
+}
+
+/// Whether the brace that closes at `at` is that of a list, so that its statement goes on behind it.
+fn is_list(text: &str, at: usize) -> bool {
+    let next = Scanner::new(text, at + 1).next();
+    next.is_some_and(|(_, next)| [";", "[", ")", ",", "+", "-", "*", "/", "^"].contains(&next))
 }
 
 /// Where the section of a class ends that begins at `start`: at the next one, or at the end of the class.

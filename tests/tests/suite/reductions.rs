@@ -42,13 +42,16 @@ fn a_lag_settles_as_its_exponential_does() {
     close(&solved, "early", 1.0 - (-0.03 / T).exp(), 1e-7);
     close(&solved, "short", T * (1.0 - (-0.2 / T).exp()), 1e-9);
     close(&solved, "over", 0.0, 1e-12); // It rises to the end.
-    // A condition changes somewhere in a step, of which a thousandth is left.
+    // A condition changes somewhere in a step.
     let behind = T * ((-0.03 / T).exp() - (-0.2 / T).exp()) / 0.17;
-    close(&solved, "behind", behind, 1e-5 * behind);
+    close(&solved, "behind", behind, 1e-8);
     let half = T * 2.0_f64.ln();
     let near = (0.5 * T * (0.25 - (-0.4 / T).exp()) / (0.2 - half)).sqrt();
-    close(&solved, "near", near, 1e-5 * near);
+    close(&solved, "near", near, 1e-8);
+    close(&solved, "gap", (-0.03 / T).exp(), 1e-7);
+    close(&solved, "late", T * (0.5 - (-0.2 / T).exp()), 1e-9);
     assert!(measured(&solved, "beyond").is_nan());
+    assert!(measured(&solved, "nothing").is_nan());
     assert!(measured(&solved, "never").is_nan());
     let never = solved.run.measures.iter().find(|m| m.name == "never");
     let why = never.unwrap().missing.as_ref().unwrap().text();

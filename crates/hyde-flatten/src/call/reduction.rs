@@ -1,4 +1,5 @@
-//! A signal over a run as one number: `max`, `min`, `rms`, `mean`, `integral`, `first`, `last`, `settling`, `resonance`.
+//! A signal over a run as one number: `max`, `min`, `rms`, `mean`, `integral`, `first`, `last`, `settling`, `resonance`;
+//! all but the last two where a condition holds, if one is given.
 
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
@@ -7,7 +8,7 @@ use crate::zero::Zero;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::flat::{Reduction, ReductionKind};
 use hyde_ir::{BinaryOp, ExprId, UnaryOp, VariableKind};
-use hyde_syntax::ast::Expr;
+use hyde_syntax::ast::{Binary, Expr, ExprKind, Unary};
 use hyde_units::Dimension;
 
 impl<'a> Model<'a, '_> {
@@ -22,7 +23,8 @@ impl<'a> Model<'a, '_> {
         // The second argument of `settling` is a band, any other a condition.
         let second = match (name, args) {
             ("settling", _) => self.exactly(name, args, span).map(|[a, b]| (a, Some(b))),
-            ("first" | "last" | "mean" | "rms", [a, b]) => Some((*a, Some(*b))),
+            ("resonance", _) => self.exactly(name, args, span).map(|[a]| (a, None)),
+            (_, [a, b]) => Some((*a, Some(*b))),
             _ => self.exactly(name, args, span).map(|[a]| (a, None)),
         };
         let Some((a, second)) = second else {
@@ -48,12 +50,13 @@ impl<'a> Model<'a, '_> {
             .map(hyde_syntax::format_expression)
             .collect();
         let written = format!("{name}({})", written.join(", "));
-        let mut condition_holds = None;
+        let condition = second.filter(|_| name != "settling").map(|condition| {
+            let holds = self.truth(condition, &over_run);
+            let arena = &mut self.flat.exprs;
+            let (yes, no) = (arena.constant(1.0), arena.constant(0.0));
+            arena.if_else(holds, yes, no)
+        });
         let (kind, value, dim) = match (name, second) {
-            ("mean" | "rms", Some(condition)) => {
-                let holds = self.truth(condition, &over_run);
-                return self.while_it_holds(name, &inner, holds, (written, scope, span));
-            }
             ("max", _) => (ReductionKind::Max, inner.id, same),
             ("min", _) => (ReductionKind::Min, inner.id, same),
             ("rms", _) => (ReductionKind::Rms, inner.id, same),
@@ -73,23 +76,11 @@ impl<'a> Model<'a, '_> {
                 let outside = arena.binary(BinaryOp::Sub, size, band.id);
                 (ReductionKind::Settling, outside, time)
             }
-            (_, condition) => {
-                let kind = if name == "first" {
-                    ReductionKind::First
-                } else {
-                    ReductionKind::Last
-                };
-                condition_holds = condition.map(|condition| {
-                    let holds = self.truth(condition, &over_run);
-                    let arena = &mut self.flat.exprs;
-                    let (yes, no) = (arena.constant(1.0), arena.constant(0.0));
-                    arena.if_else(holds, yes, no)
-                });
-                (kind, inner.id, same)
-            }
+            ("first", _) => (ReductionKind::First, inner.id, same),
+            (_, _) => (ReductionKind::Last, inner.id, same),
         };
         let id = self.reduced(
-            (kind, value, condition_holds),
+            (kind, value, condition),
             dim.clone(),
             (written, scope, span),
         );
@@ -100,45 +91,28 @@ impl<'a> Model<'a, '_> {
         }
     }
 
-    /// A mean or a root mean square over the time in which a condition holds:
-    ///
-    /// ```text
-    /// mean(e, c)   integral(if c then e else 0)/integral(if c then 1 else 0)
-    /// rms(e, c)    sqrt(integral(if c then e^2 else 0)/integral(if c then 1 else 0))
-    /// ```
-    fn while_it_holds(
-        &mut self,
-        name: &str,
-        signal: &Typed,
-        holds: ExprId,
-        (written, scope, span): (String, &Scope<'a>, Span),
-    ) -> Typed {
-        let time = Dim::known(Dimension::TIME);
-        let (mut value, mut dim) = (signal.id, signal.dim.clone());
-        if name == "rms" {
-            value = self.flat.exprs.binary(BinaryOp::Mul, value, value);
-            dim = dim.multiply(&dim);
+    /// Whether the second argument of a reduction is a condition: `max(e, time > 0.5 [s])` is the largest value behind 0.5 s,
+    /// `max(a, b)` the larger of two numbers.
+    pub(super) fn is_condition(&mut self, second: &'a Expr, scope: &Scope<'a>) -> bool {
+        if scope.setting != Setting::Measure {
+            return false;
         }
-        let arena = &mut self.flat.exprs;
-        let (one, zero) = (arena.constant(1.0), arena.constant(0.0));
-        let value = arena.if_else(holds, value, zero);
-        let duration = arena.if_else(holds, one, zero);
-        let place = (written.clone(), scope, span);
-        let sum = self.reduced(
-            (ReductionKind::Integral, value, None),
-            dim.multiply(&time),
-            place,
-        );
-        let place = (format!("duration of {written}"), scope, span);
-        let duration = self.reduced((ReductionKind::Integral, duration, None), time, place);
-        let arena = &mut self.flat.exprs;
-        let mut id = arena.binary(BinaryOp::Div, sum, duration);
-        if name == "rms" {
-            id = arena.unary(UnaryOp::Sqrt, id);
-        }
-        Typed {
-            zero: signal.zero,
-            ..self.typed(id, signal.dim.clone(), span)
+        match &second.kind {
+            ExprKind::Boolean(_) | ExprKind::Unary(Unary::Not, _) => true,
+            ExprKind::Binary(operator, ..) => match operator {
+                Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge | Binary::Eq | Binary::Ne => true,
+                Binary::And | Binary::Or => true,
+                Binary::Add | Binary::Sub | Binary::Mul | Binary::Div | Binary::Pow => false,
+            },
+            ExprKind::Reference(_) => self.lower(second, &scope.with(Setting::Report)).truth,
+            ExprKind::Number(..)
+            | ExprKind::String(_)
+            | ExprKind::Call(..)
+            | ExprKind::Unary(..)
+            | ExprKind::If(..)
+            | ExprKind::Array(..)
+            | ExprKind::Comprehension(_)
+            | ExprKind::Slice(..) => false,
         }
     }
 

@@ -39,7 +39,7 @@ impl<'a> Model<'a, '_> {
             }
             Some(_) => {}
             None => {
-                let diagnostic = self.names.unknown(file, &measure.type_name);
+                let diagnostic = self.names.unknown_quantity(file, &measure.type_name);
                 self.report(diagnostic);
             }
         }

@@ -236,14 +236,15 @@ impl<'a> Model<'a, '_> {
                 } else {
                     "parameter"
                 };
-                self.report(
-                    Diagnostic::error(
-                        Code::UnknownModification,
-                        format!("a {of} has no attribute `{}`", change.target.dotted()),
-                    )
-                    .label(change.target.span, "changes nothing")
-                    .help(format!("attributes are {}", listed(known))),
-                );
+                let diagnostic = Diagnostic::error(
+                    Code::UnknownModification,
+                    format!("a {of} has no attribute `{}`", change.target.dotted()),
+                )
+                .label(change.target.span, "changes nothing");
+                self.report(match word.and_then(hyde_syntax::instead_of_attribute) {
+                    Some(help) => diagnostic.help(help),
+                    None => diagnostic.help(format!("attributes are {}", listed(known))),
+                });
             }
         }
     }

@@ -21,9 +21,19 @@ impl<'a> Model<'a, '_> {
                 Some(_) => Diagnostic::error(Code::WrongType, "a model cannot be a parameter")
                     .label(declaration.type_name.span, "this is a model")
                     .help("declare it without `parameter`; exchange it by `replaceable`"),
-                None => self.names.unknown(item.file, &declaration.type_name),
+                None => self
+                    .names
+                    .unknown_quantity(item.file, &declaration.type_name),
             };
-            self.report(diagnostic);
+            let values = declaration.declarators.iter();
+            let values = values.filter_map(|declarator| declarator.binding.as_ref());
+            let fitting = values
+                .filter_map(|value| self.quantities_of(item.file, value))
+                .next();
+            self.report(match fitting {
+                Some(help) => diagnostic.help(help),
+                None => diagnostic,
+            });
             let names = declaration.declarators.iter();
             self.undeclared
                 .extend(names.map(|declarator| declarator.name.text.as_str()));

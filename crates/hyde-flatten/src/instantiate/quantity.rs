@@ -43,6 +43,26 @@ impl<'a> Model<'a, '_> {
         (dim, quantity)
     }
 
+    /// Which quantities a value with a unit may be: "a value in kg.m2 is a `MomentOfInertia`".
+    pub(super) fn quantities_of(&mut self, file: FileIndex, value: &Expr) -> Option<String> {
+        let unit = literal_unit(value)?;
+        let dimension = NamedUnit::parse(&unit.text).ok()?.unit().dimension;
+        let mut names = Vec::new();
+        for (file, item) in self.names.quantities(file) {
+            let own = self.type_unit(file, item);
+            if own.is_some_and(|own| own.unit().dimension == dimension) {
+                names.push(format!("`{}`", item.name.text));
+            }
+        }
+        (!names.is_empty()).then(|| {
+            format!(
+                "a value in {} is declared as {}",
+                unit.text,
+                names.join(" or ")
+            )
+        })
+    }
+
     /// The unit of a type: its own, or that of the type it is made of.
     pub(crate) fn type_unit(
         &mut self,

@@ -54,6 +54,26 @@ impl<'p> Piece<'p> {
         }
     }
 
+    /// The stretches of it in which a condition holds.
+    fn stretches(&mut self, condition: usize) -> Vec<(f64, f64)> {
+        let holds = self.columns[condition].map(|value| value != 0.0);
+        let mut stretches: Vec<(f64, f64)> = Vec::new();
+        let mut since = holds[0].then_some(self.times[0]);
+        for k in 1..POINTS {
+            if holds[k] == holds[k - 1] {
+                continue;
+            }
+            let true_there = |values: &[f64]| values[condition] != 0.0;
+            let (before, behind) = self.change(self.times[k - 1], self.times[k], true_there);
+            match since.take() {
+                Some(since) => stretches.push((since, before)),
+                None => since = Some(behind),
+            }
+        }
+        stretches.extend(since.map(|since| (since, self.times[POINTS - 1])));
+        stretches
+    }
+
     /// The largest value that `of` a signal has; `best` is what is known already.
     fn largest(&mut self, column: usize, sign: f64, best: f64) -> f64 {
         let values = self.columns[column].map(|value| sign * value);
@@ -117,6 +137,8 @@ pub(super) struct Sum {
     condition: Option<usize>,
     so: So,
     sum: f64,
+    /// How long its condition has held, in s.
+    held_s: f64,
     value: Option<f64>,
     /// When the signal was first not a number, in s, and what was.
     not_a_number: Option<(f64, Option<String>)>,
@@ -151,6 +173,7 @@ impl Sum {
             condition,
             so,
             sum: 0.0,
+            held_s: 0.0,
             value: None,
             not_a_number: None,
             nothing_since: None,
@@ -167,8 +190,8 @@ impl Sum {
 
     pub(super) fn point(&mut self, t: f64, values: &[f64]) {
         let value = values[self.column];
+        let holds = self.condition.is_none_or(|c| values[c] != 0.0);
         if let So::End { first } = self.so {
-            let holds = self.condition.is_none_or(|c| values[c] != 0.0);
             let since = self.nothing_since.unwrap_or(t);
             self.nothing_since = value.is_nan().then_some(since);
             if holds && !(first && self.value.is_some()) {
@@ -176,7 +199,7 @@ impl Sum {
             }
             return;
         }
-        if self.notes(t, value) {
+        if !holds || self.notes(t, value) {
             return;
         }
         match &mut self.so {
@@ -203,6 +226,32 @@ impl Sum {
         if let So::End { first } = self.so {
             return self.end_in(piece, first);
         }
+        let Some(condition) = self.condition else {
+            return self.whole(piece);
+        };
+        if piece.columns[condition].iter().all(|holds| *holds != 0.0) {
+            self.held_s += piece.times[POINTS - 1] - piece.times[0];
+            return self.whole(piece);
+        }
+        for (from, to) in piece.stretches(condition) {
+            let times = lobatto::times(from, to);
+            let points = times.map(&mut *piece.at);
+            let columns: Vec<[f64; POINTS]> = (0..piece.columns.len())
+                .map(|column| std::array::from_fn(|k| points[k][column]))
+                .collect();
+            self.held_s += to - from;
+            let is_resolved = piece.is_resolved;
+            self.whole(&mut Piece {
+                times,
+                columns: &columns,
+                is_resolved,
+                at: &mut *piece.at,
+            });
+        }
+    }
+
+    /// Takes in all of a piece.
+    fn whole(&mut self, piece: &mut Piece<'_>) {
         let values = piece.columns[self.column];
         let mut bad = false;
         for (t, value) in piece.times.iter().zip(values) {
@@ -278,19 +327,26 @@ impl Sum {
             let variable = variable.clone().unwrap_or_default();
             return Reduced::NotANumber { t: *t, variable };
         }
-        let mean = |sum: f64, instant: f64| {
-            if span_s > 0.0 { sum / span_s } else { instant }
+        let span_s = self.condition.map_or(span_s, |_| self.held_s);
+        let instant = match self.condition {
+            Some(_) => self.value,
+            None => Some(self.value.unwrap_or(0.0)),
         };
-        let instant = self.value.unwrap_or(0.0);
+        // Of no time it is that of an instant, if the condition holds at one.
+        let mean = |of: fn(f64) -> f64| match span_s > 0.0 {
+            true => Some(self.sum / span_s),
+            false => instant.map(of),
+        };
+        let value = |found: Option<f64>| found.map_or(Reduced::Nothing, Reduced::Value);
         match (&self.so, self.kind) {
-            (So::Extreme { sign, best }, _) => Reduced::Value(sign * best),
-            (So::Integral { .. }, ReductionKind::Mean) => Reduced::Value(mean(self.sum, instant)),
+            (So::Extreme { sign, best }, _) => value(best.is_finite().then_some(sign * best)),
+            (So::Integral { .. }, ReductionKind::Mean) => value(mean(|instant| instant)),
             (So::Integral { square: true }, _) => {
-                Reduced::Value(mean(self.sum, instant * instant).sqrt())
+                value(mean(|instant| instant * instant).map(f64::sqrt))
             }
             (So::Integral { .. }, _) => Reduced::Value(self.sum),
-            (So::End { .. }, _) => self.value.map_or(Reduced::Nothing, Reduced::Value),
-            (So::Settling { since_s }, _) => since_s.map_or(Reduced::Nothing, Reduced::Value),
+            (So::End { .. }, _) => value(self.value),
+            (So::Settling { since_s }, _) => value(*since_s),
             (So::Spectrum { time, values }, _) => resonance(time, values),
         }
     }
