@@ -3,6 +3,7 @@
 use crate::Calibration;
 use crate::Project;
 use crate::assumptions::of_record;
+use crate::run_failure::instant;
 use crate::unknown;
 use hyde_calibrate::{FreeMeasure, Measures, Model, Observer, Recording, Unsupported, Written};
 use hyde_compiler::{Additions, Candidate, Form, Request};
@@ -211,7 +212,7 @@ pub fn assumptions(calibration: &Calibration) -> Vec<String> {
 }
 
 /// What was taken for granted of a record's files, and what its observer takes otherwise than it is written: that it begins
-/// elsewhere than the model, and other rows.
+/// elsewhere than the model, other rows, and rows behind the stop of the experiment.
 pub fn told(calibration: &Calibration, recording: &Recording) -> Vec<String> {
     let program = &calibration.compiled.program;
     let tables = recording.tables.iter();
@@ -231,6 +232,14 @@ pub fn told(calibration: &Calibration, recording: &Recording) -> Vec<String> {
         ));
     }
     let time = |seconds: f64| engineering(seconds, Dimension::TIME);
+    if let Some((stop_s, end_s)) = recording.behind_stop(program, &calibration.set) {
+        found.push(format!(
+            "it counts to its end at {}: the stop of `{}` at {} bounds its runs alone; to leave out the rest, cut the file",
+            instant(end_s),
+            calibration.project.experiment.as_deref().unwrap_or_default(),
+            instant(stop_s)
+        ));
+    }
     if let Some(own) = &recording.uneven {
         found.push(format!(
             "the samples of `{}` are {} to {} apart, unevenly spaced from {} on: the observer steps every {} and uses each reading at the \

@@ -425,3 +425,25 @@ fn a_calibration_tells_three_errors_over_their_floor() {
         }
     }
 }
+
+#[test]
+fn a_record_behind_the_stop_of_its_experiment_counts_and_the_diagnosis_says_so() {
+    let (folder, model) = bench();
+    let short = read(&model).replace("stop file.end", "stop 1 [s]");
+    let short = folder.file("short.hyde", &short);
+    let said = |file: &str| {
+        let output = hyde(&["diagnose", file]);
+        assert_eq!(status(&output), 0, "{}", errors(&output));
+        let printed = text(&output);
+        let words: Vec<&str> = printed.split_whitespace().collect();
+        words.join(" ")
+    };
+    let told = said(&short);
+    for note in [
+        "fit-a.csv: it counts to its end at 3",
+        "s: the stop of `bench` at 1 s bounds its runs alone; to leave out the rest, cut the file",
+    ] {
+        assert!(told.contains(note), "{told}");
+    }
+    assert!(!said(&model).contains("to its end"));
+}

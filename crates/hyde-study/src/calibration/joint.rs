@@ -8,7 +8,6 @@ use crate::asked::Asked;
 use crate::project::{Loaded, Records};
 use crate::record_settings::called;
 use crate::refused::{Fault, Refused};
-use crate::run_failure::instant;
 use crate::unobservable::unsupported;
 use hyde_calibrate::{CalibrationPlan, Joint, Observer, Part, Problem, Recording, Varied};
 use hyde_diag::{Code, Diagnostic};
@@ -28,7 +27,7 @@ pub struct JointCalibration {
     pub numbers: Vec<Number>,
     /// The same, as least squares take it.
     pub varied: Vec<Varied>,
-    /// What was taken for granted of records and parameters.
+    /// What was taken for granted of parameters.
     pub notes: Vec<String>,
 }
 
@@ -200,11 +199,6 @@ pub(super) fn made(
         }
         read.push(lists);
     }
-    for ((experiment, prepared), lists) in experiments.iter().zip(&prepared_all).zip(&read) {
-        let mut each = lists.iter();
-        let told = each.find_map(|list| behind_stop(experiment, prepared, list));
-        found.notes.extend(told);
-    }
     let span = found.plan.span;
     let mut observers = Vec::new();
     for (prepared, [fitted, holdout]) in prepared_all.iter().zip(&read) {
@@ -239,21 +233,6 @@ pub(super) fn made(
         });
     }
     Ok(found)
-}
-
-/// That the observer uses a record further than its experiment runs.
-fn behind_stop(experiment: &Experiment, prepared: &Prepared, read: &[Recording]) -> Option<String> {
-    let program = &prepared.compiled.program;
-    read.iter().find_map(|recording| {
-        let (stop_s, end_s) = recording.behind_stop(program, &prepared.set)?;
-        Some(format!(
-            "`{}` counts to its end at {}: the stop of `{}` at {} bounds its runs alone; to leave out the rest, cut the file",
-            recording.name,
-            instant(end_s),
-            experiment.name.text,
-            instant(stop_s)
-        ))
-    })
 }
 
 /// The project with what is wrong.
