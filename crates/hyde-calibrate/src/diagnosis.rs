@@ -17,7 +17,7 @@
 //! forward        its branches, two at most, and their rounds                              diagnosis/forward.rs
 //! pair           two effects that show only together                                      diagnosis/pair.rs
 //! exchange       earlier effects once more against their rivals                           diagnosis/exchange.rs
-//! apart          the experiment that would tell alternatives apart                        diagnosis/apart.rs
+//! apart          what alternatives are to each other, and what would tell them apart      diagnosis/apart.rs
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
 //! whole          orders of angles that are likelier whole numbers                         diagnosis/whole.rs
 //! holding        an observer that holds the modes of what was found, too                 diagnosis/holding.rs
@@ -59,7 +59,7 @@ mod whole;
 pub(crate) use projection::Projection;
 pub(crate) use stage::{Ground, Stage, flat};
 
-pub use apart::{Alternative, Experiment};
+pub use apart::{Alternative, Experiment, Relation};
 pub use claims::FoundModel;
 pub use curve::{CurvePoint, FoundCurve, Over};
 pub use finding::{Finding, Quantity};

@@ -31,8 +31,8 @@ mod selftest;
 pub use diagnosis::{
     Alternative, Author, Built, CurvePoint, Diagnosis, Experiment, Factor, Finding, FoundCurve,
     FoundLaw, FoundModel, Gates, Hypothesis, Inquiry, Kind, Knob, LatentForce, Law, LawVariable,
-    Map, Over, Panel, Quantity, Rejection, Round, Scales, Score, Seen, Site, Summand, TABLE,
-    Threshold, Thresholds, Trial, Unknown, Variable, Verdict, Written, diagnose,
+    Map, Over, Panel, Quantity, Rejection, Relation, Round, Scales, Score, Seen, Site, Summand,
+    TABLE, Threshold, Thresholds, Trial, Unknown, Variable, Verdict, Written, diagnose,
 };
 pub use fit::{
     Cause, Fit, FittedParameter, Fold, Identifiability, Information, Joint, LIMIT, Part, Problem,

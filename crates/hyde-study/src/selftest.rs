@@ -16,7 +16,7 @@ mod records;
 mod work;
 
 pub use designs::Designs;
-pub use kept::{Kept, word};
+pub use kept::{Kept, relation_word, word};
 
 use crate::{Calibration, Progress, Store, diagnosis, unknown};
 use hyde_calibrate::{
@@ -331,7 +331,7 @@ fn identity(ready: &Ready<'_>) -> Identity {
         );
     }
     let set = calibration.project.set();
-    let mut order = json!({ "diagnosis": plan.name, "seed": seed, "set": set, "thresholds": format!("{thresholds:?}"), "hyde": env!("CARGO_PKG_VERSION") });
+    let mut order = json!({ "form": 2, "diagnosis": plan.name, "seed": seed, "set": set, "thresholds": format!("{thresholds:?}"), "hyde": env!("CARGO_PKG_VERSION") });
     if let Some(designs) = designs {
         order["designs"] = json!(designs.identity());
     }

@@ -240,7 +240,8 @@ fn words(outcome: &Outcome) -> String {
         let number = claim
             .hypothesis
             .map_or("law".to_owned(), |own| own.to_string());
-        let others: Vec<String> = claim.alternatives.iter().map(usize::to_string).collect();
+        let others = claim.alternatives.iter();
+        let others: Vec<String> = others.map(|(own, _)| own.to_string()).collect();
         let size = hyde_units::significant(claim.size, 4);
         format!(" {number}[{}] {size}", others.join(" "))
     };

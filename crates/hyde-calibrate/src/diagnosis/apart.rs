@@ -1,20 +1,43 @@
-//! [`telling`]: the experiment that would tell two effects apart which the records cannot.
+//! [`alternative`]: what a hypothesis is that the records cannot distinguish from the one taken in, and the experiment that
+//! would tell the two apart.
 //!
 //! Two fitted models predict different innovations. Were one of them the axis, the other would be behind it by the sum of
-//! squares of the difference; where that is below the gate, records of the same motions are asked for as many times as are
-//! missing, of the motion that tells most (discrimination of models; Hunter and Reiner, Technometrics 7, 1965, 307).
+//! squares of the difference, without the part that its own constants and parameters answer to. Where that is below the
+//! gate, records of the same motions are asked for as many times as are missing, of the motion that tells most
+//! (discrimination of models; Hunter and Reiner, Technometrics 7, 1965, 307).
+//!
+//! If the sum is no more than noise gives to the constants of the other model, and next to nothing of what the first one
+//! explains, both predict the same. With more constants the other one is no other answer: a drag with a power of the speed
+//! repeats a viscous one, its exponent being near 1. Nor is the same effect at another place that moves with the first.
 
+use super::hypothesis::Hypothesis;
+use super::projection::Projection;
+use super::search::Gates;
+use super::stage::{Ground, flat};
 use super::trial::Trial;
 use crate::fit::rows_of_a_block;
-use crate::records::Recording;
+use nalgebra::DVector;
 
 /// A hypothesis that the records cannot tell from the one taken in.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Alternative {
     /// Its number.
     pub hypothesis: usize,
+    /// What it is beside the one taken in.
+    pub relation: Relation,
     /// What would tell; `None` where no motion of the records does.
     pub experiment: Option<Experiment>,
+}
+
+/// How two hypotheses are related that records cannot tell apart.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Relation {
+    /// They are different answers.
+    Another,
+    /// The same effect at places that move together, which predicts the same: one answer.
+    Joined,
+    /// The other one has more constants and predicts the same: the simpler one is the answer.
+    Repeats,
 }
 
 /// Motions of which more would tell two effects apart.
@@ -28,23 +51,47 @@ pub struct Experiment {
     pub second_s: f64,
 }
 
-/// What would tell two trials apart, for a gain that is to be reached, with so many records at most.
-pub(super) fn telling(
-    recordings: &[Recording],
-    one: &Trial,
-    other: &Trial,
-    gate: f64,
-    most_records: f64,
-) -> Option<Experiment> {
-    let pairs = one.stage.solution.innovations.iter();
-    let pairs = pairs.zip(&other.stage.solution.innovations);
-    let each = recordings.iter().zip(pairs).map(|(recording, (a, b))| {
+/// What a trial is beside the one taken in.
+pub(super) fn alternative(
+    ground: &Ground<'_>,
+    hypotheses: &[Hypothesis],
+    (one, other): (&Trial, &Trial),
+    gates: Gates,
+) -> Alternative {
+    let rest = not_repeated(ground, one, other);
+    let gate = one.gate(gates);
+    let experiment = telling(ground, one, &rest, gate);
+    // Noise gives each of its constants a gain of 1 on average.
+    let thresholds = ground.thresholds;
+    let by_chance = thresholds.margin * other.freedoms as f64 * one.inflation;
+    let same = rest.norm_squared() <= by_chance.min(thresholds.negligible * one.gain);
+    let effect = |trial: &Trial| &hypotheses[trial.hypothesis].effect;
+    let relation = match same {
+        true if other.freedoms > one.freedoms => Relation::Repeats,
+        true if effect(one) == effect(other) => Relation::Joined,
+        true | false => Relation::Another,
+    };
+    Alternative {
+        hypothesis: other.hypothesis,
+        relation,
+        experiment,
+    }
+}
+
+/// What would tell another trial from one, whose innovations it does not repeat by a rest, for a gain that is to be reached.
+fn telling(ground: &Ground<'_>, one: &Trial, rest: &DVector<f64>, gate: f64) -> Option<Experiment> {
+    let mut rest = rest.as_slice();
+    let records = ground.recordings.iter();
+    let each = records.zip(&one.stage.solution.innovations);
+    let each = each.map(|(recording, own)| {
         let length = rows_of_a_block(recording);
-        let rows = a.channels.first().map_or(0, Vec::len);
+        let rows = own.channels.first().map_or(0, Vec::len);
         let mut seconds = vec![0.0; rows.div_ceil(length)];
-        for (a, b) in a.channels.iter().zip(&b.channels) {
-            for (row, (a, b)) in a.iter().zip(b).enumerate() {
-                seconds[row / length] += (a - b).powi(2);
+        for channel in &own.channels {
+            let (here, behind) = rest.split_at(channel.len());
+            rest = behind;
+            for (row, own) in here.iter().enumerate() {
+                seconds[row / length] += own.powi(2);
             }
         }
         let most = (0..seconds.len()).max_by(|&i, &j| seconds[i].total_cmp(&seconds[j]));
@@ -55,6 +102,18 @@ pub(super) fn telling(
             second_s: first,
         }
     });
-    each.min_by(|a, b| a.times.total_cmp(&b.times))
-        .filter(|best| best.times <= most_records)
+    let best = each.min_by(|a, b| a.times.total_cmp(&b.times));
+    best.filter(|best| best.times <= ground.thresholds.more_records)
+}
+
+/// The difference of the innovations of two trials without what the constants and parameters of the other answer to.
+fn not_repeated(ground: &Ground<'_>, one: &Trial, other: &Trial) -> DVector<f64> {
+    let innovations = |trial: &Trial| DVector::from_vec(flat(&trial.stage.solution.innovations));
+    let difference = innovations(one) - innovations(other);
+    let rest = || {
+        let tracks = other.stage.tracks(ground).ok()?;
+        let projection = Projection::of(&other.stage, &tracks, ground).ok()??;
+        Some(projection.rest(&difference))
+    };
+    rest().unwrap_or(difference)
 }

@@ -1,6 +1,6 @@
 //! [`Forward::contest`]: hypotheses fitted beside each other, judged, and the one that is taken in.
 
-use super::apart::{Alternative, telling};
+use super::apart::{Alternative, alternative};
 use super::forward::Forward;
 use super::scan::Score;
 use super::search::Gates;
@@ -57,18 +57,8 @@ impl Forward<'_> {
         });
         let taken = choice(&trials, gates);
         let accepted = taken.map(|(best, others)| {
-            let own = &trials[best];
-            let gate = own.gate(gates);
-            let other = |other: usize| Alternative {
-                hypothesis: trials[other].hypothesis,
-                experiment: telling(
-                    ground.recordings,
-                    own,
-                    &trials[other],
-                    gate,
-                    ground.thresholds.more_records,
-                ),
-            };
+            let pair = |other: usize| (&trials[best], &trials[other]);
+            let other = |other: usize| alternative(ground, hypotheses, pair(other), gates);
             (best, others.into_iter().map(other).collect())
         });
         Contest { trials, accepted }

@@ -1,6 +1,6 @@
 //! [`Finding`]: an effect that was taken in, its sizes and shapes with what the records tell of each.
 
-use super::apart::Alternative;
+use super::apart::{Alternative, Relation};
 use super::forward::Taken;
 use super::hypothesis::{Hypothesis, Knob};
 use super::stage::Stage;
@@ -44,6 +44,14 @@ pub struct Finding {
     pub round: usize,
     /// Other hypotheses that the records cannot tell from it.
     pub alternatives: Vec<Alternative>,
+}
+
+impl Finding {
+    /// The hypotheses that records cannot tell from it and that are in a relation to it.
+    pub fn related(&self, relation: Relation) -> impl Iterator<Item = &Alternative> {
+        let all = self.alternatives.iter();
+        all.filter(move |other| other.relation == relation)
+    }
 }
 
 /// The effects with their quantities and intervals.

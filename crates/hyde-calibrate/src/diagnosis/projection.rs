@@ -178,6 +178,12 @@ impl Projection {
         a.dot(b) - onto_a.dot(&self.factor.solve(&onto_b))
     }
 
+    /// A change of innovations without what parameters answer to it.
+    pub(crate) fn rest(&self, change: &DVector<f64>) -> DVector<f64> {
+        let answered = self.factor.solve(&(&self.derivatives * change));
+        change - self.derivatives.tr_mul(&answered)
+    }
+
     /// What a change of innovations gains, and how far the parameters go to answer it, in units of their scales.
     pub(crate) fn answered(&self, change: &DVector<f64>) -> (f64, Vec<f64>) {
         let changed = &self.innovations + change;

@@ -6,6 +6,7 @@
 //! innovations tell less than independent ones. A gain on what was not fitted is also to be material: a part of the
 //! number of innovations. Everything is chosen inside the records to fit.
 
+use super::apart::Relation;
 use super::calibrated::calibrate_found;
 use super::claims::only_told;
 use super::edges::settled;
@@ -301,7 +302,12 @@ pub(super) fn verdict(
         [] if unexplained => Verdict::Unknown,
         [] => Verdict::None,
         _ if unexplained && share(before, after) < thresholds.mostly => Verdict::Unknown,
-        list if list.iter().any(|finding| !finding.alternatives.is_empty()) => Verdict::OneOf,
+        list if list
+            .iter()
+            .any(|own| own.related(Relation::Another).next().is_some()) =>
+        {
+            Verdict::OneOf
+        }
         _ => Verdict::Effect,
     }
 }

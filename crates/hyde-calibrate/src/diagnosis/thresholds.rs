@@ -144,7 +144,7 @@ thresholds! {
     retries: usize = 2,
         because "each attempt costs a round or a whole search and has fewer hypotheses left",
         removed 0.0;
-    /// Share of the best improvement below which a hypothesis, or a further term of a law, is not pursued; advantage of a variable over a better known one for a curve.
+    /// Share of the best improvement below which a hypothesis, or a further term of a law, is not pursued; that an alternative fails to repeat at most to be no other answer; advantage of a variable over a better known one for a curve.
     negligible: f64 = 0.01,
         because "what gains a hundredth of the best is found in a later round, if it is there",
         removed 0.0;

@@ -4,7 +4,7 @@
 use super::case::Case;
 use super::separation::Point;
 use super::trial::{Axis, Claim, Judged, Planted, Records, SelftestError, judged, tables};
-use crate::diagnosis::{Diagnosis, Finding, Hypothesis, Verdict};
+use crate::diagnosis::{Diagnosis, Finding, Hypothesis, Relation, Verdict};
 use std::sync::atomic::Ordering;
 
 /// A signal that is to distinguish effects.
@@ -43,7 +43,7 @@ pub enum Designed {
 }
 
 impl Designed {
-    /// Whether the new verdict names a hypothesis, and nothing else.
+    /// Whether the new verdict names a hypothesis, and no other answer.
     #[must_use]
     pub fn resolves(&self, hypothesis: usize) -> bool {
         match self {
@@ -51,11 +51,7 @@ impl Designed {
             Self::Diagnosed {
                 verdict, claims, ..
             } => match claims.as_slice() {
-                [only] => {
-                    *verdict == Verdict::Effect
-                        && only.hypothesis == Some(hypothesis)
-                        && only.alternatives.is_empty()
-                }
+                [only] => *verdict == Verdict::Effect && only.is_alone(hypothesis),
                 _ => false,
             },
         }
@@ -101,11 +97,14 @@ pub(super) fn designed(
 
 /// The effects of the first finding that is not alone, itself first, as they were fitted.
 pub(super) fn ambiguous(found: &Diagnosis, hypotheses: &[Hypothesis]) -> Vec<Point> {
-    let mut findings = found.findings.iter();
-    let Some(finding) = findings.find(|finding| !finding.alternatives.is_empty()) else {
+    let of = |finding: &Finding| {
+        let others = finding.related(Relation::Another);
+        others.map(|other| other.hypothesis).collect::<Vec<usize>>()
+    };
+    let mut findings = found.findings.iter().map(|finding| (finding, of(finding)));
+    let Some((finding, others)) = findings.find(|(_, others)| !others.is_empty()) else {
         return Vec::new();
     };
-    let others = finding.alternatives.iter().map(|other| other.hypothesis);
     let numbers = std::iter::once(finding.hypothesis).chain(others);
     numbers
         .filter_map(|number| Some(fitted(found, finding, number, hypotheses.get(number)?)))
@@ -139,7 +138,7 @@ mod tests {
 
     #[test]
     fn only_the_planted_effect_alone_resolves_a_verdict() {
-        let claim = |hypothesis: usize, alternatives: &[usize]| Claim {
+        let claim = |hypothesis: usize, alternatives: &[(usize, Relation)]| Claim {
             hypothesis: Some(hypothesis),
             alternatives: alternatives.to_vec(),
             size: 1.0,
@@ -152,9 +151,13 @@ mod tests {
             claims: claims.to_vec(),
         };
         assert!(diagnosed(Verdict::Effect, &[claim(3, &[])]).resolves(3));
+        // The place is one of several that move together; a law that repeats the planted one with more constants is no other answer.
+        let joined = claim(4, &[(3, Relation::Joined), (6, Relation::Repeats)]);
+        assert!(diagnosed(Verdict::Effect, std::slice::from_ref(&joined)).resolves(3));
+        assert!(!diagnosed(Verdict::Effect, &[joined]).resolves(6));
         for other in [
             diagnosed(Verdict::Effect, &[claim(4, &[])]),
-            diagnosed(Verdict::OneOf, &[claim(3, &[4])]),
+            diagnosed(Verdict::OneOf, &[claim(3, &[(4, Relation::Another)])]),
             diagnosed(Verdict::Effect, &[claim(3, &[]), claim(5, &[])]),
             diagnosed(Verdict::Unknown, &[claim(3, &[])]),
             diagnosed(Verdict::None, &[]),

@@ -2,7 +2,7 @@
 
 use super::case::{Case, Planting};
 use super::trial::{Claim, Outcome};
-use crate::diagnosis::Verdict;
+use crate::diagnosis::{Relation, Verdict};
 use std::collections::BTreeMap;
 
 /// What is claimed.
@@ -62,9 +62,11 @@ pub struct Table {
     pub empty: (usize, usize),
     /// A parameter off: right is `none`.
     pub parameter: (usize, usize),
-    /// An effect that the search does not know and that shows: right is to claim no known one, or to say that something is
-    /// left beside it.
+    /// An effect that the search does not know and that shows: right is to claim no known one, or one that repeats it, or to
+    /// say that something is left beside it.
     pub open_set: (usize, usize),
+    /// Of these, how often a known effect was claimed that repeats it.
+    pub equivalents: usize,
     /// Of these, how often a neighbour was named that effect's own list of confusions has.
     pub neighbours: usize,
     /// Of these, how often a law of its own was written.
@@ -113,7 +115,8 @@ pub fn tally(outcomes: &[(&Case, Outcome)], confounds: &dyn Fn(usize, usize) -> 
                 table.laws += usize::from(claimed.contains(&Found::Law));
                 let known = |found: &Found| matches!(found, Found::Effect(_));
                 let claims_known = claimed.iter().any(known);
-                let right = !claims_known || outcome.unexplained;
+                table.equivalents += usize::from(outcome.equivalent);
+                let right = !claims_known || outcome.unexplained || outcome.equivalent;
                 (&mut table.open_set, right)
             }
         };
@@ -148,9 +151,12 @@ fn count(row: &mut Row, outcome: &Outcome) {
     }
     row.visible += 1;
     row.right += usize::from(right);
-    row.alone += usize::from(
-        first.is_some_and(|c| c.hypothesis == Some(row.hypothesis) && c.alternatives.is_empty()),
-    );
+    let alone = |claim: &Claim| {
+        let mut others = claim.alternatives.iter();
+        let repeats = others.all(|(_, relation)| *relation == Relation::Repeats);
+        claim.hypothesis == Some(row.hypothesis) && repeats
+    };
+    row.alone += usize::from(first.is_some_and(alone));
     row.extras += outcome.claims.len().saturating_sub(1);
     if !right {
         *row.taken_for.entry(Found::of(first)).or_default() += 1;

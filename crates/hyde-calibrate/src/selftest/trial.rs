@@ -6,7 +6,7 @@ use super::expected::{Reference, shows, size_of};
 use super::separation::Point;
 use super::simulated::{Faulty, Simulated, simulated};
 use crate::diagnosis::{
-    Author, Built, Hypothesis, Inquiry, Site, Thresholds, Verdict, Written, diagnose,
+    Author, Built, Hypothesis, Inquiry, Relation, Site, Thresholds, Verdict, Written, diagnose,
 };
 use crate::fit::Varied;
 use crate::observer::Observer;
@@ -78,8 +78,8 @@ pub enum SelftestError {
 pub struct Claim {
     /// The hypothesis; `None` where a law is claimed that no known effect is.
     pub hypothesis: Option<usize>,
-    /// Those that the records cannot tell from it.
-    pub alternatives: Vec<usize>,
+    /// Those that the records cannot tell from it, and what each is beside it.
+    pub alternatives: Vec<(usize, Relation)>,
     /// Its size, SI, and the 95 % interval.
     pub size: f64,
     /// Its 95 % interval.
@@ -105,6 +105,8 @@ pub struct Outcome {
     pub unexplained: bool,
     /// What became of a verdict `one of` of a planted effect with a designed record, if that was wanted.
     pub designed: Option<Designed>,
+    /// The search did not know the effect, and claims one that records cannot tell from it, nor would more of them.
+    pub equivalent: bool,
 }
 
 impl Outcome {
@@ -119,8 +121,26 @@ impl Outcome {
     pub fn names(&self, hypothesis: usize) -> bool {
         let first = self.claims.first();
         first.is_some_and(|claim| {
-            claim.hypothesis == Some(hypothesis) || claim.alternatives.contains(&hypothesis)
+            let mut others = claim.alternatives.iter();
+            claim.hypothesis == Some(hypothesis) || others.any(|(own, _)| *own == hypothesis)
         })
+    }
+}
+
+impl Claim {
+    /// Those that the records cannot tell from it and that are in a relation to it.
+    pub fn related(&self, relation: Relation) -> impl Iterator<Item = usize> {
+        let all = self.alternatives.iter();
+        all.filter(move |(_, own)| *own == relation)
+            .map(|(own, _)| *own)
+    }
+
+    /// Whether it names a hypothesis and no other answer.
+    #[must_use]
+    pub fn is_alone(&self, hypothesis: usize) -> bool {
+        let is_it = self.hypothesis == Some(hypothesis);
+        let no_other = self.related(Relation::Another).next().is_none();
+        no_other && (is_it || self.related(Relation::Joined).any(|own| own == hypothesis))
     }
 }
 
@@ -186,6 +206,14 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
     let planted = planted(axis, case)?;
     let made = tables(axis, case, &planted, axis.records, 0)?;
     let found = judged(axis, case, &made)?;
+    let equivalent = match case.kind {
+        Planting::OpenSet(number, size) => {
+            is_equivalent(axis, case, (number, size), &made, &found)?
+        }
+        Planting::Planted(..) | Planting::Empty | Planting::Parameter(_) | Planting::Sensor(..) => {
+            false
+        }
+    };
     let is_planted = matches!(case.kind, Planting::Planted(..));
     let designer = axis.designer;
     let designer = designer.filter(|_| is_planted && found.verdict == Verdict::OneOf);
@@ -201,7 +229,42 @@ pub fn try_case(axis: &Axis<'_>, case: &Case) -> Result<Outcome, SelftestError> 
         claims: found.claims,
         unexplained: found.unexplained,
         designed,
+        equivalent,
     })
+}
+
+/// Whether a search that knows all effects names the one withheld, and says that the one claimed without it is no other
+/// answer: it repeats it with more constants, or its place moves with it.
+fn is_equivalent(
+    axis: &Axis<'_>,
+    case: &Case,
+    (number, size): (usize, Size),
+    made: &[Records],
+    found: &Judged,
+) -> Result<bool, SelftestError> {
+    let [
+        Claim {
+            hypothesis: Some(claimed),
+            ..
+        },
+    ] = found.claims.as_slice()
+    else {
+        return Ok(false);
+    };
+    if found.unexplained {
+        return Ok(false);
+    }
+    let known = Case {
+        kind: Planting::Planted(number, size),
+        ..case.clone()
+    };
+    let full = judged(axis, &known, made)?;
+    let first = full
+        .claims
+        .first()
+        .filter(|own| own.hypothesis == Some(number));
+    let mut others = first.into_iter().flat_map(|own| &own.alternatives);
+    Ok(others.any(|(other, relation)| other == claimed && *relation != Relation::Another))
 }
 
 /// What a diagnosis of a case found.
@@ -270,7 +333,7 @@ pub(super) fn judged(
         alternatives: finding
             .alternatives
             .iter()
-            .filter_map(|other| known.get(other.hypothesis).copied())
+            .filter_map(|other| Some((*known.get(other.hypothesis)?, other.relation)))
             .collect(),
         size: finding.size.value,
         interval: finding.size.interval,

@@ -144,14 +144,83 @@ fn the_records_of_a_case_are_what_its_diagnosis_reads() {
     assert!((size.abs() - 50.0).abs() < 5.0, "{size}");
 }
 
-/// A folder with the small axis, a record of it at one speed, and a diagnosis of effects that such a record cannot distinguish.
-fn at_one_speed() -> Folder {
+/// A folder with the small axis and a diagnosis of a few effects.
+fn with_candidates(candidates: &str) -> Folder {
     let folder = Folder::new();
     let model = read(AXIS);
     let (above, _) = model.split_once("diagnose quick").unwrap();
-    let few = "diagnose few of calibrate moves\n  candidates Effects.Stribeck, Effects.SaturatingDrag, Effects.Tustin;\n  \
-        max_effects 2;\n  seed 1;\nend few;\n";
+    let few = format!(
+        "diagnose few of calibrate moves\n  candidates {candidates};\n  max_effects 2;\n  seed 1;\nend few;\n"
+    );
     folder.file("axis.hyde", &format!("{above}{few}"));
+    folder
+}
+
+/// The self-test of these effects, a twentieth of their ranges large, on the records of the small axis.
+fn with_records(folder: &Folder, more: &[&str]) -> Value {
+    let file = folder.path("axis.hyde");
+    let data = ["--data", "tests/models/small_axis"];
+    let arguments = ["selftest", &file, "few", "--sizes", "0.05", "--json"];
+    let output = hyde(&[&arguments[..], &data, more].concat());
+    assert_eq!(status(&output), 0, "{}", errors(&output));
+    json(&text(&output))
+}
+
+/// With an exponent of 0.5 a drag with a power of the speed is the square root: it is named where the other one is not known,
+/// and is no alternative where it is.
+#[test]
+fn an_effect_that_repeats_a_simpler_one_is_no_alternative() {
+    let folder = with_candidates("Effects.SqrtDrag, Effects.PowerDrag");
+    let report = with_records(
+        &folder,
+        &["--only", "planted,unknown", "--effects", "SqrtDrag"],
+    );
+    let [withheld, planted] = [0, 1].map(|number| &report["cases"][number]);
+    let named = |effect: &str, relation: Option<&str>| {
+        let mut named = serde_json::json!({ "effect": effect, "site": "guide" });
+        if let Some(relation) = relation {
+            named["relation"] = relation.into();
+        }
+        named
+    };
+    assert_eq!(planted["verdict"], "effect", "{report:#}");
+    let [found] = planted["effects"].as_array().unwrap().as_slice() else {
+        panic!("{report:#}");
+    };
+    assert_eq!(found["claimed"], named("SqrtDrag", None));
+    assert_eq!(found["one_of"], serde_json::json!([]));
+    let repeats = named("PowerDrag", Some("repeats"));
+    assert_eq!(found["equivalents"], serde_json::json!([repeats]));
+    assert_eq!(withheld["effects"][0]["claimed"], named("PowerDrag", None));
+    assert_eq!(withheld["equivalent"], true, "{report:#}");
+    let right = serde_json::json!({ "cases": 1, "right": 1 });
+    assert_eq!(report["controls"]["unknown"], right);
+    assert_eq!(report["controls"]["unknown_equivalents"], 1);
+}
+
+/// A stiff screw moves both its ends alike, a belt does not.
+#[test]
+fn an_effect_at_places_that_move_together_is_one() {
+    let folder = with_candidates("Effects.ShaftFadingViscous");
+    let report = with_records(&folder, &["--only", "planted"]);
+    let cases = report["cases"].as_array().unwrap();
+    assert_eq!(cases.len(), 3, "{report:#}");
+    for case in cases {
+        assert_eq!(case["verdict"], "effect", "{case:#}");
+        let found = &case["effects"][0];
+        assert_eq!(found["claimed"], case["planted"], "{case:#}");
+        let place = |site: &str| serde_json::json!({ "effect": "ShaftFadingViscous", "site": site, "relation": "joined" });
+        match case["planted"]["site"].as_str().unwrap() {
+            "motor.shaft" => assert_eq!(found["equivalents"], serde_json::json!([])),
+            "screw.b" => assert_eq!(found["equivalents"], serde_json::json!([place("pulley.a")])),
+            _ => {}
+        }
+    }
+}
+
+/// A folder with the small axis, a record of it at one speed, and a diagnosis of effects that such a record cannot distinguish.
+fn at_one_speed() -> Folder {
+    let folder = with_candidates("Effects.Stribeck, Effects.SaturatingDrag, Effects.Tustin");
     let mut record =
         "r [um],i_inj [mA],i_ref [mA],i [mA],phi_m [rev],v_tacho [mV],x [um]\n".to_owned();
     let (mut place, mut speed) = (0.0, 0.0_f64);

@@ -3,7 +3,8 @@
 use super::{Diagnosed, suspicion, verdict};
 use crate::comparison;
 use crate::unknown;
-use hyde_calibrate::{CurvePoint, FittedParameter, FoundCurve, Quantity, Verdict};
+use hyde_calibrate::{CurvePoint, FittedParameter, FoundCurve, Quantity, Relation, Verdict};
+use hyde_study::selftest::relation_word;
 use serde_json::{Map, Value, json};
 
 /// The whole report.
@@ -111,8 +112,7 @@ fn effects(told: &Diagnosed<'_>) -> Value {
                 .collect()
         };
         let one_of: Vec<Value> = finding
-            .alternatives
-            .iter()
+            .related(Relation::Another)
             .map(|other| {
                 let hypothesis = &told.hypotheses[other.hypothesis];
                 let experiment = other.experiment.as_ref().map(|experiment| {
@@ -123,6 +123,15 @@ fn effects(told: &Diagnosed<'_>) -> Value {
                     })
                 });
                 json!({ "effect": hypothesis.effect, "site": hypothesis.site, "experiment": experiment })
+            })
+            .collect();
+        let equivalents = finding.alternatives.iter();
+        let equivalents = equivalents.filter(|other| other.relation != Relation::Another);
+        let equivalents: Vec<Value> = equivalents
+            .map(|other| {
+                let hypothesis = &told.hypotheses[other.hypothesis];
+                let relation = relation_word(other.relation);
+                json!({ "effect": hypothesis.effect, "site": hypothesis.site, "relation": relation })
             })
             .collect();
         json!({
@@ -136,6 +145,7 @@ fn effects(told: &Diagnosed<'_>) -> Value {
             "shape": all(&finding.shapes),
             "curve": own.map(curve),
             "one_of": one_of,
+            "equivalents": equivalents,
         })
     });
     Value::Array(findings.collect())

@@ -4,7 +4,7 @@ use super::{Diagnosed, found, named, plain, suspicion, verdict};
 use crate::assumptions;
 use crate::compared;
 use crate::head;
-use hyde_calibrate::{FittedParameter, ResidualMap, Whiteness};
+use hyde_calibrate::{FittedParameter, Relation, ResidualMap, Whiteness};
 use hyde_report::{
     ChannelChange, DiagnosisReport, ErrorChange, MovedParameter, RecordChange, Section, TriedEffect,
 };
@@ -76,9 +76,9 @@ fn effects(told: &Diagnosed<'_>) -> Vec<[String; 4]> {
             .map(verdict::quantity)
             .collect();
         let others: Vec<String> = finding
-            .alternatives
-            .iter()
+            .related(Relation::Another)
             .map(|other| verdict::alternative(told, other))
+            .chain(verdict::repeated(told, finding))
             .collect();
         [
             hypothesis.effect.clone(),

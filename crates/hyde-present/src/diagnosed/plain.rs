@@ -1,7 +1,7 @@
 //! A diagnosis in plain words: what is missing, where, how large, how sure that is, what else it may be, what to record next.
 
 use super::{Diagnosed, named, verdict};
-use hyde_calibrate::{Finding, Quantity, Verdict};
+use hyde_calibrate::{Finding, Quantity, Relation, Verdict};
 use hyde_study::comparison::{self, Change, RecordErrors};
 use hyde_units::{engineering_difference, significant};
 
@@ -163,7 +163,7 @@ fn else_it_may_be(told: &Diagnosed<'_>) -> String {
 
 fn others(told: &Diagnosed<'_>) -> Vec<String> {
     let findings = told.found.findings.iter();
-    let others = findings.flat_map(|finding| &finding.alternatives);
+    let others = findings.flat_map(|finding| finding.related(Relation::Another));
     others
         .map(|other| named(&told.hypotheses[other.hypothesis]))
         .collect()
@@ -201,7 +201,7 @@ fn next(told: &Diagnosed<'_>) -> String {
     // A law is in no library that the command could take it from.
     let findings = told.found.findings.iter();
     let mut known = findings.filter(|own| told.candidates.get(own.hypothesis).is_some());
-    let first = known.find_map(|own| Some((own, own.alternatives.first()?)));
+    let first = known.find_map(|own| Some((own, own.related(Relation::Another).next()?)));
     if let Some((finding, other)) = first {
         let named = |number: usize| named(&told.hypotheses[number]).replace(" at ", "@");
         let (own, between) = (named(finding.hypothesis), named(other.hypothesis));

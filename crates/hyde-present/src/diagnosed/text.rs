@@ -3,7 +3,7 @@
 use super::{Diagnosed, named, suspicion, verdict};
 use crate::comparison;
 use crate::unknown;
-use hyde_calibrate::ResidualMap;
+use hyde_calibrate::{Relation, ResidualMap};
 use hyde_units::{Unit, significant};
 use hyde_units::{drawn_in, shown};
 use std::fmt::Write as _;
@@ -44,7 +44,7 @@ fn findings(out: &mut String, told: &Diagnosed<'_>) {
         for quantity in std::iter::once(&finding.size).chain(&finding.shapes) {
             let _ = writeln!(out, "    {}", verdict::quantity(quantity));
         }
-        for other in &finding.alternatives {
+        for other in finding.related(Relation::Another) {
             wrapped(out, "    or ", &verdict::alternative(told, other));
         }
     }

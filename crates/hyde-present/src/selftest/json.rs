@@ -1,8 +1,8 @@
 //! A self-test as JSON; numbers are SI.
 
-use hyde_calibrate::{Case, Claim, Designed, Found, Planting, Size};
+use hyde_calibrate::{Case, Claim, Designed, Found, Planting, Relation, Size};
 use hyde_study::selftest::Tested;
-use hyde_study::selftest::{Kept, word};
+use hyde_study::selftest::{Kept, relation_word, word};
 use serde_json::{Value, json};
 
 /// The report.
@@ -56,6 +56,7 @@ pub fn report(told: &Tested<'_>) -> Value {
             "unknown": control(table.open_set),
             "unknown_neighbours": table.neighbours,
             "unknown_laws": table.laws,
+            "unknown_equivalents": table.equivalents,
             "sensor": control(table.sensor),
         },
         "without_site": told.siteless,
@@ -128,6 +129,7 @@ fn case(told: &Tested<'_>, case: &Case, kept: &Kept) -> Value {
         value["gate"] = json!(outcome.expected.map(|(_, gate)| gate));
         value["shows"] = json!(outcome.is_visible());
         value["right"] = json!(outcome.names(number));
+        value["equivalent"] = json!(outcome.equivalent);
         if let Some(own) = &outcome.designed {
             value["designed"] = designed(told, own, number);
         }
@@ -137,11 +139,19 @@ fn case(told: &Tested<'_>, case: &Case, kept: &Kept) -> Value {
 
 fn effects(told: &Tested<'_>, claims: &[Claim]) -> Vec<Value> {
     let each = claims.iter().map(|claim| {
+        let equivalents = claim.alternatives.iter();
+        let equivalents = equivalents.filter(|(_, own)| *own != Relation::Another);
+        let equivalents = equivalents.map(|(number, own)| {
+            let mut other = named(told, *number);
+            other["relation"] = json!(relation_word(*own));
+            other
+        });
         json!({
             "claimed": claim.hypothesis.map(|n| named(told, n)),
             "size": claim.size,
             "interval": [claim.interval.0, claim.interval.1],
-            "one_of": claim.alternatives.iter().map(|&n| named(told, n)).collect::<Vec<_>>(),
+            "one_of": claim.related(Relation::Another).map(|n| named(told, n)).collect::<Vec<_>>(),
+            "equivalents": equivalents.collect::<Vec<_>>(),
         })
     });
     each.collect()

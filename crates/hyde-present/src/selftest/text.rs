@@ -107,6 +107,10 @@ fn controls(out: &mut String, told: &Tested<'_>) {
     let withheld = [
         ("a new law was written", table.laws),
         (
+            "a known effect was reported that repeats it",
+            table.equivalents,
+        ),
+        (
             "an effect listed as easily confused was reported",
             table.neighbours,
         ),
@@ -147,7 +151,7 @@ fn designed(out: &mut String, told: &Tested<'_>) {
                 let _ = writeln!(out, "      {signal}:");
                 let names = claims.iter().map(|claim| {
                     let first = claim.hypothesis.map_or(Found::Law, Found::Effect);
-                    let others = claim.alternatives.iter().map(|&n| Found::Effect(n));
+                    let others = claim.alternatives.iter().map(|(n, _)| Found::Effect(*n));
                     let all = std::iter::once(first).chain(others);
                     let all: Vec<String> = all.map(|found| found_name(told, found)).collect();
                     all.join(" or ")

@@ -2,6 +2,7 @@
 
 use super::{Diagnosed, named};
 use crate::unknown;
+use hyde_calibrate::Relation;
 use hyde_compiler::{Calibrated, Candidate, Found, Written, write_back};
 use hyde_units::NamedUnit;
 
@@ -70,12 +71,14 @@ pub(super) fn written(
     )];
     about.push(format!("{}.", super::verdict::sentence(told)));
     for finding in &told.found.findings {
-        for other in &finding.alternatives {
+        for other in finding.related(Relation::Another) {
             about.push(format!(
                 "In these records it cannot be distinguished from {}.",
                 named(&told.hypotheses[other.hypothesis])
             ));
         }
+        let repeated = super::verdict::repeated(told, finding).into_iter();
+        about.extend(repeated.map(|own| format!("{own}.")));
     }
     let files = project.file.files.first();
     let mut text = files.map_or_else(String::new, |(file, _)| {

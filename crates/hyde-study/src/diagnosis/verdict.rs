@@ -3,7 +3,7 @@
 use super::{Diagnosed, Refused, named};
 use crate::comparison::{self, RecordErrors};
 use crate::unobservable::reason;
-use hyde_calibrate::{Finding, Frozen, Quantity, Verdict};
+use hyde_calibrate::{Finding, Frozen, Quantity, Relation, Verdict};
 use hyde_units::{NamedUnit, drawn_in, shown, significant};
 
 /// One sentence, without the stop at its end.
@@ -52,10 +52,40 @@ pub fn sentence(told: &Diagnosed<'_>) -> String {
     }
 }
 
-/// `Stribeck at guide (dF = 12.1 ± 0.3 N)`
+/// `Stribeck at guide (dF = 12.1 ± 0.3 N)`, `Cogging at pulley.a or screw.b (…)`
 fn sized(told: &Diagnosed<'_>, finding: &Finding) -> String {
-    let hypothesis = &told.hypotheses[finding.hypothesis];
-    format!("{} ({})", named(hypothesis), quantity(&finding.size))
+    format!("{} ({})", at_places(told, finding), quantity(&finding.size))
+}
+
+/// An effect at all places where no record tells it from itself.
+fn at_places(told: &Diagnosed<'_>, finding: &Finding) -> String {
+    let own = std::iter::once(named(&told.hypotheses[finding.hypothesis]));
+    let joined = finding.related(Relation::Joined);
+    let joined = joined.map(|other| told.hypotheses[other.hypothesis].site.clone());
+    own.chain(joined).collect::<Vec<_>>().join(" or ")
+}
+
+/// What a finding cannot be told from and is no other answer: a sentence each, without the stop at its end.
+pub fn repeated(told: &Diagnosed<'_>, finding: &Finding) -> Vec<String> {
+    let mut found = Vec::new();
+    if finding.related(Relation::Joined).next().is_some() {
+        found.push(format!(
+            "{}: these places move together, and the effect predicts the same at each of them",
+            at_places(told, finding)
+        ));
+    }
+    let general = finding.related(Relation::Repeats);
+    let general: Vec<String> = general
+        .map(|other| named(&told.hypotheses[other.hypothesis]))
+        .collect();
+    if !general.is_empty() {
+        found.push(format!(
+            "{} with more constants predicts the same as {} in these records",
+            general.join(" or "),
+            named(&told.hypotheses[finding.hypothesis])
+        ));
+    }
+    found
 }
 
 /// `dF = 12.1 ± 0.3 N`
@@ -124,8 +154,7 @@ pub fn doubts(told: &Diagnosed<'_>) -> Vec<String> {
     }
     for finding in &told.found.findings {
         let others: Vec<String> = finding
-            .alternatives
-            .iter()
+            .related(Relation::Another)
             .map(|other| named(&told.hypotheses[other.hypothesis]))
             .collect();
         if !others.is_empty() {
@@ -137,6 +166,7 @@ pub fn doubts(told: &Diagnosed<'_>) -> Vec<String> {
         }
     }
     for finding in &told.found.findings {
+        doubts.extend(repeated(told, finding));
         let hypothesis = &told.hypotheses[finding.hypothesis];
         let shapes = finding.shapes.iter().zip(&hypothesis.shapes);
         for (shape, _) in shapes.filter(|(shape, knob)| knob.is_at_bound(shape.value)) {

@@ -1,6 +1,6 @@
 //! An outcome as the store keeps it.
 
-use hyde_calibrate::{Claim, Designed, Outcome, Verdict};
+use hyde_calibrate::{Claim, Designed, Outcome, Relation, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// An outcome, or why there is none.
@@ -13,7 +13,7 @@ enum Stored {
 }
 
 /// Hypothesis, alternatives, size and interval.
-type StoredClaim = (Option<usize>, Vec<usize>, f64, (f64, f64));
+type StoredClaim = (Option<usize>, Vec<(usize, String)>, f64, (f64, f64));
 
 #[derive(Serialize, Deserialize)]
 struct StoredOutcome {
@@ -25,6 +25,7 @@ struct StoredOutcome {
     claims: Vec<StoredClaim>,
     unexplained: bool,
     designed: Option<StoredDesigned>,
+    equivalent: bool,
 }
 
 #[derive(Serialize, Deserialize)]
@@ -55,23 +56,54 @@ fn verdict(text: &str) -> Option<Verdict> {
     verdicts.into_iter().find(|&v| word(v) == text)
 }
 
+/// The word of a relation, as reports have it.
+pub fn relation_word(relation: Relation) -> &'static str {
+    match relation {
+        Relation::Another => "another",
+        Relation::Joined => "joined",
+        Relation::Repeats => "repeats",
+    }
+}
+
+/// The relation of a word.
+fn relation(text: &str) -> Option<Relation> {
+    let relations = [Relation::Another, Relation::Joined, Relation::Repeats];
+    relations.into_iter().find(|&r| relation_word(r) == text)
+}
+
 fn stored(claims: &[Claim]) -> Vec<StoredClaim> {
+    let others = |claim: &Claim| {
+        let all = claim.alternatives.iter();
+        all.map(|(number, own)| (*number, relation_word(*own).to_owned()))
+            .collect()
+    };
     claims
         .iter()
-        .map(|c| (c.hypothesis, c.alternatives.clone(), c.size, c.interval))
+        .map(|claim| (claim.hypothesis, others(claim), claim.size, claim.interval))
         .collect()
 }
 
-fn claims(stored: Vec<StoredClaim>) -> Vec<Claim> {
+fn claims(stored: Vec<StoredClaim>) -> Result<Vec<Claim>, String> {
+    let others = |list: Vec<(usize, String)>| -> Result<Vec<(usize, Relation)>, String> {
+        let all = list.into_iter();
+        all.map(|(number, word)| Ok((number, relation(&word).ok_or_else(|| wrong(&word))?)))
+            .collect()
+    };
     stored
         .into_iter()
-        .map(|(hypothesis, alternatives, size, interval)| Claim {
-            hypothesis,
-            alternatives,
-            size,
-            interval,
+        .map(|(hypothesis, alternatives, size, interval)| {
+            Ok(Claim {
+                hypothesis,
+                alternatives: others(alternatives)?,
+                size,
+                interval,
+            })
         })
         .collect()
+}
+
+fn wrong(cause: &str) -> String {
+    format!("the journal is not that of a self-test: {cause}")
 }
 
 /// The bytes of an outcome.
@@ -86,6 +118,7 @@ pub(super) fn encoded(kept: &Kept) -> Vec<u8> {
             verdict: word(outcome.verdict).to_owned(),
             claims: stored(&outcome.claims),
             unexplained: outcome.unexplained,
+            equivalent: outcome.equivalent,
             designed: outcome.designed.as_ref().map(|designed| match designed {
                 Designed::NoSignal => StoredDesigned::NoSignal,
                 Designed::Unrecorded(signal) => StoredDesigned::Unrecorded(signal.clone()),
@@ -108,7 +141,6 @@ pub(super) fn encoded(kept: &Kept) -> Vec<u8> {
 
 /// An outcome of bytes.
 pub(super) fn decoded(bytes: &[u8]) -> Result<Kept, String> {
-    let wrong = |cause: &str| format!("the journal is not that of a self-test: {cause}");
     let kept = serde_json::from_slice(bytes).map_err(|error| wrong(&error.to_string()))?;
     let known = |word: &str| verdict(word).ok_or_else(|| wrong(word));
     Ok(match kept {
@@ -119,8 +151,9 @@ pub(super) fn decoded(bytes: &[u8]) -> Result<Kept, String> {
             detectable: own.detectable,
             expected: own.expected,
             verdict: known(&own.verdict)?,
-            claims: claims(own.claims),
+            claims: claims(own.claims)?,
             unexplained: own.unexplained,
+            equivalent: own.equivalent,
             designed: match own.designed {
                 None => None,
                 Some(StoredDesigned::NoSignal) => Some(Designed::NoSignal),
@@ -130,7 +163,7 @@ pub(super) fn decoded(bytes: &[u8]) -> Result<Kept, String> {
                         signal,
                         apart,
                         verdict: known(&verdict)?,
-                        claims: claims(list),
+                        claims: claims(list)?,
                     })
                 }
             },
@@ -146,7 +179,7 @@ mod tests {
     fn what_is_kept_comes_back() {
         let claim = Claim {
             hypothesis: Some(7),
-            alternatives: vec![1, 2],
+            alternatives: vec![(1, Relation::Another), (2, Relation::Joined)],
             size: 0.3,
             interval: (0.25, 0.35),
         };
@@ -159,6 +192,7 @@ mod tests {
             claims: vec![claim.clone()],
             unexplained: true,
             designed: None,
+            equivalent: true,
         };
         let designed = [
             Designed::NoSignal,
