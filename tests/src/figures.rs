@@ -134,6 +134,7 @@ pub const FIGURES: &[Figure] = &[
     selftest::TOP1_RACK,
     selftest::FALSE_ALARMS_LINEAR,
     selftest::TOP1_LINEAR,
+    selftest::WITHHELD,
     selftest::HOLDS_ZERO,
     selftest::COVERAGE,
     designed_record::FIGURE,

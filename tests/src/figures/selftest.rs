@@ -1,6 +1,6 @@
-//! `false_alarms_of_100`, `planted_top1_percent`, `claims_whose_interval_holds_zero`, `interval_coverage_percent`: what the verdicts
-//! of a diagnosis are worth, on the small axis; the first two on a rack and on a linear motor as well; and [`record`], which
-//! plants the whole library there. The command is this program itself; finished cases are kept below
+//! `false_alarms_of_100`, `planted_top1_percent`, `withheld_not_claimed`, `claims_whose_interval_holds_zero`,
+//! `interval_coverage_percent`: what the verdicts of a diagnosis are worth, on the small axis; the first two on a rack and on
+//! a linear motor as well; and [`record`], which plants the whole library there. The command is this program itself; finished cases are kept below
 //! `target/selftest`, by seed, so that an interrupted measurement goes on.
 
 use super::promise::{Figure, Measured, Promise, Session};
@@ -49,6 +49,13 @@ pub(super) const TOP1_LINEAR: Figure = Figure {
     unit: "%",
     promise: Promise::AtLeast(97.0),
     measure: |session| top1(session, Axis::Linear),
+};
+
+pub(super) const WITHHELD: Figure = Figure {
+    name: "withheld_not_claimed",
+    unit: "of 22",
+    promise: Promise::AtLeast(19.0),
+    measure: withheld,
 };
 
 pub(super) const HOLDS_ZERO: Figure = Figure {
@@ -115,6 +122,10 @@ impl Axis {
 const TYPICAL: &str = "0.05";
 /// Effects at sites of the small axis that are tried in a measurement.
 const SAMPLED: [&str; 6] = ["--only", "planted", "--sizes", TYPICAL, "--sample", "24"];
+/// Effects that are withheld from the search, at the largest size of the whole self-test.
+const WITHHELD_CASES: [&str; 4] = ["--only", "unknown", "--sizes", "0.3"];
+/// How many the promise is of; a few more or less show where the library changes.
+const WITHHELD_OF: f64 = 22.0;
 /// A record is designed for each verdict `one of`, of a motion that all three axes make in their own records, or of a current.
 const DESIGNED: [&str; 12] = [
     "--designed",
@@ -159,6 +170,17 @@ fn top1(session: &Session, axis: Axis) -> Result<Measured, String> {
         right += f64::from(u8::from(case["right"] == true));
     }
     Ok(told(session, axis, 100.0 * right / visible))
+}
+
+/// Of the effects that the search does not know, each at one of its sites and large enough to show, those for which it claims
+/// no other effect, or says that something is left beside it.
+fn withheld(session: &Session) -> Result<Measured, String> {
+    let report = report(session, Axis::Small, &WITHHELD_CASES)?;
+    let control = &report["controls"]["unknown"];
+    let number = |name: &str| control[name].as_f64().ok_or("the report has no controls");
+    Ok(Measured::Value(
+        WITHHELD_OF * number("right")? / number("cases")?,
+    ))
 }
 
 /// Effects that are claimed although their interval holds 0, over all cases.
