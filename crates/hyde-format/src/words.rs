@@ -247,10 +247,14 @@ impl<'a> Reader<'a> {
             at += blank.len();
             before.breaks += blank.matches('\n').count();
             let len = if trimmed.starts_with("//") {
-                trimmed.find('\n').unwrap_or(trimmed.len())
+                trimmed.find('\n').or(Some(trimmed.len()))
             } else if trimmed.starts_with("/*") {
-                comment_end(trimmed)?
+                // One without end is part of what is kept.
+                comment_end(trimmed)
             } else {
+                None
+            };
+            let Some(len) = len else {
                 return Some((before, at));
             };
             before.comments.push(Comment {

@@ -99,6 +99,23 @@ fn an_item_with_an_error_stays_as_it_is() {
 }
 
 #[test]
+fn what_stands_before_a_comment_without_end_is_formatted() {
+    let text = "model A\nReal   x;\nend A;\n\n// of B\nmodel B\nReal   y; /* the rest\nend B;\nmodel  C\nend C;\n";
+    let expected = text.replacen("Real   x", "  Real x", 1);
+    assert_eq!(format(text), expected);
+    assert_eq!(format(&expected), expected);
+    let formatted = hyde_format::format("test.hyde", text).unwrap();
+    assert_eq!(formatted.errors.iter().count(), 1);
+    // Between items, and where a file has nothing else.
+    let text = "model A\nReal   x;\nend A;\n\n/* model B\n   Real y;\n";
+    assert_eq!(format(text), text.replacen("Real   x", "  Real x", 1));
+    assert_eq!(format("/* all\n  of it\n"), "/* all\n  of it\n");
+    // Before a text without end everything may be the inside of another.
+    let text = "model A \"one\nReal   x;\nend A;\nmodel B \"two\"\nend B;\n";
+    assert_eq!(format(text), text);
+}
+
+#[test]
 fn a_line_is_broken_at_120_columns_and_not_before() {
     let (one, two) = ("x".repeat(52), "y".repeat(43));
     let fits = format!("model A\n  Part part(aa = {one}, b = {two});\nend A;\n");

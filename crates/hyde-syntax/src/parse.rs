@@ -35,16 +35,28 @@ pub fn parse(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> 
 /// Parses one source file and records each construct that is accepted.
 pub(crate) fn written(sources: &Sources, file: FileId, diagnostics: &mut Diagnostics) -> Written {
     let text = &sources.get(file).text;
-    if let Some(diagnostic) = without_end(text, file) {
-        diagnostics.push(diagnostic);
-        let whole = Part {
-            start: 0,
-            end: text.len(),
-            broken: true,
-            pieces: Vec::new(),
-        };
-        return Written { parts: vec![whole] };
-    }
+    let Some(diagnostic) = without_end(text, file) else {
+        return recorded(text, file, diagnostics);
+    };
+    diagnostics.push(diagnostic);
+    // What stands before a comment is as if the file ended there. Before a text it may be the inside of another: one that has
+    // no end begins there, and this is its end.
+    let read = match recover::without_end(text) {
+        Some((at, "/*")) => at,
+        Some(_) | None => 0,
+    };
+    let mut written = recorded(&text[..read], file, &mut Diagnostics::new());
+    written.parts.push(Part {
+        start: read,
+        end: text.len(),
+        broken: true,
+        pieces: Vec::new(),
+    });
+    written
+}
+
+/// What the parser accepts of a text.
+fn recorded(text: &str, file: FileId, diagnostics: &mut Diagnostics) -> Written {
     let mut record = Record::default();
     let mut parser = Parser::new(text, file, diagnostics);
     parser.record = Some(&mut record);
