@@ -106,6 +106,17 @@ fn loop_told(program: &Program, linear: &Linear, poles: &Poles) -> String {
     }
 }
 
+/// Below this a damping ratio is what rounding leaves of a model without damping.
+const UNDAMPED: f64 = 1e-9;
+
+/// A damping ratio as it is shown.
+fn damping(ratio: f64) -> String {
+    match ratio.abs() < UNDAMPED {
+        true => "0".to_owned(),
+        false => significant(ratio, 3),
+    }
+}
+
 fn with_energy(found: &Modes, real: bool) -> String {
     let mut text = unstable(found).unwrap_or_default();
     let _ = writeln!(text, "{:>12} {:>10}   energy", "f [Hz]", "damping");
@@ -114,7 +125,7 @@ fn with_energy(found: &Modes, real: bool) -> String {
         let line = format!(
             "{:>12} {:>10}   {}",
             significant(mode.frequency_hz, 5),
-            significant(mode.damping, 3),
+            damping(mode.damping),
             energy.unwrap_or_else(|| "only in clocked parts".to_owned())
         );
         let _ = writeln!(text, "{}", line.trim_end());

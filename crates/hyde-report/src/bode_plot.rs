@@ -133,7 +133,7 @@ pub fn bode_plot(
 fn joined(curve: &BodeCurve) -> bool {
     match curve.style {
         LineStyle::Solid | LineStyle::Dashed | LineStyle::Steps => true,
-        LineStyle::Points | LineStyle::Rings => false,
+        LineStyle::Points | LineStyle::Rings | LineStyle::Discs => false,
     }
 }
 
@@ -148,7 +148,7 @@ fn decibels(response: &[(f64, f64)]) -> Vec<f64> {
 /// Phase in degrees.
 fn phase(curve: &BodeCurve, guide: Option<&Guide>) -> Vec<f64> {
     let radians = match (curve.style, guide) {
-        (LineStyle::Points | LineStyle::Rings, Some(guide)) => {
+        (LineStyle::Points | LineStyle::Rings | LineStyle::Discs, Some(guide)) => {
             let near = |(frequency, (re, im)): (&f64, &(f64, f64))| {
                 near(im.atan2(*re), guide.at(*frequency))
             };
@@ -159,7 +159,9 @@ fn phase(curve: &BodeCurve, guide: Option<&Guide>) -> Vec<f64> {
                 .map(near)
                 .collect()
         }
-        (LineStyle::Points | LineStyle::Rings, None) => unwrapped(&curve.response, None),
+        (LineStyle::Points | LineStyle::Rings | LineStyle::Discs, None) => {
+            unwrapped(&curve.response, None)
+        }
         (LineStyle::Solid | LineStyle::Dashed | LineStyle::Steps, _) => {
             unwrapped(&curve.response, start(curve, guide))
         }

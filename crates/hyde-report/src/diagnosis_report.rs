@@ -275,8 +275,8 @@ impl DiagnosisReport {
             ">before",
             ">after",
             ">noise floor",
-            ">before",
-            ">after",
+            ">before / floor",
+            ">after / floor",
         ];
         let missing: Vec<&str> = self
             .records

@@ -33,6 +33,8 @@ const BOX: f64 = 36.0;
 const ROW: f64 = 50.0;
 const PADDING: f64 = 9.0;
 const GAP: f64 = 36.0;
+/// From the bar of a joint to the next where both reach as far up and down.
+const BAR: f64 = 12.0;
 /// Around the whole.
 const MARGIN: f64 = 10.0;
 /// Sizes of the texts.
@@ -110,12 +112,15 @@ impl Diagram {
             if own().next().is_none() {
                 continue; // No joint stands between these columns of parts.
             }
+            let bars = own().map(|node| layers.bars[node]).max().unwrap_or(0) as f64 * BAR;
             for node in own() {
-                let wide = if node < self.parts.len() { widest } else { 0.0 };
+                let is_part = node < self.parts.len();
+                let wide = if is_part { widest } else { 0.0 };
                 let top = MARGIN + layers.rows[node] as f64 * ROW;
-                places[node] = Rect::at(left, top, wide, BOX);
+                let aside = layers.bars[node] as f64 * BAR;
+                places[node] = Rect::at(left + aside, top, wide, BOX);
             }
-            left += widest + GAP;
+            left += widest + bars + GAP;
         }
         places
     }

@@ -119,7 +119,7 @@ pub struct Line {
     pub style: LineStyle,
     /// Index into the palette; `None`: the line's place in the panel.
     pub colour: Option<usize>,
-    /// Weight of each point from 0 (faded) to 1, for [`LineStyle::Points`] and [`LineStyle::Rings`]: the coherence of a measured response.
+    /// Weight of each point from 0 (faded) to 1, for [`LineStyle::Points`], [`LineStyle::Rings`] and [`LineStyle::Discs`]: the coherence of a measured response.
     pub weight: Option<Vec<f64>>,
 }
 
@@ -168,6 +168,8 @@ pub enum LineStyle {
     Points,
     /// One ring for each value, where they are few and single.
     Rings,
+    /// One disc for each value, the larger the larger its weight.
+    Discs,
     /// Each value holds until the next abscissa: clocked signals.
     Steps,
 }

@@ -7,6 +7,9 @@ use crate::{Figure, to_svg};
 /// The style of all pages.
 pub const STYLE: &str = include_str!("html/style.css");
 
+/// How the ids of the sections of a page begin.
+const SECTION: &str = "s";
+
 /// The page as one HTML text that needs no other file and no network.
 #[must_use]
 pub fn to_html(page: &Page) -> String {
@@ -16,7 +19,7 @@ pub fn to_html(page: &Page) -> String {
         .iter()
         .map(|(name, value)| fact(name, value))
         .collect();
-    let body = to_body(page);
+    let body = to_body(page, SECTION);
     let footer = if page.footer.is_empty() {
         String::new()
     } else {
@@ -31,12 +34,13 @@ pub fn to_html(page: &Page) -> String {
     )
 }
 
-/// The sections of a page alone, for a page of another program that has [`STYLE`].
+/// The sections of a page alone, for a page of another program that has [`STYLE`]. Their ids begin with `name`, which no other
+/// element of that page has.
 #[must_use]
-pub fn to_body(page: &Page) -> String {
+pub fn to_body(page: &Page, name: &str) -> String {
     let sections = page.sections.iter().enumerate();
     let sections: String = sections
-        .map(|(place, section)| write_section(place, section))
+        .map(|(place, section)| write_section(&format!("{name}{place}"), section))
         .collect();
     format!("<main>\n{sections}</main>\n")
 }
@@ -49,6 +53,19 @@ fn fact(name: &str, value: &str) -> String {
     )
 }
 
+/// A text, in which words between two backquotes are those of a program.
+fn prose(text: &str) -> String {
+    let parts: Vec<&str> = text.split('`').collect();
+    if parts.len() % 2 == 0 {
+        return escape(text);
+    }
+    let part = |(number, part): (usize, &&str)| match number % 2 {
+        0 => escape(part),
+        _ => format!("<code>{}</code>", escape(part)),
+    };
+    parts.iter().enumerate().map(part).collect()
+}
+
 /// The table of contents: sections, and the figures with a title under theirs.
 fn contents(page: &Page) -> String {
     let entry = |(place, section): (usize, &Section)| {
@@ -56,7 +73,7 @@ fn contents(page: &Page) -> String {
             .filter_map(|(number, figure)| Some((number, figure.title.as_deref()?)))
             .map(|(number, title)| {
                 format!(
-                    "<li><a href=\"#s{place}f{number}\">{}</a></li>",
+                    "<li><a href=\"#{SECTION}{place}f{number}\">{}</a></li>",
                     escape(title)
                 )
             })
@@ -67,7 +84,7 @@ fn contents(page: &Page) -> String {
             format!("<ul>{figures}</ul>")
         };
         format!(
-            "<li><a href=\"#s{place}\">{}</a>{figures}</li>\n",
+            "<li><a href=\"#{SECTION}{place}\">{}</a>{figures}</li>\n",
             escape(&section.heading)
         )
     };
@@ -94,9 +111,9 @@ fn figures(section: &Section) -> impl Iterator<Item = (usize, &Figure)> {
         })
 }
 
-fn write_section(place: usize, section: &Section) -> String {
+fn write_section(id: &str, section: &Section) -> String {
     let mut html = format!(
-        "<section id=\"s{place}\">\n<h2>{}</h2>\n",
+        "<section id=\"{id}\">\n<h2>{}</h2>\n",
         escape(&section.heading)
     );
     // Figures in a row share a grid.
@@ -105,7 +122,7 @@ fn write_section(place: usize, section: &Section) -> String {
     for run in section.blocks.chunk_by(|a, b| in_grid(a) == in_grid(b)) {
         let blocks: String = (number..)
             .zip(run)
-            .map(|(number, block)| write_block(place, number, block))
+            .map(|(number, block)| write_block(id, number, block))
             .collect();
         let grid = run.first().is_some_and(in_grid);
         html += &if grid {
@@ -130,16 +147,16 @@ fn is_small(block: &Block) -> bool {
     matches!(block, Block::Figure(figure) if figure.shown_width() <= SMALL)
 }
 
-fn write_block(section: usize, number: usize, block: &Block) -> String {
+fn write_block(section: &str, number: usize, block: &Block) -> String {
     match block {
-        Block::Text(text) => format!("<p>{}</p>\n", escape(text)),
+        Block::Text(text) => format!("<p>{}</p>\n", prose(text)),
         Block::Code(text) => format!("<pre>{}</pre>\n", escape(text)),
         Block::Verdicts(verdicts) => {
             let lines: String = verdicts.iter().map(write_verdict).collect();
             format!("<ul class=\"verdicts\">\n{lines}</ul>\n")
         }
         Block::Table(table) => write_table(table),
-        Block::Figure(figure) => write_figure(&format!("s{section}f{number}"), figure),
+        Block::Figure(figure) => write_figure(&format!("{section}f{number}"), figure),
         Block::Diagram(diagram) => {
             let (svg, width) = diagram.to_svg();
             format!(
@@ -158,7 +175,7 @@ fn write_verdict(verdict: &Verdict) -> String {
     };
     format!(
         "<li class=\"{class}\"><b>{word}</b> <span>{}</span></li>\n",
-        escape(&verdict.text)
+        prose(&verdict.text)
     )
 }
 
@@ -180,7 +197,7 @@ fn write_table(table: &Table) -> String {
         format!(
             "<td{}>{}</td>",
             class(table.columns.get(place)),
-            escape(text)
+            prose(text)
         )
     };
     let row = |cells: &Vec<String>| {
@@ -191,7 +208,7 @@ fn write_table(table: &Table) -> String {
     };
     let rows: String = table.rows.iter().map(row).collect();
     let note = table.note.as_ref().map_or_else(String::new, |note| {
-        format!("<p class=\"note\">{}</p>\n", escape(note))
+        format!("<p class=\"note\">{}</p>\n", prose(note))
     });
     // A long table scrolls by itself on a screen.
     let scroll = if table.rows.len() > 30 {
@@ -211,7 +228,7 @@ fn write_figure(id: &str, figure: &Figure) -> String {
         .as_ref()
         .map_or_else(String::new, |title| format!("<h3>{}</h3>\n", escape(title)));
     let caption = figure.caption.as_ref().map_or_else(String::new, |caption| {
-        format!("<figcaption>{}</figcaption>\n", escape(caption))
+        format!("<figcaption>{}</figcaption>\n", prose(caption))
     });
     let bare = Figure {
         title: None,

@@ -2,7 +2,7 @@
 //! or reading each other. It is read from the trees, before anything is flattened, so that it shows what was written.
 
 use hyde_syntax::ast::{
-    Change, Class, ClassBody, ClassKind, Declaration, Element, Equation, EquationKind, Expr,
+    self, Change, Class, ClassBody, ClassKind, Declaration, Element, Equation, EquationKind, Expr,
     ExprKind, Prefix, Reference,
 };
 use hyde_syntax::{FileIndex, Lookup};
@@ -34,6 +34,8 @@ pub fn topology(lookup: Lookup<'_>, model: &str) -> Topology {
         lookup,
         names: Vec::new(),
         classes: Vec::new(),
+        blocks: Vec::new(),
+        values: Vec::new(),
         found: Topology::default(),
     };
     let own = lookup.files.first().and_then(|(_, file)| {
@@ -51,6 +53,9 @@ pub fn topology(lookup: Lookup<'_>, model: &str) -> Topology {
             reader.parts(*file, elements);
         }
         for (_, elements) in &bodies {
+            reader.values(elements);
+        }
+        for (_, elements) in &bodies {
             reader.links(elements);
         }
     }
@@ -65,6 +70,10 @@ struct Reader<'a> {
     /// Names of the parts without subscripts, and their classes with the files of these.
     names: Vec<&'a str>,
     classes: Vec<Option<(FileIndex, &'a Class)>>,
+    /// Names of clocked blocks, which stand before those of what is in them.
+    blocks: Vec<&'a str>,
+    /// Variables of the model itself, with what they are: whoever reads one reads that.
+    values: Vec<(&'a str, &'a Expr)>,
     found: Topology,
 }
 
@@ -103,10 +112,18 @@ impl<'a> Reader<'a> {
     /// Takes note of components and inputs.
     fn parts(&mut self, file: FileIndex, elements: &[&'a Element]) {
         for element in elements {
+            if let Element::Clocked(clocked) = element {
+                self.blocks.push(&clocked.name.text);
+            }
             let Element::Declaration(declaration) = element else {
                 continue;
             };
-            let class = self.lookup.class(file, &declaration.type_name);
+            // A name that is a type is not a class, though a class may be called so too: `Force`.
+            let quantity = self.lookup.type_item(file, &declaration.type_name);
+            let class = match quantity {
+                Some(_) => None,
+                None => self.lookup.class(file, &declaration.type_name),
+            };
             let class = class.filter(|(_, class)| class.kind == ClassKind::Model);
             let is_input = declaration.prefixes.contains(&Prefix::Input);
             if class.is_none() && !is_input {
@@ -125,6 +142,32 @@ impl<'a> Reader<'a> {
                     class: class.map_or(String::new(), |(_, class)| class.name.text.clone()),
                 });
             }
+        }
+    }
+
+    /// Takes note of the variables that are given a value by an expression.
+    fn values(&mut self, elements: &[&'a Element]) {
+        for element in elements {
+            if let Element::Declaration(declaration) = element {
+                for declared in &declaration.declarators {
+                    if let Some(value) = &declared.binding {
+                        self.value(&declared.name.text, value);
+                    }
+                }
+            }
+            if let Element::Equation(equation) = element
+                && let EquationKind::Equality { lhs, rhs, .. } = &equation.kind
+                && let ExprKind::Reference(name) = &lhs.kind
+                && let [only] = self.inner(name)
+            {
+                self.value(&only.name.text, rhs);
+            }
+        }
+    }
+
+    fn value(&mut self, name: &'a str, value: &'a Expr) {
+        if self.part(name).is_none() {
+            self.values.push((name, value));
         }
     }
 
@@ -164,7 +207,7 @@ impl<'a> Reader<'a> {
         match &equation.kind {
             EquationKind::Connect(ends) => {
                 let mut joint: Vec<usize> = Vec::new();
-                for end in ends.iter().filter_map(|end| end.parts.first()) {
+                for end in ends.iter().filter_map(|end| self.inner(end).first()) {
                     let part = self.part(&end.name.text);
                     joint.extend(part.filter(|part| !joint.contains(part)));
                 }
@@ -174,7 +217,7 @@ impl<'a> Reader<'a> {
             }
             EquationKind::Equality { lhs, rhs, .. } => {
                 if let ExprKind::Reference(name) = &lhs.kind
-                    && let Some(first) = name.parts.first()
+                    && let Some(first) = self.inner(name).first()
                     && let Some(reader) = self.part(&first.name.text)
                 {
                     self.reads(rhs, reader);
@@ -196,23 +239,47 @@ impl<'a> Reader<'a> {
 
     /// Takes note of what an expression reads for a part: variables of other parts, not their parameters.
     fn reads(&mut self, value: &'a Expr, reader: usize) {
-        if let ExprKind::Reference(name) = &value.kind
-            && let Some(first) = name.parts.first()
-            && let Some(read) = self.part(&first.name.text)
-            && read != reader
-            && !self.is_parameter(read, name)
-            && !self.found.signals.contains(&(read, reader))
-        {
-            self.found.signals.push((read, reader));
+        let mut seen: Vec<&str> = Vec::new();
+        let mut open = vec![value];
+        while let Some(value) = open.pop() {
+            let children = value.children();
+            open.extend(children.into_iter().rev());
+            let ExprKind::Reference(name) = &value.kind else {
+                continue;
+            };
+            let Some(first) = self.inner(name).first() else {
+                continue;
+            };
+            let word = first.name.text.as_str();
+            if let Some(read) = self.part(word) {
+                let signal = (read, reader);
+                let known = self.found.signals.contains(&signal);
+                if read != reader && !known && !self.is_parameter(read, name) {
+                    self.found.signals.push(signal);
+                }
+            } else if !seen.contains(&word) {
+                seen.push(word);
+                let own = self.values.iter().filter(|(name, _)| *name == word);
+                open.extend(own.map(|(_, value)| *value));
+            }
         }
-        for child in value.children() {
-            self.reads(child, reader);
+    }
+
+    /// A name without that of the clocked block in which it is declared.
+    fn inner<'n>(&self, name: &'n Reference) -> &'n [ast::Part] {
+        match name.parts.as_slice() {
+            [first, inner @ ..]
+                if !inner.is_empty() && self.blocks.contains(&first.name.text.as_str()) =>
+            {
+                inner
+            }
+            all => all,
         }
     }
 
     /// Whether a name is that of a parameter of a part, or of one in it.
     fn is_parameter(&self, part: usize, name: &Reference) -> bool {
-        let (Some((file, class)), [_, own, ..]) = (self.classes[part], &name.parts[..]) else {
+        let (Some((file, class)), [_, own, ..]) = (self.classes[part], self.inner(name)) else {
             return false;
         };
         let bodies = self.bodies(file, class, 0);
@@ -233,16 +300,17 @@ impl<'a> Reader<'a> {
     }
 }
 
-/// The elements with those of clocked blocks in their places.
+/// The elements, those of clocked blocks behind these.
 fn flat(elements: &[Element]) -> Vec<&Element> {
     elements
         .iter()
         .flat_map(|element| {
-            if let Element::Clocked(clocked) = element {
+            let inner = if let Element::Clocked(clocked) = element {
                 flat(&clocked.elements)
             } else {
-                vec![element]
-            }
+                Vec::new()
+            };
+            std::iter::once(element).chain(inner)
         })
         .collect()
 }
@@ -272,27 +340,49 @@ mod tests {
     use super::*;
     use hyde_diag::{Diagnostics, Sources};
 
+    /// The topology of the model `Whole` of a text.
+    fn found(text: &str) -> Topology {
+        let mut sources = Sources::default();
+        let file = sources.add("whole.hyde", text);
+        let mut diagnostics = Diagnostics::default();
+        let tree = hyde_syntax::parse(&sources, file, &mut diagnostics);
+        let files = [(file, std::sync::Arc::new(tree))];
+        topology(Lookup { files: &files }, "Whole")
+    }
+
+    #[test]
+    fn a_signal_leads_through_variables_and_clocked_blocks() {
+        let found = found(
+            "type Force = Real [N];\nmodel Force \"\"\n  Real f;\nend Force;\n\
+            model Part\n  Real x, y;\nend Part;\n\
+            model Whole\n  input Force F;\n  parameter Force limit = 1 [N];\n  Part motor, sensor;\n  Real half;\n  \
+            clocked cnc(1 [ms])\n    Real count = sample(sensor.y);\n    Part control(x = 2*count);\n  end cnc;\n\
+            equation\n  half = F/2;\n  motor.x = hold(cnc.control.y) + half;\n  sensor.x = motor.y;\nend Whole;\n",
+        );
+        let names: Vec<&str> = found.parts.iter().map(|part| part.name.as_str()).collect();
+        // `Force` is a type where a type is called so; the limit is a number.
+        assert_eq!(names, ["F", "motor", "sensor", "control"]);
+        let mut signals = found.signals;
+        signals.sort_unstable();
+        assert_eq!(signals, [(0, 1), (1, 2), (2, 3), (3, 1)]);
+    }
+
     #[test]
     fn components_connections_and_signals_are_those_that_are_written() {
         let text = "model Part \"\"\n  parameter Real k = 1;\n  Real x, y;\nend Part;\n\
             model Base\n  input Real u;\n  Part first(x = u);\nend Base;\n\
             model Whole\n  extends Base;\n  Part second(x = first.y*first.k, y = first.k), third[2];\nequation\n  \
             connect(first.a, second.b, third[1].a);\n  second.y = third[1].y;\nend Whole;\n";
-        let mut sources = Sources::default();
-        let file = sources.add("whole.hyde", text);
-        let mut diagnostics = Diagnostics::default();
-        let tree = hyde_syntax::parse(&sources, file, &mut diagnostics);
-        let files = [(file, std::sync::Arc::new(tree))];
-        let found = topology(Lookup { files: &files }, "Whole");
+        let found = found(text);
         let names: Vec<&str> = found.parts.iter().map(|part| part.name.as_str()).collect();
         assert_eq!(names, ["u", "first", "second", "third[2]"]);
         assert_eq!(found.parts[0].class, "");
         assert_eq!(found.parts[3].class, "Part");
         assert_eq!(found.joints, [vec![1, 2, 3]]);
-        // What is a parameter is no signal.
+        // A parameter is not a signal.
         assert_eq!(found.signals, [(0, 1), (1, 2), (3, 2)]);
         assert_eq!(
-            topology(Lookup { files: &files }, "None"),
+            self::found("model Other\nend Other;\n"),
             Topology::default()
         );
     }

@@ -175,7 +175,7 @@ impl Session {
             Ok(run) => {
                 let page = run_page::page(&ready.project, &ready.compiled, &run, &clock::now());
                 let (first, rest) = parts(page);
-                let (body, rest) = (to_body(&first), to_body(&rest));
+                let (body, rest) = (to_body(&first, "run"), to_body(&rest, "rest"));
                 json!({ "ok": true, "body": body, "rest": rest, "took_ms": took, "partial": partial })
             }
             Err(error) => json!({ "ok": false, "error": ready.told(&error) }),
@@ -191,7 +191,7 @@ impl Session {
             linear.page(&ready.settings(moved)?)
         });
         match found {
-            Some(Ok(page)) => json!({ "ok": true, "body": to_body(&page) }),
+            Some(Ok(page)) => json!({ "ok": true, "body": to_body(&page, "frequencies") }),
             Some(Err(reason)) => json!({ "ok": false, "error": reason }),
             None => json!({ "ok": false, "error": "" }),
         }

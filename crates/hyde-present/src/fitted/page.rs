@@ -93,6 +93,11 @@ fn parameters(told: &Fitted<'_>) -> Vec<Block> {
     blocks
 }
 
+/// A correlation with two digits; what is rounded to zero has no sign.
+pub(super) fn rounded(value: f64) -> String {
+    format!("{:.2}", (100.0 * value).round() / 100.0 + 0.0)
+}
+
 fn correlation(told: &Fitted<'_>) -> Vec<Block> {
     let all = &told.fit.correlation;
     if all.len() < 2 {
@@ -106,7 +111,7 @@ fn correlation(told: &Fitted<'_>) -> Vec<Block> {
     let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
     let mut table = Table::with_columns(&heads);
     for (number, row) in all.iter().enumerate() {
-        let cells = row.iter().map(|value| format!("{value:.2}"));
+        let cells = row.iter().map(|value| rounded(*value));
         let first = [
             (number + 1).to_string(),
             told.calibration.numbers[number].name(),

@@ -1,4 +1,4 @@
-//! The plots of a calibration: profiles over a parameter, and correlations as a field of dots.
+//! The plots of a calibration: profiles over a parameter, and correlations as a field of discs.
 
 use super::{Fitted, unit};
 use hyde_calibrate::{LIMIT, Profile};
@@ -67,7 +67,7 @@ pub fn profile(told: &Fitted<'_>, profile: &Profile) -> Figure {
         )
 }
 
-/// The correlations: strong ones are dark.
+/// The correlations: strong ones are large.
 pub fn correlation(told: &Fitted<'_>) -> Figure {
     let all = &told.fit.correlation;
     let of_sign = |label: &str, sign: f64| {
@@ -83,7 +83,7 @@ pub fn correlation(told: &Fitted<'_>) -> Figure {
         }
         Line {
             weight: Some(weight),
-            ..Line::new(label, x, y).with_style(LineStyle::Points)
+            ..Line::new(label, x, y).with_style(LineStyle::Discs)
         }
     };
     let axis = |label: &str| Axis::new(label, "").with_range(0.5, all.len() as f64 + 0.5);
@@ -98,5 +98,5 @@ pub fn correlation(told: &Fitted<'_>) -> Figure {
     };
     Figure::new(vec![panel])
         .with_title("Correlation of the parameters")
-        .with_caption("The darker a dot, the stronger the errors of the two parameters go together. The numbers are those of the table.")
+        .with_caption("The larger a disc, the stronger the errors of the two parameters go together. The numbers are those of the table.")
 }

@@ -1,5 +1,6 @@
 //! A calibration in lines of at most 80 columns.
 
+use super::page::rounded;
 use super::{Fitted, experiment_name, named, shown, shown_difference};
 use crate::comparison::{self, shortened};
 use crate::diagnosed::wrapped;
@@ -123,7 +124,7 @@ fn correlations(out: &mut String, told: &Fitted<'_>) {
             let name = format!("{} {}", number + 1, told.calibration.numbers[number].name());
             let cells = columns.clone().map(|column| match column {
                 own if own > number => String::new(),
-                own => format!("{:>5.2}", row[own]),
+                own => format!("{:>5}", rounded(row[own])),
             });
             let line = format!(
                 "  {:<23}{}",

@@ -39,7 +39,7 @@ fn section(found: &Modes) -> Section {
         let shape = found.shapes[number].as_ref();
         let energy = shape.map_or("clocked parts alone".to_owned(), assumed::shares);
         let (f, damping) = (mode.frequency_hz, mode.damping);
-        vec![significant(f, 5), significant(damping, 3), energy]
+        vec![significant(f, 5), super::damping(damping), energy]
     };
     let table = Table {
         rows: found.modes.iter().enumerate().map(row).collect(),

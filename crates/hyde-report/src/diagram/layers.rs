@@ -12,6 +12,8 @@ pub(super) struct Layers {
     pub(super) rows: Vec<usize>,
     /// The node of each joint; none where two parts are connected directly.
     pub(super) joints: Vec<Option<usize>>,
+    /// How many bars of other joints stand left of that of a joint in the same column.
+    pub(super) bars: Vec<usize>,
 }
 
 pub(super) fn layers(diagram: &Diagram) -> Layers {
@@ -55,11 +57,44 @@ pub(super) fn layers(diagram: &Diagram) -> Layers {
     let order = visited(diagram, &ways, &read, &links);
     let columns = columns(diagram, &ways, &order);
     let rows = rows(&ways, &order, &columns);
+    let bars = bars(diagram, &joints, &columns, &rows);
     Layers {
         columns,
         rows,
         joints,
+        bars,
     }
+}
+
+/// Bars of joints in one column stand side by side where both are at some height.
+fn bars(
+    diagram: &Diagram,
+    joints: &[Option<usize>],
+    columns: &[usize],
+    rows: &[usize],
+) -> Vec<usize> {
+    let mut bars = vec![0_usize; columns.len()];
+    // Of each bar its column, its place, and the rows from the first to the last.
+    let mut known: Vec<(usize, usize, (usize, usize))> = Vec::new();
+    for (joint, node) in diagram.joints.iter().zip(joints) {
+        let Some(node) = *node else { continue };
+        let beside = joint.iter().copied();
+        let beside = beside.filter(|&part| columns[part].abs_diff(columns[node]) == 1);
+        let reach = beside.map(|part| rows[part]).chain([rows[node]]);
+        let (first, last) = reach.fold((usize::MAX, 0), |(first, last), row| {
+            (first.min(row), last.max(row))
+        });
+        let stands = |bar: usize| {
+            let mut own = known.iter();
+            own.any(|&(column, other, (top, end))| {
+                column == columns[node] && other == bar && first <= end && top <= last
+            })
+        };
+        let bar = (0..).find(|&bar| !stands(bar)).unwrap_or(0);
+        bars[node] = bar;
+        known.push((columns[node], bar, (first, last)));
+    }
+    bars
 }
 
 /// The nodes in the order of a search in breadth: from inputs, else from what reads nothing, else from an end of a chain.

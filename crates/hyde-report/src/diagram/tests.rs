@@ -67,3 +67,26 @@ fn a_ring_and_a_part_alone_have_places_too() {
     assert_eq!(layers.columns, [0, 2, 4, 0]);
     assert!(ring.to_svg().0.contains(">d</text>"));
 }
+
+#[test]
+fn bars_of_joints_that_reach_as_far_stand_side_by_side() {
+    // A belt and a screw, each at one joint with two bodies of the next column.
+    let diagram = Diagram {
+        parts: ["belt", "screw", "motor", "brake", "table", "guide"]
+            .map(|name| part(name, "Part"))
+            .to_vec(),
+        joints: vec![vec![0, 1], vec![0, 2, 3], vec![1, 4, 5]],
+        signals: vec![(0, 2), (1, 3)],
+    };
+    let layers = super::layers(&diagram);
+    let font = crate::draw::Font::new();
+    let places = diagram.places(&layers, &font);
+    let joints: Vec<usize> = layers.joints.iter().flatten().copied().collect();
+    let [first, second] = joints[..] else {
+        panic!("{joints:?}")
+    };
+    let apart = layers.columns[first] != layers.columns[second];
+    assert!(apart || (places[first].left - places[second].left).abs() > 5.0);
+    let diagram = drive();
+    assert_eq!(super::layers(&diagram).bars, [0; 7]);
+}

@@ -5,7 +5,7 @@ use super::flow::flow;
 use super::font::Font;
 use super::geometry::{Point, Rect};
 use super::palette::{GRID, INK, WHITE, line_colour, line_dash};
-use super::sizes::{CURVE, DOT, LEADING, RING, TEXT};
+use super::sizes::{CURVE, DISC, DOT, LEADING, RING, TEXT};
 use super::tints::{Tints, band_labels};
 use super::trace::{Trace, covered};
 use crate::{Line, LineStyle, Panel};
@@ -40,6 +40,7 @@ enum Sample {
     Line(Stroke),
     Dots(Fill),
     Ring(Fill),
+    Disc(Fill),
     Patch(Fill),
 }
 
@@ -127,6 +128,11 @@ impl Sample {
                     fill: *fill,
                 }]
             }
+            Self::Disc(fill) => vec![Item::Dots {
+                centres: vec![at.shifted(0.5 * SAMPLE, 0.0)],
+                radius: 2.0 * DISC,
+                fill: *fill,
+            }],
             Self::Ring(fill) => rings(vec![at.shifted(0.5 * SAMPLE, 0.0)], *fill),
             Self::Patch(fill) => {
                 let area = Rect::at(at.x, at.y - 0.35 * TEXT, SAMPLE, 0.7 * TEXT);
@@ -183,6 +189,7 @@ pub(crate) fn entries(panel: &Panel, tints: &Tints<'_>, width: f64, font: &Font)
             let sample = match line.style {
                 LineStyle::Points => Sample::Dots(Fill::solid(stroke.colour)),
                 LineStyle::Rings => Sample::Ring(Fill::solid(stroke.colour)),
+                LineStyle::Discs => Sample::Disc(Fill::solid(stroke.colour)),
                 LineStyle::Solid | LineStyle::Dashed | LineStyle::Steps => Sample::Line(stroke),
             };
             (sample, line.label.as_str())

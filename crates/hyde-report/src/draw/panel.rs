@@ -8,7 +8,7 @@ use super::note::{FLAG_ROW, Flag, Note, flags, notes, point};
 use super::palette::{Colour, INK, REFERENCE, line_colour};
 use super::shown_axis::ShownAxis;
 use super::sizes::{
-    DOT, FINE_GRID_STROKE, FRAME_STROKE, GAP, GRID_STROKE, REFERENCE_STROKE, TEXT, TICK,
+    DISC, DOT, FINE_GRID_STROKE, FRAME_STROKE, GAP, GRID_STROKE, REFERENCE_STROKE, TEXT, TICK,
 };
 use super::tints::Tints;
 use super::trace::{Trace, trace};
@@ -202,14 +202,20 @@ impl<'a> PlacedPanel<'a> {
                     colour: stroke.colour,
                     opacity,
                 };
-                if self.panel.lines[place].style == LineStyle::Rings {
-                    items.extend(rings(centres, fill));
-                } else {
-                    items.push(Item::Dots {
-                        centres,
-                        radius: DOT,
-                        fill,
-                    });
+                let dots = |radius: f64, fill: Fill| Item::Dots {
+                    centres: centres.clone(),
+                    radius,
+                    fill,
+                };
+                match self.panel.lines[place].style {
+                    LineStyle::Rings => items.extend(rings(centres.clone(), fill)),
+                    LineStyle::Discs => {
+                        let radius = DISC * (shade + 1) as f64;
+                        items.push(dots(radius, Fill::solid(stroke.colour)));
+                    }
+                    LineStyle::Points | LineStyle::Solid | LineStyle::Dashed | LineStyle::Steps => {
+                        items.push(dots(DOT, fill))
+                    }
                 }
             }
         }

@@ -23,6 +23,8 @@ pub(crate) const GAP: f64 = 4.0;
 pub(crate) const CURVE: f64 = 1.25;
 /// Radius of a dot.
 pub(crate) const DOT: f64 = 1.4;
+/// Radius of the smallest of five discs; the others are so much larger, one after the other.
+pub(crate) const DISC: f64 = 1.6;
 /// Outer and inner radius of a ring.
 pub(crate) const RING: (f64, f64) = (3.4, 2.4);
 

@@ -27,7 +27,7 @@ pub(crate) fn trace(line: &Line, x: &ShownAxis, y: &ShownAxis, width: f64, heigh
     match line.style {
         LineStyle::Solid | LineStyle::Dashed => stroked(points, &area),
         LineStyle::Steps => stroked(staircase(points), &area),
-        LineStyle::Points | LineStyle::Rings => Trace {
+        LineStyle::Points | LineStyle::Rings | LineStyle::Discs => Trace {
             strokes: Vec::new(),
             dots: dotted(points, line.weight.as_deref(), &area),
         },

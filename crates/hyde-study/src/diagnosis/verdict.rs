@@ -92,6 +92,11 @@ pub fn repeated(told: &Diagnosed<'_>, finding: &Finding) -> Vec<String> {
 pub fn quantity(quantity: &Quantity) -> String {
     let half = (quantity.interval.1 - quantity.interval.0) / 2.0;
     let (_, of) = drawn_in(&quantity.unit);
+    if half == 0.0 {
+        // A count that was tried: 12 periods.
+        let value = number(quantity.value, 4, &quantity.unit);
+        return format!("{} = {value}", quantity.name);
+    }
     format!(
         "{} = {} ± {}",
         quantity.name,
