@@ -155,6 +155,31 @@ def an_error_leaves_a_usable_instance(name):
     crushed.remove()
 
 
+def no_step_goes_beyond_the_stop_time(name):
+    """A step beyond it is an error that changes nothing; without a stop time there is none."""
+    lag = Fmu(name)
+    fmu = lag.instance()
+    begin(fmu, stopTime=0.1)
+    put(fmu, lag.vr["u"], 1.0)
+    for k in range(3):
+        fmu.doStep(0.03 * k, 0.03)
+    x = get(fmu, lag.vr["x"])[0]
+    try:
+        fmu.doStep(0.09, 0.03)
+    except Exception:
+        pass
+    else:
+        raise AssertionError("a step goes beyond the stop time")
+    close(get(fmu, lag.vr["x"])[0], x, 0.0)
+    fmu.doStep(0.09, 0.01 + 1e-17)
+    close(get(fmu, lag.vr["x"])[0], 1.0 - math.exp(-2.0), 1e-7)
+    fmu.reset()
+    begin(fmu)
+    fmu.doStep(0.0, 5.0)
+    fmu.freeInstance()
+    lag.remove()
+
+
 def instances_in_threads_do_not_disturb_each_other(name):
     lag = Fmu(name)
     results = {}
@@ -315,6 +340,7 @@ for fmi in ["3", "2"]:
     a_saved_state_is_returned_to(f"lag{fmi}")
     directional_derivatives_are_those_of_the_equations(f"lag{fmi}")
     the_wrong_token_makes_no_instance(f"lag{fmi}")
+    no_step_goes_beyond_the_stop_time(f"lag{fmi}")
 guards_are_continuous_functions("ball3")
 an_event_of_a_co_simulation_is_returned_early("ball3")
 print("done")

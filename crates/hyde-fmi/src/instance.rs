@@ -195,7 +195,7 @@ impl Instance {
     /// A step of the instance's own integration.
     ///
     /// # Errors
-    /// It is not where the importer says, or the model has no solution.
+    /// It is not where the importer says, it goes beyond the stop time that was set, or the model has no solution.
     pub fn do_step(&mut self, from: f64, step: f64) -> Result<Arrival> {
         self.only(&[Phase::Stepping], "a step is done")?;
         let Interface::CoSimulation {
@@ -211,6 +211,13 @@ impl Instance {
         }
         if (from - t).abs() > SAME_TIME * (step + t.abs()) {
             let text = format!("the instance is at {t} s, not at {from} s");
+            return Err(Refusal::Misuse(text));
+        }
+        if let Some(stop) = self.asked.stop_s
+            && from + step - stop > SAME_TIME * (step + stop.abs())
+        {
+            let to = from + step;
+            let text = format!("a step to {to} s is beyond {stop} s, the stop time that was set");
             return Err(Refusal::Misuse(text));
         }
         let how = Advance {
