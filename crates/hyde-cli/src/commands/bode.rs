@@ -19,7 +19,9 @@ use std::time::Duration;
 pub(crate) fn bode(args: &BodeArgs) -> Exit {
     match responses(args) {
         Ok((text, holds)) => {
-            print_output(&text);
+            if args.model.json || !args.model.quiet {
+                print_output(&text);
+            }
             if holds { Exit::Done } else { Exit::Expectation }
         }
         Err(exit) => exit,
@@ -40,9 +42,6 @@ fn responses(args: &BodeArgs) -> Result<(String, bool), Exit> {
         took.push(time);
     }
     let holds = all.iter().all(Responses::holds);
-    if args.model.json {
-        return Ok((format!("{:#}", hyde_present::bode::json(&all)), holds));
-    }
     let path = |folder: &Path, name: &str| folder.join(name).display().to_string();
     let out = args.out.as_deref();
     let path = out.map(|folder| move |name: &str| path(folder, name));
@@ -53,6 +52,10 @@ fn responses(args: &BodeArgs) -> Result<(String, bool), Exit> {
         leave(folder, &written)
             .map_err(|reason| complain(&args.model, Exit::CommandLine, &reason))?;
     }
+    let text = match args.model.json {
+        true => format!("{:#}", hyde_present::bode::json(&all)),
+        false => text,
+    };
     Ok((text, holds))
 }
 
@@ -97,7 +100,7 @@ fn asked(
 /// Shows how many frequencies of a response are done.
 fn watch(args: &ModelArgs, reached: &Arc<Reached>) -> Watch {
     let reached = Arc::clone(reached);
-    Watch::new(args.json || args.quiet, move || match reached.get() {
+    Watch::new(args.quiet, move || match reached.get() {
         (done, all) if all > 0.0 => format!("{done} of {all} frequencies"),
         _ => "linearising".to_owned(),
     })

@@ -21,7 +21,7 @@ fn told(args: &BudgetArgs) -> Result<(), Exit> {
     let model = &args.model;
     let (asked, loaded) = (project::asked(model)?, project::parsed(model)?);
     let how = how();
-    let watch = watch(model.json || model.quiet, &how.reached);
+    let watch = watch(model.quiet, &how.reached);
     let ready = |project: &Project| project.print_warnings(model);
     let found = made(&loaded, &asked, &how, ready);
     drop(watch);

@@ -84,7 +84,7 @@ fn begun(
         print_output(&told);
     }
     let (reached, starts) = (Arc::clone(reached), calibration.plan.starts);
-    Some(Watch::new(silent, move || {
+    Some(Watch::new(args.study.quiet, move || {
         let (steps, most) = reached.get();
         let most = most * starts.max(1) as f64;
         match steps > 0.0 {

@@ -17,7 +17,9 @@ use std::path::Path;
 pub(crate) fn modes(args: &ModesArgs) -> Exit {
     match table(args) {
         Ok(text) => {
-            print_output(&text);
+            if args.model.json || !args.model.quiet {
+                print_output(&text);
+            }
             Exit::Done
         }
         Err(exit) => exit,
@@ -41,13 +43,14 @@ fn table(args: &ModesArgs) -> Result<String, Exit> {
     let all: Result<Vec<Modes>, Exit> =
         all.map(|model| found(args, model, &loaded, None)).collect();
     let all = all?;
+    let left = args.out.as_ref().map(|folder| leave(folder, None, &all));
+    let left = left.transpose();
+    let left = left.map_err(|reason| complain(&args.model, Exit::CommandLine, &reason))?;
     if args.model.json {
         return Ok(format!("{:#}", json(&all)));
     }
     let mut text = text(&all, args.real);
-    if let Some(folder) = &args.out {
-        let path = leave(folder, None, &all)
-            .map_err(|reason| complain(&args.model, Exit::CommandLine, &reason))?;
+    if let Some(path) = left {
         let _ = writeln!(text, "{path}");
     }
     Ok(text)

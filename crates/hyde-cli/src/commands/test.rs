@@ -69,7 +69,7 @@ fn tested(args: &ModelArgs) -> Result<Exit, Exit> {
 fn experiment(loaded: &Loaded, args: &ModelArgs, tests: &mut Vec<Tested>) -> Result<Exit, Exit> {
     let asked = project::asked(args)?;
     let how = how();
-    let _watch = watch(args.json || args.quiet, &how.reached);
+    let _watch = watch(args.quiet, &how.reached);
     let found = experiment_tests::experiment(loaded, &asked, &how);
     let mut tested = found.tests.iter();
     let failed = tested.any(|test| test.verdict == Verdict::Failed);

@@ -42,6 +42,31 @@ fn modes_come_by_frequency() {
 }
 
 #[test]
+fn files_are_left_beside_json_and_quiet_prints_nothing() {
+    let folder = Folder::new();
+    for (line, file) in [
+        (["modes", BENCH, "--below", "2000"].as_slice(), "modes.html"),
+        (
+            &["bode", "examples/y_axis/axis.hyde", "swept", "--linear"],
+            "bode.html",
+        ),
+    ] {
+        for (how, out) in [("--json", "told"), ("--quiet", "quiet")] {
+            let path = folder.path(out);
+            let output = hyde(&[line, &[how, "--out", &path][..]].concat());
+            assert_eq!(status(&output), 0, "{}", errors(&output));
+            let names = folder.names(out);
+            assert!(names.iter().any(|name| name == file), "{names:?}");
+            let printed = text(&output);
+            match how {
+                "--json" => assert!(serde_json::from_str::<Value>(&printed).is_ok()),
+                _ => assert_eq!(printed, ""),
+            }
+        }
+    }
+}
+
+#[test]
 fn a_linear_response_leaves_figure_and_numbers() {
     let folder = Folder::new();
     let out = folder.path("bode");

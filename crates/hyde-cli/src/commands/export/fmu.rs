@@ -127,7 +127,7 @@ fn reference(args: &FmuArgs, model: &Model, described: &Described<'_>) -> Result
         .collect();
     let interrupted = interruption::interrupted();
     let reached = Arc::<Reached>::default();
-    let watch = run::watch(args.model.json || args.model.quiet, &reached);
+    let watch = run::watch(args.model.quiet, &reached);
     let run = driven.run(&names, rows, Arc::clone(&interrupted), reached);
     drop(watch);
     if interrupted.load(Ordering::Relaxed) {

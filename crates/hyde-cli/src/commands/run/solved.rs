@@ -55,7 +55,7 @@ pub(crate) fn solved_of(
     };
     let tables = hyde_study::tables(&project.records);
     let start = std::time::Instant::now();
-    let watch = watch(args.model.json || args.model.quiet, &options.reached);
+    let watch = watch(args.model.quiet, &options.reached);
     let outcome = hyde_experiment::run(&compiled.program, &tables, &options);
     drop(watch);
     match outcome {
