@@ -2,6 +2,7 @@
 
 use crate::asked::Asked;
 use crate::inputs::Kind;
+use crate::near::nearest;
 use crate::package::Roots;
 use crate::project::Aim;
 use hyde_compiler::{File, FmuInterface, fmu_has_no_equations};
@@ -134,7 +135,7 @@ fn mistaken(fmu: &Fmu, changes: &[Change], span: Span) -> Vec<Diagnostic> {
         let diagnostic = Diagnostic::error(Code::UnknownModification, message)
             .label(change.target.span, "changes nothing");
         let other = fmu.interface.names.iter().any(|name| name == word);
-        found.push(match nearest(word, &parameters) {
+        found.push(match nearest(word, parameters.iter().copied()) {
             _ if other => diagnostic.help(format!(
                 "`{word}` is an input or an output: write an equation for it where the component is declared"
             )),
@@ -161,14 +162,6 @@ fn mistaken(fmu: &Fmu, changes: &[Change], span: Span) -> Vec<Diagnostic> {
         );
     }
     found
-}
-
-/// The name that is most like a word, if one is.
-fn nearest<'a>(word: &str, names: &[&'a str]) -> Option<&'a str> {
-    let like = |name: &str| strsim::jaro_winkler(&word.to_lowercase(), &name.to_lowercase());
-    let all = names.iter().map(|name| (like(name), *name));
-    let best = all.max_by(|a, b| a.0.total_cmp(&b.0))?;
-    (best.0 > 0.8).then_some(best.1)
 }
 
 fn dotted(package: &str, model: &str, span: Span) -> Reference {

@@ -60,6 +60,7 @@ mod inputs;
 mod known;
 pub mod left_model;
 pub mod modes;
+mod near;
 pub mod operating_point;
 mod package;
 pub mod ports;

@@ -1,5 +1,6 @@
 //! The inputs, outputs and parameters of a program that goes to another tool.
 
+use crate::near::did_you_mean;
 use hyde_diag::MadeBy;
 use hyde_program::{
     Constant, Firmness, Function, InitialCondition, Output, Parameter, Program, Wrt,
@@ -41,18 +42,9 @@ pub fn chosen_outputs(program: &Program, asked: &[String]) -> Result<BTreeSet<us
         .iter()
         .map(|name| {
             program.output(name).ok_or_else(|| {
-                let last = name.rsplit('.').next().unwrap_or(name);
-                let near = program.outputs.iter().filter(|output| {
-                    !output.auxiliary && output.name.rsplit('.').next() == Some(last)
-                });
-                let near: Vec<&str> = near.map(|output| output.name.as_str()).take(3).collect();
-                match near.as_slice() {
-                    [] => format!("the model reports no quantity `{name}`"),
-                    _ => format!(
-                        "the model reports no quantity `{name}`; did you mean `{}`?",
-                        near.join("`, `")
-                    ),
-                }
+                let known = program.outputs.iter().filter(|output| !output.auxiliary);
+                let near = did_you_mean(name, known.map(|output| output.name.as_str()));
+                format!("the model reports no quantity `{name}`{near}")
             })
         })
         .collect()

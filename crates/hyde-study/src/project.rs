@@ -333,7 +333,7 @@ impl Project {
         for setting in &self.settings {
             let checked = match compiled.program.parameter(&setting.path) {
                 Some((parameter, _)) => settings::check(setting, parameter),
-                None => Err(unknown_parameter(&compiled, &setting.path)),
+                None => Err(run_failure::no_parameter(&compiled.program, &setting.path)),
             };
             if let Err(reason) = checked {
                 let diagnostic = run_failure::cannot_set(&compiled.program, &setting.path, reason);
@@ -457,23 +457,4 @@ fn choose<'p>(project: &'p Project, asked: &Asked) -> Result<Option<&'p Experime
             ))
         }
     }
-}
-
-fn unknown_parameter(compiled: &Compiled, path: &str) -> String {
-    let last = path.rsplit('.').next().unwrap_or(path);
-    let near: Vec<&str> = compiled
-        .program
-        .parameters
-        .iter()
-        .map(|parameter| parameter.name.as_str())
-        .filter(|name| name.rsplit('.').next() == Some(last))
-        .take(3)
-        .collect();
-    if near.is_empty() {
-        return format!("the model has no parameter `{path}`");
-    }
-    format!(
-        "the model has no parameter `{path}`; did you mean `{}`?",
-        near.join("`, `")
-    )
 }

@@ -1,6 +1,7 @@
 //! A run that could not go on, as a diagnostic: component, equation, source line, time.
 
 use crate::fmus;
+use crate::near::did_you_mean;
 use crate::refused::Fault;
 use hyde_diag::{Code, Diagnostic};
 use hyde_experiment::RunError;
@@ -20,7 +21,7 @@ pub fn diagnostic(
 ) -> (Diagnostic, Fault) {
     match error {
         RunError::NoParameter(name) => (
-            Diagnostic::error(Code::BadSet, format!("the model has no parameter `{name}`")),
+            Diagnostic::error(Code::BadSet, no_parameter(program, name)),
             Fault::Asked,
         ),
         RunError::CannotSet(name, why) => {
@@ -112,6 +113,13 @@ pub fn diagnostic(
             (failed(failure, program), fault)
         }
     }
+}
+
+/// There is no such parameter, with those that are meant instead.
+pub(crate) fn no_parameter(program: &Program, name: &str) -> String {
+    let known = program.parameters.iter().map(|own| own.name.as_str());
+    let near = did_you_mean(name, known);
+    format!("the model has no parameter `{name}`{near}")
 }
 
 /// A value that cannot be set, at the parameter it was meant for.

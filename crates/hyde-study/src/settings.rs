@@ -14,6 +14,8 @@ pub struct Setting {
     pub unit: Option<NamedUnit>,
     /// It was written as `true` or `false`.
     pub truth: bool,
+    /// It is in SI though it was written without a unit.
+    pub si: bool,
 }
 
 impl Setting {
@@ -24,6 +26,15 @@ impl Setting {
             value,
             unit,
             truth: false,
+            si: false,
+        }
+    }
+
+    /// A value in SI that needs no unit.
+    pub fn in_si(path: String, value: f64) -> Self {
+        Self {
+            si: true,
+            ..Self::of(path, value, None)
         }
     }
 }
@@ -73,6 +84,9 @@ pub fn quantity(text: &str, dimension: Dimension) -> Option<f64> {
 
 /// Whether a setting fits a parameter; what to write instead if not.
 pub fn check(setting: &Setting, parameter: &Parameter) -> Result<(), String> {
+    if setting.si {
+        return Ok(());
+    }
     let given = Given {
         value: setting.value,
         unit: setting.unit.as_ref(),
