@@ -1,4 +1,4 @@
-//! The figures that an experiment asks for, drawn from the results of its run.
+//! The figures that an experiment or a caller asks for, drawn from the results of a run.
 
 use hyde_experiment::Run;
 use hyde_program::{Constant, Curve, FigureKind, Program};
@@ -27,6 +27,18 @@ pub fn of_run(program: &Program, run: &Run) -> Vec<(String, Figure)> {
         (asked.name.clone(), figure)
     });
     drawn.collect()
+}
+
+/// Curves over time, each panel in the unit of its first curve.
+#[must_use]
+pub fn over_time(title: &str, program: &Program, run: &Run, panels: &[Vec<Curve>]) -> Figure {
+    let shown = Shown {
+        program,
+        run,
+        from: f64::NEG_INFINITY,
+        to: f64::INFINITY,
+    };
+    shown.over_time(title, panels)
 }
 
 /// The files of figures: each as `NAME.svg` and as `NAME.png`.

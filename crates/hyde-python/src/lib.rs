@@ -3,6 +3,7 @@
 //! ```text
 //! model     a model with its experiment, compiled       model.rs
 //! outcome   what a run leaves, as arrays                outcome.rs
+//! shown     the page and the figures of a run           shown.rs
 //! refusal   errors, with their diagnostics              refusal.rs
 //! ```
 //! Columns become NumPy arrays without a copy. The interpreter's lock is released while a run goes on.
@@ -10,6 +11,7 @@
 mod model;
 mod outcome;
 mod refusal;
+mod shown;
 
 use mimalloc::MiMalloc;
 use pyo3::prelude::*;
@@ -23,6 +25,8 @@ static ALLOCATOR: MiMalloc = MiMalloc;
 fn _hyde(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<model::Model>()?;
     module.add_class::<outcome::Outcome>()?;
+    module.add_function(wrap_pyfunction!(shown::page, module)?)?;
+    module.add_function(wrap_pyfunction!(shown::figures_of, module)?)?;
     module.add("Error", module.py().get_type::<refusal::Error>())?;
     module.add("ModelError", module.py().get_type::<refusal::ModelError>())?;
     module.add(

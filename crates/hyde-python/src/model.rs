@@ -5,7 +5,7 @@ use crate::refusal;
 use hyde_compiler::Compiled;
 use hyde_diag::Diagnostics;
 use hyde_experiment::{Options, Run, RunError};
-use hyde_program::Prior;
+use hyde_program::{Prior, Program};
 use hyde_signal::Table;
 use hyde_study::settings::{self, Setting};
 use hyde_study::{Aim, Asked, Project, Records, load, run_failure};
@@ -48,20 +48,27 @@ const LOOK: Duration = Duration::from_millis(20);
 
 #[pymethods]
 impl Model {
-    /// Loads and compiles a file.
+    /// Loads and compiles a file, with values set: numbers in SI, or texts with a unit.
+    #[allow(
+        clippy::too_many_arguments,
+        reason = "Python names them; each is one option of a model"
+    )]
     #[new]
-    #[pyo3(signature = (file, experiment=None, model=None, set=Vec::new(), records=Vec::new(), data=None))]
+    #[pyo3(signature = (file, experiment=None, model=None, numbers=Vec::new(), texts=Vec::new(), records=Vec::new(), data=None))]
     fn new(
         py: Python<'_>,
         file: PathBuf,
         experiment: Option<String>,
         model: Option<String>,
-        set: Vec<String>,
+        numbers: Vec<(String, f64)>,
+        texts: Vec<String>,
         records: Vec<(String, PathBuf)>,
         data: Option<PathBuf>,
     ) -> PyResult<Self> {
-        let settings: Result<Vec<Setting>, String> =
-            set.iter().map(|text| settings::parse(text)).collect();
+        let parsed = texts.iter().map(|text| settings::parse(text));
+        let numbers = numbers.into_iter();
+        let numbers = numbers.map(|(name, value)| Ok(Setting::in_si(name, value)));
+        let settings: Result<Vec<Setting>, String> = numbers.chain(parsed).collect();
         let settings = settings.map_err(|reason| refusal::asked(&reason))?;
         py.detach(|| {
             let asked = Asked {
@@ -151,6 +158,23 @@ impl Model {
 }
 
 impl Model {
+    pub(crate) fn program(&self) -> &Program {
+        &self.compiled.program
+    }
+
+    /// What is made of the project and its compiled model.
+    pub(crate) fn with_project<T>(
+        &self,
+        make: impl FnOnce(&Project, &Compiled) -> T,
+    ) -> PyResult<T> {
+        match self.project.lock() {
+            Ok(project) => Ok(make(&project, &self.compiled)),
+            Err(_) => Err(refusal::asked(
+                "another thread ended while it used the model",
+            )),
+        }
+    }
+
     /// The numbers of columns, ascending.
     fn outputs(&self, names: &[String]) -> PyResult<Vec<usize>> {
         let number = |name: &String| {
@@ -223,17 +247,16 @@ impl Model {
     }
 
     fn failure(&self, error: &RunError) -> PyErr {
-        let Ok(project) = self.project.lock() else {
-            return refusal::asked("another thread ended while it used the model");
+        let of_project = |project: &Project, compiled: &Compiled| {
+            let name = project.experiment.as_deref();
+            let mut experiments = project.file.experiments();
+            let experiment = experiments.find(|known| name == Some(known.name.text.as_str()));
+            let (diagnostic, fault) = run_failure::diagnostic(error, &compiled.program, experiment);
+            let mut diagnostics = Diagnostics::default();
+            diagnostics.push(diagnostic);
+            refusal::of(&diagnostics, &project.sources, fault)
         };
-        let name = project.experiment.as_deref();
-        let mut experiments = project.file.experiments();
-        let experiment = experiments.find(|known| name == Some(known.name.text.as_str()));
-        let (diagnostic, fault) =
-            run_failure::diagnostic(error, &self.compiled.program, experiment);
-        let mut diagnostics = Diagnostics::default();
-        diagnostics.push(diagnostic);
-        refusal::of(&diagnostics, &project.sources, fault)
+        self.with_project(of_project).unwrap_or_else(|error| error)
     }
 }
 

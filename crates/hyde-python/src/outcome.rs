@@ -1,7 +1,8 @@
-//! [`Outcome`]: what a run leaves, as NumPy arrays.
+//! [`Outcome`]: what a run leaves, as NumPy arrays, and again as a run, for whoever draws it.
 
 use hyde_experiment::Run;
 use hyde_program::Program;
+use hyde_signal::Series;
 use numpy::{PyArray1, PyArrayMethods as _};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -36,14 +37,18 @@ pub(crate) struct Outcome {
     /// Steps, events, ticks.
     #[pyo3(get)]
     counts: (u64, u64, u64),
+    /// The run, with nothing in its time, its columns and its channels: that is in the arrays.
+    rest: Run,
+    /// The arrays of the columns, in the order of the results.
+    arrays: Vec<Py<PyArray1<f64>>>,
 }
 
 impl Outcome {
     /// Takes the columns of a run: each becomes the memory of its array.
-    pub(crate) fn of(py: Python<'_>, program: &Program, run: Run) -> PyResult<Self> {
-        let results = run.results;
+    pub(crate) fn of(py: Python<'_>, program: &Program, mut run: Run) -> PyResult<Self> {
+        let results = &mut run.results;
         let (columns, units) = (PyDict::new(py), PyDict::new(py));
-        let columns_of_rows = results.columns.iter();
+        let columns_of_rows = std::mem::take(&mut results.columns).into_iter();
         let arrays = columns_of_rows.map(|series| array(py, series.values().into_owned()));
         let arrays: Vec<_> = arrays.collect::<PyResult<_>>()?;
         for (&number, &place) in results.outputs.iter().zip(&results.places) {
@@ -54,7 +59,7 @@ impl Outcome {
             }
         }
         let gradient = PyDict::new(py);
-        if let Some(found) = results.gradient {
+        if let Some(found) = results.gradient.take() {
             for (place, of_parameter) in found.parameters.iter().zip(found.columns) {
                 let Some((_, name)) = program.parameter_at(*place) else {
                     continue;
@@ -69,36 +74,68 @@ impl Outcome {
                 gradient.set_item(name, own)?;
             }
         }
-        let measures = run.measures.into_iter();
-        let measures = measures.map(|own| (own.name, own.value, own.expectation, own.holds));
-        let events = results
-            .events
-            .into_iter()
-            .map(|event| (event.t, event.cause));
+        let time = array(py, std::mem::take(&mut results.time))?.unbind();
+        let events = results.events.iter();
+        let events = events.map(|event| (event.t, event.cause.clone())).collect();
+        let statistics = &results.statistics;
+        let counts = (statistics.steps, statistics.events, statistics.ticks);
+        let measures = run.measures.iter();
+        let measures =
+            measures.map(|own| (own.name.clone(), own.value, own.expectation, own.holds));
+        let measures = measures.collect();
         let compared = PyDict::new(py);
         let mut channels = Vec::new();
-        for channel in run.channels {
+        for channel in &mut run.channels {
             let unit = channel.unit.unit().dimension.usual_unit();
             let arrays = (
-                array(py, channel.time)?,
-                array(py, channel.measured)?,
-                array(py, channel.simulated)?,
+                array(py, std::mem::take(&mut channel.time))?,
+                array(py, std::mem::take(&mut channel.measured))?,
+                array(py, std::mem::take(&mut channel.simulated))?,
             );
             compared.set_item(&channel.name, arrays)?;
-            channels.push((channel.name, unit, channel.rms, channel.noise));
+            channels.push((channel.name.clone(), unit, channel.rms, channel.noise));
         }
-        let statistics = results.statistics;
         Ok(Self {
-            time: array(py, results.time)?.unbind(),
+            time,
             columns: columns.unbind(),
             units: units.unbind(),
             gradient: gradient.unbind(),
-            measures: measures.collect(),
-            events: events.collect(),
+            measures,
+            events,
             channels,
             compared: compared.unbind(),
-            counts: (statistics.steps, statistics.events, statistics.ticks),
+            counts,
+            arrays: arrays.into_iter().map(Bound::unbind).collect(),
+            rest: run,
         })
+    }
+
+    /// The run as it was, with copies of the arrays.
+    pub(crate) fn run(&self, py: Python<'_>) -> PyResult<Run> {
+        let mut run = self.rest.clone();
+        run.results.time = self.time.bind(py).to_vec()?;
+        let series = |array: &Py<PyArray1<f64>>| -> PyResult<Series> {
+            Ok(array.bind(py).to_vec()?.into_iter().collect())
+        };
+        run.results.columns = self.arrays.iter().map(series).collect::<PyResult<_>>()?;
+        for channel in &mut run.channels {
+            let arrays = self.compared.bind(py).get_item(&channel.name)?;
+            let Some(arrays) = arrays else { continue };
+            (channel.time, channel.measured, channel.simulated) = arrays.extract()?;
+        }
+        Ok(run)
+    }
+
+    /// Whether only some columns were kept.
+    pub(crate) fn is_part(&self, program: &Program) -> bool {
+        self.rest.results.outputs.len() < program.outputs.len()
+    }
+
+    /// The numbers of the outputs that were kept and are shown.
+    pub(crate) fn kept(&self, program: &Program) -> Vec<usize> {
+        let kept = self.rest.results.outputs.iter().copied();
+        kept.filter(|&number| !program.outputs[number].auxiliary)
+            .collect()
     }
 }
 

@@ -12,7 +12,7 @@ True
 True
 
 All numbers are SI; a text with a unit is converted. Studies (`fit`, `diagnose`, `modes`, …) run the command `hyde` in a
-process of its own and give its JSON as dictionaries.
+process of its own and give its JSON as dictionaries, with the page of the study.
 """
 
 from ._hyde import VERSION as __version__
@@ -20,6 +20,7 @@ from ._hyde import Error, ModelError, SolverError
 from ._look import look
 from ._model import Model, Parameter, Parameters, load
 from ._run import Channel, Event, Run
+from ._shown import Page, Plot, Study
 
 __all__ = [
     "Channel",
@@ -27,10 +28,13 @@ __all__ = [
     "Event",
     "Model",
     "ModelError",
+    "Page",
     "Parameter",
     "Parameters",
+    "Plot",
     "Run",
     "SolverError",
+    "Study",
     "__version__",
     "load",
     "look",

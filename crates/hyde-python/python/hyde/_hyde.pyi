@@ -23,7 +23,8 @@ class Model:
         file: Union[str, PathLike[str]],
         experiment: Optional[str] = None,
         model: Optional[str] = None,
-        set: list[str] = ...,
+        numbers: list[tuple[str, float]] = ...,
+        texts: list[str] = ...,
         records: list[tuple[str, Union[str, PathLike[str]]]] = ...,
         data: Optional[Union[str, PathLike[str]]] = None,
     ) -> None: ...
@@ -49,3 +50,6 @@ class Outcome:
     channels: list[tuple[str, str, float, Optional[float]]]
     compared: dict[str, tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]]
     counts: tuple[int, int, int]
+
+def page(model: Model, outcome: Outcome, made: str) -> str: ...
+def figures_of(model: Model, outcome: Outcome, title: str, panels: list[list[str]]) -> list[str]: ...

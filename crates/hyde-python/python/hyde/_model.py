@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+import threading
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, Optional, Union
+from typing import Any, Callable, Optional, Union
 
-from . import _command, _records
+from . import _command, _names, _records
 from ._hyde import Error
 from ._hyde import Model as _Model
 from ._records import Record
 from ._run import Run
-from ._values import Value, Values, split, text
+from ._shown import Study
+from ._values import Value, Values, number, split, text
 
 File = Union[str, "PathLike[str]"]
 
@@ -56,7 +58,10 @@ class Parameters(Mapping[str, Parameter]):
             self._all[name] = Parameter(name, value, unit, display, spread, source, structural)
 
     def __getitem__(self, name: str) -> Parameter:
-        return self._all[name]
+        try:
+            return self._all[name]
+        except KeyError:
+            raise _names.unknown("the model has no parameter", name, self._all) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._all)
@@ -78,13 +83,9 @@ class Model:
         self._data = options.get("data")
         self._folder: Optional[tempfile.TemporaryDirectory[str]] = None
         self._records = self._written(options.get("records") or {})
+        numbers, texts = split(self._set)
         self._compiled = _Model(
-            fspath(file),
-            experiment,
-            self._model,
-            [text(name, value) for name, value in (self._set or {}).items()],
-            list(self._records.items()),
-            self._data,
+            fspath(file), experiment, self._model, numbers, texts, list(self._records.items()), self._data
         )
 
     def _written(self, records: Mapping[str, Record]) -> dict[str, str]:
@@ -120,84 +121,118 @@ class Model:
         stop: Optional[float] = None,
         rtol: Optional[float] = None,
         atol: Optional[float] = None,
-        gradient: Sequence[str] = (),
-        keep: Optional[Sequence[str]] = None,
+        gradient: Union[str, Sequence[str]] = (),
+        keep: Union[str, Sequence[str], None] = None,
     ) -> Run:
         """Solves the experiment. Nothing is compiled again; other threads of Python go on meanwhile.
 
-        `set` has values of parameters: numbers in SI, or `"320 [kg]"`, or `(320, "kg")`. `gradient` names parameters by
-        which every column is differentiated. `keep` names the columns that are made, all without it; channels are compared
-        only then.
+        `set` has values of parameters: numbers in SI, or `"320 [kg]"`, or `(320, "kg")`. `stop` is in s. `gradient` names
+        parameters by which every column is differentiated. `keep` names the columns that are made, all without it; channels
+        are compared only then.
         """
         numbers, texts = split(set)
-        outcome = self._compiled.run(numbers, texts, stop, rtol, atol, list(gradient), None if keep is None else list(keep))
-        return Run(outcome, f"{self.experiment or 'run'} of {self.name}")
+        kept = None if keep is None else _names.listed(keep)
+        options = number("stop", stop, "s"), number("rtol", rtol), number("atol", atol)
+        outcome = self._compiled.run(numbers, texts, *options, _names.listed(gradient), kept)
+        return Run(outcome, f"{self.experiment or 'run'} of {self.name}", self._compiled)
 
-    def _arguments(self, command: str, name: Optional[str], more: Sequence[str], set: Values) -> list[str]:
-        arguments = [command, str(self.file)]
-        if name:
-            arguments.append(name)
-        if self._model:
-            arguments += ["--model", self._model]
-        for values in (self._set, set):
-            for key, value in (values or {}).items():
-                arguments += ["--set", text(key, value)]
-        for record, file in self._records.items():
-            arguments += ["--record", f"{record}={file}"]
-        if self._data:
-            arguments += ["--data", fspath(self._data)]
-        return arguments + list(more)
-
-    def modes(self, *arguments: str, set: Values = None) -> dict[str, Any]:
+    def modes(self, *arguments: str, set: Values = None) -> Study:
         """Natural frequencies and damping ratios, as `hyde modes --json`; further arguments are those of the command."""
-        return self._study("modes", self.experiment, arguments, set)
+        return self._study("modes", arguments, set)
 
-    def bode(self, *arguments: str, set: Values = None) -> dict[str, Any]:
+    def bode(self, *arguments: str, set: Values = None) -> Study:
         """Frequency responses, as `hyde bode --json`."""
-        return self._study("bode", self.experiment, arguments, set)
+        return self._study("bode", arguments, set)
 
-    def margins(self, *arguments: str, set: Values = None) -> dict[str, Any]:
+    def margins(self, *arguments: str, set: Values = None) -> Study:
         """Stability margins, as `hyde bode --margins --json`."""
-        return self._study("bode", self.experiment, ("--margins", *arguments), set)
+        return self._study("bode", ("--margins", *arguments), set)
 
-    def fit(self, calibration: Optional[str] = None, *arguments: str) -> dict[str, Any]:
-        """Calibrates on records, as `hyde fit --json`."""
-        return self._of_block("fit", calibration, arguments)
+    def fit(
+        self, calibration: Optional[str] = None, *arguments: str, set: Values = None, data: Optional[File] = None
+    ) -> Study:
+        """Calibrates on records, as `hyde fit --json`. `data` is the folder of the records, that of the model without it."""
+        return self._of_block("fit", calibration, arguments, set, data)
 
-    def diagnose(self, diagnosis: Optional[str] = None, *arguments: str) -> dict[str, Any]:
-        """Finds missing effects, as `hyde diagnose --json`."""
-        return self._of_block("diagnose", diagnosis, arguments)
+    def diagnose(
+        self, diagnosis: Optional[str] = None, *arguments: str, set: Values = None, data: Optional[File] = None
+    ) -> Study:
+        """Finds missing effects, as `hyde diagnose --json`. `data` is the folder of the records, that of the model without
+        it."""
+        return self._of_block("diagnose", diagnosis, arguments, set, data)
 
-    def _of_block(self, command: str, name: Optional[str], arguments: Sequence[str]) -> dict[str, Any]:
-        if self._set or self._records or self._model:
-            raise Error(f"`{command}` takes values and records from its block in the file: load the model without them")
-        line = [command, str(self.file), *([name] if name else []), *arguments]
-        if self._data:
+    def _of_block(
+        self, command: str, name: Optional[str], arguments: Sequence[str], set: Values, data: Optional[File]
+    ) -> Study:
+        if self._records or self._model:
+            raise Error(f"`{command}` takes its model and its records from its block in the file: load without `records` and `model`")
+        line = [command, str(self.file), *([name] if name else []), *self._settings(set)]
+        folder = data if data is not None else self._data
+        if folder is not None:
+            line += ["--data", fspath(folder)]
+        return _command.study(line + list(arguments))
+
+    def _settings(self, set: Values) -> list[str]:
+        known = self.parameters
+        words: list[str] = []
+        for name, value in {**(self._set or {}), **(set or {})}.items():
+            unit = known[name].unit if name in known else ""
+            words += ["--set", text(name, value, unit)]
+        return words
+
+    def _study(self, command: str, arguments: Sequence[str], set: Values) -> Study:
+        line = [command, str(self.file), *([self.experiment] if self.experiment else [])]
+        if self._model:
+            line += ["--model", self._model]
+        line += self._settings(set)
+        for record, file in self._records.items():
+            line += ["--record", f"{record}={file}"]
+        if self._data is not None:
             line += ["--data", fspath(self._data)]
-        answer: dict[str, Any] = _command.json_of(line)
-        return answer
-
-    def _study(self, command: str, name: Optional[str], more: Sequence[str], set: Values) -> dict[str, Any]:
-        answer: dict[str, Any] = _command.json_of(self._arguments(command, name, more, set))
-        return answer
+        return _command.study(line + list(arguments))
 
     def sweep(
-        self, sets: Sequence[Mapping[str, Value]], *, keep: Sequence[str] = (), threads: Optional[int] = None
+        self,
+        sets: Iterable[Mapping[str, Value]],
+        *,
+        keep: Union[str, Sequence[str]] = (),
+        threads: Optional[int] = None,
+        progress: Optional[Callable[[int, int], None]] = None,
     ) -> list[Union[Run, Error]]:
         """Runs each set of values in this process, on several threads; a run that fails is its error.
 
-        Runs have the measures, and the columns that `keep` names. Structural parameters cannot be in a set; `hyde sweep`
-        compiles a variant for each of their values.
+        Runs have the measures, and the columns that `keep` names. `progress` is called with the number of runs that are done
+        and the number of all. Structural parameters cannot be in a set; `hyde sweep` compiles a variant for each of their
+        values.
         """
+        every = list(sets)
+        stopped = threading.Event()
 
-        def one(values: Mapping[str, Value]) -> Union[Run, Error]:
+        def one(values: Mapping[str, Value]) -> Union[Run, Error, None]:
+            if stopped.is_set():
+                return None
             try:
                 return self.run(values, keep=keep)
             except Error as error:
                 return error
 
+        found: list[Union[Run, Error]] = []
         with ThreadPoolExecutor(threads or os.cpu_count()) as pool:
-            return list(pool.map(one, sets))
+            runs = [pool.submit(one, values) for values in every]
+            try:
+                for number, run in enumerate(as_completed(runs), start=1):
+                    run.result()
+                    if progress is not None:
+                        progress(number, len(runs))
+            except BaseException:
+                # Runs that have not begun are left out; those that go on are waited for.
+                stopped.set()
+                raise
+            for run in runs:
+                outcome = run.result()
+                if outcome is not None:
+                    found.append(outcome)
+        return found
 
     def __repr__(self) -> str:
         return f"<hyde.Model {self.name}, experiment {self.experiment}, {len(self.parameters)} parameters>"
@@ -215,7 +250,8 @@ def load(
     """Loads a file and compiles one experiment of it.
 
     `records` replaces the files of records: a path, or a mapping of names to arrays, or a frame of pandas or polars; the first
-    column is the time in s, and `"x [mm]"` names a unit.
+    column is the time in s, and `"x [mm]"` names a unit. `data` is the folder in which the files of records are looked for,
+    that of the model without it.
 
     Raises ModelError with the diagnostics if the model is at fault.
     """

@@ -2,14 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple, Optional
+from datetime import datetime, timezone
+from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ._hyde import Outcome
+from . import _html, _names
+from ._hyde import Model, Outcome, figures_of, page
+from ._shown import Page, Plot
 
 Array = NDArray[np.float64]
 
@@ -40,12 +43,16 @@ class Run(Mapping[str, Array]):
     Columns are NumPy arrays on the memory of the run, not copies; they cannot be written to.
     """
 
-    def __init__(self, outcome: Outcome, title: str) -> None:
+    def __init__(self, outcome: Outcome, title: str, model: Model) -> None:
         self._outcome = outcome
         self._title = title
+        self._model = model
 
     def __getitem__(self, name: str) -> Array:
-        return self._outcome.columns[name]
+        try:
+            return self._outcome.columns[name]
+        except KeyError:
+            raise _names.unknown("the run has no column", name, self._outcome.columns) from None
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._outcome.columns)
@@ -123,10 +130,23 @@ class Run(Mapping[str, Array]):
         units = {"t": "s", **self.units}
         return polars.DataFrame({f"{name} [{units[name]}]": values for name, values in self._columns().items()})
 
+    def plot(self, *panels: Union[str, Sequence[str]], title: Optional[str] = None) -> Plot:
+        """Columns over time, a panel for each argument: `run.plot("r,table.s", "motor.i")`.
+
+        Without arguments, what the page of the run has: the figures of the experiment, what was measured beside the model,
+        and what the run is about.
+        """
+        names = [panel.split(",") if isinstance(panel, str) else list(panel) for panel in panels]
+        stripped = [[name.strip() for name in panel] for panel in names]
+        return Plot(figures_of(self._model, self._outcome, self._title if title is None else title, stripped))
+
+    @property
+    def page(self) -> Page:
+        """The report of the run, as `hyde run --out` writes it. It is made when it is asked for."""
+        return Page(page(self._model, self._outcome, f"{datetime.now(timezone.utc):%Y-%m-%d %H:%M} UTC"))
+
     def __repr__(self) -> str:
         return f"<hyde.Run {self._title}: {len(self.time)} rows, {len(self)} columns, {len(self._outcome.events)} events>"
 
     def _repr_html_(self) -> str:
-        from ._html import table
-
-        return table(self._title, self)
+        return _html.table(self._title, self) + self.plot(title="")._repr_html_()

@@ -26,8 +26,16 @@ def split(values: Values) -> tuple[list[tuple[str, float]], list[str]]:
     return numbers, texts
 
 
-def text(name: str, value: Value) -> str:
-    """A value as `--set` takes it."""
+def number(name: str, value: Optional[float], unit: str = "") -> Optional[float]:
+    """An option of a run that is a number."""
+    try:
+        return None if value is None else float(value)
+    except (TypeError, ValueError):
+        raise Error(f"`{name}`: {value!r} is not a number{unit and f' in {unit}'}") from None
+
+
+def text(name: str, value: Value, si: str = "") -> str:
+    """A value as `--set` takes it; a number has the unit `si`."""
     if isinstance(value, bool):
         return f"{name}={'true' if value else 'false'}"
     if isinstance(value, tuple):
@@ -35,4 +43,4 @@ def text(name: str, value: Value) -> str:
         return f"{name}={float(number)!r} [{unit}]"
     if isinstance(value, str):
         return f"{name}={value}"
-    return f"{name}={float(value)!r}"
+    return f"{name}={float(value)!r} [{si}]" if si not in ("", "1") else f"{name}={float(value)!r}"

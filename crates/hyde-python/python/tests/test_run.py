@@ -1,6 +1,7 @@
 """The package as its users call it. Run from the root of the repository: `pytest crates/hyde-python`."""
 
 import json
+import shutil
 import subprocess
 import threading
 import time
@@ -56,6 +57,9 @@ def test_structural_parameters_are_set_at_load(first: hyde.Model) -> None:
     assert first.parameters["screw.n"].structural
     with pytest.raises(hyde.Error, match="hyde.load"):
         first.run(set={"screw.n": 6})
+    heavy = hyde.load(FIRST, set={"table.M": 320.0, "guide.F": "300 [N]"})
+    assert float(heavy.parameters["table.M"]) == 320.0 and float(heavy.parameters["guide.F"]) == 300.0
+    assert heavy.modes()["modes"] != first.modes()["modes"]
     coarse = hyde.load(FIRST, set={"screw.n": 6})
     assert len(coarse.run()) < len(first.run())
 
@@ -162,6 +166,8 @@ def test_bounds_hold_for_values_set_later(first: hyde.Model) -> None:
         first.run(set={"table.M": -1.0})
     with pytest.raises(hyde.Error, match="no variable"):
         first.run(keep=["table.x"])
+    with pytest.raises(hyde.Error, match="`stop`"):
+        first.run(stop="1 [s]")  # type: ignore[arg-type]
 
 
 def test_studies_give_what_the_command_prints(first: hyde.Model) -> None:
@@ -174,8 +180,80 @@ def test_studies_give_what_the_command_prints(first: hyde.Model) -> None:
         first.fit()
 
 
-def test_a_notebook_shows_measures(first: hyde.Model) -> None:
-    assert "way" in first.run()._repr_html_()
+def test_records_are_looked_for_in_the_folder_that_is_given(tmp_path: Path) -> None:
+    [model, *records] = [tmp_path / "model", tmp_path / "other"]
+    model.mkdir()
+    [folder] = records
+    folder.mkdir()
+    text = BENCH.read_text()
+    (model / "axis.hyde").write_text(text)
+    with pytest.raises(hyde.ModelError, match="strokes.csv"):
+        hyde.load(model / "axis.hyde")
+    shutil.copy(BENCH.parent / "strokes.csv", folder)
+    axis = hyde.load(model / "axis.hyde", data=folder)
+    assert axis.run(stop=0.1).channels["x"].rms == hyde.load(BENCH).run(stop=0.1).channels["x"].rms
+    # The folder of a calibration is another; the command says which it looked in.
+    with pytest.raises(hyde.ModelError, match="fit-.*other"):
+        axis.fit()
+    with pytest.raises(hyde.ModelError, match="fit-.*cut"):
+        axis.fit(data=BENCH.parent / "cut" / "none")
+
+
+def test_studies_have_their_page_and_values_that_are_set(first: hyde.Model, tmp_path: Path) -> None:
+    modes = first.modes("--below", "1 [kHz]")
+    assert "<html" in modes.page.html and "srcdoc" in modes._repr_html_()
+    heavy = first.modes("--below", "1 [kHz]", "--out", str(tmp_path), set={"table.M": 600})
+    assert heavy["modes"][0]["frequency_hz"] < modes["modes"][0]["frequency_hz"]
+    assert heavy.page.html == (tmp_path / "modes.html").read_text()
+    modes.page.save(tmp_path / "kept.html")
+    assert (tmp_path / "kept.html").read_text() == modes.page.html
+
+
+def test_a_run_is_drawn(first: hyde.Model, tmp_path: Path) -> None:
+    run = first.run()
+    shown = run._repr_html_()
+    assert "way" in shown and "<svg" in shown
+    assert "<html" in run.page.html and "table.s" in run.page.html
+    plot = run.plot("table.s", "table.v", title="both")
+    [svg] = plot.svgs
+    assert "both" in svg
+    plot.save(tmp_path / "plot.svg")
+    assert (tmp_path / "plot.svg").read_text() == svg
+    with pytest.raises(hyde.Error, match="panel of its own"):
+        run.plot("table.s,table.v")
+    with pytest.raises(hyde.Error, match="no column `table.x`"):
+        run.plot("table.x")
+    kept = first.run(keep="table.s")
+    assert list(kept) == ["table.s"] and len(kept.plot().svgs) == 1
+    with pytest.raises(hyde.Error, match="table.v"):
+        kept.plot("table.v")
+
+
+def test_names_that_are_not_there_are_told_with_those_like_them(first: hyde.Model) -> None:
+    with pytest.raises(KeyError, match="did you mean `table.M`"):
+        first.parameters["table.m"]
+    run = first.run(gradient="table.M")
+    assert list(run.gradient) == ["table.M"]
+    with pytest.raises(KeyError, match="no column `tabel.s`; did you mean `table.s`"):
+        run["tabel.s"]
+    with pytest.raises(hyde.Error, match="did you mean `table.M`"):
+        first.run({"tabl.M": 1.0})
+
+
+def test_sweeps_tell_how_far_they_are_and_end_when_interrupted(first: hyde.Model) -> None:
+    told: list[tuple[int, int]] = []
+    first.sweep(({"table.M": mass} for mass in (200.0, 300.0)), progress=lambda done, of: told.append((done, of)))
+    assert told == [(1, 2), (2, 2)]
+
+    def stop(done: int, of: int) -> None:
+        raise KeyboardInterrupt
+
+    begin = time.perf_counter()
+    first.run()
+    once = time.perf_counter() - begin
+    with pytest.raises(KeyboardInterrupt):
+        first.sweep([{"table.M": 300.0}] * 1000, progress=stop)
+    assert time.perf_counter() - begin < 200 * once
 
 
 def test_tables_have_units(first: hyde.Model) -> None:
