@@ -258,6 +258,33 @@ fn the_bench_axis_agrees_with_the_reference() {
     assert!(compared == 5 * 6001);
 }
 
+#[test]
+fn a_screw_whose_waves_are_stiff_agrees_with_the_reference() {
+    let outputs = "motor.w,pulley2.w,saddle.v";
+    for experiment in ["waves", "modules"] {
+        let compared = compare(
+            "examples/screw_waves/axis.hyde",
+            experiment,
+            "1e-5",
+            outputs,
+            500,
+        );
+        assert_eq!(compared, 3 * 501);
+    }
+}
+
+#[test]
+fn a_double_pendulum_agrees_with_the_reference() {
+    let compared = compare(
+        "tests/models/msl/double_pendulum.hyde",
+        "run",
+        "1e-3",
+        "revolute1.phi,revolute2.phi,revolute1.w",
+        3000,
+    );
+    assert_eq!(compared, 3 * 3001);
+}
+
 const STEPPED: &str = "tests/models/fixed_step.hyde";
 
 #[test]
