@@ -56,7 +56,7 @@ fn fact(name: &str, value: &str) -> String {
 /// A text, in which words between two backquotes are those of a program.
 fn prose(text: &str) -> String {
     let parts: Vec<&str> = text.split('`').collect();
-    if parts.len() % 2 == 0 {
+    if parts.len().is_multiple_of(2) {
         return escape(text);
     }
     let part = |(number, part): (usize, &&str)| match number % 2 {

@@ -2,8 +2,8 @@
 //! or reading each other. It is read from the trees, before anything is flattened, so that it shows what was written.
 
 use hyde_syntax::ast::{
-    self, Change, Class, ClassBody, ClassKind, Declaration, Element, Equation, EquationKind, Expr,
-    ExprKind, Prefix, Reference,
+    self, Change, Class, ClassBody, ClassKind, Declaration, Declarator, Element, Equation,
+    EquationKind, Expr, ExprKind, Prefix, Reference,
 };
 use hyde_syntax::{FileIndex, Lookup};
 
@@ -118,18 +118,18 @@ impl<'a> Reader<'a> {
             let Element::Declaration(declaration) = element else {
                 continue;
             };
-            // A name that is a type is not a class, though a class may be called so too: `Force`.
             let quantity = self.lookup.type_item(file, &declaration.type_name);
-            let class = match quantity {
-                Some(_) => None,
-                None => self.lookup.class(file, &declaration.type_name),
-            };
+            let class = self.lookup.class(file, &declaration.type_name);
             let class = class.filter(|(_, class)| class.kind == ClassKind::Model);
             let is_input = declaration.prefixes.contains(&Prefix::Input);
-            if class.is_none() && !is_input {
-                continue;
-            }
             for declared in &declaration.declarators {
+                // `Force` is a type and a model.
+                let is_component = quantity.is_none()
+                    || declaration.prefixes.is_empty() && means_component(declared, elements);
+                let class = class.filter(|_| is_component);
+                if class.is_none() && !is_input {
+                    continue;
+                }
                 let dims = if declared.dims.is_empty() {
                     &declaration.dims
                 } else {
@@ -300,6 +300,26 @@ impl<'a> Reader<'a> {
     }
 }
 
+/// Whether what is declared with a word that is a type and a model is a component: it is modified as one, or connected.
+fn means_component(declared: &Declarator, elements: &[&Element]) -> bool {
+    if declared.binding.is_some() || !declared.changes.is_empty() {
+        return declared.binding.is_none() && declared.is_modified();
+    }
+    let is_end = |end: &Reference| {
+        let first = end.parts.first();
+        first.is_some_and(|first| first.name.text == declared.name.text)
+    };
+    elements.iter().any(|element| {
+        if let Element::Equation(equation) = element
+            && let EquationKind::Connect(ends) = &equation.kind
+        {
+            ends.iter().any(is_end)
+        } else {
+            false
+        }
+    })
+}
+
 /// The elements, those of clocked blocks behind these.
 fn flat(elements: &[Element]) -> Vec<&Element> {
     elements
@@ -355,16 +375,17 @@ mod tests {
         let found = found(
             "type Force = Real [N];\nmodel Force \"\"\n  Real f;\nend Force;\n\
             model Part\n  Real x, y;\nend Part;\n\
-            model Whole\n  input Force F;\n  parameter Force limit = 1 [N];\n  Part motor, sensor;\n  Real half;\n  \
+            model Whole\n  input Force F;\n  parameter Force limit = 1 [N];\n  Part motor, sensor;\n  Real half;\n  Force drag = 2*F;\n  \
+            Force push(f = limit), pull;\n  \
             clocked cnc(1 [ms])\n    Real count = sample(sensor.y);\n    Part control(x = 2*count);\n  end cnc;\n\
-            equation\n  half = F/2;\n  motor.x = hold(cnc.control.y) + half;\n  sensor.x = motor.y;\nend Whole;\n",
+            equation\n  connect(push.a, pull.a);\n  half = F/2;\n  motor.x = hold(cnc.control.y) + half;\n  sensor.x = motor.y;\nend Whole;\n",
         );
         let names: Vec<&str> = found.parts.iter().map(|part| part.name.as_str()).collect();
-        // `Force` is a type where a type is called so; the limit is a number.
-        assert_eq!(names, ["F", "motor", "sensor", "control"]);
+        // `Force` is a type and a model: the limit and the drag are numbers, what is modified and connected are components.
+        assert_eq!(names, ["F", "motor", "sensor", "push", "pull", "control"]);
         let mut signals = found.signals;
         signals.sort_unstable();
-        assert_eq!(signals, [(0, 1), (1, 2), (2, 3), (3, 1)]);
+        assert_eq!(signals, [(0, 1), (1, 2), (2, 5), (5, 1)]);
     }
 
     #[test]
