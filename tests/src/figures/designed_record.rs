@@ -23,12 +23,10 @@ fn resolved(session: &Session) -> Result<Measured, String> {
         all += number("one_of")?;
         resolved += number("resolved")?;
     }
-    // Nothing is left to resolve where no verdict is `one of`.
-    let percent = if all == 0.0 {
-        100.0
-    } else {
-        100.0 * resolved / all
-    };
+    if all == 0.0 {
+        return Err("no verdict is `one of`".to_owned());
+    }
+    let percent = 100.0 * resolved / all;
     Ok(Measured::Partly(
         percent,
         "24 effects at their sites of each of three axes, spread over all",

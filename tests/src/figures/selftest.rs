@@ -1,6 +1,7 @@
 //! `false_alarms_of_100`, `planted_top1_percent`, `withheld_not_claimed`, `claims_whose_interval_holds_zero`,
 //! `interval_coverage_percent`: what the verdicts of a diagnosis are worth, on the small axis; the first two on a rack and on
-//! a linear motor as well; and [`record`], which plants the whole library there. The command is this program itself; finished cases are kept below
+//! a linear motor as well; and [`record`], which plants the whole library there. The command is this program itself; finished
+//! cases are kept below
 //! `target/selftest`, by seed, so that an interrupted measurement goes on.
 
 use super::promise::{Figure, Measured, Promise, Session};
