@@ -376,21 +376,26 @@ static COMPARED: Habit = word(
     "an equation is written with one `=`: `y = 2*x;`",
 );
 
-/// What stands in the place of an attribute of Modelica.
+/// What stands in the place of an attribute of Modelica, which has this text as its value.
 #[must_use]
-pub fn instead_of_attribute(word: &str) -> Option<&'static str> {
-    Some(match word {
+pub fn instead_of_attribute(word: &str, text: &str) -> Option<String> {
+    let help = match word {
         "unit" => {
-            "the unit stands behind the value, `= 0.8 [N.m/A]`, and the declared type has its dimension"
+            return Some(format!(
+                "the unit stands behind the value, `= 1 [{text}]`, and the declared type has its dimension"
+            ));
         }
         "displayUnit" => {
-            "results are shown in the unit of the type: declare one of your own, `type Turn = Real [deg];`"
+            return Some(format!(
+                "results are shown in the unit of the type: declare one of your own, `type Shown = Real [{text}];`"
+            ));
         }
         "quantity" => "the declared type says which quantity it is: `Torque tau;`",
         "nominal" => "leave it out: values are scaled by what they are during the run",
         "stateSelect" => "write `state = always`, `prefer`, `avoid` or `never`",
         _ => return None,
-    })
+    };
+    Some(help.to_owned())
 }
 
 /// What stands in the place of a type, package or function of Modelica, by its full name.

@@ -4,7 +4,7 @@ use crate::instance::{Binding, InstanceId, Position};
 use crate::model::{Model, listed};
 use crate::names::nearest;
 use hyde_diag::{Code, Diagnostic, Span};
-use hyde_syntax::ast::{Change, Declarator};
+use hyde_syntax::ast::{Change, Declarator, ExprKind};
 
 /// A modification of something below an instance, with the scope its value stands in.
 #[derive(Clone)]
@@ -241,7 +241,12 @@ impl<'a> Model<'a, '_> {
                     format!("a {of} has no attribute `{}`", change.target.dotted()),
                 )
                 .label(change.target.span, "changes nothing");
-                self.report(match word.and_then(hyde_syntax::instead_of_attribute) {
+                let text = match change.value.as_ref().map(|value| &value.kind) {
+                    Some(ExprKind::String(text)) => text.as_str(),
+                    Some(_) | None => "unit",
+                };
+                let instead = word.and_then(|word| hyde_syntax::instead_of_attribute(word, text));
+                self.report(match instead {
                     Some(help) => diagnostic.help(help),
                     None => diagnostic.help(format!("attributes are {}", listed(known))),
                 });
