@@ -94,26 +94,19 @@ impl<'a> Model<'a, '_> {
     /// Whether the second argument of a reduction is a condition: `max(e, time > 0.5 [s])` is the largest value behind 0.5 s,
     /// `max(a, b)` the larger of two numbers.
     pub(super) fn is_condition(&mut self, second: &'a Expr, scope: &Scope<'a>) -> bool {
-        if scope.setting != Setting::Measure {
-            return false;
-        }
-        match &second.kind {
-            ExprKind::Boolean(_) | ExprKind::Unary(Unary::Not, _) => true,
-            ExprKind::Binary(operator, ..) => match operator {
-                Binary::Lt | Binary::Le | Binary::Gt | Binary::Ge | Binary::Eq | Binary::Ne => true,
-                Binary::And | Binary::Or => true,
-                Binary::Add | Binary::Sub | Binary::Mul | Binary::Div | Binary::Pow => false,
-            },
-            ExprKind::Reference(_) => self.lower(second, &scope.with(Setting::Report)).truth,
-            ExprKind::Number(..)
-            | ExprKind::String(_)
-            | ExprKind::Call(..)
-            | ExprKind::Unary(..)
-            | ExprKind::If(..)
-            | ExprKind::Array(..)
-            | ExprKind::Comprehension(_)
-            | ExprKind::Slice(..) => false,
-        }
+        let is_written_so = || {
+            use Binary::{And, Eq, Ge, Gt, Le, Lt, Ne, Or};
+            matches!(
+                &second.kind,
+                ExprKind::Boolean(_)
+                    | ExprKind::Unary(Unary::Not, _)
+                    | ExprKind::Binary(Lt | Le | Gt | Ge | Eq | Ne | And | Or, ..)
+            )
+        };
+        let is_name = matches!(second.kind, ExprKind::Reference(_));
+        scope.setting == Setting::Measure
+            && (is_written_so()
+                || is_name && self.lower(second, &scope.with(Setting::Report)).truth)
     }
 
     /// A reduction of an expression that the run computes, as a variable with this name.

@@ -26,10 +26,8 @@ impl<'a> Model<'a, '_> {
                     .unknown_quantity(item.file, &declaration.type_name),
             };
             let values = declaration.declarators.iter();
-            let values = values.filter_map(|declarator| declarator.binding.as_ref());
-            let fitting = values
-                .filter_map(|value| self.quantities_of(item.file, value))
-                .next();
+            let mut values = values.filter_map(|declarator| declarator.binding.as_ref());
+            let fitting = values.find_map(|value| self.quantities_of(item.file, value));
             self.report(match fitting {
                 Some(help) => diagnostic.help(help),
                 None => diagnostic,

@@ -339,7 +339,12 @@ impl Sum {
         };
         let value = |found: Option<f64>| found.map_or(Reduced::Nothing, Reduced::Value);
         match (&self.so, self.kind) {
-            (So::Extreme { sign, best }, _) => value(best.is_finite().then_some(sign * best)),
+            (So::Extreme { best, .. }, _)
+                if self.condition.is_some() && *best == f64::NEG_INFINITY =>
+            {
+                Reduced::Nothing
+            }
+            (So::Extreme { sign, best }, _) => Reduced::Value(sign * best),
             (So::Integral { .. }, ReductionKind::Mean) => value(mean(|instant| instant)),
             (So::Integral { square: true }, _) => {
                 value(mean(|instant| instant * instant).map(f64::sqrt))
