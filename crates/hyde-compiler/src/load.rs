@@ -92,23 +92,7 @@ pub fn load(
 /// The sources and the file with a package of the library beside those that are loaded.
 pub(crate) fn with_package(sources: &Sources, file: &File, name: &str) -> (Sources, File) {
     let (mut sources, mut file) = (sources.clone(), file.clone());
-    let own = file.files.iter();
-    let own = own.filter_map(|(_, tree)| tree.package.as_ref());
-    let mut known: Vec<String> = own.map(|(path, _)| path.dotted()).collect();
-    if let Some(&(first, _)) = file.files.first() {
-        let wanted = vec![(name.to_owned(), Span::new(first, 0, 0))];
-        let packages = &Packages::LIBRARY;
-        // The library has no errors: a test of its own compiles all of it.
-        let mut diagnostics = Diagnostics::new();
-        add_packages(
-            &mut sources,
-            &mut file.files,
-            &mut known,
-            wanted,
-            packages,
-            &mut diagnostics,
-        );
-    }
+    file.add_of_library(&mut sources, [name]);
     (sources, file)
 }
 
@@ -236,6 +220,38 @@ pub fn check_name(
 }
 
 impl File {
+    /// Adds every package of the library that is not loaded yet.
+    pub fn add_library(&mut self, sources: &mut Sources) {
+        let names = hyde_library::PACKAGES.iter().map(|package| package.name);
+        self.add_of_library(sources, names);
+    }
+
+    /// Adds packages of the library, and all that these name, to those that are loaded.
+    fn add_of_library<'a>(
+        &mut self,
+        sources: &mut Sources,
+        names: impl IntoIterator<Item = &'a str>,
+    ) {
+        let Some(&(first, _)) = self.files.first() else {
+            return;
+        };
+        let own = self.files.iter();
+        let own = own.filter_map(|(_, tree)| tree.package.as_ref());
+        let mut known: Vec<String> = own.map(|(path, _)| path.dotted()).collect();
+        let names = names.into_iter();
+        let wanted = names.map(|name| (name.to_owned(), Span::new(first, 0, 0)));
+        // The library has no errors: a test of its own compiles all of it.
+        let mut diagnostics = Diagnostics::new();
+        add_packages(
+            sources,
+            &mut self.files,
+            &mut known,
+            wanted.collect(),
+            &Packages::LIBRARY,
+            &mut diagnostics,
+        );
+    }
+
     /// The experiments of the user's file.
     pub fn experiments(&self) -> impl Iterator<Item = &ast::Experiment> {
         self.items().filter_map(|item| match item {

@@ -62,10 +62,6 @@ fn all(job: &Job) -> Vec<lsp_types::Diagnostic> {
             return shown(&loaded.file, &loaded.sources, &loaded.diagnostics, job);
         }
         Ok(loaded) => hyde_study::check(loaded, &asked, &stop, &mut |_, _| {}),
-        Err(reason) => Err(reason),
-    };
-    let found = match found {
-        Ok(found) => found,
         Err(reason) => return vec![plain(reason)],
     };
     let mut list: Vec<lsp_types::Diagnostic> = found.refused.into_iter().map(plain).collect();

@@ -21,16 +21,12 @@ pub struct Checked {
 /// Checks the experiment or the model that is asked for of a file that is parsed, else all experiments of the file, else its last model. One that is
 /// wrong does not keep the others from being looked at. `visit` sees what compiled; `stop` is asked between stages, and true
 /// ends the check early with what was found so far.
-///
-/// # Errors
-/// The file cannot be read again with the whole library, which a diagnosis needs.
 pub fn check(
     mut loaded: Loaded,
     asked: &Asked,
     stop: &dyn Fn() -> bool,
     visit: &mut dyn FnMut(&Project, &Compiled),
-) -> Result<Checked, String> {
-    let mut asked = asked.clone();
+) -> Checked {
     let mut found = Checked {
         project: None,
         faults: Vec::new(),
@@ -38,9 +34,8 @@ pub fn check(
     };
     // A diagnosis names effects of packages that its model need not use.
     let studies = |kind| loaded.file.studies().any(|study| study.kind == kind);
-    if studies(StudyKind::Diagnose) && !asked.whole_library {
-        asked.whole_library = true;
-        loaded = Loaded::of(&asked)?;
+    if studies(StudyKind::Diagnose) {
+        loaded.file.add_library(&mut loaded.sources);
     }
     let mut chosen: Vec<Option<String>> = match (&asked.experiment, &asked.model) {
         (None, None) => {
@@ -54,7 +49,7 @@ pub fn check(
     }
     for experiment in chosen {
         if stop() {
-            return Ok(found);
+            return found;
         }
         let asked = Asked {
             experiment,
@@ -84,7 +79,7 @@ pub fn check(
     {
         found.faults.push(Fault::Model);
     }
-    Ok(found)
+    found
 }
 
 /// Compiles a project, and its model as each part of the experiment's budget makes it.

@@ -61,7 +61,7 @@ fn parses(_: &Session) -> Result<Measured, String> {
     let first = "examples/first/first.hyde";
     let bench = ["examples/bench_axis/axis.hyde", "--quiet", "--data"];
     let cogging = "examples/bench_axis/cogging";
-    let commands: [(&str, Vec<&str>); 9] = [
+    let commands: [(&str, Vec<&str>); 10] = [
         ("run", vec![first, "--quiet"]),
         ("fit", [&bench[..], &[cogging]].concat()),
         ("diagnose", [&bench[..], &[cogging]].concat()),
@@ -75,6 +75,7 @@ fn parses(_: &Session) -> Result<Measured, String> {
         ),
         ("sweep", [&[first, "--quiet"], &SWEEP[..]].concat()),
         ("check", vec![first, "--quiet"]),
+        ("check", bench[..2].to_vec()),
         ("test", vec![first, "--quiet"]),
         ("effects", vec![first, "--check", "--quiet"]),
     ];

@@ -52,8 +52,7 @@ fn checked(args: &ModelArgs, folder: bool) -> Result<Found, Exit> {
     }
     let mut visit = |project: &Project, compiled: &Compiled| found.add(project, compiled);
     let complain = |reason: String| project::complain(args, Exit::CommandLine, &reason);
-    let all = hyde_study::check(loaded, &project::asked(args)?, &|| false, &mut visit)
-        .map_err(complain)?;
+    let all = hyde_study::check(loaded, &project::asked(args)?, &|| false, &mut visit);
     if let Some(reason) = all.refused.into_iter().next() {
         return Err(complain(reason));
     }

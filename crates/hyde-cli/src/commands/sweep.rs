@@ -60,36 +60,59 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
         folder: &folder,
         kept,
     };
-    if let Some(count) = args.missing {
-        let missing = batch.missing_shards(&work.store()?, count);
-        print_output(&indices(&missing, slurm::MOST).join("\n"));
-        return Ok(Exit::Done);
+    match (args.missing, &args.shard) {
+        (Some(count), _) => missing(&work, count),
+        (None, Some(shard)) => part(&work, shard),
+        (None, None) => whole(&work, &order),
     }
-    let how = How {
-        jobs: args.jobs.unwrap_or(0),
-        interrupted: interruption::interrupted(),
-        progress: &Shown::new(args.json, args.quiet || args.shard.is_some()),
-    };
-    let shared = args.shard.is_some() || args.engine == Engine::Slurm;
-    let lock = locked(&folder, shared).map_err(failed)?;
+}
+
+/// Prints which cases are not solved yet, as an array job takes them.
+fn missing(work: &Work<'_>, count: usize) -> Result<Exit, Exit> {
+    let missing = work.batch.missing_shards(&work.store()?, count);
+    print_output(&indices(&missing, slurm::MOST).join("\n"));
+    Ok(Exit::Done)
+}
+
+/// Solves the cases of one part of a batch that other processes may work on as well.
+fn part(work: &Work<'_>, shard: &str) -> Result<Exit, Exit> {
+    let failed = |reason: String| complain(work.args, Exit::CommandLine, &reason);
+    let range = shard_range(shard, work.batch.plan.count()).map_err(failed)?;
+    let _lock = locked(work.folder, true).map_err(failed)?;
+    let solved = work.solve(range, &how(work.args, &Shown::new(work.args.json, true)))?;
+    if work.args.json {
+        let told = json!({ "event": "shard", "ok": true, "solved": solved.solved });
+        print_output(&told.to_string());
+    }
+    Ok(Exit::Done)
+}
+
+/// Solves every case, here or by Slurm, and tells what came of them.
+fn whole(work: &Work<'_>, order: &Order) -> Result<Exit, Exit> {
+    let Work { args, folder, .. } = work;
+    let failed = |reason: String| complain(args, Exit::CommandLine, &reason);
+    let shared = args.engine == Engine::Slurm;
+    let lock = locked(folder, shared).map_err(failed)?;
     if lock.is_some() && !shared {
-        files::remove_unfinished(&folder);
+        files::remove_unfinished(folder);
     }
-    if let Some(shard) = &args.shard {
-        let range = shard_range(shard, batch.plan.count()).map_err(failed)?;
-        let solved = work.solve(range, &how)?.solved;
-        if args.json {
-            print_output(&json!({ "event": "shard", "ok": true, "solved": solved }).to_string());
-        }
-        return Ok(Exit::Done);
-    }
+    let shown = Shown::new(args.json, args.quiet);
+    let how = how(args, &shown);
     let took = match args.engine {
-        Engine::Local => work.solve(1..=batch.plan.count(), &how)?,
+        Engine::Local => work.solve(1..=work.batch.plan.count(), &how)?,
         Engine::Slurm => work.by_slurm(&how)?,
     };
-    let summary = merge(&batch, &work.store()?, &folder, args.format.into()).map_err(failed)?;
-    tell(&work, &order, &summary, took).map_err(failed)?;
+    let summary = merge(work.batch, &work.store()?, folder, args.format.into()).map_err(failed)?;
+    tell(work, order, &summary, took).map_err(failed)?;
     Ok(Exit::Done)
+}
+
+fn how<'a>(args: &SweepArgs, shown: &'a Shown) -> How<'a> {
+    How {
+        jobs: args.jobs.unwrap_or(0),
+        interrupted: interruption::interrupted(),
+        progress: shown,
+    }
 }
 
 /// Runs one case as `hyde run` runs an experiment.
