@@ -9,7 +9,18 @@ pub(crate) struct Texts {
     ends: Vec<usize>,
 }
 
+/// The length of an instant, about: `2026-11-25 14:03:07.123456` has 26 bytes, a number of seconds 5 to 15.
+const USUAL: usize = 16;
+
 impl Texts {
+    /// Without rows, with room for about so many instants: what is not used of it is never touched.
+    pub(crate) fn with_room(rows: usize) -> Self {
+        Self {
+            all: String::with_capacity(USUAL * rows),
+            ends: Vec::with_capacity(rows),
+        }
+    }
+
     /// Appends a row.
     pub(crate) fn push(&mut self, text: &str) {
         self.all.push_str(text);

@@ -63,7 +63,7 @@ impl Columns {
                 .iter()
                 .map(|group| OfGroup {
                     group: group.clone(),
-                    instants: Texts::default(),
+                    instants: Texts::with_room(rows),
                     ended: false,
                 })
                 .collect(),
