@@ -11,14 +11,11 @@
 //! P R A Q = block triangular;  L U = a diagonal block;  F = what is above the blocks
 //! ```
 
-use crate::Pattern;
+mod half;
 
-/// An entry of a factor: its column, in the order of the solution, and its value.
-#[derive(Clone, Copy, Debug)]
-struct Entry {
-    column: u32,
-    value: f64,
-}
+use crate::Pattern;
+use half::Half;
+use std::ops::Range;
 
 /// What KLU found, in its own numbers: rows and columns in the order of the pivots.
 pub(crate) struct Extracted {
@@ -34,12 +31,6 @@ pub(crate) struct Extracted {
     pub(crate) scale: Vec<f64>,
 }
 
-impl Entry {
-    fn of(&column: &u32) -> Self {
-        Self { column, value: 0.0 }
-    }
-}
-
 /// A row of the factors.
 #[derive(Debug)]
 struct Row {
@@ -48,30 +39,17 @@ struct Row {
     unknown: u32,
     /// 1 over the scale of the row.
     scale: f64,
-    /// 1 over the diagonal of U.
-    pivot: f64,
-    /// How many entries it reads on the way down, and how many of these are of F.
-    n_down: u32,
+    /// How many of the entries on the way down are of F.
     n_above: u32,
-    /// Where its entries of U begin, and how many there are.
-    upper: u32,
-    n_upper: u32,
+    /// Which row it is on the way up.
+    upward: u32,
 }
 
-impl Row {
-    /// A row without entries, for one of KLU's pivots.
-    fn new(found: &Extracted, pivot: usize) -> Option<Self> {
-        Some(Self {
-            equation: u32::try_from(found.row_at[pivot]).ok()?,
-            unknown: u32::try_from(found.column_at[pivot]).ok()?,
-            scale: 1.0 / found.scale[pivot],
-            pivot: 0.0,
-            n_down: 0,
-            n_above: 0,
-            upper: 0,
-            n_upper: 0,
-        })
-    }
+/// A diagonal block: the runs of its rows on the way down and on the way up.
+#[derive(Debug)]
+struct Block {
+    down: Range<u32>,
+    up: Range<u32>,
 }
 
 /// The factors of a matrix, row by row in the order of the solution: the blocks from the last to the first, in each the
@@ -79,12 +57,13 @@ impl Row {
 #[derive(Debug)]
 pub(crate) struct FixedPivots {
     rows: Vec<Row>,
-    /// The end of each block.
-    ends: Vec<u32>,
-    /// What the rows read on the way down, one after the other: F, then L from left to right.
-    down: Vec<Entry>,
+    /// 1 over the diagonal of U.
+    pivots: Vec<f64>,
+    blocks: Vec<Block>,
+    /// What the rows read on the way down: F, then L from left to right.
+    down: Half,
     /// What they read on the way up, in each block from the last row to the first: U from right to left.
-    up: Vec<Entry>,
+    up: Half,
     /// For each entry of the matrix, row after row: its place in the values, and its column.
     sources: Vec<(u32, u32)>,
     source_ends: Vec<u32>,
@@ -100,60 +79,63 @@ impl FixedPivots {
             .collect();
         let mut factors = Self {
             rows: Vec::with_capacity(order.len()),
-            ends: Vec::with_capacity(blocks.len()),
-            down: Vec::new(),
-            up: Vec::new(),
+            pivots: vec![0.0; order.len()],
+            blocks: Vec::with_capacity(blocks.len()),
+            down: Half::new(false),
+            up: Half::new(true),
             sources: Vec::with_capacity(pattern.n_entries()),
             source_ends: Vec::with_capacity(order.len()),
             work: vec![0.0; order.len()],
         };
         let mut place_of = vec![0_u32; order.len()];
         for (place, &pivot) in (0..).zip(&order) {
-            place_of[pivot as usize] = place;
-            factors.rows.push(Row::new(found, pivot as usize)?);
+            let pivot = pivot as usize;
+            place_of[pivot] = place;
+            factors.rows.push(Row {
+                equation: u32::try_from(found.row_at[pivot]).ok()?,
+                unknown: u32::try_from(found.column_at[pivot]).ok()?,
+                scale: 1.0 / found.scale[pivot],
+                n_above: 0,
+                upward: 0,
+            });
         }
-        factors.read_down(
-            &columns(&found.above, &place_of)?,
-            &columns(&found.lower, &place_of)?,
-        )?;
-        let lengths = blocks.windows(2).rev().map(|ends| ends[1] - ends[0]);
-        factors.read_up(lengths, &columns(&found.upper, &place_of)?)?;
+        let above = columns(&found.above, &place_of)?;
+        let lower = columns(&found.lower, &place_of)?;
+        let upper = columns(&found.upper, &place_of)?;
+        let mut start = 0;
+        for ends in blocks.windows(2).rev() {
+            let rows = start..start + (ends[1] - ends[0]);
+            start = rows.end;
+            factors.add_block(rows, &above, &lower, &upper)?;
+        }
         factors.read_sources(pattern)?;
         Some(factors)
     }
 
-    /// What the rows read of F and L.
-    fn read_down(&mut self, above: &[Vec<u32>], lower: &[Vec<u32>]) -> Option<()> {
-        for (place, row) in (0_u32..).zip(&mut self.rows) {
-            let above = &above[place as usize];
-            let lower = lower[place as usize].iter();
-            let start = self.down.len();
-            self.down.extend(above.iter().map(Entry::of));
-            let before = lower.take_while(|&&column| column < place);
-            self.down.extend(before.map(Entry::of));
-            row.n_above = u32::try_from(above.len()).ok()?;
-            row.n_down = u32::try_from(self.down.len() - start).ok()?;
+    /// Adds a block with the columns of each row of F, L and U.
+    fn add_block(
+        &mut self,
+        rows: Range<u32>,
+        above: &[Vec<u32>],
+        lower: &[Vec<u32>],
+        upper: &[Vec<u32>],
+    ) -> Option<()> {
+        for place in rows.clone() {
+            let (above, lower) = (&above[place as usize], &lower[place as usize]);
+            let before = lower.iter().take_while(|&&column| column < place);
+            self.down.push(place, above.iter().chain(before))?;
+            self.rows[place as usize].n_above = u32::try_from(above.len()).ok()?;
         }
-        Some(())
-    }
-
-    /// What the rows of blocks of these lengths read of U.
-    fn read_up(&mut self, lengths: impl Iterator<Item = u32>, upper: &[Vec<u32>]) -> Option<()> {
-        let mut start = 0;
-        for length in lengths {
-            let end = start + length;
-            for place in (start..end).rev() {
-                let begin = self.up.len();
-                let from_right = upper[place as usize].iter().rev();
-                let after = from_right.take_while(|&&column| column > place);
-                self.up.extend(after.map(Entry::of));
-                let row = &mut self.rows[place as usize];
-                row.upper = u32::try_from(begin).ok()?;
-                row.n_upper = u32::try_from(self.up.len() - begin).ok()?;
-            }
-            self.ends.push(end);
-            start = end;
+        for (upward, place) in (rows.start..).zip(rows.clone().rev()) {
+            let from_right = upper[place as usize].iter().rev();
+            let after = from_right.take_while(|&&column| column > place);
+            self.up.push(place, after)?;
+            self.rows[place as usize].upward = upward;
         }
+        self.blocks.push(Block {
+            down: self.down.end_block()?,
+            up: self.up.end_block()?,
+        });
         Some(())
     }
 
@@ -179,84 +161,74 @@ impl FixedPivots {
         Some(())
     }
 
-    /// Factors the matrix with these values. Returns the reciprocal growth of the entries, the least of all rows; 0 if a
-    /// pivot is 0 or not finite.
-    pub(crate) fn factor(&mut self, values: &[f64]) -> f64 {
+    /// Factors the matrix with these values. Returns whether the factors serve: no pivot is 0 or not finite, and in each row
+    /// the largest entry of the matrix is at least `least_reciprocal_growth` times the largest of U.
+    pub(crate) fn factor(&mut self, values: &[f64], least_reciprocal_growth: f64) -> bool {
         let x = &mut self.work;
         x.fill(0.0);
-        let mut growth = f64::INFINITY;
-        let mut down = self.down.iter_mut();
         let mut start = 0;
-        for k in 0..self.rows.len() {
-            let row = &self.rows[k];
+        for (k, row) in self.rows.iter().enumerate() {
             let mut largest = 0.0_f64;
             let end = self.source_ends[k] as usize;
             for &(entry, column) in &self.sources[start..end] {
                 let value = values[entry as usize] * row.scale;
                 x[column as usize] = value;
-                largest = largest.max(value.abs());
+                largest = larger(largest, value);
             }
             start = end;
-            for entry in down.by_ref().take(row.n_above as usize) {
-                entry.value = std::mem::take(&mut x[entry.column as usize]);
-            }
-            for entry in down.by_ref().take((row.n_down - row.n_above) as usize) {
-                let above = &self.rows[entry.column as usize];
-                let factor = std::mem::take(&mut x[entry.column as usize]) * above.pivot;
-                entry.value = factor;
-                for above in &self.up[above.upper as usize..][..above.n_upper as usize] {
-                    x[above.column as usize] -= factor * above.value;
+            for (nth, entry) in self.down.entries(k).enumerate() {
+                let column = self.down.columns[entry] as usize;
+                let value = std::mem::take(&mut x[column]);
+                if nth < row.n_above as usize {
+                    self.down.values[entry] = value;
+                    continue;
+                }
+                let factor = value * self.pivots[column];
+                self.down.values[entry] = factor;
+                for right in self.up.entries(self.rows[column].upward as usize) {
+                    x[self.up.columns[right] as usize] -= factor * self.up.values[right];
                 }
             }
             let pivot = std::mem::take(&mut x[k]);
             let mut grown = pivot.abs();
-            for entry in &mut self.up[row.upper as usize..][..row.n_upper as usize] {
-                entry.value = std::mem::take(&mut x[entry.column as usize]);
-                grown = grown.max(entry.value.abs());
+            for entry in self.up.entries(row.upward as usize) {
+                let value = std::mem::take(&mut x[self.up.columns[entry] as usize]);
+                self.up.values[entry] = value;
+                grown = larger(grown, value);
             }
-            growth = growth.min(largest / grown);
             let pivot = 1.0 / pivot;
-            self.rows[k].pivot = pivot;
-            if !pivot.is_finite() || grown.is_nan() {
-                return 0.0;
+            self.pivots[k] = pivot;
+            let serves = pivot.is_finite() && largest >= least_reciprocal_growth * grown;
+            if !serves {
+                return false;
             }
         }
-        growth
+        true
     }
 
     /// Replaces `b` by the solution with the matrix factored last.
     pub(crate) fn solve(&mut self, b: &mut [f64]) {
-        let x = &mut self.work;
-        let (mut down, mut up) = (&self.down[..], &self.up[..]);
-        let mut start = 0;
-        for &end in &self.ends {
-            let end = end as usize;
-            let rows = &self.rows[start..end];
-            for (k, row) in (start..).zip(rows) {
-                let (own, rest) = down.split_at(row.n_down as usize);
-                down = rest;
-                x[k] = subtract(own, x, b[row.equation as usize] * row.scale);
-            }
-            for (k, row) in (start..end).zip(rows).rev() {
-                let (own, rest) = up.split_at(row.n_upper as usize);
-                up = rest;
-                x[k] = subtract(own, x, x[k]) * row.pivot;
-            }
-            start = end;
+        let x = &mut self.work[..];
+        for (x, row) in x.iter_mut().zip(&self.rows) {
+            *x = b[row.equation as usize] * row.scale;
         }
-        for (row, x) in self.rows.iter().zip(x) {
+        for Block { down, up } in &self.blocks {
+            self.down.subtract(down.clone(), x, &self.pivots);
+            self.up.subtract(up.clone(), x, &self.pivots);
+        }
+        for (x, row) in x.iter().zip(&self.rows) {
             b[row.unknown as usize] = *x;
         }
     }
 }
 
-/// What is left of `value` after the entries of a row times their unknowns are subtracted from it.
-#[inline(always)]
-fn subtract(row: &[Entry], x: &[f64], mut value: f64) -> f64 {
-    for entry in row {
-        value -= entry.value * x[entry.column as usize];
+/// The larger of two absolute values: what is not a number shows in a pivot.
+fn larger(largest: f64, value: f64) -> f64 {
+    if value.abs() > largest {
+        value.abs()
+    } else {
+        largest
     }
-    value
 }
 
 /// The columns of each row of a matrix that KLU gives by columns, ascending, in the order of the solution.

@@ -7,7 +7,8 @@
 //!
 //! 1. Round after round, all pivots that bring no entry which is not there already, and that do not meet each other, go
 //!    next (J. A. G. Jess and H. G. M. Kees, IEEE Trans. Comput. C-31 (1982) 231, there for symmetric patterns).
-//! 2. Then each pivot moves to the latest place that its followers allow, so that what it leaves is still at hand there.
+//! 2. In each round the pivots stand in the order in which the later ones need them. So the rows of a chain read, each, at
+//!    the same distances, and are solved in one loop ([`Half`](crate::fixed_pivots)).
 
 use std::ops::Range;
 
@@ -20,7 +21,7 @@ const MOST_PAIRS: usize = 256;
 /// KLU's factors in this order; the entries are all places that may be other than zero.
 pub(crate) fn interleaved(found: &Extracted) -> Option<Extracted> {
     let filled = Filled::new(found)?;
-    let order = filled.latest(&filled.rounds());
+    let order = filled.by_need(&filled.rounds());
     let mut place_of = vec![0_i64; order.len()];
     for (place, &pivot) in (0_i64..).zip(&order) {
         place_of[pivot] = place;
@@ -81,9 +82,9 @@ impl Filled {
     }
 
     /// The pivots block after block, in each round after round.
-    fn rounds(&self) -> Vec<usize> {
+    fn rounds(&self) -> Vec<Vec<usize>> {
         let n = self.rows_of.len();
-        let mut order = Vec::with_capacity(n);
+        let mut rounds: Vec<Vec<usize>> = Vec::new();
         let mut gone = vec![false; n];
         // The round in which a pivot was last met by another one.
         let mut met = vec![0_usize; n];
@@ -91,33 +92,36 @@ impl Filled {
         for block in &self.blocks {
             let mut candidates: Vec<usize> = block.clone().collect();
             let mut first = block.start;
-            while order.len() < block.end {
+            let mut left = block.len();
+            while left > 0 {
                 round += 1;
-                let before = order.len();
+                let mut own = Vec::new();
                 for &pivot in &candidates {
                     if met[pivot] != round && !gone[pivot] && self.brings_nothing(pivot, &gone) {
                         gone[pivot] = true;
-                        order.push(pivot);
+                        own.push(pivot);
                         self.neighbours(pivot).for_each(|other| met[other] = round);
                     }
                 }
-                if order.len() == before {
+                if own.is_empty() {
                     // What all others follow in KLU's order brings nothing either.
                     while gone[first] {
                         first += 1;
                     }
                     gone[first] = true;
-                    order.push(first);
+                    own.push(first);
                 }
+                left -= own.len();
                 candidates.clear();
-                for &pivot in &order[before..] {
+                for &pivot in &own {
                     candidates.extend(self.neighbours(pivot).filter(|&other| !gone[other]));
                 }
                 candidates.sort_unstable();
                 candidates.dedup();
+                rounds.push(own);
             }
         }
-        order
+        rounds
     }
 
     /// The pivots that share an entry with this one.
@@ -140,24 +144,23 @@ impl Filled {
         })
     }
 
-    /// The same pivots, each as late as those that need it allow.
-    fn latest(&self, rounds: &[usize]) -> Vec<usize> {
-        let mut rank = vec![0; rounds.len()];
-        for (place, &pivot) in rounds.iter().enumerate() {
-            rank[pivot] = place;
-        }
-        let mut to_the_end = vec![0_usize; rounds.len()];
-        for &pivot in rounds.iter().rev() {
-            let later = self
-                .neighbours(pivot)
-                .filter(|&other| rank[other] > rank[pivot]);
-            to_the_end[pivot] = later.map(|other| to_the_end[other] + 1).max().unwrap_or(0);
-        }
-        let mut order = Vec::with_capacity(rounds.len());
-        for block in &self.blocks {
-            let start = order.len();
-            order.extend(block.clone());
-            order[start..].sort_by_key(|&pivot| std::cmp::Reverse(to_the_end[pivot]));
+    /// The pivots round after round, in each by the first of a later round that needs it.
+    fn by_need(&self, rounds: &[Vec<usize>]) -> Vec<usize> {
+        let mut end = self.rows_of.len();
+        let mut place_of = vec![end; end];
+        let mut order = vec![0; end];
+        for round in rounds.iter().rev() {
+            let first_need = |pivot| self.neighbours(pivot).map(|other| place_of[other]).min();
+            let mut own: Vec<_> = (round.iter())
+                .map(|&pivot| (first_need(pivot), pivot))
+                .collect();
+            own.sort_unstable();
+            let start = end - own.len();
+            for (place, (_, pivot)) in (start..).zip(own) {
+                order[place] = pivot;
+                place_of[pivot] = place;
+            }
+            end = start;
         }
         order
     }
@@ -231,8 +234,8 @@ mod tests {
             .map(|pivot| pivot / 2)
             .collect();
         assert_eq!(speeds, [0, 4, 1, 3, 2]);
-        // Each place waits until a speed needs it: that of the third pair until the others meet there.
-        assert_eq!(found.row_at, [0, 2, 6, 8, 1, 4, 9, 3, 7, 5]);
+        // Places stand in the order in which the speeds need them: that of the third pair is needed last.
+        assert_eq!(found.row_at, [0, 2, 6, 8, 4, 1, 9, 3, 7, 5]);
         assert_eq!(found.row_at, found.column_at);
         let scale = found.row_at.iter().map(|&pivot| pivot as f64 + 1.0);
         assert!(found.scale.iter().copied().eq(scale));

@@ -72,7 +72,7 @@ impl KluFactors {
     /// Factors the matrix with these values; the pattern must be the one analysed.
     pub(crate) fn factor(&mut self, pattern: &Pattern, values: &[f64]) -> Result<Pivots, Singular> {
         if let Some(fixed) = &mut self.fixed
-            && fixed.factor(values) >= SMALLEST_RECIPROCAL_GROWTH
+            && fixed.factor(values, SMALLEST_RECIPROCAL_GROWTH)
         {
             return Ok(Pivots::Kept);
         }
@@ -80,7 +80,7 @@ impl KluFactors {
         let found = self.extract(pattern.n());
         let serving = |found: &Extracted, growth: f64| {
             let mut fixed = Box::new(FixedPivots::new(pattern, found)?);
-            (fixed.factor(values) >= growth).then_some(fixed)
+            fixed.factor(values, growth).then_some(fixed)
         };
         // Where neither order is of use even for this matrix, KLU's own factors serve.
         self.fixed = interleaved(&found)
