@@ -9,6 +9,7 @@ use crate::system::{Cell, System};
 use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
 use hyde_ir::dae::{Dae, Firmness, InitialCondition, Space};
 use hyde_ir::{Expr, ExprId, Range, VarId};
+use std::collections::BTreeSet;
 
 /// A state that needs a condition, or several of one array.
 struct Condition {
@@ -102,7 +103,7 @@ pub(crate) fn conditions(dae: &mut Dae, system: &mut System, diagnostics: &mut D
 
 /// The states that no initial mode fixes, in blocks; a state whose start is declared fixed is in any case one of them.
 fn conditions_of_states(dae: &Dae, system: &System) -> Vec<Condition> {
-    let pinned: Vec<usize> = dae
+    let pinned: BTreeSet<usize> = dae
         .pins
         .iter()
         .filter(|pin| dae.automata[pin.automaton].initial == pin.mode)
@@ -182,17 +183,16 @@ struct AlgebraicStart {
 /// Fixed start values of variables that are no states: each is an equation, if it determines a state that is still free.
 /// Those given for this model first.
 fn starts_of_algebraic(dae: &mut Dae, system: &System) -> Vec<AlgebraicStart> {
+    let blocks = dae.unknowns.iter().filter(|block| block.differential);
+    let states: BTreeSet<Cell> = blocks
+        .flat_map(|block| (0..block.len).map(|at| (block.var, block.first + at)))
+        .collect();
     let mut found = Vec::new();
     for (&(var, element), starts) in &system.starts {
-        let is_state = dae.unknowns.iter().any(|block| {
-            block.differential
-                && block.var == var
-                && (block.first..block.first + block.len).contains(&element)
-        });
         let Some(&(start, _, given_by)) = starts.iter().find(|(_, fixed, _)| *fixed) else {
             continue;
         };
-        if is_state || dae.places[var].is_none() {
+        if states.contains(&(var, element)) || dae.places[var].is_none() {
             continue;
         }
         let value = dae
@@ -216,7 +216,7 @@ fn yielding(
     equations: &[(Range, ExprId, Origin)],
     loose: &[usize],
     to_find: usize,
-) -> Vec<usize> {
+) -> BTreeSet<usize> {
     let needed: usize = equations.iter().map(|(range, ..)| range.len()).sum();
     let constraints = taken(&take(dae, &[], loose));
     let matching = take(dae, equations, loose);

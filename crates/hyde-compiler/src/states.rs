@@ -3,6 +3,7 @@
 use hyde_diag::Origin;
 use hyde_ir::dae::{Alias, Choice, Firmness, InitialCondition};
 use hyde_ir::{Dae, StateChoice, VarId};
+use std::collections::BTreeSet;
 
 /// The states of a model.
 #[derive(Clone, Debug, Default)]
@@ -39,12 +40,12 @@ fn is_state_by_another_name(dae: &Dae, var: VarId) -> bool {
 
 impl States {
     pub(crate) fn of(dae: &Dae) -> Self {
+        let blocks = dae.blocks();
         let name = |position: usize, len: usize| {
-            let inside =
-                |b: &&hyde_ir::dae::Unknown| (b.offset..b.offset + b.len).contains(&position);
-            let Some(block) = dae.unknowns.iter().find(inside) else {
+            let Some(&block) = blocks.get(position) else {
                 return String::new();
             };
+            let block = &dae.unknowns[block];
             let variable = &dae.variables[block.var];
             let first = block.first + position - block.offset;
             match len {
@@ -56,14 +57,12 @@ impl States {
                 ),
             }
         };
-        let chosen = |position: usize| {
-            let mut groups = dae.selections.iter();
-            groups.any(|group| group.candidates.contains(&position))
-        };
+        let groups = dae.selections.iter();
+        let chosen: BTreeSet<usize> = groups.flat_map(|group| group.candidates.clone()).collect();
         let states = dae
             .unknowns
             .iter()
-            .filter(|block| block.differential && !chosen(block.offset));
+            .filter(|block| block.differential && !chosen.contains(&block.offset));
         // What its author gave a start or a choice was meant as a state.
         let meant = dae.dependent.iter().filter(|d| {
             let variable = &dae.variables[d.var];

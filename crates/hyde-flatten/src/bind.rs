@@ -69,10 +69,11 @@ impl<'a> Model<'a, '_> {
         let values = self.values(&binding, len, &dim, truth);
         self.flat.parameters[param].value = values;
         self.parameters[param.index()].state = Lowering::Done;
-        if let Some((instance, range)) = self.parameters[param.index()].within {
+        let instance = self.parameters[param.index()].of;
+        if let Some(range) = self.parameters[param.index()].within {
             self.flat.parameters[param].range = self.range_of(instance, range, &dim);
         }
-        if let Some((instance, prior)) = self.parameters[param.index()].prior
+        if let Some(prior) = self.parameters[param.index()].prior
             && !prior.percent
         {
             // An uncertainty without a unit would be one in SI units.
@@ -136,16 +137,15 @@ impl<'a> Model<'a, '_> {
             Code::NoValue,
             format!("the parameter `{name}` has no value"),
         );
-        let path = &parameter.origin.instance;
-        let instance = self.instances.iter().find(|known| known.path == *path);
-        match instance.filter(|instance| instance.parent.is_some()) {
-            Some(instance) => diagnostic
+        let instance = &self.instances[self.parameters[param.index()].of];
+        match instance.parent {
+            Some(_) => diagnostic
                 .label(instance.span, format!("gives no `{word}`"))
                 .label(parameter.origin.span, "declared without a value")
                 .help(format!(
                     "write `{} {}({word} = …{unit});`",
                     instance.class.name.text,
-                    short(path.as_str()),
+                    short(parameter.origin.instance.as_str()),
                 )),
             None => diagnostic
                 .label(parameter.origin.span, "declared without a value")
@@ -348,15 +348,7 @@ impl<'a> Model<'a, '_> {
             Some(&value) => value,
             None => self.flat.exprs.constant(0.0),
         };
-        self.parameters.push(ParameterNotes {
-            dim,
-            binding: None,
-            state: Lowering::Done,
-            boolean: false,
-            bounds: [None, None],
-            within: None,
-            prior: None,
-        });
+        self.parameters.push(ParameterNotes::made(dim));
         let param = self.flat.parameters.push(Parameter {
             name,
             len: None,

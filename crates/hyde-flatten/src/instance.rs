@@ -109,16 +109,34 @@ pub(crate) struct VariableNotes<'a> {
 
 /// What flatten knows of a parameter beside what the flat model holds.
 pub(crate) struct ParameterNotes<'a> {
+    /// The instance that declares it.
+    pub(crate) of: InstanceId,
     pub(crate) dim: Dim,
     pub(crate) binding: Option<Binding<'a>>,
     pub(crate) state: Lowering,
     pub(crate) boolean: bool,
     /// `min` and `max`.
     pub(crate) bounds: [Option<Binding<'a>>; 2],
-    /// `in a .. b`, with the instance whose names it uses.
-    pub(crate) within: Option<(InstanceId, &'a hyde_syntax::ast::Range)>,
-    /// `~ ±0.1 [mm]`, with the instance of the parameter.
-    pub(crate) prior: Option<(InstanceId, &'a hyde_syntax::ast::Prior)>,
+    /// `in a .. b`, in names of this instance.
+    pub(crate) within: Option<&'a hyde_syntax::ast::Range>,
+    /// `~ ±0.1 [mm]`.
+    pub(crate) prior: Option<&'a hyde_syntax::ast::Prior>,
+}
+
+impl ParameterNotes<'_> {
+    /// Those of a parameter that the experiment has and that gets its value as it is made.
+    pub(crate) fn made(dim: Dim) -> Self {
+        Self {
+            of: 0,
+            dim,
+            binding: None,
+            state: Lowering::Done,
+            boolean: false,
+            bounds: [None, None],
+            within: None,
+            prior: None,
+        }
+    }
 }
 
 /// How far a parameter's binding is lowered.

@@ -116,6 +116,17 @@ pub struct Dae {
 }
 
 impl Dae {
+    /// For each position of the solver's vector, the block that it is in.
+    #[must_use]
+    pub fn blocks(&self) -> Vec<UnknownId> {
+        let all = self.unknowns.enumerate();
+        let mut positions: Vec<(usize, UnknownId)> = all
+            .flat_map(|(id, block)| (0..block.len).map(move |at| (block.offset + at, id)))
+            .collect();
+        positions.sort_unstable_by_key(|&(position, _)| position);
+        positions.into_iter().map(|(_, id)| id).collect()
+    }
+
     /// The name of the unknown at a position of the solver's vector.
     #[must_use]
     pub fn unknown_name(&self, position: usize) -> String {

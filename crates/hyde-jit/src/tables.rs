@@ -115,22 +115,20 @@ fn foreign(dae: &Dae, part: &hyde_ir::flat::Foreign) -> ForeignPart {
 
 fn unknowns(dae: &Dae) -> Vec<UnknownBlock> {
     dae.unknowns
-        .enumerate()
-        .map(|(id, block)| {
+        .iter()
+        .zip(&dae.residuals)
+        .map(|(block, residual)| {
             let variable = &dae.variables[block.var];
             let first = variable
                 .len
                 .map(|_| i64::from(variable.first) + i64::try_from(block.first).unwrap_or(0));
-            let residual = dae.residuals.iter().find(|residual| residual.unknown == id);
             UnknownBlock {
                 name: variable.name.clone(),
                 first,
                 offset: block.offset,
                 len: block.len,
                 differential: block.differential,
-                origins: residual
-                    .map(|residual| residual.origins.clone())
-                    .unwrap_or_default(),
+                origins: residual.origins.clone(),
             }
         })
         .collect()

@@ -1,7 +1,7 @@
 //! Columns of records: read between rows, held, one row ahead, and their first value and mean; begin and end of a record.
 
 use crate::dimension::Dim;
-use crate::instance::{Lowering, ParameterNotes, Scope, Setting};
+use crate::instance::{ParameterNotes, Scope, Setting};
 use crate::lower::Resolved;
 use crate::model::{Model, listed};
 use crate::names::nearest;
@@ -265,15 +265,7 @@ impl<'a> Model<'a, '_> {
         span: Span,
     ) -> hyde_ir::ParamId {
         let zero = self.flat.exprs.constant(0.0);
-        self.parameters.push(ParameterNotes {
-            dim,
-            binding: None,
-            state: Lowering::Done,
-            boolean: false,
-            bounds: [None, None],
-            within: None,
-            prior: None,
-        });
+        self.parameters.push(ParameterNotes::made(dim));
         let origin = self.origin(0, span).made_by(MadeBy::Experiment);
         let param = self.flat.parameters.push(Parameter {
             name: name.clone(),

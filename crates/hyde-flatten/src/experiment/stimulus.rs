@@ -3,7 +3,7 @@
 use crate::FreeInputs;
 use crate::bind::short;
 use crate::dimension::Dim;
-use crate::instance::{InstanceId, Lowering, Member, ParameterNotes, Scope, Setting, Typed};
+use crate::instance::{InstanceId, Member, ParameterNotes, Scope, Setting, Typed};
 use crate::model::{Model, listed};
 use hyde_diag::{Code, Diagnostic, MadeBy, Origin};
 use hyde_ir::flat::{Equation, Preparation};
@@ -171,15 +171,7 @@ impl<'a> Model<'a, '_> {
         value: ExprId,
         origin: &Origin,
     ) -> ExprId {
-        self.parameters.push(ParameterNotes {
-            dim,
-            binding: None,
-            state: Lowering::Done,
-            boolean: false,
-            bounds: [None, None],
-            within: None,
-            prior: None,
-        });
+        self.parameters.push(ParameterNotes::made(dim));
         let param = self.flat.parameters.push(Parameter {
             name,
             len: None,

@@ -84,13 +84,14 @@ impl<'a> Model<'a, '_> {
                 || has(Prefix::Constant)
                 || outermost.is_some_and(|m| m.change.is_final);
             self.parameters.push(ParameterNotes {
+                of: id,
                 dim,
                 binding,
                 state: Lowering::Waiting,
                 boolean: matches!(kind, TypeName::Boolean),
                 bounds,
-                within: declarator.within.as_ref().map(|within| (id, within)),
-                prior: prior.and(written).map(|prior| (id, prior)),
+                within: declarator.within.as_ref(),
+                prior: prior.and(written),
             });
             let role = match (has(Prefix::Size), has(Prefix::Shape)) {
                 (true, _) => Role::Size,

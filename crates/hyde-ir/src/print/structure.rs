@@ -20,15 +20,13 @@ pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
         dae.n_memory
     );
     for (title, differential) in [("states", true), ("algebraic variables", false)] {
-        let blocks: Vec<_> = dae
-            .unknowns
-            .enumerate()
-            .filter(|(_, block)| block.differential == differential)
+        let blocks: Vec<_> = (dae.unknowns.iter().zip(&dae.residuals))
+            .filter(|(block, _)| block.differential == differential)
             .collect();
         if !blocks.is_empty() {
             let _ = writeln!(out, "{title}");
         }
-        for (id, block) in blocks {
+        for (block, residual) in blocks {
             let variable = &dae.variables[block.var];
             let mut name = variable.element_name(block.first);
             if block.len > 1 {
@@ -38,16 +36,8 @@ pub fn print_structure(dae: &Dae, sources: &Sources) -> String {
                     variable.element_name(block.first + block.len - 1)
                 );
             }
-            let residual = dae.residuals.iter().find(|residual| residual.unknown == id);
-            let origins: Vec<String> = residual
-                .map(|residual| {
-                    residual
-                        .origins
-                        .iter()
-                        .map(|origin| comment(origin, sources))
-                        .collect()
-                })
-                .unwrap_or_default();
+            let origins = residual.origins.iter();
+            let origins: Vec<String> = origins.map(|origin| comment(origin, sources)).collect();
             let _ = writeln!(out, "  {:>4} {name}{}", block.offset, origins.join(","));
         }
     }
