@@ -182,8 +182,8 @@ impl JoinError {
     pub fn repair(&self, record: &str) -> String {
         match self {
             Self::Overlap { .. } => format!(
-                "these are several runs: give one of them, `--record {record}=FILE`, or let a study take each as a record of its own, \
-                 `records = \"PATTERN\"`"
+                "these are several runs: give one of them, `--record {record}=FILE`, or let a calibration read each as a separate \
+                 record: `fit EXPERIMENT(\"PATTERN\");`"
             ),
             Self::NoTimes(_) => "files that continue one another need a column of times".to_owned(),
             Self::Clocks(..) => {
