@@ -23,7 +23,7 @@ const FUNCTIONS: [(&[&str], &str); 10] = [
     (&["fabs"], "the magnitude is `abs(x)`"),
     (
         &["round"],
-        "a value is rounded to a step by `round_to(x, 1)`",
+        "a value is rounded to a step by `round_to(x, 1)`, in a clocked part or in `measured`",
     ),
     (&["fmod", "rem"], "the remainder is `mod(x, 1)`"),
     (
