@@ -332,7 +332,7 @@ mod tests {
         let same = "t[s],x[mm]\n0,1\n0.1,2\n";
         let error = join(named(&[("a.csv", same), ("b.csv", same)])).unwrap_err();
         assert!(matches!(error, JoinError::Overlap { .. }), "{error}");
-        assert!(error.repair("log").contains("records ="));
+        assert!(error.repair("log").contains("fit EXPERIMENT("));
     }
 
     #[test]

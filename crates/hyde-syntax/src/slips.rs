@@ -72,6 +72,9 @@ fn of_connection(text: &str, start: usize, here: &str) -> Option<Slip> {
 
 /// The end of a call whose last parenthesis stands at `at`, if the statement ends there without a `;`.
 fn end_of_call(text: &str, start: usize, at: usize) -> Option<usize> {
+    if !text[at..].starts_with(')') {
+        return None;
+    }
     let mut depth = 0_usize;
     for (place, token) in Scanner::new(text, start).take_while(|(place, _)| *place <= at) {
         match token {
@@ -84,7 +87,7 @@ fn end_of_call(text: &str, start: usize, at: usize) -> Option<usize> {
     let end = at + 1;
     let (next, token) = Scanner::new(text, end).next()?;
     let other_line = text.get(end..next)?.contains('\n');
-    (text[at..].starts_with(')') && other_line && token.starts_with(is_word)).then_some(end)
+    (other_line && token.starts_with(is_word)).then_some(end)
 }
 
 /// A choice as it is written in Python, C or Matlab.
