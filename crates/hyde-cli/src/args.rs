@@ -25,7 +25,7 @@ use std::sync::Arc;
 
 /// Hyde: an equation language and compiler for machine-tool feed drives.
 #[derive(Debug, Parser)]
-#[command(name = "hyde", version, about, max_term_width = 100, after_help = AFTER)]
+#[command(name = "hyde", version, max_term_width = 100, after_help = AFTER)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -34,8 +34,8 @@ pub(crate) struct Arguments {
     pub(crate) sandbox: bool,
 }
 
-const AFTER: &str = "Exit status: 0 success; 1 error in the model or its data; 2 error in the command line; 3 the \
-                     solver failed; 4 an `expect` did not hold; 130 interrupted.";
+const AFTER: &str = "Exit status: 0 success; 1 error in the model or its data; 2 error in the command line, or a \
+                     file cannot be written; 3 the solver failed; 4 an `expect` did not hold; 130 interrupted.";
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {

@@ -353,10 +353,8 @@ impl File {
                 }
                 let library = hyde_library::PACKAGES.iter();
                 let library: Vec<String> = library.map(|p| format!("`{}`", p.name)).collect();
-                let own: Vec<String> = (packages.all)()
-                    .iter()
-                    .map(|(name, _)| format!("`{name}`"))
-                    .collect();
+                let here = (packages.all)();
+                let own: Vec<String> = here.iter().map(|(name, _)| format!("`{name}`")).collect();
                 let diagnostic = Diagnostic::error(
                     Code::UnknownType,
                     format!("there is no package `{package}`"),
@@ -367,6 +365,12 @@ impl File {
                 );
                 if let Some(help) = hyde_syntax::instead_of(&package) {
                     diagnostics.push(diagnostic.help(help));
+                    continue;
+                }
+                let names = hyde_library::PACKAGES.iter().map(|package| package.name);
+                let names = names.chain(here.iter().map(|(name, _)| name.as_str()));
+                if let Some(near) = hyde_flatten::nearest(&package, names) {
+                    diagnostics.push(diagnostic.help(format!("did you mean `{near}`?")));
                     continue;
                 }
                 let help = format!("the library has {}", library.join(", "));

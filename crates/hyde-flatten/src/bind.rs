@@ -222,12 +222,7 @@ impl<'a> Model<'a, '_> {
                     dim: Dim::known(Dimension::TIME),
                     ..value.clone()
                 };
-                self.agree(
-                    &value,
-                    &time,
-                    "a clock is set in time, this relates",
-                    instance,
-                );
+                self.agree(&time, &value, "a clock is set in time, found", instance);
                 match argument.name.as_ref().map(|name| name.text.as_str()) {
                     None => {
                         period = Some(value.id);

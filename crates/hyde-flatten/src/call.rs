@@ -15,7 +15,7 @@ mod table;
 pub(crate) use function::Calls;
 
 use crate::dimension::Dim;
-use crate::instance::{Scope, Setting, Typed};
+use crate::instance::{Member, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::names::nearest;
 use crate::zero::Zero;
@@ -102,9 +102,27 @@ pub const FUNCTIONS: [&str; 50] = [
 #[must_use]
 pub fn usage(name: &str) -> Option<&'static str> {
     Some(match name {
-        "der" | "abs" | "sign" | "sqrt" | "exp" | "log" | "log10" | "sin" | "cos" | "tan"
-        | "asin" | "acos" | "atan" | "sinh" | "cosh" | "tanh" | "floor" | "ceil" | "integer"
-        | "noEvent" | "sum" => return None,
+        "der" => "der(x)",
+        "abs" => "abs(x)",
+        "sign" => "sign(x)",
+        "sqrt" => "sqrt(x)",
+        "exp" => "exp(x)",
+        "log" => "log(x)",
+        "log10" => "log10(x)",
+        "sin" => "sin(x)",
+        "cos" => "cos(x)",
+        "tan" => "tan(x)",
+        "asin" => "asin(x)",
+        "acos" => "acos(x)",
+        "atan" => "atan(x)",
+        "sinh" => "sinh(x)",
+        "cosh" => "cosh(x)",
+        "tanh" => "tanh(x)",
+        "floor" => "floor(x)",
+        "ceil" => "ceil(x)",
+        "integer" => "integer(x)",
+        "noEvent" => "noEvent(x)",
+        "sum" => "sum(x)",
         "pre" => "pre(x)",
         "sample" => "sample(x)",
         "hold" => "hold(u)",
@@ -170,9 +188,9 @@ impl<'a> Model<'a, '_> {
                 ..a.clone()
             };
             self.agree(
-                &a,
                 &number,
-                "the function takes a pure number, this relates",
+                &a,
+                "the function takes a pure number, found",
                 scope.instance,
             );
             let id = self.flat.exprs.unary(*op, a.id);
@@ -197,9 +215,9 @@ impl<'a> Model<'a, '_> {
                 };
                 self.sine_of_turns(name, &a);
                 self.agree(
-                    &a,
                     &angle,
-                    "the function takes an angle, this relates",
+                    &a,
+                    "the function takes an angle, found",
                     scope.instance,
                 );
             }
@@ -274,12 +292,28 @@ impl<'a> Model<'a, '_> {
                 )
                 .label(function.span, "not known");
                 let near = nearest(name, FUNCTIONS.iter().copied());
-                self.report(match near {
-                    Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-                    None => diagnostic,
+                let near = near.map(|near| format!("did you mean `{near}`?"));
+                let other = hyde_syntax::instead_of_function(name).map(str::to_owned);
+                let help = self.instead_of_call(name, scope).or(other).or(near);
+                self.report(match help {
+                    Some(help) => diagnostic.help(help),
+                    None => diagnostic.help("import its package, or declare it: `function twice input Real x; output Real y = 2*x; end twice;`"),
                 });
                 self.poison(span)
             }
+        }
+    }
+
+    /// What to write for a name that is called as a function and is none: an element, or a column of a record.
+    fn instead_of_call(&self, name: &str, scope: &Scope<'a>) -> Option<String> {
+        if self.input.records.contains_key(name) {
+            return Some(format!("a column of the record is written `{name}.column`"));
+        }
+        match self.instances[scope.instance].members.get(name)? {
+            Member::Variable(_) | Member::Parameter(_) | Member::Instances(_) => Some(format!(
+                "`{name}` is not a function: an element of an array is written `{name}[1]`, a product `{name}*(…)`"
+            )),
+            Member::Instance(_) | Member::Domain(_) => None,
         }
     }
 
@@ -301,7 +335,10 @@ impl<'a> Model<'a, '_> {
         if let Some(found) = self.function_named(function) {
             return self.function(found, arguments, scope, span);
         }
-        let help = hyde_syntax::instead_of(&function.dotted());
+        let alone = FUNCTIONS
+            .contains(&last)
+            .then(|| format!("functions have their name alone: `{last}(…)`"));
+        let help = hyde_syntax::instead_of(&function.dotted()).or(alone);
         let help =
             help.unwrap_or_else(|| "a field is read at a place with `field.at(x)`".to_owned());
         self.report(

@@ -155,7 +155,8 @@ impl<'a> Model<'a, '_> {
                     "a connector and a signal are connected",
                 )
                 .label(connector.span, "a connector")
-                .label(signal.span, "a signal"),
+                .label(signal.span, "a signal")
+                .help("connect connectors with each other; a signal is the value of an input, `Part part(u = x);`, or stands in an equation"),
             ),
             (Some((first, ..)), None) => {
                 let same = |instance: InstanceId| {
@@ -178,6 +179,19 @@ impl<'a> Model<'a, '_> {
                         .help(format!(
                             "connect connectors of the same type; between `{a}` and `{b}` use a component that has both"
                         ));
+                    self.report(diagnostic);
+                    return;
+                }
+                let twice = connectors.iter().enumerate().find(|(at, (instance, ..))| {
+                    connectors[..*at].iter().any(|(before, ..)| before == instance)
+                });
+                if let Some((_, (.., side))) = twice {
+                    let diagnostic = Diagnostic::error(
+                        Code::BadConnection,
+                        format!("`{}` is connected to itself", side.dotted()),
+                    )
+                    .label(side.span, "the same connector again")
+                    .help("name the connector of another component");
                     self.report(diagnostic);
                     return;
                 }

@@ -119,6 +119,19 @@ pub(crate) struct Demand {
     pub(crate) sides: (ExprId, ExprId),
 }
 
+impl Demand {
+    /// Whether only the second side is an expression: the first one is demanded or declared.
+    fn has_one_side(&self) -> bool {
+        let declared = [
+            "the declared type and",
+            "the measure and",
+            "the parameter and",
+            "the input and",
+        ];
+        self.spans.0 == self.spans.1 || declared.iter().any(|said| self.what.starts_with(said))
+    }
+}
+
 /// The path of an instance, and its parameters with their dimensions: what a repair may name.
 pub(crate) type InScope<'s> = &'s dyn Fn(InstanceId) -> (InstancePath, Vec<(String, Dim)>);
 
@@ -232,7 +245,7 @@ impl Dimensions {
             Agreement::AngleDiffers => Some(
                 Diagnostic::warning(
                     Code::AngleMismatch,
-                    format!("{} {} and {}", demand.what, short(a), short(b)),
+                    disagreement(demand.what, a, b),
                 )
                 .label(left, format!("this is {}", short(a)))
                 .label(right, format!("this is {}", short(b)))
@@ -244,7 +257,7 @@ impl Dimensions {
             Agreement::Different => {
                 let diagnostic = Diagnostic::error(
                     Code::UnitMismatch,
-                    format!("{} {} and {}", demand.what, short(a), short(b)),
+                    disagreement(demand.what, a, b),
                 );
                 let diagnostic = if left == right {
                     diagnostic.label(right, format!("this is {}, not {}", named(b), named(a)))
@@ -325,6 +338,75 @@ pub(crate) fn short(dimension: Dimension) -> String {
     }
 }
 
+/// What disagrees: two sides, or the value that is found where a dimension is demanded.
+fn disagreement(what: &str, a: Dimension, b: Dimension) -> String {
+    if what.ends_with("found") {
+        format!("{what} {}", short(b))
+    } else {
+        format!("{what} {} and {}", short(a), short(b))
+    }
+}
+
+/// What would make the only side that is an expression have the dimension `wanted`.
+fn repair_of_value(
+    wanted: Dimension,
+    found: Dimension,
+    demand: &Demand,
+    names: &[(String, Dimension)],
+) -> String {
+    let ratio = wanted.divide(found);
+    let same = |x: Dimension, y: Dimension| x.agreement(y) != Agreement::Different;
+    let inverse = |d: Dimension| Dimension::DIMENSIONLESS.divide(d);
+    let named = names.iter().filter(|(_, d)| !d.is_dimensionless());
+    let factor = named.clone().find(|(_, d)| same(*d, ratio));
+    let divisor = named.clone().find(|(_, d)| same(inverse(*d), ratio));
+    let declared = match demand.what.starts_with("the measure") {
+        true => format!("declare it in {}, or ", short(found)),
+        false => String::new(),
+    };
+    if let Some((name, _)) = factor {
+        return format!("multiply the value by `{name}`");
+    }
+    if let Some((name, _)) = divisor {
+        return format!("divide the value by `{name}`");
+    }
+    if same(ratio, Dimension::TIME) {
+        return format!("{declared}multiply the value by a time");
+    }
+    if same(ratio, inverse(Dimension::TIME)) {
+        return format!("{declared}take its derivative, `der(…)`, or divide the value by a time");
+    }
+    if same(wanted.multiply(found), Dimension::DIMENSIONLESS) {
+        return unit_of_number(wanted);
+    }
+    let twice = |d: Dimension| inverse(d).divide(d);
+    let upside_down = named
+        .clone()
+        .find(|(_, d)| same(twice(*d), ratio) || same(inverse(twice(*d)), ratio));
+    if let Some((name, _)) = upside_down {
+        return reciprocal(name);
+    }
+    format!(
+        "{declared}give the value in {}: a factor in {} is missing or redundant",
+        short(wanted),
+        short(ratio)
+    )
+}
+
+/// `20/3 [N]` is read as 20/(3 [N]).
+fn unit_of_number(wanted: Dimension) -> String {
+    let unit = wanted.usual_unit();
+    format!(
+        "a unit belongs only to the number before it: write `20 [{unit}]/3`, not `20/3 [{unit}]`"
+    )
+}
+
+fn reciprocal(name: &str) -> String {
+    format!(
+        "`{name}` is the reciprocal of the required dimension; a unit belongs only to the number before it: write `1 [UNIT]/3`, not `1/3 [UNIT]`"
+    )
+}
+
 /// What would make the two sides agree.
 fn repair(
     a: Dimension,
@@ -340,6 +422,17 @@ fn repair(
     }
     let ratio = a.divide(b);
     let same = |x: Dimension, y: Dimension| x.agreement(y) != Agreement::Different;
+    let turning =
+        |x: Dimension, y: Dimension| same(x, Dimension::TIME) && same(y, Dimension::DIMENSIONLESS);
+    if turning(a, b) || turning(b, a) {
+        return Some(
+            "multiply the time by a frequency, `2*pi*5 [Hz]*time`, or divide it by a time"
+                .to_owned(),
+        );
+    }
+    if demand.has_one_side() {
+        return Some(repair_of_value(a, b, demand, names));
+    }
     for (name, dimension) in names {
         if dimension.is_dimensionless() {
             continue;
@@ -362,10 +455,7 @@ fn repair(
         return Some("the first is a rate of the second: take `der(…)` of the second, or multiply the first by a time".to_owned());
     }
     if same(a.multiply(b), Dimension::DIMENSIONLESS) {
-        return Some(format!(
-            "a unit belongs only to the number before it: write `20 [{0}]/3`, not `20/3 [{0}]`",
-            a.usual_unit()
-        ));
+        return Some(unit_of_number(a));
     }
     // `1/3e-3 [rad/m]` is m/rad.
     let inverse = |d: Dimension| Dimension::DIMENSIONLESS.divide(d);
@@ -374,9 +464,7 @@ fn repair(
         !dimension.is_dimensionless() && (same(twice, ratio) || same(inverse(twice), ratio))
     });
     if let Some((name, _)) = upside_down {
-        return Some(format!(
-            "`{name}` is the reciprocal of the required dimension; a unit belongs only to the number before it: write `1 [UNIT]/3`, not `1/3 [UNIT]`"
-        ));
+        return Some(reciprocal(name));
     }
     Some(format!(
         "the first divided by the second is {}: a factor of that dimension is missing or redundant",

@@ -88,22 +88,22 @@ impl<'a> Model<'a, '_> {
                 ExperimentItem::Solve(method, arguments) => self.solve(method, arguments, root),
                 ExperimentItem::Start(expr) => {
                     let time = self.value(expr, &at(Setting::Parameter));
-                    self.agree_time(&time, "a run starts at a time, this relates", root);
+                    self.agree_time(&time, "a run starts at a time, found", root);
                     self.flat.experiment.start = Some(time.id);
                 }
                 ExperimentItem::Stop(expr) => {
                     let time = self.value(expr, &at(Setting::Parameter));
-                    self.agree_time(&time, "a run stops at a time, this relates", root);
+                    self.agree_time(&time, "a run stops at a time, found", root);
                     self.flat.experiment.stop = Some(time.id);
                 }
                 ExperimentItem::Every(expr) => {
                     let step = self.value(expr, &at(Setting::Parameter));
-                    self.agree_time(&step, "rows follow each other in time, this relates", root);
+                    self.agree_time(&step, "rows follow each other in time, found", root);
                     self.flat.experiment.every = Some(step.id);
                 }
                 ExperimentItem::Skip(expr) => {
                     let time = self.value(expr, &at(Setting::Parameter));
-                    self.agree_time(&time, "what is skipped is a time, this relates", root);
+                    self.agree_time(&time, "what is skipped is a time, found", root);
                     self.flat.experiment.skip = Some(time.id);
                 }
                 ExperimentItem::Bode(bode) => self.bode(bode, root),
@@ -182,7 +182,7 @@ impl<'a> Model<'a, '_> {
             }
             let value = self.value(&argument.value, &Scope::new(root, Setting::Parameter));
             if name == "max_step" {
-                self.agree_time(&value, "a step is a time, this relates", root);
+                self.agree_time(&value, "a step is a time, found", root);
             }
             self.flat.experiment.solve.push((name.to_owned(), value.id));
         }
@@ -206,6 +206,6 @@ impl<'a> Model<'a, '_> {
             dim: Dim::known(Dimension::TIME),
             ..value.clone()
         };
-        self.agree(value, &time, what, instance);
+        self.agree(&time, value, what, instance);
     }
 }

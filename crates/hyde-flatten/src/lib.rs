@@ -49,6 +49,7 @@ pub use candidates::{Candidate, Knob};
 pub use foreign::fmu_has_no_equations;
 pub use law_sites::{LawSite, LawVariable};
 pub use meaning::{Meaning, MeaningOf, ValueOf};
+pub use names::nearest;
 
 use hyde_diag::{Diagnostics, FileId, Sources};
 use hyde_ir::{FlatModel, LawShape};

@@ -376,6 +376,9 @@ impl<'a, 'd> Model<'a, 'd> {
             known.extend(scope.locals.iter().map(|(name, _)| *name));
             known.extend(scope.counters.iter().map(|(name, _)| *name));
             known.extend(["time", "pi"]);
+            if scope.records {
+                known.extend(self.input.records.keys().map(String::as_str));
+            }
         }
         let instance = &self.instances[at];
         let place = match (instance.path.as_str(), instance.class.name.text.as_str()) {
@@ -400,6 +403,7 @@ impl<'a, 'd> Model<'a, 'd> {
                 let help = hyde_syntax::instead_of(&whole.dotted());
                 diagnostic.help(help.unwrap_or_default())
             }
+            _ if word == "dt" => diagnostic.help("the derivative of `x` by the time is `der(x)`"),
             Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
             None if known.is_empty() => diagnostic,
             None => diagnostic.help(format!("known here: {}", listed(&known))),

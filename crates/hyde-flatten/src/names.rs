@@ -203,6 +203,21 @@ impl<'a> Names<'a> {
         })
     }
 
+    /// A name that means a component here, and is used as the quantity of that name, which is not imported.
+    pub(crate) fn quantity_elsewhere(
+        self,
+        file: FileIndex,
+        name: &Reference,
+    ) -> Option<Diagnostic> {
+        let text = name.dotted();
+        let found = self.not_imported(file, name, quantity_name);
+        found.map(|diagnostic| {
+            diagnostic.note(format!(
+                "the `{text}` known here is a component, which has no value"
+            ))
+        })
+    }
+
     /// "it is in a package that is not imported", if that is so.
     fn not_imported(
         self,
@@ -307,7 +322,7 @@ impl<'a> Names<'a> {
 }
 
 /// The known name nearest to a misspelt one, if one is near.
-pub(crate) fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
+pub fn nearest<'n>(name: &str, known: impl Iterator<Item = &'n str>) -> Option<&'n str> {
     let word = name.rsplit('.').next().unwrap_or(name);
     known
         .map(|candidate| {

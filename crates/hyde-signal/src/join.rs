@@ -182,8 +182,8 @@ impl JoinError {
     pub fn repair(&self, record: &str) -> String {
         match self {
             Self::Overlap { .. } => format!(
-                "these are several runs: give one of them, `--record {record}=FILE`, or let a study take each as a record of its own, \
-                 `records = \"PATTERN\"`"
+                "these are several runs: give one of them, `--record {record}=FILE`, or let a calibration read each as a separate \
+                 record: `fit EXPERIMENT(\"PATTERN\");`"
             ),
             Self::NoTimes(_) => "files that continue one another need a column of times".to_owned(),
             Self::Clocks(..) => {
@@ -332,7 +332,7 @@ mod tests {
         let same = "t[s],x[mm]\n0,1\n0.1,2\n";
         let error = join(named(&[("a.csv", same), ("b.csv", same)])).unwrap_err();
         assert!(matches!(error, JoinError::Overlap { .. }), "{error}");
-        assert!(error.repair("log").contains("records ="));
+        assert!(error.repair("log").contains("fit EXPERIMENT("));
     }
 
     #[test]

@@ -220,17 +220,34 @@ pub fn chosen<'s>(
         .iter()
         .map(|study| format!("`{}`", study.name.text))
         .collect();
-    let listed = match known.as_slice() {
-        [] => "it has none".to_owned(),
-        _ => format!("it has {}", known.join(", ")),
-    };
+    let listed = known.join(", ");
     match (name, studies) {
+        (_, []) => Err(format!("the file has no {what}: {}", declaration(what))),
         (Some(name), _) => studies
             .iter()
             .copied()
             .find(|study| study.name.text == name)
-            .ok_or_else(|| format!("the file has no {what} `{name}`; {listed}")),
+            .ok_or_else(|| format!("the file has no {what} `{name}`; it has {listed}")),
         (None, [only]) => Ok(only),
-        (None, _) => Err(format!("which {what}? {listed}")),
+        (None, _) => Err(format!(
+            "the file has several {}: name one behind the file, {listed}",
+            if what == "diagnosis" {
+                "diagnoses"
+            } else {
+                "calibrations"
+            }
+        )),
+    }
+}
+
+/// How a study of a kind is declared.
+fn declaration(what: &str) -> &'static str {
+    match what {
+        "diagnosis" => {
+            "declare one, `diagnose found of calibrate fitted candidates Effects.*; end found;`"
+        }
+        _ => {
+            "declare one, `calibrate fitted of Axis fit bench(\"*.csv\"); vary uncertain; end fitted;`"
+        }
     }
 }

@@ -3,6 +3,7 @@
 //! Most of them are names like others where they are not taken for words, so they are looked for only where a statement
 //! is broken.
 
+use crate::other_names;
 use crate::recover::Scanner;
 
 /// A word or sign, and what to write instead.
@@ -42,6 +43,11 @@ pub(crate) fn find(text: &str, start: usize, fault: usize) -> Option<Found> {
         let habit = &ALIAS;
         return Some(Found { begin, end, habit });
     }
+    if let Some(end) = comment(text, &tokens, fault) {
+        let begin = tokens.first()?.0;
+        let habit = &COMMENT;
+        return Some(Found { begin, end, habit });
+    }
     let token = |number: usize| tokens.get(number).map_or("", |(_, token)| *token);
     for (number, &(begin, word)) in tokens.iter().enumerate().take(understood + 1) {
         let before = number.checked_sub(1).map_or("", token);
@@ -53,6 +59,23 @@ pub(crate) fn find(text: &str, start: usize, fault: usize) -> Option<Found> {
         }
     }
     sign(text, &tokens[..understood])
+}
+
+/// The end of the line, if a statement begins with the sign of a comment of Python, Matlab or Ada.
+pub(crate) fn behind_comment(text: &str, start: usize) -> Option<usize> {
+    let rest = &text[start..];
+    let comment = ["#", "%", "--"].iter().any(|sign| rest.starts_with(sign));
+    comment.then(|| rest.find('\n').map_or(text.len(), |end| start + end))
+}
+
+/// Behind the sign with which a comment of Matlab or Ada begins, in the place of a statement.
+fn comment(text: &str, tokens: &[(usize, &str)], fault: usize) -> Option<usize> {
+    let &(begin, _) = tokens.first()?;
+    let rest = &text[begin..];
+    if rest.starts_with('%') && begin == fault {
+        return Some(begin + 1);
+    }
+    rest.starts_with("--").then_some(begin + 2)
 }
 
 /// The tokens from `start` to `fault`, and two more.
@@ -104,8 +127,9 @@ fn sign(text: &str, tokens: &[(usize, &str)]) -> Option<Found> {
         Some(Found { begin, end, habit })
     };
     for habit in &SIGNS {
-        // A sign of two characters may be understood up to its second one.
-        for back in 0..habit.word.len() {
+        // A sign of two characters may be understood up to its second one, and `n++` as a sum up to its end.
+        let counts = matches!(habit.word, "++" | "--");
+        for back in 0..habit.word.len() + usize::from(counts && last == ";") {
             if let Some(begin) = fault.checked_sub(back)
                 && text
                     .get(begin..)
@@ -143,10 +167,14 @@ const LOOP: &str = "Hyde has no loops that run: equations over a range are `for 
 const HANDED_DOWN: &str = "hand it to the parts that need it: `Part part(g = g);` with `parameter Real g;` in the part, or connect it";
 const OPEN_TO_ALL: &str =
     "leave the word out: every variable can be seen; `final` keeps a parameter from being changed";
+const NEW_VALUE: &str = "write the new value of a variable at an event: `n = pre(n) + 1;`";
+const ELEMENTS: &str =
+    "write the operator without the point: arrays are multiplied element by element";
+const IMPORT: &str = "a package is imported by `import SI.*;`";
 const MODEL: &str =
     "write `model`; what is connected is a `connector`, what is computed a `function`";
 
-static WORDS: [Habit; 30] = [
+static WORDS: [Habit; 33] = [
     word(
         "algorithm",
         Place::First,
@@ -239,6 +267,9 @@ static WORDS: [Habit; 30] = [
     ),
     word("block", Place::First, "Hyde has no `block`", MODEL),
     word("class", Place::First, "Hyde has no `class`", MODEL),
+    word("def", Place::First, "Hyde has no `def`", MODEL),
+    word("using", Place::First, "Hyde has no `using`", IMPORT),
+    word("include", Place::First, "Hyde has no `include`", IMPORT),
     word(
         "record",
         Place::First,
@@ -309,7 +340,7 @@ static WORDS: [Habit; 30] = [
     ),
 ];
 
-static SIGNS: [Habit; 10] = [
+static SIGNS: [Habit; 19] = [
     word(
         "±",
         Place::Inside,
@@ -346,6 +377,25 @@ static SIGNS: [Habit; 10] = [
         "Hyde has no `~=`",
         "not equal is written `<>`",
     ),
+    word("+=", Place::Inside, "Hyde has no `+=`", NEW_VALUE),
+    word("-=", Place::Inside, "Hyde has no `-=`", NEW_VALUE),
+    word("++", Place::Inside, "Hyde has no `++`", NEW_VALUE),
+    word("--", Place::Inside, "Hyde has no `--`", NEW_VALUE),
+    word(".*", Place::Inside, "Hyde has no `.*`", ELEMENTS),
+    word("./", Place::Inside, "Hyde has no `./`", ELEMENTS),
+    word(".^", Place::Inside, "Hyde has no `.^`", ELEMENTS),
+    word(
+        "?",
+        Place::Inside,
+        "Hyde has no `?`",
+        "a choice between values is written `if a > b then x else y`",
+    ),
+    word(
+        ":",
+        Place::Inside,
+        "a `:` does not belong here",
+        "leave it out: a block ends with `end NAME;`, a variable is declared by `Length x;`, and gets its value with `=`",
+    ),
     word("&&", Place::Inside, "Hyde has no `&&`", "write `and`"),
     word("||", Place::Inside, "Hyde has no `||`", "write `or`"),
     word(
@@ -361,6 +411,13 @@ static SIGNS: [Habit; 10] = [
         "names have letters, digits and `_`: `x_ref`",
     ),
 ];
+
+static COMMENT: Habit = word(
+    "%",
+    Place::Inside,
+    "this does not begin a comment",
+    "a comment is written `// …` to the end of the line, or `/* … */`",
+);
 
 static ALIAS: Habit = word(
     "=",
@@ -403,6 +460,9 @@ pub fn instead_of_attribute(word: &str, text: &str) -> Option<String> {
 pub fn instead_of(path: &str) -> Option<String> {
     if path == "String" {
         let help = "Hyde has no type `String`: a text is documentation, behind a name; a choice is an Integer parameter";
+        return Some(help.to_owned());
+    }
+    if let Some(help) = other_names::instead_of_type(path) {
         return Some(help.to_owned());
     }
     let mut parts = path.split('.');

@@ -14,8 +14,10 @@ mod law;
 mod lookup;
 mod matcher;
 mod nesting;
+mod other_names;
 mod parse;
 mod recover;
+mod slips;
 mod words;
 mod written;
 
@@ -26,6 +28,7 @@ pub use grammar::Rule;
 pub use habits::{instead_of, instead_of_attribute};
 pub use law::{LawForm, LawTarget};
 pub use lookup::{FileIndex, Lookup, dotted};
+pub use other_names::instead_of_function;
 pub use parse::{parse, parse_record};
 pub use recover::{comment_end, string_end};
 pub use words::is_reserved;

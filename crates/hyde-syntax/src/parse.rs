@@ -18,7 +18,7 @@ use crate::ast;
 use crate::grammar::{self, Rule};
 use crate::matcher::Pairs;
 use crate::written::{Node, Part, Written};
-use crate::{forms, habits, matcher, nesting, recover, words};
+use crate::{forms, habits, matcher, nesting, recover, slips, words};
 use hyde_diag::{Code, Diagnostic, Diagnostics, FileId, Sources, Span};
 
 /// Parses one source file. What cannot be parsed is missing in the tree and told in `diagnostics`.
@@ -261,25 +261,25 @@ impl<'a> Parser<'a> {
                 .label(span, "not a part of the language")
                 .help(found.habit.help);
         }
-        let hint = self.hint(start, begin);
+        let slip = slips::find(self.text, start, begin, &expected);
         // What is missing belongs behind the word before, not in front of the next line.
-        let (span, label) = match &hint {
-            Some(Hint {
-                expected: Some(missing),
-                behind: true,
-                ..
-            }) => {
-                let behind = start + recover::end_of_last_word(&self.text[start..begin]);
-                let span = Span::new(self.file, behind, behind);
-                (span, format!("{missing} is missing here"))
-            }
-            _ => (span, "not understood from here on".to_owned()),
-        };
-        let expected = hint
+        let missing = slip
             .as_ref()
-            .and_then(|hint| hint.expected)
+            .and_then(|slip| Some((slip.missing?, slip.behind?)));
+        let (span, label, found) = match missing {
+            Some((sign, behind)) => {
+                let next = recover::Scanner::new(self.text, behind).next();
+                let found = next.map_or(found, |(_, token)| format!("`{token}`"));
+                let label = format!("{sign} is missing here");
+                (Span::new(self.file, behind, behind), label, found)
+            }
+            None => (span, "not understood from here on".to_owned(), found),
+        };
+        let expected = slip
+            .as_ref()
+            .and_then(|slip| slip.missing)
             .unwrap_or(&expected);
-        if hint.is_none() && expected.contains("a name") && words::is_reserved(&found) {
+        if slip.is_none() && expected.contains("a name") && words::is_reserved(&found) {
             return Diagnostic::error(Code::Syntax, format!("{found} cannot be a name"))
                 .label(span, "this is a keyword of the language")
                 .help("choose another name");
@@ -287,66 +287,10 @@ impl<'a> Parser<'a> {
         let diagnostic =
             Diagnostic::error(Code::Syntax, format!("expected {expected}, found {found}"))
                 .label(span, label);
-        let help = hint.map(|hint| hint.help);
+        let help = slip.map(|slip| slip.help);
         match help.or_else(|| forms::of(&self.text[start..])) {
             Some(help) => diagnostic.help(help),
             None => diagnostic,
         }
     }
-
-    /// A repair for the slips that are met most.
-    fn hint(&self, start: usize, at: usize) -> Option<Hint> {
-        let before = self.text[start..at].trim_end();
-        let here = &self.text[at..];
-        let other_line = self.text[start + before.len()..at].contains('\n');
-        let digit = |sign: char| sign.is_ascii_digit();
-        let number = |text: &str| {
-            let word = |sign: char| sign.is_alphanumeric() || matches!(sign, '_' | '.');
-            let last = text.rsplit(|sign| !word(sign)).next();
-            last.is_some_and(|last| last.starts_with(digit))
-        };
-        let open = before.matches('(').count() > before.matches(')').count();
-        let help = |help| {
-            Some(Hint {
-                expected: None,
-                behind: false,
-                help,
-            })
-        };
-        if open && here.starts_with(';') {
-            Some(Hint {
-                expected: Some("`)`"),
-                behind: true,
-                help: "a parenthesis is open: close it before the `;`",
-            })
-        } else if other_line && !before.is_empty() && !before.ends_with([';', '{', '}']) {
-            Some(Hint {
-                expected: Some("`;`"),
-                behind: true,
-                help: "end the line before with `;`",
-            })
-        } else if before.ends_with('~') {
-            help("an uncertainty is written `~ ±8%` or `~ ±0.1 [mm]`")
-        } else if number(before) && here.starts_with('%') {
-            help(
-                "a part of something is a number: `0.05*M`; only an uncertainty is in percent, `~ ±5%`",
-            )
-        } else if number(before) && here.starts_with(char::is_alphabetic) {
-            help("a unit stands in brackets behind its number: `20 [mm]`")
-        } else if before.strip_suffix(',').is_some_and(number) && here.starts_with(digit) {
-            help("the decimal sign is a point: `1.5`")
-        } else if here.starts_with("==") {
-            help("an equation is written with one `=`; `==` compares")
-        } else {
-            None
-        }
-    }
-}
-
-/// What a slip looks like it needs.
-struct Hint {
-    expected: Option<&'static str>,
-    /// It is missing behind the last word that was understood.
-    behind: bool,
-    help: &'static str,
 }

@@ -128,6 +128,15 @@ pub(crate) fn skip_statement(text: &str, start: usize) -> usize {
     text.len()
 }
 
+/// Behind an `end;` at `at` that names nothing.
+pub(crate) fn behind_bare_end(text: &str, at: usize) -> Option<usize> {
+    let mut tokens = Scanner::new(text, at);
+    match (tokens.next()?, tokens.next()?) {
+        ((_, "end"), (semicolon, ";")) => Some(semicolon + 1),
+        _ => None,
+    }
+}
+
 /// Whether the brace that closes at `at` is that of a list, so that its statement goes on behind it.
 fn is_list(text: &str, at: usize) -> bool {
     let next = Scanner::new(text, at + 1).next();

@@ -75,6 +75,7 @@ fn word(rule: Rule) -> String {
         Rule::unit | Rule::unit_text => "a unit in brackets",
         Rule::binding => "`=`",
         Rule::modification => "a modification in parentheses",
+        Rule::change => "a modification",
         Rule::arguments | Rule::argument => "arguments in parentheses",
         // Never the point of a message.
         Rule::prefix_word | Rule::keyword | Rule::on_domain | Rule::section => "",

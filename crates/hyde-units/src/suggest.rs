@@ -78,8 +78,8 @@ fn has_lost_case(symbol: &str) -> bool {
 
 /// Products whose letters would also match something less likely: `nm`, `N.ms`.
 #[rustfmt::skip]
-const WELL_KNOWN: [(&str, &str); 14] = [
-    ("Nm", "N.m"), ("NM", "N.m"), ("Nms", "N.m.s"),
+const WELL_KNOWN: [(&str, &str); 15] = [
+    ("Nm", "N.m"), ("NM", "N.m"), ("Nms", "N.m.s"), ("Ns", "N.s"),
     ("kgcm", "kgf.cm"), ("gcm", "gf.cm"),
     ("ozin", "ozf.in"), ("inoz", "ozf.in"), ("lbin", "lbf.in"), ("inlb", "lbf.in"), ("inlbf", "lbf.in"),
     ("lbft", "lbf.ft"), ("ftlb", "lbf.ft"), ("ftlbf", "lbf.ft"), ("inozf", "ozf.in"),
@@ -91,7 +91,7 @@ const EFFECTIVE_VOLTAGE: &str =
     "an effective value is in `V` as well; the peak of a sine is sqrt(2) times as large";
 
 /// Symbols of data sheets that stand for more than one quantity, or for none that is a unit.
-const AMBIGUOUS: [(&str, &str); 24] = [
+const AMBIGUOUS: [(&str, &str); 25] = [
     (
         "oz",
         "write `ozf` for a force (a torque is in `ozf.in`), `ozm` for a mass",
@@ -120,6 +120,7 @@ const AMBIGUOUS: [(&str, &str); 24] = [
     ("Ap", "write `A`"),
     ("Vdc", "write `V`"),
     ("Grad", "write `deg` for a degree; a gon is `0.9 [deg]`"),
+    ("grad", "write `deg` for a degree; a gon is `0.9 [deg]`"),
     ("grd", "write `deg` for a degree; a gon is `0.9 [deg]`"),
     (
         "G",

@@ -42,15 +42,18 @@ const BEYOND: [&str; 4] = [
     "two signs stand one behind the other",
 ];
 
+/// Errors of the grammar that have the code of a wrong name behind `end`.
+const ENDS: [&str; 2] = ["ends without its name", "has no end"];
+
 /// The messages of the compiler's parser.
 fn syntax_errors(text: &str) -> Vec<String> {
     let mut sources = Sources::new();
     let file = sources.add("file.hyde", text);
     let mut diagnostics = Diagnostics::new();
     hyde_syntax::parse(&sources, file, &mut diagnostics);
-    let errors = diagnostics
-        .iter()
-        .filter(|found| found.code == Code::Syntax);
+    let errors = diagnostics.iter().filter(|found| {
+        found.code == Code::Syntax || ENDS.iter().any(|part| found.message.ends_with(part))
+    });
     let messages = errors.map(|found| found.message.clone());
     let beyond = |message: &String| BEYOND.iter().any(|part| message.contains(part));
     messages.filter(|message| !beyond(message)).collect()

@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct ExciteArgs {
-    /// File of a model: signals of all kinds are compared by what they tell about its parameters
+    /// File of a model: all kinds of signals are compared by how closely they determine its parameters
     pub(crate) file: Option<PathBuf>,
     /// Name of the calibration or diagnosis; optional if the file has only one calibration
     pub(crate) study: Option<String>,

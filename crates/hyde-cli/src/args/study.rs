@@ -9,7 +9,7 @@ use std::path::PathBuf;
 pub(crate) struct StudyArgs {
     /// File of the model
     pub(crate) file: PathBuf,
-    /// Name of the study; optional if the file has only one of this kind
+    /// Name of the calibration or diagnosis; optional if the file has only one
     pub(crate) study: Option<String>,
     /// Set a parameter: `--set saddle.M='320 [kg]'` (repeatable)
     #[arg(long = "set", value_name = "PATH=VALUE [UNIT]")]

@@ -5,10 +5,10 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct LookArgs {
-    /// Files, each with how it is to be read if it does not say so: `'log.csv (time = "t" in [ms])'`
+    /// Files of traces; settings may follow the name of each: `'log.csv (time = "t" in [ms])'`
     #[arg(required = true)]
     pub(crate) files: Vec<String>,
-    /// Leave the page `look.html` with a picture of every channel in this folder
+    /// Write the page `look.html`, with a picture of every channel, to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print one JSON object on standard output and nothing else
@@ -23,17 +23,17 @@ pub(crate) struct NewArgs {
     /// The kind of axis
     #[arg(long, value_enum)]
     pub(crate) template: TemplateName,
-    /// Traces that the model is compared with; the last of several is held out. Each with how it is to be read if it does not
-    /// say so: `'log.csv (column = "pos" in [mm])'`
+    /// Traces that the model is compared with; the last of several is held out. Settings may follow the name of each:
+    /// `'log.csv (column = "pos" in [mm])'`
     #[arg(long, value_name = "TRACE", num_args = 1..)]
     pub(crate) from: Vec<String>,
-    /// Torque or force per current: `'0.8 [N.m/A]'`, of a linear motor `'78 [N/A]'`
+    /// Torque per current: `'0.8 [N.m/A]'`; for a linear motor, force per current: `'78 [N/A]'`
     #[arg(long, value_name = "VALUE [UNIT]")]
     pub(crate) constant: Option<String>,
-    /// Way per turn of the motor, `'10 [mm/rev]'`; of a rotary table the turns of the motor per turn
+    /// Travel per revolution of the motor: `'10 [mm/rev]'`; for a rotary table, revolutions of the motor per revolution of the table
     #[arg(long, value_name = "VALUE [UNIT]")]
     pub(crate) ratio: Option<String>,
-    /// Folder of the file [default: the folder of the first trace, else this one]
+    /// Folder of the file [default: the folder of the first trace, or the current folder]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 }

@@ -28,6 +28,11 @@ pub(super) fn check(args: &ModelArgs) -> Exit {
                 ));
             } else if !args.quiet {
                 print_output(&table(&args.file.display().to_string(), &tests));
+                if tests.is_empty() {
+                    print_output(
+                        "no model of an experiment has an effect: `model New = Old with Effect(…) on site;`",
+                    );
+                }
                 if !unused.is_empty() {
                     print_output(&format!("in no experiment: {}", unused.join(", ")));
                 }

@@ -20,16 +20,14 @@ impl<'a> Model<'a, '_> {
             dim: Dim::known(Dimension::TIME),
             ..t.clone()
         };
+        self.agree(&time, &t, "a chirp runs over time, found", scope.instance);
         self.agree(
-            &t,
-            &time,
-            "a chirp runs over time, this relates",
-            scope.instance,
-        );
-        self.agree(
+            &Typed {
+                span: over.span,
+                ..time.clone()
+            },
             &over,
-            &time,
-            "a chirp lasts a time, this relates",
+            "a chirp lasts a time, found",
             scope.instance,
         );
         self.agree(&from, &to, "the two frequencies are", scope.instance);
@@ -38,9 +36,9 @@ impl<'a> Model<'a, '_> {
             ..from.clone()
         };
         self.agree(
-            &from,
             &rate,
-            "a chirp starts at a frequency, this relates",
+            &from,
+            "a chirp starts at a frequency, found",
             scope.instance,
         );
         let arena = &mut self.flat.exprs;

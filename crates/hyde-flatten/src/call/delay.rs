@@ -74,7 +74,7 @@ impl<'a> Model<'a, '_> {
         self.agree(
             &in_seconds,
             &given,
-            "a delay is a time, this relates",
+            "a delay is a time, found",
             scope.instance,
         );
         let observed = self.input.form == Form::Observed;

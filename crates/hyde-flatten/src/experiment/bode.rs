@@ -69,7 +69,7 @@ impl<'a> Model<'a, '_> {
             }
         }
         let time = self.value(at, &Scope::new(root, Setting::Parameter));
-        self.agree_time(&time, "a run is linearised at a time, this relates", root);
+        self.agree_time(&time, "a run is linearised at a time, found", root);
         Moment::At(time.id)
     }
 
@@ -93,8 +93,22 @@ impl<'a> Model<'a, '_> {
             dim: Dim::NUMBER.divide(&Dim::known(Dimension::TIME)),
             ..from.clone()
         };
-        self.agree(&from, &rate, "a band of frequencies relates", root);
-        self.agree(&to, &rate, "a band of frequencies relates", root);
+        self.agree(
+            &rate,
+            &from,
+            "the ends of a band are frequencies, found",
+            root,
+        );
+        let rate = Typed {
+            span: to.span,
+            ..rate
+        };
+        self.agree(
+            &rate,
+            &to,
+            "the ends of a band are frequencies, found",
+            root,
+        );
         (from.id, to.id)
     }
 

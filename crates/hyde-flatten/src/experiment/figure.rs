@@ -30,8 +30,8 @@ impl<'a> Model<'a, '_> {
                 self.value(&within.from, &scope),
                 self.value(&within.to, &scope),
             );
-            self.agree_time(&from, "a figure shows times, this relates", root);
-            self.agree_time(&to, "a figure shows times, this relates", root);
+            self.agree_time(&from, "a figure shows times, found", root);
+            self.agree_time(&to, "a figure shows times, found", root);
             (from.id, to.id)
         });
         if let Some(kind) = kind {
@@ -110,7 +110,11 @@ impl<'a> Model<'a, '_> {
             ..of_x.clone()
         };
         for given in [&of_x, &of_y, &radius] {
-            self.agree(given, &length, "a circle has lengths, this relates", root);
+            let length = Typed {
+                span: given.span,
+                ..length.clone()
+            };
+            self.agree(&length, given, "a circle has lengths, found", root);
         }
         Some(FigureKind::Circle([x, y], radius.id))
     }

@@ -131,12 +131,7 @@ impl<'a> Model<'a, '_> {
                             dim: Dim::NUMBER.divide(&Dim::known(Dimension::TIME)),
                             ..corner_typed.clone()
                         };
-                        self.agree(
-                            &corner_typed,
-                            &rate,
-                            "a corner is a frequency, this relates",
-                            root,
-                        );
+                        self.agree(&rate, &corner_typed, "a corner is a frequency, found", root);
                         let corner = self.structural_number(&parameter, &corner.value)?;
                         steps.push(Preparation::Lowpass(corner));
                         Some(found)

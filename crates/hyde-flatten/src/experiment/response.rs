@@ -156,7 +156,7 @@ impl<'a> Model<'a, '_> {
                     Some(period) => {
                         let scope = Scope::new(root, Setting::Parameter);
                         let typed = self.value(period, &scope);
-                        self.agree_time(&typed, "a period is a time, this relates", root);
+                        self.agree_time(&typed, "a period is a time, found", root);
                         Some(self.structural_number(&scope, period)?)
                     }
                     None => None,

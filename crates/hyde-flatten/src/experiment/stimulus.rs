@@ -23,6 +23,10 @@ impl<'a> Model<'a, '_> {
             _ => None,
         };
         let Some(var) = input.filter(|&var| !is_bound(var)) else {
+            // A declaration that is not understood is reported there.
+            if self.undeclared.contains(drive.target.dotted().as_str()) {
+                return;
+            }
             let inputs: Vec<&str> = self.instances[root]
                 .members
                 .iter()

@@ -47,6 +47,19 @@ impl<'a> Model<'a, '_> {
                 self.undeclared.insert(declarator.name.text.as_str());
                 continue;
             }
+            let has_value = declarator.binding.is_some()
+                || declaration.prefixes.contains(&Prefix::Input)
+                || declaration.prefixes.contains(&Prefix::Output);
+            if quantity.is_none()
+                && has_value
+                && let Some(diagnostic) = self
+                    .names
+                    .quantity_elsewhere(item.file, &declaration.type_name)
+            {
+                self.report(diagnostic);
+                self.undeclared.insert(declarator.name.text.as_str());
+                continue;
+            }
             match (as_component, class, quantity) {
                 (true, Some((file, class)), _) => {
                     self.declare_component(id, item, declaration, declarator, file, class)

@@ -132,12 +132,7 @@ impl<'a> Model<'a, '_> {
                     dim: Dim::known(Dimension::FREQUENCY),
                     ..frequency.clone()
                 };
-                self.agree(
-                    &frequency,
-                    &hertz,
-                    "waves have a frequency, this relates",
-                    id,
-                );
+                self.agree(&hertz, &frequency, "waves have a frequency, found", id);
                 (self.structural_number(&scope, expr)?, expr.span)
             }
             (None, Some(_)) => return given,

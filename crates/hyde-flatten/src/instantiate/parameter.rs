@@ -17,8 +17,14 @@ impl<'a> Model<'a, '_> {
         declaration: &'a Declaration,
     ) {
         let Some(kind) = self.names.quantity(item.file, &declaration.type_name) else {
-            let diagnostic = match self.names.class(item.file, &declaration.type_name) {
-                Some(_) => Diagnostic::error(Code::WrongType, "a model cannot be a parameter")
+            let elsewhere = || {
+                self.names
+                    .quantity_elsewhere(item.file, &declaration.type_name)
+            };
+            let class = self.names.class(item.file, &declaration.type_name);
+            let diagnostic = match class.map(|_| elsewhere()) {
+                Some(Some(diagnostic)) => diagnostic,
+                Some(None) => Diagnostic::error(Code::WrongType, "a model cannot be a parameter")
                     .label(declaration.type_name.span, "this is a model")
                     .help("declare it without `parameter`; exchange it by `replaceable`"),
                 None => self

@@ -185,9 +185,9 @@ impl<'a> Model<'a, '_> {
             ..b.clone()
         };
         self.agree(
-            &b,
             &number,
-            "an exponent is a pure number, not",
+            &b,
+            "an exponent is a pure number, found",
             scope.instance,
         );
         let id = self.flat.exprs.binary(BinaryOp::Pow, a.id, b.id);
@@ -207,9 +207,9 @@ impl<'a> Model<'a, '_> {
                     ..a.clone()
                 };
                 self.agree(
-                    &a,
                     &number,
-                    "only a pure number can be raised to this power, this relates",
+                    &a,
+                    "only a pure number can be raised to this power, found",
                     scope.instance,
                 );
                 Some(Dim::NUMBER)

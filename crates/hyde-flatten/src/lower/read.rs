@@ -2,11 +2,11 @@
 
 use super::resolve::Resolved;
 use crate::dimension::Dim;
-use crate::instance::{Counter, Scope, Setting, Typed};
+use crate::instance::{Counter, InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{Expr as Ir, Id as _, Index, VarId, VariableKind};
-use hyde_syntax::ast::Reference;
+use hyde_syntax::ast::{ClassKind, Reference};
 
 impl<'a> Model<'a, '_> {
     pub(super) fn reference(&mut self, reference: &'a Reference, scope: &Scope<'a>) -> Typed {
@@ -58,21 +58,39 @@ impl<'a> Model<'a, '_> {
             Resolved::Value(value) => Typed { span, ..value },
             Resolved::Coordinate => self.coordinate_value(scope, span),
             Resolved::Instance(instance) => {
-                let name = self.instances[instance].class.name.text.clone();
-                self.report(
-                    Diagnostic::error(
-                        Code::WrongType,
-                        format!(
-                            "`{}` is a component ({name}), not a value",
-                            reference.dotted()
-                        ),
-                    )
-                    .label(span, "a component")
-                    .help("name one of its variables: `motor.w`"),
-                );
+                self.not_a_value(instance, reference, span);
                 self.poison(span)
             }
         }
+    }
+
+    /// A component or a connector stands where a value is needed.
+    fn not_a_value(&mut self, instance: InstanceId, reference: &Reference, span: Span) {
+        let part = &self.instances[instance];
+        let name = &part.class.name.text;
+        let path = reference.dotted();
+        let connector = part.class.kind == ClassKind::Connector;
+        let mut members = part.members.iter();
+        let variable = members.find(|(_, member)| matches!(member, Member::Variable(_)));
+        let (what, connect) = match connector {
+            true => (
+                "connector",
+                format!("connect it, `connect({path}, …);`, or "),
+            ),
+            false => ("component", String::new()),
+        };
+        let diagnostic = Diagnostic::error(
+            Code::WrongType,
+            format!("`{path}` is a {what} ({name}), not a value"),
+        )
+        .label(span, format!("a {what}"));
+        let variable = variable.map(|(variable, _)| format!("{path}.{variable}"));
+        self.report(match variable {
+            Some(variable) => {
+                diagnostic.help(format!("{connect}name one of its variables: `{variable}`"))
+            }
+            None => diagnostic.help(format!("{connect}name a variable of one of its parts")),
+        });
     }
 
     /// A variable's value, with the borders of clocked parts checked.

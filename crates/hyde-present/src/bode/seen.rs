@@ -29,7 +29,8 @@ fn prominence(at: f64, frequency: &[f64], response: &[(f64, f64)]) -> Option<f64
     let gain = |f: f64| {
         let k = frequency.partition_point(|other| *other < f);
         let (re, im) = *response.get(k)?;
-        (k > 0).then(|| 20.0 * re.hypot(im).log10())
+        let gain = 20.0 * re.hypot(im).log10();
+        (k > 0 && gain.is_finite()).then_some(gain)
     };
     let (low, high) = (gain(at * 0.75)?, gain(at / 0.75)?);
     (-10..=10)
@@ -43,6 +44,10 @@ fn prominence(at: f64, frequency: &[f64], response: &[(f64, f64)]) -> Option<f64
 
 /// `peaks at 26.5 Hz, 43.1 Hz`
 pub(super) fn peaks_told(response: &Response) -> String {
+    let still = |(re, im): &(f64, f64)| re.hypot(*im) <= 0.0;
+    if !response.linear.is_empty() && response.linear.iter().all(still) {
+        return "no response: the input does not act on it at this operating point".to_owned();
+    }
     let list: Vec<String> = peaks(&response.frequency, &response.linear)
         .iter()
         .map(|f| format!("{} Hz", significant(*f, 3)))

@@ -118,7 +118,7 @@ impl ReadError {
                 "leave `layout` out, and look at what the file is with `hyde look`".to_owned()
             }
             Self::HeaderAgain { .. } | Self::Time(TimeError::RunsBack { anew: true, .. }) => format!(
-                "say which run is meant, from 1: `record {record}(run = 1)`; a study of several takes a record for each"
+                "select a run, counted from 1: `record {record}(run = 1)`; a calibration reads each as a separate record: `fit EXPERIMENT(\"FILE (run = 1)\"), EXPERIMENT(\"FILE (run = 2)\");`"
             ),
             Self::NoRun { found, .. } => format!("its runs are 1 to {found}: `record {record}(run = {found})`"),
             Self::NoRows => "write one row per sample below the header".to_owned(),

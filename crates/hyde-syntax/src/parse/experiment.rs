@@ -8,7 +8,7 @@ use crate::ast::{
     Variation, Varied,
 };
 use crate::grammar::Rule;
-use crate::recover;
+use crate::{habits, recover};
 use hyde_diag::Span;
 
 impl Parser<'_> {
@@ -100,7 +100,9 @@ impl Parser<'_> {
                 continue;
             }
             let Some(pairs) = self.expect(rule) else {
-                self.at = recover::skip_statement(self.text, start).max(start + 1);
+                let comment = habits::behind_comment(self.text, start);
+                let behind = comment.unwrap_or_else(|| recover::skip_statement(self.text, start));
+                self.at = behind.max(start + 1);
                 if self.at_item() {
                     break;
                 }

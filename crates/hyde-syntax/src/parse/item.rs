@@ -181,11 +181,11 @@ impl Parser<'_> {
             if self.refuse_too_deep() || self.refuse_nested(name) {
                 continue;
             }
+            if self.at_item() {
+                break;
+            }
             let Some(pairs) = self.expect(Rule::element) else {
                 self.at = self.behind_broken(start);
-                if self.at_item() {
-                    break;
-                }
                 continue;
             };
             for node in significant(pairs) {
@@ -241,7 +241,9 @@ impl Parser<'_> {
 
     /// Where elements go on after a broken one.
     fn behind_broken(&self, start: usize) -> usize {
-        if let Some(behind) = habits::behind_prefix(self.text, start) {
+        let readable = habits::behind_prefix(self.text, start)
+            .or_else(|| habits::behind_comment(self.text, start));
+        if let Some(behind) = readable {
             return behind;
         }
         let of_assignments = self.looking_at("algorithm") || self.nth_word(1) == Some("algorithm");
@@ -250,7 +252,15 @@ impl Parser<'_> {
         } else {
             recover::skip_statement(self.text, start)
         };
-        behind.max(start + 1)
+        let behind = behind.max(start + 1);
+        // The `end;` of a block that is not called by its word.
+        let block = self
+            .nth_word(0)
+            .is_some_and(|word| recover::BLOCKS.contains(&word));
+        match recover::behind_bare_end(self.text, behind) {
+            Some(end) if block => end,
+            _ => behind,
+        }
     }
 
     /// An equation in its section; one outside of any is reported.
@@ -288,6 +298,20 @@ impl Parser<'_> {
     /// `end NAME;`, with the name that was opened.
     pub(super) fn end(&mut self, opened: &Name) {
         let start = self.at;
+        if self.nth_word(1) == Some(";") {
+            let span = Span::new(self.file, start, start + "end".len());
+            self.diagnostics.push(
+                Diagnostic::error(
+                    Code::EndName,
+                    format!("`{}` ends without its name", opened.text),
+                )
+                .label(span, format!("expected `end {};`", opened.text))
+                .label(opened.span, "opened here")
+                .help(format!("write `end {};`", opened.text)),
+            );
+            self.at = recover::skip_statement(self.text, start + "end".len());
+            return;
+        }
         let Some(pairs) = self.expect(Rule::end_clause) else {
             self.at = recover::skip_statement(self.text, start + 3);
             return;
