@@ -7,6 +7,7 @@
 //! configuration  the model in one combination of modes, linearised once                 plant/configuration.rs
 //! gains          what corrects it there, for each kind of row                           plant/gains.rs
 //! model          rates and algebraic variables where the states are                     plant/model.rs
+//! secants        what answers residuals where derivatives differ from point to point    plant/secants.rs
 //! stepping       a step: the linear part exactly, the rest in two stages                plant/stepping.rs
 //! events         reactions that fire at its end                                         plant/events.rs
 //! leg            a step that was taken, for those who follow                            plant/leg.rs
@@ -23,6 +24,7 @@ mod leg;
 mod model;
 mod outputs;
 mod past;
+mod secants;
 mod snapshot;
 mod stepping;
 

@@ -1,6 +1,8 @@
 //! Candidates: every effect at every site of a model where it fits, and models with some of them put on.
 
+use crate::command::{report, write};
 use crate::driven_body::{SLOW, diagnosed};
+use crate::unknown_effects::make;
 use hyde_compiler::{Additions, Backend, Calibrated, Candidate, DiagnosisPlan, Found, write_back};
 use hyde_diag::Diagnostics;
 use hyde_experiment::Options;
@@ -258,4 +260,26 @@ fn an_effect_that_cannot_be_put_on_the_model_is_told() {
     let told = "Broken at a was not tried because it cannot be added to the model: ";
     assert!(doubts.iter().any(|own| own.starts_with(told)), "{doubts:?}");
     assert!(!doubts.iter().any(|own| own.contains("Slow")), "{doubts:?}");
+}
+
+/// An inertia of 1.5e-3 kg.m2 forwards and 6.5e-3 backwards: steps by the derivatives of one direction do not end at the
+/// acceleration of the other.
+#[test]
+fn an_inertia_that_is_four_times_as_large_backwards_is_found() {
+    let folder = tempfile::tempdir().unwrap();
+    let with = " with Effects.ShaftDirectionalInertia(dJ = -2.5e-3 [kg.m2]) on rotor.a";
+    let axis = make(folder.path(), &[], "", with);
+    let study = "
+diagnose sides of calibrate small
+  candidates Effects.ShaftDirectionalInertia, Effects.ShaftLoad;
+  max_effects 2;
+end sides;
+";
+    write(&folder.path().join("axis.hyde"), &format!("{axis}{study}"));
+    let found = report(folder.path(), &["diagnose", "axis.hyde", "sides"]);
+    assert_eq!(found["verdict"], "effect", "{}", found["sentence"]);
+    let effect = &found["effects"][0];
+    assert_eq!(effect["effect"], "ShaftDirectionalInertia");
+    let size = effect["size"].as_f64().unwrap();
+    assert!((size / -2.5e-3 - 1.0).abs() < 0.01, "{size}");
 }

@@ -84,7 +84,7 @@ fn value(shape: &LawShape, of: &LawText, at: Point) -> f64 {
 
 /// Of each shape its text and its closed form, of v, x, t and two constants.
 type Form = fn(f64, f64, f64, f64, f64) -> f64;
-const FORMS: [(&str, &str, Form); 27] = [
+const FORMS: [(&str, &str, Form); 28] = [
     ("speed", "v/v1", |v, _, _, _, _| v / 0.2),
     ("magnitude", "noEvent(abs(v))/v1", |v, _, _, _, _| {
         v.abs() / 0.2
@@ -117,6 +117,11 @@ const FORMS: [(&str, &str, Form); 27] = [
     ("bell", "exp(-(v/vs)^2)", |v, _, _, a, _| {
         (-(v / a).powi(2)).exp()
     }),
+    (
+        "power",
+        "noEvent(abs(v))/v1*(noEvent(abs(v))/v1 + 1e-6)^(p - 1)",
+        |v, _, _, a, _| v.abs() / 0.2 * (v.abs() / 0.2 + 1e-6).powf(a - 1.0),
+    ),
     (
         "peak_at_speed",
         "exp(-((noEvent(abs(v)) - v0)/dv)^2)",

@@ -22,6 +22,11 @@ diagnose forms of calibrate small
   max_effects 3;
 end forms;
 
+diagnose drags of calibrate small
+  candidates Effects.Stribeck, Effects.Tustin, Effects.SaturatingDrag, Effects.SqrtDrag, Effects.Viscous;
+  max_effects 2;
+end drags;
+
 diagnose bodies of calibrate small
   candidates Effects.Rocking, Effects.Pull;
 end bodies;
@@ -154,6 +159,22 @@ fn a_drag_that_waves_along_the_way_is_found_and_written() {
     let panel = &found["unknown"]["map"]["panels"][0];
     assert_eq!(panel["variable"], "speed times place");
     assert!(panel["gain"].as_f64().unwrap() > 2.0 * panel["band"].as_f64().unwrap());
+}
+
+/// Drags that bend otherwise are no parts of it: without the shape two of them stand for it.
+#[test]
+fn a_drag_with_a_power_of_the_speed_is_found_and_written() {
+    let with = " with Effects.PowerDrag(k = 600 [N], p = 0.7) on guide";
+    let found = diagnosed_on(&[], "", with, "drags");
+    let law = law_alone(&found);
+    let text = "wrap grip by grip + F*noEvent(abs(v))/v1*(noEvent(abs(v))/v1 + 1e-6)^(p - 1);";
+    assert!(law.contains(text), "{law}");
+    let effect = &found["effects"][0];
+    let p = effect["shape"]["p"]["value"].as_f64().unwrap();
+    assert!((p / 0.7 - 1.0).abs() < 0.05, "{p}");
+    // 600 N at 100 mm/s are 975 N at the 200 mm/s that sizes are given at.
+    let size = effect["size"].as_f64().unwrap();
+    assert!((size / 975.0 - 1.0).abs() < 0.05, "{size}");
 }
 
 /// A friction that remembers: its filter is found with the time constant, though parameters took half of it before.

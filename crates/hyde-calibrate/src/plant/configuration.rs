@@ -74,15 +74,13 @@ impl Places {
 }
 
 impl Bending<'_> {
-    /// The residuals of these equations, and what rates and algebraic variables change by to answer them.
-    pub(crate) fn evaluate(
-        &self,
-        at: Point<'_>,
-        workspace: &mut Workspace,
-        residual: &mut [f64],
-        change: &mut [f64],
-    ) {
+    /// The residuals of these equations.
+    pub(crate) fn residual(&self, at: Point<'_>, workspace: &mut Workspace, residual: &mut [f64]) {
         self.residual.evaluate(at, workspace, residual);
+    }
+
+    /// What rates and algebraic variables change by to answer residuals.
+    pub(crate) fn follow(&self, residual: &[f64], change: &mut [f64]) {
         set_product(&self.by_residual, &residual[..self.count], change);
     }
 }

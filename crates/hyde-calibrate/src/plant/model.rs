@@ -2,6 +2,7 @@
 //! the linear ones being carried along.
 
 use super::configuration::{Configuration, Places};
+use super::secants::Secants;
 use crate::linear::set_product;
 use hyde_program::{Function, Point, Program, Workspace};
 
@@ -11,6 +12,7 @@ pub(crate) struct Solving {
     pub(crate) delta: Vec<f64>,
     /// Of the equations that bend, the residuals that have been answered.
     pub(crate) sum: Vec<f64>,
+    secants: Secants,
 }
 
 impl Solving {
@@ -19,6 +21,7 @@ impl Solving {
             residual: vec![0.0; unknowns],
             delta: vec![0.0; unknowns],
             sum: Vec::new(),
+            secants: Secants::default(),
         }
     }
 }
@@ -54,14 +57,21 @@ impl Model<'_> {
         yp: &mut [f64],
         workspace: &mut Workspace,
         Solving {
-            residual, delta, ..
+            residual,
+            delta,
+            secants,
+            ..
         }: &mut Solving,
     ) {
+        secants.begin();
         for _ in 0..rounds(configuration) {
             let at = self.point(t, y, yp);
             self.program
                 .kernels
                 .evaluate(Function::Residual, at, workspace, residual);
+            if !configuration.constant {
+                secants.step(residual);
+            }
             set_product(&configuration.inverse, residual, delta);
             let mut settled = true;
             for (index, &change) in delta.iter().enumerate() {
@@ -118,14 +128,20 @@ impl Model<'_> {
             residual,
             delta,
             sum,
+            secants,
         }: &mut Solving,
     ) {
+        secants.begin();
         let bending = &configuration.bending;
         sum.clear();
         sum.resize(bending.count, 0.0);
         for _ in 0..rounds(configuration) {
             let at = self.point(t, y, yp);
-            bending.evaluate(at, workspace, residual, delta);
+            bending.residual(at, workspace, residual);
+            if !configuration.constant {
+                secants.step(&mut residual[..bending.count]);
+            }
+            bending.follow(residual, delta);
             for (sum, residual) in sum.iter_mut().zip(&*residual) {
                 *sum += residual;
             }
