@@ -9,7 +9,7 @@ use crate::statistics::median;
 use crate::table::may_be_first;
 use crate::texts::Texts;
 use crate::time_error::{Candidate, TimeError};
-use crate::{Note, declared, gaps, wrap};
+use crate::{Fault, Note, declared, gaps, wrap};
 use hyde_units::{Dimension, NamedUnit};
 
 /// A clock that began to count longer ago, in s, counts from the first row: doubles resolve a run near 0 best.
@@ -74,6 +74,9 @@ pub(crate) fn read(
                 let mut values = values;
                 wrap::unwrap(&mut values, period);
                 shifted(values, &si, None)
+            }
+            Ok(values) if !said && are_days(&values) => {
+                return Err(TimeError::Doubtful(in_days(name, &values)));
             }
             Ok(values) => {
                 let far = values.first().is_some_and(|first| is_far(*first));
@@ -143,6 +146,7 @@ pub(crate) fn read(
     }
     if !over_frequency {
         notes.extend(gaps::told(&seconds));
+        notes.extend(other_clocks(raw, at, &seconds));
     }
     Ok(Instants {
         unit,
@@ -163,6 +167,26 @@ fn shifted(
             values.iter_mut().for_each(|value| *value = si(*value));
             (values, None)
         }
+    }
+}
+
+/// Whether numbers without a unit may be the days of a spreadsheet, from 2000 to 2100: as seconds of a clock, most rows
+/// would be less than 20 us apart.
+fn are_days(values: &[f64]) -> bool {
+    let steps: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
+    let first = values.first().copied().unwrap_or_default();
+    (36_526.0..73_050.0).contains(&first) && median(&steps).is_some_and(|step| step < 2e-5)
+}
+
+fn in_days(name: &str, values: &[f64]) -> Fault {
+    let first = hyde_units::significant(values[0], 8);
+    Fault {
+        message: format!(
+            "the time `{name}` has no unit and begins at {first}: does it count days, as the dates of a spreadsheet do, or seconds?"
+        ),
+        repair: format!(
+            "say which: `record log(time = {name:?} in 24 [h])` for days, `in [s]` for seconds"
+        ),
     }
 }
 
@@ -304,6 +328,30 @@ fn is_dates(cells: &Cells) -> bool {
         }
         Cells::Numbers(..) | Cells::Sparse(..) | Cells::Integers(_) => false,
     }
+}
+
+/// Columns in a unit of time that run along with the time: other channels may have been sampled at their instants.
+fn other_clocks(raw: &[Raw], at: usize, seconds: &[f64]) -> Option<Note> {
+    let span = |values: &[f64]| Some(values.last()? - values.first()?);
+    let whole = span(seconds).filter(|span| *span > 0.0)?;
+    let runs_along = |column: &&Raw| {
+        let unit = column
+            .heading
+            .known_unit()
+            .filter(|unit| is_time_unit(unit));
+        let (Some(unit), Cells::Numbers(values, None)) = (unit, &column.cells) else {
+            return false;
+        };
+        let own = span(values).map_or(0.0, |span| unit.unit().to_si(span));
+        (own - whole).abs() <= 0.01 * whole && values.windows(2).all(|pair| pair[1] >= pair[0])
+    };
+    let others = raw.iter().enumerate().filter(|(other, _)| *other != at);
+    let other = others.map(|(_, column)| column).find(runs_along)?;
+    let (time, other) = (&raw[at].heading.name, &other.heading.name);
+    Some(Note::new(format!(
+        "`{other}` runs along with the time `{time}`, at which all channels are read: make those that were sampled at `{other}` a record of their own, \
+         `record other = \"FILE\" (time = {other:?})`"
+    )))
 }
 
 /// Another column that looks like the time.

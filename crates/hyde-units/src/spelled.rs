@@ -50,8 +50,12 @@ pub fn parse_spelled(text: &str) -> Result<NamedUnit, UnitError> {
 /// A name may end like this by chance, so that it is a reason to ask, and no unit.
 #[must_use]
 pub fn unit_in_name(name: &str) -> Option<NamedUnit> {
-    let (_, last) = name.rsplit_once(['_', ' ', '/'])?;
-    parse_spelled(last.trim_matches(['[', ']', '(', ')'])).ok()
+    let unit = |(_, unit): (&str, &str)| {
+        let unit = unit.trim_matches(['[', ']', '(', ')']);
+        parse_spelled(unit).ok()
+    };
+    let after_all = name.split_once('/').and_then(unit);
+    after_all.or_else(|| name.rsplit_once(['_', ' ', '/']).and_then(unit))
 }
 
 #[cfg(test)]
@@ -85,6 +89,7 @@ mod tests {
         let unit = |name| unit_in_name(name).map(|unit| unit.text().to_owned());
         assert_eq!(unit("pos_mm").as_deref(), Some("mm"));
         assert_eq!(unit("Weg/mm").as_deref(), Some("mm"));
+        assert_eq!(unit("v/mm/s").as_deref(), Some("mm/s"));
         assert_eq!(unit("Speed (rpm)").as_deref(), Some("rpm"));
         assert_eq!(unit("torque_Nm").as_deref(), Some("N.m"));
         assert_eq!(unit("pos_act"), None);

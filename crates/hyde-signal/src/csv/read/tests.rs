@@ -438,3 +438,40 @@ fn units_of_devices_are_told() {
     assert!((speed - std::f64::consts::TAU).abs() < 1e-12);
     assert!(notes(&table).contains("of its units, `Nm` is N.m, `U/min` is rpm"));
 }
+
+/// A spreadsheet writes 2023-03-15 as 45000: as seconds, rows 10 ms apart would be 0.1 us apart.
+#[test]
+fn days_of_a_spreadsheet_are_asked_for() {
+    let of = |header: &str, row: &str| {
+        let rows: String = (0..9)
+            .map(|k| format!("45000.{:09}{row}\n", 116 * k))
+            .collect();
+        format!("{header}\n{rows}")
+    };
+    let error = message(&of("Timestamp,x [m]", ",1"));
+    assert!(
+        error.contains("days, as the dates of a spreadsheet do, or seconds"),
+        "{error}"
+    );
+    let table = table(&of("Timestamp [us],x [m]", ",1"));
+    assert_eq!(table.time().len(), 9);
+}
+
+#[test]
+fn another_clock_beside_the_time_is_told() {
+    let text = |step: f64| {
+        let row = |k: u32| {
+            let t = 0.004 * f64::from(k);
+            format!("{t:.3},1,{:.5},2\n", 0.0013 + step * f64::from(k))
+        };
+        let rows: String = (0..9).map(row).collect();
+        format!("t_plc [s],x [m],t_scope [s],i [A]\n{rows}")
+    };
+    let told = notes(&table(&text(0.004)));
+    assert!(
+        told.contains("`t_scope` runs along with the time `t_plc`"),
+        "{told}"
+    );
+    let duration = notes(&table(&text(0.0001)));
+    assert_eq!(duration, "");
+}
