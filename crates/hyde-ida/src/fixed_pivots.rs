@@ -17,6 +17,9 @@ use crate::Pattern;
 use half::Half;
 use std::ops::Range;
 
+/// So many values move into the order of the solution in one turn of a loop, and so many out of it.
+const AT_ONCE: usize = 4;
+
 /// What KLU found, in its own numbers: rows and columns in the order of the pivots.
 pub(crate) struct Extracted {
     /// L with its unit diagonal, U with its diagonal, and F: starts of columns and rows.
@@ -32,13 +35,8 @@ pub(crate) struct Extracted {
 }
 
 /// A row of the factors.
-#[derive(Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 struct Row {
-    /// The equation and the unknown of its pivot.
-    equation: u32,
-    unknown: u32,
-    /// 1 over the scale of the row.
-    scale: f64,
     /// How many of the entries on the way down are of F.
     n_above: u32,
     /// Which row it is on the way up.
@@ -57,6 +55,11 @@ struct Block {
 #[derive(Debug)]
 pub(crate) struct FixedPivots {
     rows: Vec<Row>,
+    /// The equation and the unknown of each pivot.
+    equations: Vec<u32>,
+    unknowns: Vec<u32>,
+    /// 1 over the scale of each row.
+    scales: Vec<f64>,
     /// 1 over the diagonal of U.
     pivots: Vec<f64>,
     blocks: Vec<Block>,
@@ -77,8 +80,16 @@ impl FixedPivots {
         let order: Vec<u32> = (blocks.windows(2).rev())
             .flat_map(|ends| ends[0]..ends[1])
             .collect();
+        let of_pivots = |list: &[i64]| -> Option<Vec<u32>> {
+            let list = order.iter().map(|&pivot| list[pivot as usize]);
+            list.map(|number| u32::try_from(number).ok()).collect()
+        };
+        let scales = order.iter().map(|&pivot| found.scale[pivot as usize]);
         let mut factors = Self {
-            rows: Vec::with_capacity(order.len()),
+            rows: vec![Row::default(); order.len()],
+            equations: of_pivots(&found.row_at)?,
+            unknowns: of_pivots(&found.column_at)?,
+            scales: scales.map(|scale| 1.0 / scale).collect(),
             pivots: vec![0.0; order.len()],
             blocks: Vec::with_capacity(blocks.len()),
             down: Half::new(false),
@@ -89,15 +100,7 @@ impl FixedPivots {
         };
         let mut place_of = vec![0_u32; order.len()];
         for (place, &pivot) in (0..).zip(&order) {
-            let pivot = pivot as usize;
-            place_of[pivot] = place;
-            factors.rows.push(Row {
-                equation: u32::try_from(found.row_at[pivot]).ok()?,
-                unknown: u32::try_from(found.column_at[pivot]).ok()?,
-                scale: 1.0 / found.scale[pivot],
-                n_above: 0,
-                upward: 0,
-            });
+            place_of[pivot as usize] = place;
         }
         let above = columns(&found.above, &place_of)?;
         let lower = columns(&found.lower, &place_of)?;
@@ -142,12 +145,12 @@ impl FixedPivots {
     /// Where the entries of each row are in the values of the matrix.
     fn read_sources(&mut self, pattern: &Pattern) -> Option<()> {
         let mut place_of = vec![0; self.rows.len()];
-        for (place, row) in self.rows.iter().enumerate() {
-            place_of[row.equation as usize] = place;
+        for (place, &equation) in self.equations.iter().enumerate() {
+            place_of[equation as usize] = place;
         }
         let mut of_row = vec![Vec::new(); self.rows.len()];
-        for (place, row) in (0_u32..).zip(&self.rows) {
-            let starts = &pattern.column_starts()[row.unknown as usize..];
+        for (place, &unknown) in (0_u32..).zip(&self.unknowns) {
+            let starts = &pattern.column_starts()[unknown as usize..];
             for entry in usize::try_from(starts[0]).ok()?..usize::try_from(starts[1]).ok()? {
                 let equation = usize::try_from(pattern.rows()[entry]).ok()?;
                 of_row[place_of[equation]].push((u32::try_from(entry).ok()?, place));
@@ -171,7 +174,7 @@ impl FixedPivots {
             let mut largest = 0.0_f64;
             let end = self.source_ends[k] as usize;
             for &(entry, column) in &self.sources[start..end] {
-                let value = values[entry as usize] * row.scale;
+                let value = values[entry as usize] * self.scales[k];
                 x[column as usize] = value;
                 largest = larger(largest, value);
             }
@@ -209,15 +212,30 @@ impl FixedPivots {
     /// Replaces `b` by the solution with the matrix factored last.
     pub(crate) fn solve(&mut self, b: &mut [f64]) {
         let x = &mut self.work[..];
-        for (x, row) in x.iter_mut().zip(&self.rows) {
-            *x = b[row.equation as usize] * row.scale;
+        let (groups, rest) = x.as_chunks_mut::<AT_ONCE>();
+        let (of_groups, of_rest) = self.equations.as_chunks();
+        for (x, equations) in groups.iter_mut().zip(of_groups) {
+            *x = equations.map(|equation| b[equation as usize]);
+        }
+        for (x, &equation) in rest.iter_mut().zip(of_rest) {
+            *x = b[equation as usize];
+        }
+        for (x, scale) in x.iter_mut().zip(&self.scales) {
+            *x *= scale;
         }
         for Block { down, up } in &self.blocks {
             self.down.subtract(down.clone(), x, &self.pivots);
             self.up.subtract(up.clone(), x, &self.pivots);
         }
-        for (x, row) in x.iter().zip(&self.rows) {
-            b[row.unknown as usize] = *x;
+        let (groups, rest) = x.as_chunks::<AT_ONCE>();
+        let (of_groups, of_rest) = self.unknowns.as_chunks::<AT_ONCE>();
+        for (x, unknowns) in groups.iter().zip(of_groups) {
+            for (x, &unknown) in x.iter().zip(unknowns) {
+                b[unknown as usize] = *x;
+            }
+        }
+        for (x, &unknown) in rest.iter().zip(of_rest) {
+            b[unknown as usize] = *x;
         }
     }
 }
