@@ -99,6 +99,7 @@ impl<'a> Model<'a, '_> {
                 ExperimentItem::Every(expr) => {
                     let step = self.value(expr, &at(Setting::Parameter));
                     self.agree_time(&step, "rows follow each other in time, found", root);
+                    self.must_be_positive("every", &step, expr.span);
                     self.flat.experiment.every = Some(step.id);
                 }
                 ExperimentItem::Skip(expr) => {
@@ -184,8 +185,28 @@ impl<'a> Model<'a, '_> {
             if name == "max_step" {
                 self.agree_time(&value, "a step is a time, found", root);
             }
+            self.must_be_positive(name, &value, argument.value.span);
             self.flat.experiment.solve.push((name.to_owned(), value.id));
         }
+    }
+
+    /// A tolerance or a step of the solver; the run looks at one that parameters give.
+    fn must_be_positive(&mut self, name: &str, value: &Typed, span: Span) {
+        let constant = self.flat.exprs.as_constant(value.id);
+        if constant.is_none_or(|constant| constant > 0.0) {
+            return;
+        }
+        let usual = match name {
+            "rtol" => "rtol = 1e-6",
+            "atol" => "atol = 1e-9",
+            "max_step" => "max_step = 1 [ms]",
+            _ => "every 1 [ms]",
+        };
+        self.report(
+            Diagnostic::error(Code::BadSolve, format!("`{name}` must be positive"))
+                .label(span, "zero or less")
+                .help(format!("write `{usual}`, for example, or leave it out")),
+        );
     }
 
     /// `conserve = true` or `conserve = false`.

@@ -58,13 +58,16 @@ pub fn diagnostic(
             ends_before_start(*start_s, *stop_s, record.as_deref(), experiment),
             Fault::Model,
         ),
-        RunError::NotPositive(what, value) => (
-            Diagnostic::error(
-                Code::BadSolve,
-                format!("{what} must be positive, not {value}"),
-            ),
-            Fault::Model,
-        ),
+        RunError::NotPositive(what, value) => {
+            let message = format!("`{what}` must be positive and finite, not {value}");
+            let diagnostic = Diagnostic::error(Code::BadSolve, message);
+            let diagnostic = match experiment {
+                Some(experiment) => diagnostic.label(experiment.name.span, "in this experiment"),
+                None => diagnostic,
+            };
+            let help = format!("give `{what}` such a value, or leave it out");
+            (diagnostic.help(help), Fault::Model)
+        }
         RunError::TooManyRows {
             rows,
             columns,

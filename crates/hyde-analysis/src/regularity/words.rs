@@ -327,6 +327,11 @@ pub(super) fn generic(system: &System, conflict: &Conflict) -> Diagnostic {
         let more = if conflict.open.len() > 4 { ", …" } else { "" };
         diagnostic = diagnostic.note(format!("no equation determines {}{more}", open.join(", ")));
     }
+    if let Some(name) = set_for_all_times(system, conflict) {
+        return diagnostic.help(format!(
+            "remove one of them; the declaration of `{name}` holds at every time: write `{name}(start = …)` where only its start is meant"
+        ));
+    }
     diagnostic.help(match (conflict.parts.is_empty(), open.is_empty()) {
         (true, true) => "remove one of them",
         (true, false) => "remove one of them, or rewrite it so that it determines the open unknown",
@@ -334,6 +339,25 @@ pub(super) fn generic(system: &System, conflict: &Conflict) -> Diagnostic {
             "remove one of them, or put a spring between the parts that both fix a motion"
         }
     })
+}
+
+/// A variable with a derivative in these equations, to which its declaration gives a value that reads no other one.
+fn set_for_all_times(system: &System, conflict: &Conflict) -> Option<String> {
+    let sides_of = |node| sides(system, node).into_iter();
+    let moves = |var: VarId| {
+        let sides = conflict.equations.iter().flat_map(|&node| sides_of(node));
+        let mut below = sides.flat_map(|(_, lhs, rhs)| system.flat.exprs.below(&[lhs, rhs]));
+        below.any(|id| matches!(system.flat.exprs[id], Expr::Der(of, _) if of == var))
+    };
+    let set = |&node: &Node| {
+        let own = matching::origin(system, node).made_by == MadeBy::Binding;
+        match named(system, &[node])[..] {
+            [var] if own && moves(var) => Some(&system.flat.variables[var].name),
+            _ => None,
+        }
+    };
+    let name = conflict.equations.iter().find_map(set)?;
+    Some(matching::short(name).to_owned())
 }
 
 /// The continuous variables in equations, in the order of the model.
