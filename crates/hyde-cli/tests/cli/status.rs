@@ -165,15 +165,17 @@ fn status_2_when_standard_output_is_full() {
 #[test]
 fn status_130_when_it_was_interrupted() {
     let cogging = "examples/bench_axis/cogging";
-    for line in [
-        &["fit", BENCH, "bench", "--data", cogging][..],
-        &["diagnose", BENCH, "bench", "--data", cogging],
-    ] {
+    // A calibration alone may have ended by then: with profiles it takes several seconds.
+    let profiles = ["Tcs", "bs", "bearing.T", "bearing.b", "guide.F", "guide.b"];
+    let fit: Vec<&str> = (["fit", BENCH, "bench", "--data", cogging].into_iter())
+        .chain(profiles.into_iter().flat_map(|name| ["--profile", name]))
+        .collect();
+    for line in [&fit[..], &["diagnose", BENCH, "bench", "--data", cogging]] {
         let mut child = crate::command::command(line)
             .stdout(std::process::Stdio::null())
             .spawn()
             .unwrap();
-        std::thread::sleep(std::time::Duration::from_millis(1500));
+        std::thread::sleep(std::time::Duration::from_millis(700));
         let signal = std::process::Command::new("kill")
             .args(["-INT", &child.id().to_string()])
             .status();
