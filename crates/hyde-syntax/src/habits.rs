@@ -170,7 +170,10 @@ const OPEN_TO_ALL: &str =
 const NEW_VALUE: &str = "write the new value of a variable at an event: `n = pre(n) + 1;`";
 const ELEMENTS: &str =
     "write the operator without the point: arrays are multiplied element by element";
-const IMPORT: &str = "a package is imported by `import SI.*;`";
+/// How a package is imported.
+pub(crate) const IMPORT: &str = "a package is imported by `import SI.*;`";
+/// How a value is chosen.
+pub(crate) const CHOICE: &str = "a choice between values is written `if a > b then x else y`";
 const MODEL: &str =
     "write `model`; what is connected is a `connector`, what is computed a `function`";
 
@@ -384,12 +387,7 @@ static SIGNS: [Habit; 19] = [
     word(".*", Place::Inside, "Hyde has no `.*`", ELEMENTS),
     word("./", Place::Inside, "Hyde has no `./`", ELEMENTS),
     word(".^", Place::Inside, "Hyde has no `.^`", ELEMENTS),
-    word(
-        "?",
-        Place::Inside,
-        "Hyde has no `?`",
-        "a choice between values is written `if a > b then x else y`",
-    ),
+    word("?", Place::Inside, "Hyde has no `?`", CHOICE),
     word(
         ":",
         Place::Inside,

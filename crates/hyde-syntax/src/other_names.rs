@@ -1,5 +1,7 @@
 //! Functions and types of other languages and tools that Hyde calls otherwise, each with what to write.
 
+use crate::habits::CHOICE;
+
 /// What to write for a function of another language, by its name without a package: `ln`, `pow`, `diff`.
 #[must_use]
 pub fn instead_of_function(name: &str) -> Option<&'static str> {
@@ -26,10 +28,7 @@ const FUNCTIONS: [(&[&str], &str); 10] = [
         "a value is rounded to a step by `round_to(x, 1)`, in a clocked part or in `measured`",
     ),
     (&["fmod", "rem"], "the remainder is `mod(x, 1)`"),
-    (
-        &["step", "heaviside", "ifelse", "where"],
-        "a choice between values is written `if a > b then x else y`",
-    ),
+    (&["step", "heaviside", "ifelse", "where"], CHOICE),
     (
         &["interp1", "interp", "lookup"],
         "a curve through points is `table(x, {0, 1, 2}, {0, 1, 4})`",

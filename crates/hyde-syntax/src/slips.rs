@@ -1,5 +1,6 @@
 //! Slips that are met most where a statement is broken, each with its repair: a forgotten `;`, a product without its `*`.
 
+use crate::habits::{CHOICE, IMPORT};
 use crate::recover::{self, Scanner};
 
 /// What a broken statement looks like it needs.
@@ -11,7 +12,6 @@ pub(crate) struct Slip {
     pub(crate) help: &'static str,
 }
 
-const CHOICE: &str = "a choice between values is written `if a > b then x else y`";
 const NUMBER: &str =
     "a number has a point as its decimal sign, `1.5`, and no sign between thousands, `1000000`";
 const LIST: &str = "a list is written in braces: `{1, 2, 3} [mm]`";
@@ -189,7 +189,7 @@ fn other(before: &str, here: &str, expected: &str) -> Option<&'static str> {
     } else if expected == "a modification" {
         Some("a modification has a name and a value: `Length x(start = 1 [mm]);`")
     } else if before.is_empty() && word(here) == "from" {
-        Some("a package is imported by `import SI.*;`")
+        Some(IMPORT)
     } else {
         None
     }
