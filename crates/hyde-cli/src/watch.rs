@@ -1,7 +1,10 @@
 //! How far a command is: a line on standard error of a terminal after two seconds, gone when the command is done.
 
+use hyde_sim::Reached;
+use hyde_units::significant;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal as _;
+use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -16,6 +19,20 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
+    /// Shows how far a run is: to its end, or behind it where it goes on until nothing changes.
+    pub(crate) fn of_run(silent: bool, reached: &Arc<Reached>) -> Self {
+        let reached = Arc::clone(reached);
+        Self::new(silent, move || {
+            let (now, end) = reached.get();
+            let [at, until] = [now, end].map(|time| significant(time, 4));
+            if now > end {
+                format!("simulated {at} s, not yet steady")
+            } else {
+                format!("simulated {at} s of {until} s")
+            }
+        })
+    }
+
     /// Shows what `text` returns, unless it is to be silent or nobody reads it.
     pub(crate) fn new(silent: bool, text: impl Fn() -> String + Send + 'static) -> Self {
         if silent || !std::io::stderr().is_terminal() {

@@ -12,9 +12,10 @@ use crate::run::setup_with;
 use crate::sampled::{Sampled, sampled};
 use hyde_program::{Function, Point, Program, Workspace, Wrt};
 use hyde_signal::Table;
-use hyde_sim::{Failure, OperatingPoint, PointModes, PointTime};
+use hyde_sim::{Failure, OperatingPoint, PointModes, PointTime, Reached};
 use nalgebra::DMatrix;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// More unknowns than this are refused: the matrices are dense.
 const MAX_UNKNOWNS: usize = 2000;
@@ -115,6 +116,8 @@ pub struct About<'a> {
     pub modes: &'a [(usize, usize)],
     /// The plant alone: what clocks hold stays as it is.
     pub open: bool,
+    /// Where the run to the instant says how far it is.
+    pub reached: Option<&'a Arc<Reached>>,
 }
 
 /// The same about any point of the experiment's run.
@@ -139,7 +142,8 @@ pub fn linearize_about(
             .ok_or_else(|| LinearizeError::NoInput(name.clone()))?;
         places.push(parameter.place);
     }
-    let setup = setup_with(program, records, parameters.to_vec());
+    let mut setup = setup_with(program, records, parameters.to_vec());
+    setup.reached = about.reached.cloned().unwrap_or_default();
     let modes = PointModes::Sliding(about.modes);
     let point = hyde_sim::operating_point(program, &setup, about.time, modes)
         .map_err(LinearizeError::Failed)?;

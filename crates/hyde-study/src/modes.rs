@@ -17,6 +17,8 @@ use hyde_experiment::{
     About, Linear, LinearizeError, ModeShape, NaturalMode, Pole, Poles, linearize_about,
     mode_shape, poles,
 };
+use hyde_sim::Reached;
+use std::sync::Arc;
 
 /// The modes of one experiment.
 pub struct Modes {
@@ -38,17 +40,24 @@ pub struct Modes {
     pub notes: Vec<String>,
 }
 
-/// Finds the modes; `open` of the plant alone, `below` those below a frequency in Hz.
+/// Finds the modes; `open` of the plant alone, `below` those below a frequency in Hz. `reached` hears how far the run to the
+/// operating point is.
 ///
 /// # Errors
 /// The model cannot be linearised.
-pub fn modes(prepared: Prepared, open: bool, below: Option<f64>) -> Result<Modes, Refused> {
+pub fn modes(
+    prepared: Prepared,
+    open: bool,
+    below: Option<f64>,
+    reached: &Arc<Reached>,
+) -> Result<Modes, Refused> {
     let program = &prepared.compiled.program;
     let p = &prepared.parameters;
     let about = About {
         time: prepared.time,
         modes: &prepared.chosen,
         open,
+        reached: Some(reached),
     };
     let linear = match linearize_about(program, &prepared.tables, p, &[], about) {
         Ok(linear) => linear,

@@ -252,7 +252,7 @@ impl Prepared {
         let about = About {
             time,
             modes: &[&self.in_modes[..], &bode.modes].concat(),
-            open: false,
+            ..About::default()
         };
         let input = std::slice::from_ref(&bode.input);
         let nothing = |reason: String| {

@@ -65,6 +65,7 @@ pub fn state_space(
         time: prepared.time,
         modes: &prepared.chosen,
         open,
+        ..About::default()
     };
     let (tables, p) = (&prepared.tables, &prepared.parameters);
     let linear = match linearize_about(program, tables, p, &inputs, about) {

@@ -1,11 +1,11 @@
 //! `hyde budget`: which imperfection of a model contributes how much to the measures of an experiment.
 
-use super::run::watch;
 use super::test::how;
 use crate::args::BudgetArgs;
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Project, Told as _, complain, print_error, print_output};
+use crate::watch::Watch;
 use hyde_present::budget::{csv, json, text};
 use hyde_study::budget::{Budget, budget as made};
 
@@ -21,7 +21,7 @@ fn told(args: &BudgetArgs) -> Result<(), Exit> {
     let model = &args.model;
     let (asked, loaded) = (project::asked(model)?, project::parsed(model)?);
     let how = how();
-    let watch = watch(model.quiet, &how.reached);
+    let watch = Watch::of_run(model.quiet, &how.reached);
     let ready = |project: &Project| project.print_warnings(model);
     let found = made(&loaded, &asked, &how, ready);
     drop(watch);

@@ -6,12 +6,14 @@ use crate::clock;
 use crate::exit::Exit;
 use crate::files;
 use crate::project::{self, Loaded, Records, Told as _, complain, print_output};
+use crate::watch::Watch;
 use hyde_present::modes::{inverse, json, over, page, text};
 use hyde_report::{Figure, to_html, to_png, to_svg};
 use hyde_study::modes::{self, Measured, Modes, Point, Prepared};
 use hyde_study::settings::Setting;
 use std::fmt::Write as _;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Prints the modes of vibration.
 pub(crate) fn modes(args: &ModesArgs) -> Exit {
@@ -64,7 +66,10 @@ fn found(
     set: Option<&Setting>,
 ) -> Result<Modes, Exit> {
     let prepared = prepared(&args.about, model, loaded.clone(), set)?;
-    let found = modes::modes(prepared, args.open, args.below);
+    let reached = Arc::default();
+    let watch = Watch::of_run(model.quiet, &reached);
+    let found = modes::modes(prepared, args.open, args.below, &reached);
+    drop(watch);
     found.map_err(|own| project::refused(model, &own))
 }
 

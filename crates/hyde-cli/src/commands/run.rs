@@ -12,7 +12,7 @@ mod folder;
 mod solved;
 mod trajectories;
 
-pub(crate) use solved::{solved, solved_of, watch};
+pub(crate) use solved::{solved, solved_of};
 
 use crate::args::RunArgs;
 use crate::exit::Exit;

@@ -1,10 +1,10 @@
 //! `hyde test`: runs the experiments of a file or a package, looks at what they expect, and at whether effects vanish.
 
 use crate::args::{ModelArgs, TestArgs};
-use crate::commands::run::watch;
 use crate::exit::Exit;
 use crate::interruption::interrupted;
 use crate::project::{self, Loaded, print_output};
+use crate::watch::Watch;
 use hyde_present::experiment_tests::table;
 use hyde_study::experiment_tests::{self, Tested, Verdict};
 use hyde_study::runs::How;
@@ -69,7 +69,7 @@ fn tested(args: &ModelArgs) -> Result<Exit, Exit> {
 fn experiment(loaded: &Loaded, args: &ModelArgs, tests: &mut Vec<Tested>) -> Result<Exit, Exit> {
     let asked = project::asked(args)?;
     let how = how();
-    let _watch = watch(args.quiet, &how.reached);
+    let _watch = Watch::of_run(args.quiet, &how.reached);
     let found = experiment_tests::experiment(loaded, &asked, &how);
     let mut tested = found.tests.iter();
     let failed = tested.any(|test| test.verdict == Verdict::Failed);

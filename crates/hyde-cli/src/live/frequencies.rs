@@ -158,7 +158,7 @@ impl Frequencies {
         let about = About {
             time: operating_point::moment(None, bode.at, time)?,
             modes: &bode.modes,
-            open: false,
+            ..About::default()
         };
         let input = std::slice::from_ref(&bode.input);
         let linear = linearize_about(program, &self.tables, p, input, about);
@@ -197,7 +197,7 @@ impl Frequencies {
         let about = About {
             time: operating_point::moment(None, moment, time)?,
             modes: &modes,
-            open: false,
+            ..About::default()
         };
         let linear = linearize_about(program, &self.tables, p, &[], about);
         let linear = linear.map_err(|error| not_linearised(&error))?;

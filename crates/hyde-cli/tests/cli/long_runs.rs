@@ -164,8 +164,11 @@ fn a_terminal_shows_how_far_a_run_is() {
     let folder = Folder::new();
     let model = folder.file("day.hyde", DAY);
     let hyde = env!("CARGO_BIN_EXE_hyde");
-    for (line, shows) in [("day", "s of 86400 s"), ("stepped", "0 of 4 frequencies")] {
-        let name = if line == "day" { "run" } else { "bode" };
+    for (name, line, shows) in [
+        ("run", "day", "s of 86400 s"),
+        ("bode", "stepped", "0 of 4 frequencies"),
+        ("modes", "day --at steady", "s of 86400 s"),
+    ] {
         let line = format!("timeout -s INT 4 {hyde} {name} {model} {line}");
         let shown = |line: &str| {
             let terminal = Command::new("script")

@@ -99,7 +99,7 @@ fn one(
     let about = About {
         time,
         modes: &[modes, &cut.modes].concat(),
-        open: false,
+        ..About::default()
     };
     let linear = linearize_about(program, tables, p, input, about).map_err(|error| {
         let diagnostic = Diagnostic::error(Code::NoResponse, operating_point::why_not(&error));

@@ -3,11 +3,11 @@
 
 use super::identifier;
 use crate::args::{FmiVersion, FmuArgs, ReferenceRun};
-use crate::commands::run;
 use crate::exit::Exit;
 use crate::files;
 use crate::interruption;
 use crate::project::{self, Project, Records, Told as _, complain, print_output};
+use crate::watch::Watch;
 use hyde_fmi::{
     Causality, Chosen, Described, Kept, Model, Reference, Uncompiled, Version, archive,
 };
@@ -127,7 +127,7 @@ fn reference(args: &FmuArgs, model: &Model, described: &Described<'_>) -> Result
         .collect();
     let interrupted = interruption::interrupted();
     let reached = Arc::<Reached>::default();
-    let watch = run::watch(args.model.quiet, &reached);
+    let watch = Watch::of_run(args.model.quiet, &reached);
     let run = driven.run(&names, rows, Arc::clone(&interrupted), reached);
     drop(watch);
     if interrupted.load(Ordering::Relaxed) {

@@ -8,8 +8,6 @@ use crate::project::{self, Aim, Project, Records, Told as _, complain};
 use crate::watch::Watch;
 use hyde_compiler::Compiled;
 use hyde_experiment::{Options, Run};
-use hyde_sim::Reached;
-use hyde_units::significant;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -55,7 +53,7 @@ pub(crate) fn solved_of(
     };
     let tables = hyde_study::tables(&project.records);
     let start = std::time::Instant::now();
-    let watch = watch(args.model.quiet, &options.reached);
+    let watch = Watch::of_run(args.model.quiet, &options.reached);
     let outcome = hyde_experiment::run(&compiled.program, &tables, &options);
     drop(watch);
     match outcome {
@@ -65,14 +63,4 @@ pub(crate) fn solved_of(
         }
         Err(error) => Err(failed(args, project, &compiled, &options, &error)),
     }
-}
-
-/// Shows how far a run is, unless it is to be silent.
-pub(crate) fn watch(silent: bool, reached: &Arc<Reached>) -> Watch {
-    let reached = Arc::clone(reached);
-    Watch::new(silent, move || {
-        let (now, end) = reached.get();
-        let [now, end] = [now, end].map(|time| significant(time, 4));
-        format!("simulated {now} s of {end} s")
-    })
 }
