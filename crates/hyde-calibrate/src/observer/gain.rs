@@ -24,6 +24,9 @@ use nalgebra::{DMatrix, DVector};
 /// The part of its usual rate that a balance is not known to.
 const MODEL_NOISE: f64 = 0.005;
 
+/// Rows of a record, at most, where a model that is not linear is linearised for the mean of its steps.
+const LOOKS: usize = 100;
+
 /// How exact a step is, of the standard deviation of a predicted state.
 const STEP_ERROR: f64 = 0.02;
 
@@ -111,7 +114,6 @@ impl Observer {
         let mut workspace = Workspace::new(program.n_work);
         let (places, configuration) = (&plant.places, plant.configuration());
         let c = output_matrix(program, places, configuration, plant.here(), &mut workspace);
-        let exp = configuration.steps[0].exp.clone();
         let noise: Vec<f64> = (0..c.nrows())
             .map(|channel| deviation(program, channel, &p))
             .collect();
@@ -141,7 +143,7 @@ impl Observer {
                     *own = own.hypot(between);
                 }
             }
-            let rates = usual_rates(program, recordings, set, &observer)?;
+            let (rates, exp) = usual(&plant, recordings, set, &observer)?;
             let balances_off = DVector::from_iterator(
                 rates.len(),
                 rates
@@ -337,30 +339,48 @@ fn gains(p: &DMatrix<f64>, c: &DMatrix<f64>, noise: &[f64], kinds: &[Readings]) 
     })
 }
 
-/// Root mean square of each state's rate over the records.
-fn usual_rates(
-    program: &Program,
+/// Over the records: the root mean square of each state's rate, and the mean step exp(A T) in the modes of a plant. Where the
+/// model is not linear, no one point has it: a drag with a power of the speed below 1 holds an axis that rests, and hardly
+/// damps it once it moves.
+fn usual(
+    linearised: &Plant<'_>,
     recordings: &[Recording],
     set: &[(usize, f64)],
     observer: &Observer,
-) -> Result<Vec<f64>, Unsupported> {
-    let (mut sums, mut count) = (Vec::new(), 0.0);
+) -> Result<(Vec<f64>, DMatrix<f64>), Unsupported> {
+    let program = linearised.program;
+    let configuration = linearised.configuration();
+    let at_linearised = &configuration.steps[0].exp;
+    let n = at_linearised.nrows();
+    let (mut squares, mut rows) = (vec![0.0; n], 0.0);
+    let (mut steps, mut looks) = (DMatrix::zeros(n, n), 0.0);
     for recording in recordings {
         let (mut plant, observer) = observer.on(program, recording, set)?;
-        let mut rates = vec![0.0; plant.places.states.len()];
-        sums.resize(rates.len(), 0.0);
-        super::over_record::run(&mut plant, &observer, |plant, _, _| {
+        let mut rates = vec![0.0; n];
+        let apart = recording.rows().div_ceil(LOOKS);
+        super::over_record::run(&mut plant, &observer, |plant, row, _| {
             plant.rates(&mut rates);
-            for (sum, rate) in sums.iter_mut().zip(&rates) {
+            for (sum, rate) in squares.iter_mut().zip(&rates) {
                 *sum += rate * rate;
             }
-            count += 1.0;
+            rows += 1.0;
+            let looks_here = !configuration.affine && row.is_multiple_of(apart);
+            if looks_here && plant.combination() == linearised.combination() {
+                if let Some(step) = plant.step_here() {
+                    steps += step;
+                    looks += 1.0;
+                }
+            }
         });
     }
-    Ok(sums
+    let rms = squares
         .into_iter()
-        .map(|sum: f64| (sum / f64::max(count, 1.0)).sqrt())
-        .collect())
+        .map(|sum: f64| (sum / f64::max(rows, 1.0)).sqrt());
+    let step = match looks > 0.0 {
+        true => steps / looks,
+        false => at_linearised.clone(),
+    };
+    Ok((rms.collect(), step))
 }
 
 /// The covariance of the prediction.

@@ -37,8 +37,10 @@ pub(crate) struct Route<'p> {
     pub(crate) innovations: Innovations,
     /// The observer of this very model.
     pub(crate) observer: Observer,
-    /// Combinations of modes.
+    /// Combinations of modes, each once or linear at several points.
     pub(crate) configurations: Vec<Configuration<'p>>,
+    /// Of each the first one of the same modes.
+    pub(crate) same_modes: Vec<usize>,
     pub(crate) rows: Vec<Passed>,
     legs: Vec<Leg>,
     /// Of each row: unknowns, their rates and what drives the axis, before the correction and after it.
@@ -98,7 +100,13 @@ impl<'p> Track<'p> {
             ControlFlow::Continue(())
         });
         let configurations = std::mem::take(&mut plant.configurations);
+        let first = |(modes, _): &(Vec<u64>, _)| {
+            let mut all = configurations.iter();
+            all.position(|(own, _)| own == modes).unwrap_or_default()
+        };
+        let same_modes = configurations.iter().map(first).collect();
         let route = Route {
+            same_modes,
             program,
             step_s: recording.step_s,
             innovations,

@@ -422,6 +422,18 @@ impl<'a> Plant<'a> {
         true
     }
 
+    /// What the linear part of this very point makes of the states in a row's time, exp(A T); none where nothing follows from
+    /// the equations, or where it is not finite.
+    pub(crate) fn step_here(&mut self) -> Option<DMatrix<f64>> {
+        let (program, step_s) = (self.program, self.recording.step_s);
+        let (at, places, workspace) = self.point_and_places();
+        let made = Configuration::new(program, places, at, workspace, step_s, 1)?;
+        let exp = &made.steps[0].exp;
+        exp.iter()
+            .all(|entry| entry.is_finite())
+            .then(|| exp.clone())
+    }
+
     /// Whether rates need no look within a step of a level.
     pub(crate) fn is_even(&self, level: usize) -> bool {
         let known = self.even;

@@ -38,7 +38,7 @@ pub(crate) struct Known<'t> {
     /// By the kind of row, and the numbers of the track.
     number_of: Vec<Vec<Option<usize>>>,
     rates: Vec<Option<DMatrix<f64>>>,
-    /// Those of the ones met so far, where equations bend.
+    /// Those of the ones met so far, where equations bend: one for all linear parts of the same modes.
     splittings: BTreeMap<usize, Option<Rc<Splitting>>>,
     legs: BTreeMap<(usize, usize), DMatrix<f64>>,
 }
@@ -132,6 +132,7 @@ impl<'t> Known<'t> {
 
     /// How errors go where equations bend in a combination of modes; `None` where none does.
     pub(super) fn splitting(&mut self, configuration: usize) -> Option<Rc<Splitting>> {
+        let configuration = self.track.route.same_modes[configuration];
         if !self.splittings.contains_key(&configuration) {
             let own = &self.track.route.configurations[configuration];
             let made = (!own.affine).then(|| self.split(configuration)).flatten();
@@ -144,7 +145,7 @@ impl<'t> Known<'t> {
         let (track, program) = (self.track, self.program);
         let route = &track.route;
         let rows = route.rows.iter().enumerate();
-        let own = rows.filter(|(_, passed)| passed.modes[1] == configuration);
+        let own = rows.filter(|(_, passed)| route.same_modes[passed.modes[1]] == configuration);
         let own: Vec<usize> = own.map(|(row, _)| row).collect();
         let mut room = Vectors::default();
         let mut look = |row: &usize| {
