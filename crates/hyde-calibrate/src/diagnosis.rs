@@ -18,6 +18,7 @@
 //! pair           two effects that show only together                                      diagnosis/pair.rs
 //! exchange       earlier effects once more against their rivals                           diagnosis/exchange.rs
 //! apart          what alternatives are to each other, and what would tell them apart      diagnosis/apart.rs
+//! alike          whether two effects do the same wherever the axis is                     diagnosis/alike.rs
 //! prune          back: what is not missed any more                                        diagnosis/prune.rs
 //! whole          orders of angles that are likelier whole numbers                         diagnosis/whole.rs
 //! holding        an observer that holds the modes of what was found, too                 diagnosis/holding.rs
@@ -28,6 +29,7 @@
 //! unknown        a law of the model's own variables where no effect known is it           diagnosis/unknown.rs
 //! ```
 
+mod alike;
 mod apart;
 mod calibrated;
 mod claims;

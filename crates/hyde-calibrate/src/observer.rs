@@ -22,6 +22,7 @@ mod over_record;
 mod tangent;
 mod track;
 
+pub(crate) use gain::state_names;
 pub use gain::{Observer, Taken, UNDECLARED_NOISE};
 pub use innovations::Innovations;
 pub(crate) use input_noise::MATERIAL;

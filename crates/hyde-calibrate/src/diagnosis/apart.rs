@@ -8,8 +8,10 @@
 //!
 //! If the sum is no more than noise gives to the constants of the other model, and next to nothing of what the first one
 //! explains, both predict the same. With more constants the other one is no other answer: a drag with a power of the speed
-//! repeats a viscous one, its exponent being near 1. Nor is the same effect at another place that moves with the first.
+//! repeats a viscous one, its exponent being near 1. Nor is the same effect at another place that moves with the first, or one
+//! that acts on it through an ideal gear.
 
+use super::alike::act_alike;
 use super::hypothesis::Hypothesis;
 use super::projection::Projection;
 use super::search::Gates;
@@ -34,7 +36,7 @@ pub struct Alternative {
 pub enum Relation {
     /// They are different answers.
     Another,
-    /// The same effect at places that move together, which predicts the same: one answer.
+    /// The same effect at places that move together, which predicts the same, or one that acts alike there: one answer.
     Joined,
     /// The other one has more constants and predicts the same: the simpler one is the answer.
     Repeats,
@@ -68,7 +70,7 @@ pub(super) fn alternative(
     let effect = |trial: &Trial| &hypotheses[trial.hypothesis].effect;
     let relation = match same {
         true if other.freedoms > one.freedoms => Relation::Repeats,
-        true if effect(one) == effect(other) => Relation::Joined,
+        true if effect(one) == effect(other) || act_alike(ground, one, other) => Relation::Joined,
         true | false => Relation::Another,
     };
     Alternative {

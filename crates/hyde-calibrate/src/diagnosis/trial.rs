@@ -77,6 +77,12 @@ pub struct Trial {
 }
 
 impl Trial {
+    /// The names of its sizes.
+    pub(super) fn sizes(&self) -> impl Iterator<Item = &str> {
+        let own = self.stage.varied[self.own.clone()].iter();
+        own.map(|varied| varied.name.as_str())
+    }
+
     /// Whether it passed every gate, or another one is merely ahead of it.
     pub(super) fn passed(&self) -> bool {
         matches!(self.rejected, None | Some(Rejection::Behind))

@@ -365,11 +365,12 @@ fn usual(
             }
             rows += 1.0;
             let looks_here = !configuration.affine && row.is_multiple_of(apart);
-            if looks_here && plant.combination() == linearised.combination() {
-                if let Some(step) = plant.step_here() {
-                    steps += step;
-                    looks += 1.0;
-                }
+            if looks_here
+                && plant.combination() == linearised.combination()
+                && let Some(step) = plant.step_here()
+            {
+                steps += step;
+                looks += 1.0;
             }
         });
     }

@@ -5,6 +5,7 @@ use crate::command::{Folder, errors, hyde, read, status, text};
 use serde_json::Value;
 
 const AXIS: &str = "tests/models/small_axis/axis.hyde";
+const RACK: &str = "tests/models/rack_axis/axis.hyde";
 
 fn tested(arguments: &[&str]) -> String {
     tested_by("quick", arguments)
@@ -21,7 +22,7 @@ fn tested_by(diagnosis: &str, arguments: &[&str]) -> String {
 fn a_play_is_found_as_large_as_it_is() {
     let output = hyde(&[
         "selftest",
-        "tests/models/rack_axis/axis.hyde",
+        RACK,
         "quick",
         "--only",
         "planted",
@@ -145,9 +146,9 @@ fn the_records_of_a_case_are_what_its_diagnosis_reads() {
 }
 
 /// A folder with the small axis and a diagnosis of a few effects.
-fn with_candidates(candidates: &str) -> Folder {
+fn with_candidates(axis: &str, candidates: &str) -> Folder {
     let folder = Folder::new();
-    let model = read(AXIS);
+    let model = read(axis);
     let (above, _) = model.split_once("diagnose quick").unwrap();
     let few = format!(
         "diagnose few of calibrate moves\n  candidates {candidates};\n  max_effects 2;\n  seed 1;\nend few;\n"
@@ -156,10 +157,10 @@ fn with_candidates(candidates: &str) -> Folder {
     folder
 }
 
-/// The self-test of these effects, a twentieth of their ranges large, on the records of the small axis.
-fn with_records(folder: &Folder, more: &[&str]) -> Value {
+/// The self-test of these effects, a twentieth of their ranges large, on the records of an axis.
+fn with_records(axis: &str, folder: &Folder, more: &[&str]) -> Value {
     let file = folder.path("axis.hyde");
-    let data = ["--data", "tests/models/small_axis"];
+    let data = ["--data", axis.trim_end_matches("/axis.hyde")];
     let arguments = ["selftest", &file, "few", "--sizes", "0.05", "--json"];
     let output = hyde(&[&arguments[..], &data, more].concat());
     assert_eq!(status(&output), 0, "{}", errors(&output));
@@ -170,8 +171,9 @@ fn with_records(folder: &Folder, more: &[&str]) -> Value {
 /// and is no alternative where it is.
 #[test]
 fn an_effect_that_repeats_a_simpler_one_is_no_alternative() {
-    let folder = with_candidates("Effects.SqrtDrag, Effects.PowerDrag");
+    let folder = with_candidates(AXIS, "Effects.SqrtDrag, Effects.PowerDrag");
     let report = with_records(
+        AXIS,
         &folder,
         &["--only", "planted,unknown", "--effects", "SqrtDrag"],
     );
@@ -201,8 +203,8 @@ fn an_effect_that_repeats_a_simpler_one_is_no_alternative() {
 /// A stiff screw moves both its ends alike, a belt does not.
 #[test]
 fn an_effect_at_places_that_move_together_is_one() {
-    let folder = with_candidates("Effects.ShaftFadingViscous");
-    let report = with_records(&folder, &["--only", "planted"]);
+    let folder = with_candidates(AXIS, "Effects.ShaftFadingViscous");
+    let report = with_records(AXIS, &folder, &["--only", "planted"]);
     let cases = report["cases"].as_array().unwrap();
     assert_eq!(cases.len(), 3, "{report:#}");
     for case in cases {
@@ -220,7 +222,10 @@ fn an_effect_at_places_that_move_together_is_one() {
 
 /// A folder with the small axis, a record of it at one speed, and a diagnosis of effects that such a record cannot distinguish.
 fn at_one_speed() -> Folder {
-    let folder = with_candidates("Effects.Stribeck, Effects.SaturatingDrag, Effects.Tustin");
+    let folder = with_candidates(
+        AXIS,
+        "Effects.Stribeck, Effects.SaturatingDrag, Effects.Tustin",
+    );
     let mut record =
         "r [um],i_inj [mA],i_ref [mA],i [mA],phi_m [rev],v_tacho [mV],x [um]\n".to_owned();
     let (mut place, mut speed) = (0.0, 0.0_f64);
@@ -337,4 +342,46 @@ fn what_is_asked_wrongly_is_said() {
         assert_eq!(status(&output), 2);
         assert!(errors(&output).contains(told), "{}", errors(&output));
     }
+}
+
+/// A pinion turns with its rack: a drag of the table is one of the shaft.
+#[test]
+fn effects_on_both_sides_of_an_ideal_gear_are_one() {
+    let folder = with_candidates(
+        RACK,
+        "Effects.DirectionalViscous, Effects.ShaftDirectionalViscous",
+    );
+    let report = with_records(RACK, &folder, &["--only", "planted"]);
+    let places = |values: &Value| -> Vec<String> {
+        let site = |own: &Value| own["site"].as_str().unwrap().to_owned();
+        values.as_array().unwrap().iter().map(site).collect()
+    };
+    let cases = report["cases"].as_array().unwrap();
+    let shown: Vec<&Value> = cases.iter().filter(|case| case["shows"] == true).collect();
+    assert!(shown.len() > 2, "{report:#}");
+    for case in shown {
+        assert_eq!(case["verdict"], "effect", "{case:#}");
+        let found = &case["effects"][0];
+        let mut all = places(&found["equivalents"]);
+        all.push(found["claimed"]["site"].as_str().unwrap().to_owned());
+        all.sort();
+        match case["planted"]["site"].as_str().unwrap() {
+            // A coupling lies between.
+            "motor.shaft" => assert_eq!(all, ["motor.shaft"], "{case:#}"),
+            _ => assert_eq!(all, ["coupling.b", "table.a"], "{case:#}"),
+        }
+    }
+}
+
+/// A drag with the cube root of the speed is as steep as a wall where the axis rests: tangents grew there by orders of
+/// magnitude, and an interval of 0.08 % did not hold its size.
+#[test]
+fn a_drag_that_is_steepest_at_rest_is_found_as_large_as_it_is() {
+    let folder = with_candidates(RACK, "Effects.PowerDrag");
+    let report = with_records(RACK, &folder, &["--only", "planted"]);
+    let case = &report["cases"][0];
+    let number = |value: &Value| value.as_f64().unwrap();
+    let [low, high] = [0, 1].map(|end| number(&case["effects"][0]["interval"][end]));
+    assert!((low..=high).contains(&number(&case["size"])), "{case:#}");
+    assert!(high - low > 0.01 * low, "{case:#}");
 }

@@ -61,7 +61,15 @@ fn sized(told: &Diagnosed<'_>, finding: &Finding) -> String {
 fn at_places(told: &Diagnosed<'_>, finding: &Finding) -> String {
     let own = std::iter::once(named(&told.hypotheses[finding.hypothesis]));
     let joined = finding.related(Relation::Joined);
-    let joined = joined.map(|other| told.hypotheses[other.hypothesis].site.clone());
+    let joined = joined.map(|other| {
+        let other = &told.hypotheses[other.hypothesis];
+        let same = other.effect == told.hypotheses[finding.hypothesis].effect;
+        if same {
+            other.site.clone()
+        } else {
+            named(other)
+        }
+    });
     own.chain(joined).collect::<Vec<_>>().join(" or ")
 }
 
@@ -70,7 +78,7 @@ pub fn repeated(told: &Diagnosed<'_>, finding: &Finding) -> Vec<String> {
     let mut found = Vec::new();
     if finding.related(Relation::Joined).next().is_some() {
         found.push(format!(
-            "{}: these places move together, and the effect predicts the same at each of them",
+            "{}: these places move together, and no record tells what acts at one of them from what acts at another",
             at_places(told, finding)
         ));
     }
