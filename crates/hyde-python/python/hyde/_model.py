@@ -77,7 +77,7 @@ class Model:
     """A model with its experiment, compiled once. `load` makes it."""
 
     def __init__(self, file: File, experiment: Optional[str], options: dict[str, Any]) -> None:
-        self.file = Path(fspath(file))
+        self.file: Path = Path(fspath(file))
         self._set: Values = options.get("set")
         self._model = options.get("model")
         self._data = options.get("data")
