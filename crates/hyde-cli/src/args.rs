@@ -29,9 +29,6 @@ use std::sync::Arc;
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Run each FMU of a model in a process of its own
-    #[arg(long, global = true)]
-    pub(crate) sandbox: bool,
 }
 
 const AFTER: &str = "Exit status: 0 success; 1 error in the model or its data; 2 error in the command line, or a \
@@ -120,6 +117,9 @@ pub(crate) struct ModelArgs {
     /// Folder of the records [default: the folder of the model]
     #[arg(long, value_name = "DIR")]
     pub(crate) data: Option<PathBuf>,
+    /// Run each FMU of the model in a process of its own
+    #[arg(long)]
+    pub(crate) sandbox: bool,
     /// Print one JSON object on standard output and nothing else
     #[arg(long)]
     pub(crate) json: bool,
@@ -144,6 +144,7 @@ impl ModelArgs {
             settings: Vec::new(),
             records: Vec::new(),
             data: None,
+            sandbox: false,
             json: false,
             quiet: false,
             whole_library: false,

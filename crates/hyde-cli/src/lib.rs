@@ -58,7 +58,6 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     interruption::watch();
-    sandbox::ask(arguments.sandbox);
     let code = match &arguments.command {
         Command::Check(args) => commands::check::check(args),
         Command::Run(args) => commands::run::run(args),
