@@ -103,7 +103,6 @@ pub(crate) const TOOLS: &[Tool] = &[
             SET,
             AT,
             IN,
-            SANDBOX,
             Argument {
                 name: "open",
                 about: "only the plant; outputs of clocked controllers stay constant",
@@ -121,7 +120,6 @@ pub(crate) const TOOLS: &[Tool] = &[
             SET,
             AT,
             IN,
-            SANDBOX,
             Argument {
                 name: "cut",
                 about: "signals at which to open a loop for its margins, each `cnc.control.i_ref`",
@@ -147,7 +145,6 @@ pub(crate) const TOOLS: &[Tool] = &[
                 kind: Kind::Place,
                 needed: false,
             },
-            SANDBOX,
             OUT,
         ],
     },
@@ -162,7 +159,6 @@ pub(crate) const TOOLS: &[Tool] = &[
                 kind: Kind::Place,
                 needed: false,
             },
-            SANDBOX,
             OUT,
         ],
     },

@@ -35,9 +35,6 @@ pub(crate) struct ExciteArgs {
     /// Set a parameter of the model: `--set saddle.M='320 [kg]'` (repeatable)
     #[arg(long = "set", value_name = "PATH=VALUE [UNIT]", requires = "file")]
     pub(crate) settings: Vec<String>,
-    /// Run each FMU of the model in a process of its own
-    #[arg(long, requires = "file")]
-    pub(crate) sandbox: bool,
     #[command(flatten)]
     pub(crate) limits: LimitArgs,
     /// Band of a multisine or chirp: `--band '1 .. 100 [Hz]'`

@@ -17,9 +17,6 @@ pub(crate) struct StudyArgs {
     /// Folder of the records [default: the folder of the model]
     #[arg(long, value_name = "DIR")]
     pub(crate) data: Option<PathBuf>,
-    /// Run each FMU of the model in a process of its own
-    #[arg(long)]
-    pub(crate) sandbox: bool,
     /// Number of threads [default: all]; the result does not depend on it
     #[arg(long, value_name = "N")]
     pub(crate) jobs: Option<usize>,
@@ -37,7 +34,6 @@ impl StudyArgs {
         ModelArgs {
             settings: self.settings.clone(),
             data: self.data.clone(),
-            sandbox: self.sandbox,
             json: self.json,
             quiet: self.quiet,
             ..ModelArgs::of_file(&self.file)

@@ -31,7 +31,7 @@ pub(crate) fn prepared(
 /// The arguments of a model for the file of a batch.
 pub(crate) fn model_args(file: &Path, args: &SweepArgs) -> ModelArgs {
     ModelArgs {
-        sandbox: args.sandbox,
+        sandbox: args.fmus.sandbox,
         json: args.json,
         quiet: args.quiet,
         ..ModelArgs::of_file(file)

@@ -85,7 +85,6 @@ fn model_args(args: &ExciteArgs) -> ModelArgs {
     let file = args.file.clone().unwrap_or_default();
     ModelArgs {
         settings: args.settings.clone(),
-        sandbox: args.sandbox,
         json: args.json,
         quiet: args.quiet,
         whole_library: !args.between.is_empty(),
