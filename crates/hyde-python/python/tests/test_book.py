@@ -25,7 +25,7 @@ def blocks(path: Path, language: str) -> list[str]:
 def executed(path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
     """The names after all blocks of a page, one after the other.
 
-    The folder has the models of the page, and what its commands write to `out`.
+    The folder has the models of the page, and what its commands write to the folders that the blocks read.
     """
     monkeypatch.chdir(folder)
     os.symlink(ROOT / "examples", folder / "examples")
@@ -33,8 +33,10 @@ def executed(path: Path, folder: Path, monkeypatch: pytest.MonkeyPatch) -> dict[
         package = re.match(r"package (\w+)", model)
         if package:
             (folder / f"{package[1]}.hyde").write_text(model, encoding="utf-8")
+    read = set(re.findall(r'"(\w+)/', "".join(blocks(path, "python"))))
     for line in "".join(blocks(path, "console")).splitlines():
-        if line.startswith("$ hyde ") and re.search(r"--out out\b(?!/)", line):
+        written = re.search(r"^\$ hyde .*--out (\w+)\b(?!/)", line)
+        if written and written[1] in read:
             subprocess.run([_command.path(), *shlex.split(line)[2:]], check=True, capture_output=True)
     names: dict[str, Any] = {}
     for text in blocks(path, "python"):
