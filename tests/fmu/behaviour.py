@@ -1,6 +1,7 @@
 """What an importer may rely on, tried with FMPy: each function is one behaviour. Usage: behaviour.py FOLDER
 
-FOLDER has the FMUs of tests/models/fmu.hyde: lag3.fmu, lag2.fmu (u is an input), crushed3.fmu, crushed2.fmu, ball3.fmu.
+FOLDER has the FMUs of tests/models/fmu.hyde: lag3.fmu, lag2.fmu (u is an input), crushed3.fmu, crushed2.fmu, ball3.fmu,
+moved3.fmu, moved2.fmu.
 """
 
 import math
@@ -332,7 +333,72 @@ def an_event_of_a_co_simulation_is_returned_early(name):
     close(sides[1][1], 0.8 * 9.81 * t, 1e-5)
 
 
+def an_importer_looks_on_within_a_step(name):
+    """It is called at the end of each step of the solver, reads values then, sets none, and may return early."""
+    lag = Fmu(name)
+    x, u = lag.vr["x"], lag.vr["u"]
+    seen, asked = [], []
+
+    def look(_, t, may_set, may_get, finished, early, wanted, wanted_s):
+        assert may_get and finished and not may_set
+        seen.append((t, get(fmu, x)[0]))
+        try:
+            put(fmu, u, 7.0)
+        except Exception:
+            asked.append(early)
+        if early and t > 0.02:
+            wanted[0], wanted_s[0] = True, t + 1e-4
+
+    def run(**options):
+        fmu = lag.instance(**options)
+        begin(fmu)
+        put(fmu, u, 1.0)
+        return fmu
+
+    plain = run()
+    plain.doStep(0.0, 0.1)
+    plain.doStep(0.1, 0.1)
+    fmu = run(intermediateUpdate=look, requiredIntermediateVariables=[x])
+    fmu.doStep(0.0, 0.1)
+    times = [t for t, _ in seen]
+    assert len(times) > 5 and times == sorted(set(times)) and times[-1] < 0.1, times
+    for t, value in seen:
+        close(value, 1.0 - math.exp(-t / 0.05), 1e-7)
+    # The event at 34.7 ms ends a step of the solver.
+    assert any(abs(t - 0.05 * math.log(2.0)) < 1e-6 for t in times), times
+    assert asked == [False] * len(times), asked
+    # Who looks on changes nothing.
+    fmu.doStep(0.1, 0.1)
+    close(get(fmu, x)[0], get(plain, x)[0], 0.0)
+    fmu.freeInstance()
+    plain.freeInstance()
+
+    seen.clear()
+    fmu = run(intermediateUpdate=look, requiredIntermediateVariables=[x], earlyReturnAllowed=True)
+    event, _, early, t = fmu.doStep(0.0, 0.1)
+    assert early and not event, (event, early)
+    close(t, seen[-1][0] + 1e-4, 1e-12)
+    close(get(fmu, x)[0], 1.0 - math.exp(-t / 0.05), 1e-7)
+    put(fmu, u, 1.0)
+    fmu.doStep(t, 1e-5)
+    fmu.freeInstance()
+    lag.remove()
+
+
+def quantities_that_are_one_have_several_names(name):
+    """Parts that are joined have one position: its names are aliases, and outputs have none."""
+    moved = Fmu(name)
+    names = {}
+    for variable in moved.description.modelVariables:
+        names.setdefault(variable.valueReference, []).append(variable)
+    several = [own for own in names.values() if len(own) > 1]
+    assert {"mass.s", "mass.a.s"} <= {v.name for v in names[moved.vr["mass.s"]]}, several
+    assert all(v.causality == "local" for own in several for v in own), several
+    moved.remove()
+
+
 for fmi in ["3", "2"]:
+    quantities_that_are_one_have_several_names(f"moved{fmi}")
     an_input_between_steps_acts_from_there(f"lag{fmi}")
     parameters_are_set_and_wrong_ones_refused(f"lag{fmi}")
     an_error_leaves_a_usable_instance(f"crushed{fmi}")
@@ -341,6 +407,7 @@ for fmi in ["3", "2"]:
     directional_derivatives_are_those_of_the_equations(f"lag{fmi}")
     the_wrong_token_makes_no_instance(f"lag{fmi}")
     no_step_goes_beyond_the_stop_time(f"lag{fmi}")
+an_importer_looks_on_within_a_step("lag3")
 guards_are_continuous_functions("ball3")
 an_event_of_a_co_simulation_is_returned_early("ball3")
 print("done")

@@ -122,6 +122,7 @@ pub const FIGURES: &[Figure] = &[
     random_fmus::LEAKS,
     live::SLIDER,
     python::SWEEP,
+    python::RUN,
     lsp::SYNTAX,
     lsp::FULL,
     lsp::COMPLETION,

@@ -102,6 +102,7 @@ fn importers_set_read_fail_and_begin_again() {
             ("lag", ["--model", "Lag"].as_slice()),
             ("crushed", &["crushed"]),
             ("ball", &["bouncing"]),
+            ("moved", &["moved"]),
         ] {
             let out = folder.path().join(format!("{name}{fmi}.fmu"));
             let out = out.to_string_lossy().into_owned();

@@ -4,6 +4,7 @@ mod batch;
 mod editor;
 mod excite;
 mod export;
+mod fmus;
 mod si;
 mod study;
 mod traces;
@@ -14,6 +15,7 @@ pub(crate) use excite::{Criterion, ExciteArgs, LimitArgs, SignalFormat, SignalNa
 pub(crate) use export::{
     CArgs, ExportArgs, ExportKind, FmiVersion, FmuArgs, ModelicaArgs, ReferenceRun, StateSpaceArgs,
 };
+pub(crate) use fmus::FmuProcessArgs;
 pub(crate) use study::{CaseKind, DiagnoseArgs, FitArgs, SelftestArgs, StudyArgs, TrendArgs};
 pub(crate) use traces::{LookArgs, NewArgs, TemplateName};
 
@@ -29,9 +31,6 @@ use std::sync::Arc;
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub(crate) command: Command,
-    /// Run each FMU of a model in a process of its own
-    #[arg(long, global = true)]
-    pub(crate) sandbox: bool,
 }
 
 const AFTER: &str = "Exit status: 0 success; 1 error in the model or its data; 2 error in the command line, or a \
@@ -126,6 +125,9 @@ pub(crate) struct ModelArgs {
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
+    /// Each FMU runs in a process of its own: as [`FmuProcessArgs`] of the command say.
+    #[arg(skip)]
+    pub(crate) sandbox: bool,
     /// Every package of the library is known, named or not.
     #[arg(skip)]
     pub(crate) whole_library: bool,
@@ -144,6 +146,7 @@ impl ModelArgs {
             settings: Vec::new(),
             records: Vec::new(),
             data: None,
+            sandbox: false,
             json: false,
             quiet: false,
             whole_library: false,
@@ -162,6 +165,8 @@ pub(crate) struct CheckArgs {
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) fmus: FmuProcessArgs,
     /// Stop time, in s or with its unit, instead of that of the experiment
     #[arg(long, value_name = "TIME", value_parser = seconds)]
     pub(crate) stop: Option<f64>,
@@ -193,6 +198,7 @@ impl RunArgs {
     pub(crate) fn of_model(model: &ModelArgs) -> Self {
         Self {
             model: model.clone(),
+            fmus: FmuProcessArgs::default(),
             stop: None,
             rtol: None,
             atol: None,
@@ -209,6 +215,8 @@ impl RunArgs {
 pub(crate) struct BudgetArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) fmus: FmuProcessArgs,
     /// Write budget.csv to this folder
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
@@ -444,6 +452,8 @@ pub(crate) struct EffectsArgs {
 pub(crate) struct TestArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) fmus: FmuProcessArgs,
 }
 
 #[derive(Debug, Args)]

@@ -44,7 +44,7 @@ pub fn has(name: &str) -> bool {
 /// Runs a command line.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     keep_quiet_of_damaged_files();
-    let arguments = match Arguments::try_parse_from(arguments) {
+    let mut arguments = match Arguments::try_parse_from(arguments) {
         Ok(arguments) => arguments,
         Err(error) => {
             // `--help` and `--version` come this way too, and are no error.
@@ -58,7 +58,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         }
     };
     interruption::watch();
-    sandbox::ask(arguments.sandbox);
+    arguments.command.tell_model();
     let code = match &arguments.command {
         Command::Check(args) => commands::check::check(args),
         Command::Run(args) => commands::run::run(args),

@@ -21,7 +21,7 @@ pub(crate) fn asked(args: &ModelArgs) -> Result<Asked, Exit> {
         data: args.data.clone(),
         whole_library: args.whole_library,
         inputs: args.inputs.clone(),
-        fmu_host: sandbox::host(),
+        fmu_host: sandbox::host(args.sandbox),
         ..Asked::of_file(&args.file)
     };
     let asked = asked.with_texts(&args.settings, &args.records);
@@ -45,7 +45,7 @@ pub(crate) fn chosen(args: &ModelArgs, loaded: Loaded, needed: Records) -> Resul
 fn chosen_silently(args: &ModelArgs, loaded: Loaded, needed: Records) -> Result<Project, Exit> {
     let project = loaded.choose(&asked(args)?, needed);
     let project = project.map_err(|reason| complain(args, Exit::CommandLine, &reason))?;
-    if !project.fmus.is_empty() && !sandbox::is_asked() {
+    if !project.fmus.is_empty() && !args.sandbox {
         output::keep_own();
     }
     Ok(project)

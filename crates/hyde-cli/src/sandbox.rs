@@ -13,24 +13,10 @@ use std::os::fd::{AsFd as _, OwnedFd};
 use std::os::unix::net::UnixStream;
 use std::process::{Child, Command, Stdio};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether the command line asked for it.
-static ASKED: AtomicBool = AtomicBool::new(false);
-
-/// Notes what the command line asks.
-pub(crate) fn ask(sandbox: bool) {
-    ASKED.store(sandbox, Ordering::Relaxed);
-}
-
-/// Whether FMUs run in processes of their own.
-pub(crate) fn is_asked() -> bool {
-    ASKED.load(Ordering::Relaxed)
-}
-
-/// Who runs FMUs; none for this process.
-pub(crate) fn host() -> Option<Arc<dyn FmuHost>> {
-    is_asked().then(|| Arc::new(Sandbox) as Arc<dyn FmuHost>)
+/// Who runs FMUs; none for this process, if the command line does not ask for others.
+pub(crate) fn host(asked: bool) -> Option<Arc<dyn FmuHost>> {
+    asked.then(|| Arc::new(Sandbox) as Arc<dyn FmuHost>)
 }
 
 /// `hyde fmu-host`: the process itself. Standard input is a socket to the process that started it; standard output is left to

@@ -6,8 +6,8 @@ use crate::xml::{Xml, number, some};
 use hyde_units::Kind;
 
 impl Described<'_> {
-    /// The description in the form of FMI 2.0. A variable's index, from 1, is its value reference plus 1, but for guards, which
-    /// have none.
+    /// The description in the form of FMI 2.0. A variable's index, from 1, is its number plus 1, but for guards, which have none.
+    /// An alias has the value reference of the variable that it is another name of.
     #[must_use]
     pub fn fmi2(&self) -> String {
         let mut xml = Xml::new();
@@ -71,9 +71,9 @@ impl Described<'_> {
         self.write_categories(&mut xml);
         self.write_experiment(&mut xml);
         xml.open("ModelVariables", &[]);
-        for (reference, variable) in interface.variables.iter().enumerate() {
+        for (number, variable) in interface.variables.iter().enumerate() {
             if !matches!(variable.source, Source::Guard(_)) {
-                self.write_variable2(&mut xml, reference, variable);
+                self.write_variable2(&mut xml, number, variable);
             }
         }
         xml.close();
@@ -95,18 +95,18 @@ impl Described<'_> {
         xml.finish()
     }
 
-    fn write_variable2(&self, xml: &mut Xml, reference: usize, variable: &Variable) {
+    fn write_variable2(&self, xml: &mut Xml, own: usize, variable: &Variable) {
         xml.open(
             "ScalarVariable",
             &[
                 ("name", some(&variable.name)),
-                ("valueReference", some(reference)),
+                ("valueReference", some(variable.alias_of.unwrap_or(own))),
                 ("description", variable.description.clone()),
                 ("causality", some(variable.causality.word())),
                 ("variability", some(variable.variability.word())),
             ],
         );
-        let state = self.interface.states.iter().any(|(of, _)| *of == reference);
+        let state = self.interface.states.iter().any(|(of, _)| *of == own);
         let (min, max) = variable.bounds;
         let range = [
             ("min", bound(variable, min)),

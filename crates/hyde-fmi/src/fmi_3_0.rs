@@ -47,7 +47,9 @@ impl Described<'_> {
                 ("providesDirectionalDerivatives", some(true)),
                 ("providesAdjointDerivatives", some(true)),
                 ("canHandleVariableCommunicationStepSize", some(true)),
+                ("providesIntermediateUpdate", some(true)),
                 ("mightReturnEarlyFromDoStep", some(true)),
+                ("canReturnEarlyAfterIntermediateUpdate", some(true)),
                 ("hasEventMode", some(true)),
             ],
         );
@@ -73,15 +75,24 @@ impl Described<'_> {
         self.write_categories(&mut xml);
         self.write_experiment(&mut xml);
         xml.open("ModelVariables", &[]);
-        for (reference, variable) in self.interface.variables.iter().enumerate() {
-            self.write_variable3(&mut xml, reference, variable);
+        let aliases = self.interface.aliases();
+        let variables = self.interface.variables.iter().enumerate();
+        for (reference, variable) in variables.filter(|(_, own)| own.alias_of.is_none()) {
+            let others = aliases.get(&reference).map_or(&[][..], Vec::as_slice);
+            self.write_variable3(&mut xml, reference, variable, others);
         }
         xml.close();
         write_structure(&mut xml, self.interface);
         xml.finish()
     }
 
-    fn write_variable3(&self, xml: &mut Xml, reference: usize, variable: &Variable) {
+    fn write_variable3(
+        &self,
+        xml: &mut Xml,
+        reference: usize,
+        variable: &Variable,
+        aliases: &[&Variable],
+    ) {
         let element = match variable.kind {
             Kind::Real => "Float64",
             Kind::Integer => "Int32",
@@ -91,7 +102,7 @@ impl Described<'_> {
         let declared = variable.unit.as_ref().filter(|_| real).map(type_name);
         let state = self.interface.states.iter().any(|(of, _)| *of == reference);
         let (min, max) = variable.bounds;
-        xml.leaf(
+        xml.open(
             element,
             &[
                 ("name", some(&variable.name)),
@@ -110,6 +121,19 @@ impl Described<'_> {
                 ("start", start(variable)),
             ],
         );
+        for alias in aliases {
+            let shown = alias.unit.as_ref().filter(|unit| !unit.unit().is_si());
+            let shown = shown.filter(|_| real).map(|unit| unit.text().to_owned());
+            xml.leaf(
+                "Alias",
+                &[
+                    ("name", some(&alias.name)),
+                    ("description", alias.description.clone()),
+                    ("displayUnit", shown),
+                ],
+            );
+        }
+        xml.close();
     }
 }
 

@@ -4,20 +4,21 @@
 mod derivatives;
 mod exchange;
 mod saved;
+mod steps;
 mod values;
 
 pub use self::saved::Saved;
+pub use self::steps::{Arrival, Progress};
 
+use self::steps::UnderWay;
 use crate::model::Model;
 use crate::running::{Asked, Running};
 use hyde_experiment::RunError;
-use hyde_sim::{Advance, Failure, Session};
+use hyde_sim::{Failure, Session};
 use std::collections::BTreeMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// How far an importer may be from the instance's time, relative to it.
-const SAME_TIME: f64 = 1e-9;
 /// Instants that an importer with fixed steps may have passed in one.
 const MOST_PASSED: usize = 100_000;
 
@@ -54,17 +55,6 @@ impl fmt::Display for Refusal {
     }
 }
 
-/// Where a step has led.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Arrival {
-    /// Time in s.
-    pub t: f64,
-    /// An event waits there.
-    pub event: bool,
-    /// It is before the time asked for.
-    pub early: bool,
-}
-
 /// What an event has changed.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Update {
@@ -96,6 +86,8 @@ pub struct Instance {
     pending: bool,
     running: Option<Running>,
     outputs: Option<Vec<f64>>,
+    /// The step that the importer has begun and that is not at its end.
+    under_way: Option<UnderWay>,
     /// Where an importer that integrates has come to; whether the run knows.
     point: (f64, Vec<f64>),
     placed: bool,
@@ -125,6 +117,7 @@ impl Instance {
             pending: false,
             running: None,
             outputs: None,
+            under_way: None,
             point: (0.0, Vec::new()),
             placed: true,
             at_start: false,
@@ -190,54 +183,6 @@ impl Instance {
             (Some(running), Interface::CoSimulation { .. }) => running.with(|session| session.t()),
             (None, _) => self.asked.start_s.unwrap_or(0.0),
         }
-    }
-
-    /// A step of the instance's own integration.
-    ///
-    /// # Errors
-    /// It is not where the importer says, it goes beyond the stop time that was set, or the model has no solution.
-    pub fn do_step(&mut self, from: f64, step: f64) -> Result<Arrival> {
-        self.only(&[Phase::Stepping], "a step is done")?;
-        let Interface::CoSimulation {
-            event_mode,
-            early_return,
-        } = self.used
-        else {
-            return Err(Refusal::Misuse("the importer integrates".to_owned()));
-        };
-        let t = self.t();
-        if !(step > 0.0 && step.is_finite()) {
-            return Err(Refusal::Value("the step must be positive".to_owned()));
-        }
-        if (from - t).abs() > SAME_TIME * (step + t.abs()) {
-            let text = format!("the instance is at {t} s, not at {from} s");
-            return Err(Refusal::Misuse(text));
-        }
-        if let Some(stop) = self.asked.stop_s
-            && from + step - stop > SAME_TIME * (step + stop.abs())
-        {
-            let to = from + step;
-            let text = format!("a step to {to} s is beyond {stop} s, the stop time that was set");
-            return Err(Refusal::Misuse(text));
-        }
-        let how = Advance {
-            // What was set at the beginning of this step is likely to be set anew at its end.
-            may_pass: !self.pending,
-            stop_at_events: event_mode && early_return,
-        };
-        if self.run()?.with(|session| session.waits()) {
-            self.working(|session| session.happen())?;
-        }
-        self.apply()?;
-        self.outputs = None;
-        let to = from + step;
-        let event = self.working(|session| session.advance(to, how))?;
-        let t = self.t();
-        Ok(Arrival {
-            t: if event { t } else { to },
-            event,
-            early: event && t < to,
-        })
     }
 
     /// Enters event mode.
@@ -307,7 +252,7 @@ impl Instance {
         self.asked = Asked::default();
         self.set.clear();
         (self.pending, self.placed) = (false, true);
-        (self.running, self.outputs) = (None, None);
+        (self.running, self.outputs, self.under_way) = (None, None, None);
         self.point = (0.0, Vec::new());
         self.guards.iter_mut().for_each(|guard| *guard = 1.0);
     }
@@ -323,6 +268,7 @@ impl Instance {
     }
 
     fn only(&self, phases: &[Phase], what: &str) -> Result<()> {
+        self.between_steps(what)?;
         match phases.contains(&self.phase) {
             true => Ok(()),
             false => Err(Refusal::Misuse(format!(

@@ -1,8 +1,10 @@
 //! [`Interface`]: the variables of a model as an FMU shows them, with value references, units, and which is state of which
 //! derivative.
 //!
-//! A value reference is the number of the variable. The order: time, parameters, inputs, reported quantities, states that are
-//! not reported, derivatives of states, guards.
+//! A value reference is the number of the variable, or of the variable that it is an alias of. The order: time, parameters,
+//! inputs, reported quantities, states that are not reported, derivatives of states, guards.
+
+mod aliases;
 
 use hyde_program::{Output, Parameter, Program};
 use hyde_study::ports::{chosen_outputs, fixed_places, is_input};
@@ -81,6 +83,8 @@ pub struct Variable {
     pub bounds: (Option<f64>, Option<f64>),
     /// Of a derivative the number of its state.
     pub derivative_of: Option<usize>,
+    /// The number of the variable that always has the same value, of which this is another name.
+    pub alias_of: Option<usize>,
 }
 
 /// The variables of a model.
@@ -146,6 +150,7 @@ impl Interface {
         if found.no_model_exchange.is_none() {
             found.add_states(program, &names);
         }
+        found.find_aliases(program, &names);
         Ok(found)
     }
 
@@ -247,6 +252,7 @@ impl Variable {
             start: None,
             bounds: (None, None),
             derivative_of: None,
+            alias_of: None,
         }
     }
 }

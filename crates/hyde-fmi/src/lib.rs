@@ -28,7 +28,7 @@ mod xml;
 pub use archive::{ArchiveError, Version, archive};
 pub use description::Described;
 pub use hyde_units::Kind;
-pub use instance::{Arrival, Instance, Interface as Use, Refusal, Saved, Update};
+pub use instance::{Arrival, Instance, Interface as Use, Progress, Refusal, Saved, Update};
 pub use interface::{Causality, Interface, Source, Variability, Variable};
 pub use kept::{Kept, RESOURCE};
 pub use model::{Chosen, Model, Uncompiled};

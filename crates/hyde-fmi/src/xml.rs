@@ -4,6 +4,8 @@
 pub(crate) struct Xml {
     text: String,
     open: Vec<&'static str>,
+    /// Where the text of the element that was opened last begins.
+    within: usize,
 }
 
 /// Attributes; those without a value are left out.
@@ -14,6 +16,7 @@ impl Xml {
         Self {
             text: "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n".to_owned(),
             open: Vec::new(),
+            within: 0,
         }
     }
 
@@ -22,6 +25,7 @@ impl Xml {
         self.begin(name, attributes);
         self.text.push_str(">\n");
         self.open.push(name);
+        self.within = self.text.len();
     }
 
     /// An element with none in it.
@@ -30,9 +34,14 @@ impl Xml {
         self.text.push_str("/>\n");
     }
 
-    /// Closes the element that was opened last.
+    /// Closes the element that was opened last; one with nothing in it becomes a leaf.
     pub(crate) fn close(&mut self) {
         if let Some(name) = self.open.pop() {
+            if self.text.len() == self.within {
+                self.text.truncate(self.within - ">\n".len());
+                self.text.push_str("/>\n");
+                return;
+            }
             self.indent();
             self.text.push_str("</");
             self.text.push_str(name);

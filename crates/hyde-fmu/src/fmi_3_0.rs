@@ -1,8 +1,9 @@
-//! FMI 3.0: the life of an instance, its steps and its events.
+//! FMI 3.0: the life of an instance and its events.
 
 mod absent;
 pub(crate) mod exchange;
 pub(crate) mod states;
+mod steps;
 pub(crate) mod values;
 
 use crate::export::export;
@@ -86,14 +87,17 @@ export! { sys::fmi3InstantiateCoSimulationTYPE, fmi3InstantiateCoSimulation(
     loggingOn: fmi3Boolean, eventModeUsed: fmi3Boolean, earlyReturnAllowed: fmi3Boolean,
     _requiredIntermediateVariables: *const fmi3ValueReference, _nRequiredIntermediateVariables: usize,
     instanceEnvironment: fmi3InstanceEnvironment, logMessage: fmi3LogMessageCallback,
-    _intermediateUpdate: fmi3IntermediateUpdateCallback,
+    intermediateUpdate: fmi3IntermediateUpdateCallback,
 ) -> fmi3Instance {
     // SAFETY: an importer passes texts that end.
     let (token, resources) = unsafe { (text(instantiationToken), text(resourcePath)) };
     let log = Callback { environment: instanceEnvironment, callback: logMessage };
     let of = (token.as_str(), Path::new(&resources));
     let used = Use::CoSimulation { event_mode: eventModeUsed, early_return: earlyReturnAllowed };
-    Handle::create(Box::new(log), loggingOn, of, used)
+    let instance = Handle::create(Box::new(log), loggingOn, of, used);
+    // SAFETY: it has just been made, or is null.
+    unsafe { steps::watch(instance, instanceEnvironment, intermediateUpdate) };
+    instance
 } }
 
 export! { sys::fmi3FreeInstanceTYPE, fmi3FreeInstance(instance: fmi3Instance) {
@@ -174,26 +178,6 @@ export! { sys::fmi3EnterStepModeTYPE, fmi3EnterStepMode(instance: fmi3Instance) 
     // SAFETY: an importer passes its instance.
     unsafe { on(instance, |handle| {
         handle.instance.enter_step_mode()?;
-        Ok(Status::Ok)
-    }) }
-} }
-
-export! { sys::fmi3DoStepTYPE, fmi3DoStep(
-    instance: fmi3Instance, currentCommunicationPoint: fmi3Float64, communicationStepSize: fmi3Float64,
-    _noSetFMUStatePriorToCurrentPoint: fmi3Boolean, eventHandlingNeeded: *mut fmi3Boolean,
-    terminateSimulation: *mut fmi3Boolean, earlyReturn: *mut fmi3Boolean, lastSuccessfulTime: *mut fmi3Float64,
-) -> fmi3Status {
-    // SAFETY: an importer passes its instance, and room for what it wants to know.
-    unsafe { on(instance, |handle| {
-        put(eventHandlingNeeded, false);
-        put(terminateSimulation, false);
-        put(earlyReturn, false);
-        let done = handle.instance.do_step(currentCommunicationPoint, communicationStepSize);
-        put(lastSuccessfulTime, handle.instance.t());
-        let arrival = done?;
-        put(eventHandlingNeeded, arrival.event);
-        put(earlyReturn, arrival.early);
-        put(lastSuccessfulTime, arrival.t);
         Ok(Status::Ok)
     }) }
 } }

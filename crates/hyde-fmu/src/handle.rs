@@ -4,6 +4,7 @@ use hyde_fmi::{Instance, Model, Refusal, Use};
 use std::ffi::{CString, c_char, c_void};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
+use std::rc::Rc;
 
 /// How a call ended; the numbers are those of both versions of the standard.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,9 +25,18 @@ pub(crate) trait Log {
     fn log(&self, status: Status, category: &str, message: &str);
 }
 
+/// An importer that looks on within a step.
+pub(crate) trait Watch {
+    /// Tells that the solver has ended a step at a time in s. Gives the time at which the importer wants to return, which it may
+    /// ask for if `early`.
+    fn reached(&self, t: f64, early: bool) -> Option<f64>;
+}
+
 /// An instance with where its messages go.
 pub(crate) struct Handle {
     pub(crate) instance: Instance,
+    /// Who looks on within steps. It calls the instance in turn, so that no call may have the handle meanwhile.
+    pub(crate) watch: Option<Rc<dyn Watch>>,
     log: Box<dyn Log>,
     /// Whether events are told, and the categories that are; all of them if there are none.
     logging: bool,
@@ -54,6 +64,7 @@ impl Handle {
         match made {
             Ok(instance) => Box::into_raw(Box::new(Self {
                 instance,
+                watch: None,
                 log,
                 logging,
                 categories: Vec::new(),

@@ -75,6 +75,12 @@ const OUT: Argument = Argument {
     kind: Kind::Option("--out"),
     needed: false,
 };
+const SANDBOX: Argument = Argument {
+    name: "sandbox",
+    about: "run each FMU of the model in a process of its own",
+    kind: Kind::Flag("--sandbox"),
+    needed: false,
+};
 
 /// Every tool but that of the library.
 pub(crate) const TOOLS: &[Tool] = &[
@@ -86,7 +92,7 @@ pub(crate) const TOOLS: &[Tool] = &[
     Tool {
         name: "run",
         about: "Solve an experiment. Gives measures, expectations, errors of measured channels and the paths of results, events and the report; no samples.",
-        arguments: &[FILE, EXPERIMENT, SET, RECORD, OUT],
+        arguments: &[FILE, EXPERIMENT, SET, RECORD, SANDBOX, OUT],
     },
     Tool {
         name: "modes",
@@ -288,12 +294,12 @@ mod tests {
     #[test]
     fn a_call_is_a_command_line() {
         let run = TOOLS.iter().find(|tool| tool.name == "run").unwrap();
-        let given =
-            json!({ "file": "-a.hyde", "experiment": "push", "set": ["M=3 [kg]"], "out": "o" });
+        let given = json!({ "file": "-a.hyde", "experiment": "push", "set": ["M=3 [kg]"], "sandbox": true, "out": "o" });
         let line = run.command(given.as_object().unwrap()).unwrap();
         let expected = [
             "run",
             "--set=M=3 [kg]",
+            "--sandbox",
             "--out=o",
             "--json",
             "--",

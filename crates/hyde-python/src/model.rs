@@ -8,7 +8,7 @@ use hyde_experiment::{Options, Run, RunError};
 use hyde_program::{Prior, Program};
 use hyde_signal::Table;
 use hyde_study::settings::{self, Setting};
-use hyde_study::{Aim, Asked, Project, Records, load, run_failure};
+use hyde_study::{Aim, Asked, Project, Records, assumptions, load, run_failure};
 use pyo3::prelude::*;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -105,6 +105,24 @@ impl Model {
             )
         });
         Ok(rows.collect())
+    }
+
+    /// What was assumed of records, tables and FMUs, each as a sentence.
+    #[getter]
+    fn assumptions(&self) -> PyResult<Vec<String>> {
+        let program = &self.compiled.program;
+        let values = hyde_experiment::parameters(program, &self.tables, &self.set)
+            .map_err(|error| self.failure(&error))?;
+        self.with_project(|project, _| assumptions::of_model(project, program, &values))
+    }
+
+    /// The files of the FMUs whose machine code runs in this process.
+    #[getter]
+    fn fmus(&self) -> PyResult<Vec<String>> {
+        self.with_project(|project, _| {
+            let files = project.fmus.iter().map(|own| own.fmu.file.clone());
+            files.collect()
+        })
     }
 
     /// Runs with values set: numbers in SI, or texts with a unit.

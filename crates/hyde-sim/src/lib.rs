@@ -67,7 +67,7 @@ pub use results::{
     Energies, Event, EventKind, Gradient, GradientEnd, GradientEndKind, Reduced, Results,
     Statistics, Yielded,
 };
-pub use session::{Advance, Session, Variation};
+pub use session::{Advance, Advanced, Session, Variation};
 pub use setup::Setup;
 pub use simulation::Snapshot;
 

@@ -7,7 +7,8 @@
 use crate::failure::Failure;
 use crate::results::Event;
 use crate::setup::Setup;
-use crate::simulation::{Advanced, Simulation, Snapshot};
+pub use crate::simulation::Advanced;
+use crate::simulation::{Simulation, Snapshot};
 use hyde_program::Program;
 
 /// How far a session goes beyond what is asked for, and where it stops before.
@@ -17,6 +18,8 @@ pub struct Advance {
     pub may_pass: bool,
     /// Stop in front of an event: the caller asks for it by [`Session::happen`].
     pub stop_at_events: bool,
+    /// Stop at the end of each step of the solver before the time asked for.
+    pub stop_at_steps: bool,
 }
 
 /// A change of what a session is given at a point, or of what follows from it there.
@@ -52,14 +55,14 @@ impl<'a> Session<'a> {
         self.run.place().t
     }
 
-    /// Goes on to a time in s, events there included. Returns whether an event waits at the time that it has come to.
+    /// Goes on to a time in s, events there included.
     ///
     /// # Errors
     /// A [`Failure`]; the session stays where it last was.
-    pub fn advance(&mut self, to: f64, how: Advance) -> Result<bool, Box<Failure>> {
+    pub fn advance(&mut self, to: f64, how: Advance) -> Result<Advanced, Box<Failure>> {
         let advanced = self.run.advance_by_caller(to, how)?;
         self.run.forget_rows();
-        Ok(advanced == Advanced::Waits)
+        Ok(advanced)
     }
 
     /// Whether an event waits at the caller's time.

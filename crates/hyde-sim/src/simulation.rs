@@ -10,7 +10,7 @@ mod snapshot;
 mod steady;
 mod step;
 
-pub(crate) use self::session::Advanced;
+pub use self::session::Advanced;
 pub use self::snapshot::Snapshot;
 
 use self::reduce::Reduced;

@@ -22,12 +22,15 @@ const MODELS: [(&str, &str, &[&str], &str); 4] = [
 ];
 
 /// Examples whose FMUs integrate themselves, compared as they stand.
-const EXAMPLES: [(&str, &str); 5] = [
+const EXAMPLES: [(&str, &str); 8] = [
     ("examples/first/first.hyde", "push"),
     ("examples/bench_axis/axis.hyde", "bench"),
     ("examples/shaft/shaft.hyde", "step"),
     ("examples/x_axis/axis.hyde", "positioning"),
     ("examples/y_axis/axis.hyde", "positioning"),
+    ("examples/friction/friction.hyde", "beside"),
+    ("examples/machine/machine.hyde", "circle"),
+    ("examples/frequency_response/axis.hyde", "opened"),
 ];
 
 pub(super) const DEVIATION: Figure = Figure {

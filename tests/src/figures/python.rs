@@ -1,5 +1,6 @@
 //! `python_sweep_ratio`: a thousand parameter sets of the first example in one process of Python, compiled once, against
-//! `hyde sweep` of the same, both released and on all processors.
+//! `hyde sweep` of the same, both released and on all processors. `python_run_overhead_percent`: one run of the bench axis
+//! in Python, against `hyde run` of it.
 
 use super::clock::now;
 use super::promise::{Figure, Measured, Promise, Session};
@@ -15,6 +16,13 @@ pub(super) const SWEEP: Figure = Figure {
     unit: "of the rate of `hyde sweep`",
     promise: Promise::AtLeast(0.9),
     measure: sweep,
+};
+
+pub(super) const RUN: Figure = Figure {
+    name: "python_run_overhead_percent",
+    unit: "% more time than `hyde run`",
+    promise: Promise::AtMost(5.0),
+    measure: overhead,
 };
 
 /// Added to the first example; `sweep.py` has the same masses.
@@ -35,28 +43,23 @@ fn sweep(_: &Session) -> Result<Measured, String> {
         Ok(python) => python,
         Err(reason) => return Ok(Measured::Absent(reason)),
     };
-    for package in ["hyde-cli", "hyde-python"] {
-        let build = ["build", "--release", "--locked", "-q", "-p", package];
-        succeed(Command::new("cargo").args(build))?;
-    }
     let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    package(folder.path())?;
     let model = folder.path().join("first.hyde");
-    prepare(folder.path(), &model).map_err(|error| error.to_string())?;
+    first_with_masses(&model).map_err(|error| error.to_string())?;
 
     let (mut in_python, mut by_command) = (f64::INFINITY, f64::INFINITY);
     for round in 0..ROUNDS {
-        let mut script = Command::new(&python);
-        script.arg(root().join("tests/src/figures/sweep.py"));
-        script.arg(&model).env("PYTHONPATH", folder.path());
-        let answer = json(&succeed(&mut script)?)?;
+        let mut script = script(&python, "sweep.py", folder.path());
+        let answer = json(&succeed(script.arg(&model))?)?;
         in_python = in_python.min(answer["s"].as_f64().unwrap_or(f64::NAN));
 
-        let start = now();
         let mut command = Command::new(root().join("target/release/hyde"));
         command.args(["sweep", "--json"]).arg(&model).arg("masses");
         command
             .arg("--out")
             .arg(folder.path().join(round.to_string()));
+        let start = now();
         let printed = succeed(&mut command)?;
         by_command = by_command.min(start.elapsed().as_secs_f64());
         let summary = json(printed.lines().last().unwrap_or_default())?;
@@ -65,16 +68,60 @@ fn sweep(_: &Session) -> Result<Measured, String> {
     Ok(Measured::Value(by_command / in_python))
 }
 
-/// The model with the sweep, and the package with its module.
-#[allow(
-    clippy::disallowed_methods,
-    reason = "files are laid out for both processes"
-)]
-fn prepare(folder: &Path, model: &Path) -> std::io::Result<()> {
+/// The time in Python is that of loading and of the run, without the start of the interpreter; of the command it is that of the
+/// whole process, which writes no files.
+fn overhead(_: &Session) -> Result<Measured, String> {
+    let python = match python() {
+        Ok(python) => python,
+        Err(reason) => return Ok(Measured::Absent(reason)),
+    };
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    package(folder.path())?;
+    let model = root().join("examples/bench_axis/axis.hyde");
+
+    let (mut in_python, mut by_command) = (f64::INFINITY, f64::INFINITY);
+    for _ in 0..ROUNDS {
+        let mut script = script(&python, "run.py", folder.path());
+        let answer = json(&succeed(script.arg(&model).arg("bench"))?)?;
+        in_python = in_python.min(answer["s"].as_f64().unwrap_or(f64::NAN));
+
+        let mut command = Command::new(root().join("target/release/hyde"));
+        command.args(["run", "--json"]).arg(&model).arg("bench");
+        let start = now();
+        let printed = succeed(&mut command)?;
+        by_command = by_command.min(start.elapsed().as_secs_f64());
+        same_channels(&answer["channels"], &json(&printed)?["channels"])?;
+    }
+    Ok(Measured::Value(100.0 * (in_python / by_command - 1.0)))
+}
+
+/// A program beside this file, which finds the package in the folder.
+fn script(python: &Path, name: &str, folder: &Path) -> Command {
+    let mut script = Command::new(python);
+    script.arg(root().join("tests/src/figures").join(name));
+    script.env("PYTHONPATH", folder);
+    script
+}
+
+/// The first example with its sweep.
+#[allow(clippy::disallowed_methods, reason = "a file of both processes")]
+fn first_with_masses(model: &Path) -> std::io::Result<()> {
     let first = fs::read_to_string(root().join("examples/first/first.hyde"))?;
-    fs::write(model, first + MASSES)?;
-    let package = folder.join("hyde");
-    fs::create_dir(&package)?;
+    fs::write(model, first + MASSES)
+}
+
+/// Builds the command and the module, and lays the package out in a folder.
+fn package(folder: &Path) -> Result<(), String> {
+    for package in ["hyde-cli", "hyde-python"] {
+        let build = ["build", "--release", "--locked", "-q", "-p", package];
+        succeed(Command::new("cargo").args(build))?;
+    }
+    lay_out(&folder.join("hyde")).map_err(|error| error.to_string())
+}
+
+#[allow(clippy::disallowed_methods, reason = "files of the package")]
+fn lay_out(package: &Path) -> std::io::Result<()> {
+    fs::create_dir(package)?;
     for entry in fs::read_dir(root().join("crates/hyde-python/python/hyde"))? {
         let path = entry?.path();
         if path.extension().is_some_and(|ending| ending == "py") {
@@ -98,5 +145,17 @@ fn same(ways: &Value, quantiles: &Value) -> Result<(), String> {
     match equal {
         true => Ok(()),
         false => Err(format!("in Python {ways}, by the command {ends:?}")),
+    }
+}
+
+/// The errors of the channels in Python are those of the command, to the last digit.
+fn same_channels(ours: &Value, printed: &Value) -> Result<(), String> {
+    let channels = printed.as_array().map_or(&[][..], Vec::as_slice);
+    let equal = channels
+        .iter()
+        .all(|own| ours[own["name"].as_str().unwrap_or_default()] == own["rms"]);
+    match equal && !channels.is_empty() {
+        true => Ok(()),
+        false => Err(format!("in Python {ours}, by the command {printed}")),
     }
 }

@@ -1,5 +1,6 @@
 //! The arguments of batches.
 
+use super::FmuProcessArgs;
 use clap::{Args, ValueEnum};
 use hyde_study::sweep::TableForm;
 use std::path::PathBuf;
@@ -31,6 +32,8 @@ pub(crate) struct SweepArgs {
     /// Folder of the records and of the table of cases [default: the folder of the model]
     #[arg(long, value_name = "DIR")]
     pub(crate) data: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) fmus: FmuProcessArgs,
     /// Write the batch to this folder; cases already there are not solved again
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,

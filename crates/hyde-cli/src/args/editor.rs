@@ -1,6 +1,6 @@
 //! The options of the commands that help to write models.
 
-use super::ModelArgs;
+use super::{FmuProcessArgs, ModelArgs};
 use clap::Args;
 use std::path::PathBuf;
 
@@ -30,6 +30,8 @@ pub(crate) struct ExplainArgs {
 pub(crate) struct LiveArgs {
     #[command(flatten)]
     pub(crate) model: ModelArgs,
+    #[command(flatten)]
+    pub(crate) fmus: FmuProcessArgs,
     /// Port of the page on the loopback interface [default: a free one]
     #[arg(long, default_value_t = 0, hide_default_value = true)]
     pub(crate) port: u16,

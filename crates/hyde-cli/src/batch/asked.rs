@@ -100,7 +100,7 @@ pub(crate) fn from_source(args: &SweepArgs, order: &Order) -> String {
     if let Some(seed) = order.seed {
         line.push_str(&format!(" --seed {seed}"));
     }
-    if crate::sandbox::is_asked() {
+    if args.fmus.sandbox {
         line.push_str(" --sandbox");
     }
     line.trim_end().to_owned()

@@ -1,6 +1,6 @@
 //! A batch that is prepared from its order; what is wrong with it is printed.
 
-use crate::args::ModelArgs;
+use crate::args::{ModelArgs, SweepArgs};
 use crate::exit::Exit;
 use crate::project::{self, Records, Told as _};
 use crate::sandbox;
@@ -14,27 +14,26 @@ pub(crate) fn prepared(
     order: &Order,
     inputs: &Arc<Inputs>,
     needed: Records,
-    output: (bool, bool),
+    model: &ModelArgs,
 ) -> Result<Option<Prepared>, Exit> {
-    let model = model_args(&order.file, output);
     let base = Asked {
         inputs: Some(Arc::clone(inputs)),
-        fmu_host: sandbox::host(),
+        fmu_host: sandbox::host(model.sandbox),
         ..Asked::of_file(&order.file)
     };
-    let batch =
-        Prepared::new(order, &base, needed).map_err(|own| project::refused(&model, &own))?;
+    let batch = Prepared::new(order, &base, needed).map_err(|own| project::refused(model, &own))?;
     if let Some(batch) = &batch {
-        batch.project.print_warnings(&model);
+        batch.project.print_warnings(model);
     }
     Ok(batch)
 }
 
 /// The arguments of a model for the file of a batch.
-pub(crate) fn model_args(file: &Path, (json, quiet): (bool, bool)) -> ModelArgs {
+pub(crate) fn model_args(file: &Path, args: &SweepArgs) -> ModelArgs {
     ModelArgs {
-        json,
-        quiet,
+        sandbox: args.fmus.sandbox,
+        json: args.json,
+        quiet: args.quiet,
         ..ModelArgs::of_file(file)
     }
 }

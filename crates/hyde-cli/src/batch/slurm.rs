@@ -25,6 +25,8 @@ pub(crate) struct Array<'a> {
     pub(crate) shards: usize,
     /// Cases that each task solves at once.
     pub(crate) jobs: usize,
+    /// Whether each FMU runs in a process of its own.
+    pub(crate) sandbox: bool,
     /// Options for `sbatch`.
     pub(crate) options: &'a [String],
 }
@@ -88,10 +90,7 @@ impl Array<'_> {
             shell(&folder.to_string_lossy()),
             self.shards,
             self.jobs,
-            match crate::sandbox::is_asked() {
-                true => " --sandbox",
-                false => "",
-            }
+            if self.sandbox { " --sandbox" } else { "" }
         );
         let mut command = Command::new("sbatch");
         command

@@ -40,7 +40,8 @@ fn swept(args: &SweepArgs) -> Result<Exit, Exit> {
     let kept = Order::is_in(&Disk, &args.file);
     let (order, inputs) = order_of(args, kept).map_err(failed)?;
     let inputs = Arc::new(inputs);
-    let Some(batch) = prepared(&order, &inputs, Records::Needed, (args.json, args.quiet))? else {
+    let model = model_args(&order.file, args);
+    let Some(batch) = prepared(&order, &inputs, Records::Needed, &model)? else {
         return Ok(Exit::Done);
     };
     if let Some(case) = args.case {
@@ -121,7 +122,7 @@ fn again(args: &SweepArgs, batch: Prepared, number: usize) -> Result<Exit, Exit>
         let reason = format!("the sweep has cases 1 to {}", batch.plan.count());
         return Err(complain(args, Exit::CommandLine, &reason));
     }
-    let model = model_args(&batch.asked.file, (args.json, args.quiet));
+    let model = model_args(&batch.asked.file, args);
     let run_args = RunArgs {
         out: args.out.clone(),
         ..RunArgs::of_model(&model)

@@ -108,3 +108,32 @@ fn a_record_without_a_column_is_told_with_those_it_has() {
     assert!(told.contains("E0801"), "{told}");
     assert!(told.contains("i_inj"), "{told}");
 }
+
+#[test]
+fn sandbox_is_an_option_of_the_commands_that_run_fmus_alone() {
+    let has = |line: &[&str]| {
+        let all: Vec<&str> = line.iter().chain(&["--help"]).copied().collect();
+        text(&hyde(&all)).contains("--sandbox")
+    };
+    for with in [&["run"][..], &["sweep"], &["test"], &["live"], &["budget"]] {
+        assert!(has(with), "{with:?}");
+    }
+    for without in [
+        &[][..],
+        &["explain"],
+        &["look"],
+        &["check"],
+        &["fit"],
+        &["modes"],
+        &["export", "fmu"],
+        &["plot"],
+        &["report"],
+        &["fmt"],
+        &["lsp"],
+        &["completions"],
+        &["export"],
+    ] {
+        assert!(!has(without), "{without:?}");
+    }
+    assert_eq!(status(&hyde(&["explain", "E0503", "--sandbox"])), 2);
+}

@@ -50,8 +50,9 @@ impl Instance {
     /// The state of the instance.
     ///
     /// # Errors
-    /// There are no consistent values where it is.
+    /// There are no consistent values where it is, or a step is under way.
     pub fn save(&mut self) -> Result<Saved> {
+        self.between_steps("the state is saved")?;
         let run = match self.running {
             Some(_) => Some(self.working(|session| session.snapshot())?),
             None => None,
@@ -72,8 +73,9 @@ impl Instance {
     /// Returns to a state.
     ///
     /// # Errors
-    /// It is one of another model, or the solver cannot begin there.
+    /// It is one of another model, the solver cannot begin there, or a step is under way.
     pub fn restore(&mut self, saved: &Saved) -> Result<()> {
+        self.between_steps("a state is restored")?;
         let other = || Refusal::Value("this is the state of another model".to_owned());
         if saved.guards.len() != self.guards.len() {
             return Err(other());

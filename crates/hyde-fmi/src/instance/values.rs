@@ -45,6 +45,7 @@ impl Instance {
     /// It may not be set, not now, or not to this value.
     pub fn set(&mut self, reference: usize, value: f64) -> Result<()> {
         let source = self.source(reference)?;
+        self.between_steps("a variable is set")?;
         let variable = &self.model.interface.variables[reference];
         let name = &variable.name;
         let Source::Parameter(place) = source else {

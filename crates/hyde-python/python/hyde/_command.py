@@ -13,7 +13,7 @@ import sys
 import tempfile
 import threading
 from pathlib import Path
-from typing import Any, Callable, Optional
+from typing import Any, Callable, Optional, cast
 
 from ._hyde import Error, ModelError, SolverError
 from ._shown import Page, Study
@@ -52,11 +52,12 @@ def json_of(arguments: list[str]) -> Any:
         answer = None
     if status in (0, _EXPECTATION) and answer is not None:
         return answer
-    diagnostics = answer.get("diagnostics", []) if isinstance(answer, dict) else []
+    told = cast("dict[str, Any]", answer) if isinstance(answer, dict) else {}
+    diagnostics: list[dict[str, Any]] = told.get("diagnostics", [])
     messages = [_message(entry) for entry in diagnostics]
-    if isinstance(answer, dict) and not messages:
-        messages = [str(answer[key]) for key in ("error", "reason") if key in answer]
-        messages += [f"{own['file']}: {own['error']}" for own in answer.get("errors", [])]
+    if not messages:
+        messages = [str(told[key]) for key in ("error", "reason") if key in told]
+        messages += [f"{own['file']}: {own['error']}" for own in told.get("errors", [])]
     kind = {1: ModelError, 3: SolverError}.get(status, Error)
     error = kind("\n".join(messages) or said.strip() or f"`hyde {arguments[0]}` ended with {status}")
     error.diagnostics = diagnostics

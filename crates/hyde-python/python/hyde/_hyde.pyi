@@ -18,6 +18,8 @@ class Model:
     name: str
     experiment: Optional[str]
     warnings: str
+    assumptions: list[str]
+    fmus: list[str]
     def __init__(
         self,
         file: Union[str, PathLike[str]],

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import tempfile
 import threading
+import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
@@ -77,7 +78,7 @@ class Model:
     """A model with its experiment, compiled once. `load` makes it."""
 
     def __init__(self, file: File, experiment: Optional[str], options: dict[str, Any]) -> None:
-        self.file = Path(fspath(file))
+        self.file: Path = Path(fspath(file))
         self._set: Values = options.get("set")
         self._model = options.get("model")
         self._data = options.get("data")
@@ -87,6 +88,8 @@ class Model:
         self._compiled = _Model(
             fspath(file), experiment, self._model, numbers, texts, list(self._records.items()), self._data
         )
+        for fmu in self._compiled.fmus:
+            warnings.warn(f"a run of `{self.name}` runs machine code of `{fmu}` in this process", stacklevel=3)
 
     def _written(self, records: Mapping[str, Record]) -> dict[str, str]:
         if any(not isinstance(record, (str, PathLike)) for record in records.values()):
@@ -108,6 +111,11 @@ class Model:
     def warnings(self) -> str:
         """What the compiler warns of, with the lines of the file; empty if nothing."""
         return self._compiled.warnings
+
+    @property
+    def assumptions(self) -> list[str]:
+        """What Hyde assumes of records, tables and FMUs, as `hyde run` prints it; each is a sentence."""
+        return self._compiled.assumptions
 
     @property
     def parameters(self) -> Parameters:
@@ -253,6 +261,7 @@ def load(
     column is the time in s, and `"x [mm]"` names a unit. `data` is the folder in which the files of records are looked for,
     that of the model without it.
 
-    Raises ModelError with the diagnostics if the model is at fault.
+    Raises ModelError with the diagnostics if the model is at fault. Warns of each FMU in the model, whose machine code runs in
+    the process of Python.
     """
     return Model(file, experiment, {"model": model, "set": set, "records": records, "data": data})

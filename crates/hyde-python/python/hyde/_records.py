@@ -6,7 +6,7 @@ import csv
 from collections.abc import Mapping
 from os import PathLike, fspath
 from pathlib import Path
-from typing import Any, Union
+from typing import Any, Union, cast
 
 import numpy as np
 
@@ -32,7 +32,7 @@ def written(record: Record, path: Path) -> str:
 
 def _names(record: Any) -> list[str]:
     if isinstance(record, Mapping):
-        return list(record)
+        return list(cast("Mapping[str, Any]", record))
     columns = getattr(record, "columns", None)
     if columns is None:
         raise Error("a record is a path, a mapping of names to arrays, or a frame")

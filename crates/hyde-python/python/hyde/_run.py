@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime, timezone
+from importlib import import_module
 from typing import Any, NamedTuple, Optional, Union
 
 import numpy as np
@@ -35,6 +36,11 @@ class Channel:
     time: Array
     measured: Array
     simulated: Array
+
+
+def _tables(package: str) -> Any:
+    """A package for tables; only those who ask for its tables need it."""
+    return import_module(package)
 
 
 class Run(Mapping[str, Array]):
@@ -83,7 +89,7 @@ class Run(Mapping[str, Array]):
     @property
     def channels(self) -> dict[str, Channel]:
         """What was measured beside what the model has."""
-        found = {}
+        found: dict[str, Channel] = {}
         for name, unit, rms, noise in self._outcome.channels:
             time, measured, simulated = self._outcome.compared[name]
             found[name] = Channel(name, unit, rms, noise, time, measured, simulated)
@@ -109,7 +115,7 @@ class Run(Mapping[str, Array]):
 
     def to_pandas(self) -> Any:
         """A frame of pandas over the time; `frame.attrs["units"]` has the units."""
-        import pandas
+        pandas = _tables("pandas")
 
         frame = pandas.DataFrame(self._outcome.columns, index=pandas.Index(self.time, name="t"), copy=False)
         frame.attrs["units"] = {"t": "s", **self.units}
@@ -117,7 +123,7 @@ class Run(Mapping[str, Array]):
 
     def to_arrow(self) -> Any:
         """A table of pyarrow; each field has its unit in its metadata."""
-        import pyarrow
+        pyarrow = _tables("pyarrow")
 
         units = {"t": "s", **self.units}
         fields = [pyarrow.field(name, pyarrow.float64(), metadata={"unit": units[name]}) for name in self._columns()]
@@ -125,7 +131,7 @@ class Run(Mapping[str, Array]):
 
     def to_polars(self) -> Any:
         """A frame of polars; names have their unit behind them, for polars keeps no metadata."""
-        import polars
+        polars = _tables("polars")
 
         units = {"t": "s", **self.units}
         return polars.DataFrame({f"{name} [{units[name]}]": values for name, values in self._columns().items()})

@@ -1,5 +1,8 @@
 """The notebooks of `examples/notebooks` run in Jupyter, show figures, and are stored without outputs."""
 
+# nbformat has no types.
+# pyright: basic
+
 from pathlib import Path
 
 import nbformat

@@ -119,6 +119,33 @@ end trial;
     assert frame["saddle.s"].iloc[-1] == pytest.approx(0.5)
 
 
+def test_machine_code_of_others_is_told(tmp_path: Path) -> None:
+    fmu = tmp_path / "axis.fmu"
+    line = [_command.path(), "export", "fmu", str(FIRST), "push", "--quiet", "--reference", "none", "--out", str(fmu)]
+    exported = subprocess.run(line, capture_output=True, text=True)
+    if "libhyde_fmu" in exported.stderr:
+        pytest.skip("the library of FMUs is not built")
+    assert exported.returncode == 0, exported.stderr
+    model = tmp_path / "apart.hyde"
+    model.write_text(
+        """package apart;
+import SI.*;
+model Apart = fmu("axis.fmu", step = 1 [ms]);
+model Beside
+  Apart axis;
+  Real nothing = 0;
+end Beside;
+experiment push of Beside
+  stop 0.1 [s];
+end push;
+"""
+    )
+    with pytest.warns(UserWarning, match="machine code of `axis.fmu` in this process"):
+        beside = hyde.load(model)
+    assert any("runs machine code of `axis.fmu`" in text for text in beside.assumptions)
+    assert beside.run().time[-1] == pytest.approx(0.1)
+
+
 def test_other_threads_go_on_during_a_run() -> None:
     bench = hyde.load(BENCH)
     longest, last, done = 0.0, time.perf_counter(), threading.Event()

@@ -33,11 +33,13 @@ pub(super) struct Pieces {
 
 /// How a piece ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Advanced {
+pub enum Advanced {
     /// At the time asked for, all that happens there included.
     There,
     /// In front of an event.
     Waits,
+    /// At the end of a step of the solver, in front of an event if there is one.
+    OnTheWay,
 }
 
 impl Simulation<'_> {
@@ -56,6 +58,7 @@ impl Simulation<'_> {
         how: Advance,
     ) -> Result<Advanced, Box<Failure>> {
         loop {
+            let mut stepped = false;
             if let Some((step, target)) = self.pieces.ahead.take() {
                 if to < step.end && !same_instant(to, step.end) {
                     self.pieces.ahead = Some((step, target));
@@ -68,15 +71,21 @@ impl Simulation<'_> {
                 };
                 self.pieces.waits = self.work_at(&target, crossed);
                 self.stand();
+                stepped = true;
             }
-            if let Some(work) = &self.pieces.waits {
-                if how.stop_at_events && work.cause != Cause::Time {
-                    return Ok(Advanced::Waits);
-                }
-                self.happen()?;
+            if let Some(work) = &self.pieces.waits
+                && how.stop_at_events
+                && work.cause != Cause::Time
+            {
+                return Ok(Advanced::Waits);
             }
             let t = self.integrator.t;
-            if t >= to || same_instant(t, to) {
+            let there = t >= to || same_instant(t, to);
+            if stepped && how.stop_at_steps && !there {
+                return Ok(Advanced::OnTheWay);
+            }
+            self.happen()?;
+            if there {
                 return Ok(Advanced::There);
             }
             let stop = match how.may_pass {

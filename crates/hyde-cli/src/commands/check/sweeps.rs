@@ -13,6 +13,10 @@ use std::sync::Arc;
 /// The sweeps of a file, each laid out.
 pub(super) fn sweeps(args: &ModelArgs, project: &Project) -> Result<Vec<String>, Exit> {
     let mut names = Vec::new();
+    let quiet = ModelArgs {
+        quiet: true,
+        ..args.clone()
+    };
     for study in project
         .file
         .studies()
@@ -28,7 +32,7 @@ pub(super) fn sweeps(args: &ModelArgs, project: &Project) -> Result<Vec<String>,
             keep: Vec::new(),
         };
         let inputs = Arc::new(Inputs::recording());
-        if let Some(batch) = prepared(&order, &inputs, Records::IfThere, (args.json, true))? {
+        if let Some(batch) = prepared(&order, &inputs, Records::IfThere, &quiet)? {
             let cases = counted(batch.plan.count(), "case");
             names.push(format!("sweep {} ({cases})", order.sweep));
         }

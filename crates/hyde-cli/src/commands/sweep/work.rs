@@ -52,6 +52,7 @@ impl Work<'_> {
             identity: batch.parts.whole.to_string(),
             shards: args.shards.clamp(1, slurm::MOST),
             jobs: args.jobs.unwrap_or(1),
+            sandbox: args.fmus.sandbox,
             options: &args.slurm,
         };
         let missing = || {
