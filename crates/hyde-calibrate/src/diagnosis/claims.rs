@@ -5,6 +5,7 @@
 //! goes, everything else is fitted again, and what is left is asked the same. Beside an `unknown` without a law an effect
 //! is a part of what is missing only if it explains a part that is worth a word.
 
+use super::calibrated::calibrate_found;
 use super::finding::{Finding, Quantity};
 use super::hypothesis::Built;
 use super::inquiry::Inquiry;
@@ -82,7 +83,10 @@ impl Diagnosis {
     }
 
     /// Makes a model with fewer findings the answer.
-    pub fn keep(&mut self, inquiry: &Inquiry<'_>, model: FoundModel) {
+    ///
+    /// # Errors
+    /// The model has no fixed-step form.
+    pub fn keep(&mut self, inquiry: &Inquiry<'_>, model: FoundModel) -> Result<(), Unsupported> {
         let FoundModel { stage } = model;
         let mut hypotheses = inquiry.hypotheses.to_vec();
         hypotheses.extend(self.law().map(|law| law.hypothesis.clone()));
@@ -92,6 +96,7 @@ impl Diagnosis {
             unknown.found = None;
         }
         self.take(stage, &hypotheses);
+        calibrate_found(inquiry, self)?;
         self.unexplained = !explained(&self.after, inquiry.thresholds);
         self.verdict = match self.law() {
             Some(_) => Verdict::Unknown,
@@ -101,6 +106,7 @@ impl Diagnosis {
                 inquiry.thresholds,
             ),
         };
+        Ok(())
     }
 
     /// Whether what the model has beside one with fewer findings explains a part of what is missing that is worth a word.
@@ -120,7 +126,7 @@ pub(super) fn only_told(
     while let Some(number) = least_told(&diagnosis.findings) {
         dropped.push(diagnosis.findings[number].hypothesis);
         let less = diagnosis.without(inquiry, number)?;
-        diagnosis.keep(inquiry, less);
+        diagnosis.keep(inquiry, less)?;
     }
     let mut number = 0;
     while diagnosis.verdict == Verdict::Unknown
@@ -131,7 +137,7 @@ pub(super) fn only_told(
         if diagnosis.explains_a_part_beside(&less, inquiry.thresholds.a_part) {
             number += 1;
         } else {
-            diagnosis.keep(inquiry, less);
+            diagnosis.keep(inquiry, less)?;
         }
     }
     Ok(dropped)

@@ -385,3 +385,21 @@ fn a_drag_that_is_steepest_at_rest_is_found_as_large_as_it_is() {
     assert!((low..=high).contains(&number(&case["size"])), "{case:#}");
     assert!(high - low > 0.01 * low, "{case:#}");
 }
+
+/// A friction that was taken in beside a body and dropped at the end took the gain of the body's states with it: the interval
+/// was a fifth as wide, beside the size.
+#[test]
+fn a_body_is_as_large_as_it_is_where_an_effect_beside_it_is_dropped() {
+    let folder = with_candidates(RACK, "Effects.ShaftBody, Effects.Tustin");
+    let planted = ["--only", "planted", "--effects", "ShaftBody"];
+    let report = with_records(RACK, &folder, &planted);
+    let cases = report["cases"].as_array().unwrap();
+    let shown: Vec<&Value> = cases.iter().filter(|case| case["shows"] == true).collect();
+    assert!(shown.len() > 1, "{report:#}");
+    for case in shown {
+        let number = |value: &Value| value.as_f64().unwrap();
+        let interval = &case["effects"][0]["interval"];
+        let (low, high) = (number(&interval[0]), number(&interval[1]));
+        assert!((low..=high).contains(&number(&case["size"])), "{case:#}");
+    }
+}

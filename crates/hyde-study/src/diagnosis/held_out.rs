@@ -94,15 +94,14 @@ pub fn agreed(
             let less = found.without(inquiry, number)?;
             let there = of(found, &less)?;
             let rank = (self::worse(calibration, &there).len(), less.cost());
-            let is_better =
-                |(_, _, _, known): &(usize, FoundModel, Vec<RecordErrors>, (usize, f64))| {
-                    rank.0 < known.0 || (rank.0 == known.0 && rank.1 < known.1)
-                };
+            let is_better = |(_, _, known): &(usize, FoundModel, (usize, f64))| {
+                rank.0 < known.0 || (rank.0 == known.0 && rank.1 < known.1)
+            };
             if best.as_ref().is_none_or(is_better) {
-                best = Some((number, less, there, rank));
+                best = Some((number, less, rank));
             }
         }
-        let Some((number, less, there, _)) = best else {
+        let Some((number, less, _)) = best else {
             return Ok((here, refused));
         };
         let finding = &found.findings[number];
@@ -116,8 +115,8 @@ pub fn agreed(
                 worse,
             });
         }
-        found.keep(inquiry, less);
-        here = there;
+        found.keep(inquiry, less)?;
+        here = of(found, &found.model())?;
     }
 }
 
