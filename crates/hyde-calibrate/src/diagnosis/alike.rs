@@ -2,8 +2,8 @@
 //! an ideal pinion turns: then no record tells them apart.
 //!
 //! What an effect adds to the rates of the states is looked at in many states, each of its own from another row of the
-//! records: positions, speeds and currents that never come together in them. Of two effects that are one these are multiples
-//! of each other.
+//! records and a few times as large or small: positions, speeds and currents that never come together in them. Of two effects
+//! that are one these are multiples of each other.
 
 use super::stage::Ground;
 use super::trial::Trial;
@@ -11,10 +11,10 @@ use crate::observer::{Track, Vectors, When, state_names};
 use crate::plant::{Plant, Unsupported};
 use hyde_program::Program;
 
-/// States that are looked at.
+/// Numerics: states that are looked at.
 const LOOKS: usize = 64;
-/// The part by which what two effects add may differ: fitted shapes are not known better.
-const DIFFERENT: f64 = 1e-2;
+/// Numerics: so many times as large or small as in the records.
+const LARGER: f64 = 4.0;
 
 /// Whether two trials act on the same states, and in any states alike.
 pub(super) fn act_alike(ground: &Ground<'_>, one: &Trial, other: &Trial) -> bool {
@@ -23,7 +23,8 @@ pub(super) fn act_alike(ground: &Ground<'_>, one: &Trial, other: &Trial) -> bool
         let looks = looks(tracks.first()?, &one.stage.program);
         let one = added(ground, one, &looks).ok()?;
         let other = added(ground, other, &looks).ok()?;
-        (one.states == other.states).then(|| parallel(&one.rates, &other.rates))
+        (one.states == other.states)
+            .then(|| across(&one.rates, &other.rates) <= ground.thresholds.negligible.powi(2))
     };
     acts().unwrap_or(false)
 }
@@ -56,7 +57,8 @@ fn looks(track: &Track<'_>, program: &Program) -> Looks {
             // Any rows without relation to each other.
             let row = (look * 7919 + number * 104_729) % rows;
             let at = track.point(row, When::After, &p, &mut room);
-            into.push(at.y[place]);
+            let times = LARGER.powf((12.9898 * look as f64 + 78.233 * number as f64).sin());
+            into.push(times * at.y[place]);
             squares[number] += at.yp[place].powi(2);
         }
     }
@@ -126,24 +128,22 @@ fn rates(
     Ok((names, found))
 }
 
-/// Whether two vectors are multiples of each other, neither nothing.
-fn parallel(a: &[f64], b: &[f64]) -> bool {
+/// The part of the squares of one vector that is no multiple of another; all of it where one is nothing.
+fn across(a: &[f64], b: &[f64]) -> f64 {
     let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-    let (aa, bb, ab) = (dot(a, a), dot(b, b), dot(a, b));
-    // The part of one that is across the other.
-    let across = 1.0 - ab * ab / (aa * bb);
-    aa > 0.0 && bb > 0.0 && across <= DIFFERENT * DIFFERENT
+    let along = dot(a, b).powi(2) / (dot(a, a) * dot(b, b));
+    if along.is_finite() { 1.0 - along } else { 1.0 }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::parallel;
+    use super::across;
 
     #[test]
-    fn multiples_are_alike_and_nothing_is_like_nothing() {
-        assert!(parallel(&[1.0, -2.0, 3.0], &[-2.0, 4.0, -6.01]));
-        assert!(!parallel(&[1.0, -2.0, 3.0], &[1.0, -2.0, 2.0]));
-        assert!(!parallel(&[0.0, 0.0], &[0.0, 0.0]));
-        assert!(!parallel(&[1.0, f64::NAN], &[1.0, 2.0]));
+    fn nothing_of_a_multiple_is_across_and_all_of_what_is_not_there() {
+        assert!(across(&[1.0, -2.0, 3.0], &[-2.0, 4.0, -6.0]) < 1e-12);
+        assert!((across(&[1.0, 0.0], &[1.0, 1.0]) - 0.5).abs() < 1e-12);
+        assert!((across(&[0.0, 0.0], &[0.0, 0.0]) - 1.0).abs() < 1e-12);
+        assert!((across(&[1.0, f64::NAN], &[1.0, 2.0]) - 1.0).abs() < 1e-12);
     }
 }
