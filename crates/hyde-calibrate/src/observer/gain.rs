@@ -13,6 +13,8 @@
 //! is one for all rows: the stationary covariance of a prediction if a channel that has a reading in every m-th row had one in
 //! each, of m times the variance, which tells as much in the mean.
 //!
+//! Where the model is not linear in these modes, exp(A T) is the mean over the records.
+//!
 //! The gain is made once from the nominal model and never again within a study: innovations stay comparable.
 
 use super::input_noise;
