@@ -3,7 +3,7 @@
 //! in Python, against `hyde run` of it.
 
 use super::clock::now;
-use super::promise::{Figure, Measured, Promise, Session};
+use super::promise::{Figure, Measured, Promise};
 use crate::fmu::{python, succeed};
 use crate::root;
 use serde_json::Value;
@@ -15,14 +15,14 @@ pub(super) const SWEEP: Figure = Figure {
     name: "python_sweep_ratio",
     unit: "of the rate of `hyde sweep`",
     promise: Promise::AtLeast(0.9),
-    measure: sweep,
+    measure: |_| beside(sweep),
 };
 
 pub(super) const RUN: Figure = Figure {
     name: "python_run_overhead_percent",
     unit: "% more time than `hyde run`",
     promise: Promise::AtMost(5.0),
-    measure: overhead,
+    measure: |_| beside(overhead),
 };
 
 /// Added to the first example; `sweep.py` has the same masses.
@@ -38,50 +38,36 @@ const ROUNDS: usize = 4;
 
 /// In Python the time is that of loading and of the runs, without the start of the interpreter; of the command it is that of the
 /// whole process.
-fn sweep(_: &Session) -> Result<Measured, String> {
-    let python = match python() {
-        Ok(python) => python,
-        Err(reason) => return Ok(Measured::Absent(reason)),
-    };
-    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-    package(folder.path())?;
-    let model = folder.path().join("first.hyde");
+fn sweep(python: &Path, folder: &Path) -> Result<f64, String> {
+    let model = folder.join("first.hyde");
     first_with_masses(&model).map_err(|error| error.to_string())?;
 
     let (mut in_python, mut by_command) = (f64::INFINITY, f64::INFINITY);
     for round in 0..ROUNDS {
-        let mut script = script(&python, "sweep.py", folder.path());
+        let mut script = script(python, "sweep.py", folder);
         let answer = json(&succeed(script.arg(&model))?)?;
         in_python = in_python.min(answer["s"].as_f64().unwrap_or(f64::NAN));
 
         let mut command = Command::new(root().join("target/release/hyde"));
         command.args(["sweep", "--json"]).arg(&model).arg("masses");
-        command
-            .arg("--out")
-            .arg(folder.path().join(round.to_string()));
+        command.arg("--out").arg(folder.join(round.to_string()));
         let start = now();
         let printed = succeed(&mut command)?;
         by_command = by_command.min(start.elapsed().as_secs_f64());
         let summary = json(printed.lines().last().unwrap_or_default())?;
         same(&answer["ways"], &summary["measures"][0]["quantiles"])?;
     }
-    Ok(Measured::Value(by_command / in_python))
+    Ok(by_command / in_python)
 }
 
 /// The time in Python is that of loading and of the run, without the start of the interpreter; of the command it is that of the
 /// whole process, which writes no files.
-fn overhead(_: &Session) -> Result<Measured, String> {
-    let python = match python() {
-        Ok(python) => python,
-        Err(reason) => return Ok(Measured::Absent(reason)),
-    };
-    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
-    package(folder.path())?;
+fn overhead(python: &Path, folder: &Path) -> Result<f64, String> {
     let model = root().join("examples/bench_axis/axis.hyde");
 
     let (mut in_python, mut by_command) = (f64::INFINITY, f64::INFINITY);
     for _ in 0..ROUNDS {
-        let mut script = script(&python, "run.py", folder.path());
+        let mut script = script(python, "run.py", folder);
         let answer = json(&succeed(script.arg(&model).arg("bench"))?)?;
         in_python = in_python.min(answer["s"].as_f64().unwrap_or(f64::NAN));
 
@@ -92,7 +78,18 @@ fn overhead(_: &Session) -> Result<Measured, String> {
         by_command = by_command.min(start.elapsed().as_secs_f64());
         same_channels(&answer["channels"], &json(&printed)?["channels"])?;
     }
-    Ok(Measured::Value(100.0 * (in_python / by_command - 1.0)))
+    Ok(100.0 * (in_python / by_command - 1.0))
+}
+
+/// Measures with an interpreter and a folder that it finds the package in; absent without an interpreter.
+fn beside(measure: fn(&Path, &Path) -> Result<f64, String>) -> Result<Measured, String> {
+    let python = match python() {
+        Ok(python) => python,
+        Err(reason) => return Ok(Measured::Absent(reason)),
+    };
+    let folder = tempfile::tempdir().map_err(|error| error.to_string())?;
+    package(folder.path())?;
+    measure(&python, folder.path()).map(Measured::Value)
 }
 
 /// A program beside this file, which finds the package in the folder.
