@@ -207,7 +207,8 @@ impl Model {
         Ok(found)
     }
 
-    /// Runs on another thread, while this one looks for Ctrl-C.
+    /// Runs with the lock of Python released. Signals come to the main thread: there the run is on another thread, while this
+    /// one looks for Ctrl-C.
     fn watched(
         &self,
         py: Python<'_>,
@@ -215,32 +216,14 @@ impl Model {
         keep: Option<Vec<usize>>,
         interrupted: &AtomicBool,
     ) -> PyResult<Run> {
-        let (done, ended) = std::sync::mpsc::channel();
-        let outcome = std::thread::scope(|scope| {
-            scope.spawn(move || {
-                let run =
-                    hyde_experiment::run_again(&self.compiled.program, &self.tables, options, keep);
-                // Whoever waits is there until this arrives.
-                let _ = done.send(run);
-            });
-            py.detach(move || {
-                loop {
-                    match ended.recv_timeout(LOOK) {
-                        Ok(run) => return Ok(run),
-                        Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {
-                            if let Err(signal) = Python::attach(|py| py.check_signals()) {
-                                interrupted.store(true, Ordering::Relaxed);
-                                return Err(signal);
-                            }
-                        }
-                        Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => {
-                            return Err(refusal::asked("the run ended without a result"));
-                        }
-                    }
-                }
-            })
-        });
-        outcome?.map_err(|error| self.failure(&error))
+        let run =
+            move || hyde_experiment::run_again(&self.compiled.program, &self.tables, options, keep);
+        let outcome = if in_main_thread(py)? {
+            unless_interrupted(py, run, interrupted)?
+        } else {
+            py.detach(run)
+        };
+        outcome.map_err(|error| self.failure(&error))
     }
 
     /// Refuses what a compiled model cannot take.
@@ -276,6 +259,43 @@ impl Model {
         };
         self.with_project(of_project).unwrap_or_else(|error| error)
     }
+}
+
+fn in_main_thread(py: Python<'_>) -> PyResult<bool> {
+    let threading = py.import("threading")?;
+    let current = threading.call_method0("current_thread")?;
+    Ok(current.is(&threading.call_method0("main_thread")?))
+}
+
+/// Computes on another thread; Ctrl-C tells it to end, and is raised when it has.
+fn unless_interrupted<T: Send>(
+    py: Python<'_>,
+    compute: impl FnOnce() -> T + Send,
+    interrupted: &AtomicBool,
+) -> PyResult<T> {
+    let (done, ended) = std::sync::mpsc::channel();
+    std::thread::scope(|scope| {
+        scope.spawn(move || {
+            // Whoever waits is there until this arrives.
+            let _ = done.send(compute());
+        });
+        py.detach(move || {
+            loop {
+                match ended.recv_timeout(LOOK) {
+                    Ok(computed) => return Ok(computed),
+                    Err(std::sync::mpsc::RecvTimeoutError::Timeout) => {
+                        if let Err(signal) = Python::attach(|py| py.check_signals()) {
+                            interrupted.store(true, Ordering::Relaxed);
+                            return Err(signal);
+                        }
+                    }
+                    Err(std::sync::mpsc::RecvTimeoutError::Disconnected) => {
+                        return Err(refusal::asked("the run ended without a result"));
+                    }
+                }
+            }
+        })
+    })
 }
 
 fn loaded(asked: &Asked) -> PyResult<Model> {
