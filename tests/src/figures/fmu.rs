@@ -22,7 +22,7 @@ const MODELS: [(&str, &str, &[&str], &str); 4] = [
 ];
 
 /// Examples whose FMUs integrate themselves, compared as they stand.
-const EXAMPLES: [(&str, &str); 8] = [
+const EXAMPLES: [(&str, &str); 9] = [
     ("examples/first/first.hyde", "push"),
     ("examples/bench_axis/axis.hyde", "bench"),
     ("examples/shaft/shaft.hyde", "step"),
@@ -31,6 +31,7 @@ const EXAMPLES: [(&str, &str); 8] = [
     ("examples/friction/friction.hyde", "beside"),
     ("examples/machine/machine.hyde", "circle"),
     ("examples/frequency_response/axis.hyde", "opened"),
+    ("examples/screw_waves/axis.hyde", "waves"),
 ];
 
 pub(super) const DEVIATION: Figure = Figure {

@@ -33,11 +33,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let folder = Path::new(results).with_extension("unpacked");
     fmi_rs::zip::extract_zip_archive(fmu, &folder)?;
     let (start, stop): (f64, f64) = (start.parse()?, stop.parse()?);
+    let divided = divided(start, stop, steps.parse()?);
+    let (stop, interval) = divided.ok_or("fmi-rs cannot divide the time into so many steps")?;
     let asked = Asked {
         events: events == "events",
         start,
         stop,
-        interval: interval(stop - start, steps.parse()?),
+        interval,
         results: results.into(),
         log: log.into(),
         names: std::fs::read_to_string(names)?
@@ -55,15 +57,22 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// A step of which the time is a whole multiple to the last bit, which fmi-rs asks for.
-fn interval(time: f64, steps: u32) -> f64 {
-    let near = time / f64::from(steps);
-    let bits = near.to_bits();
-    let tried = (0..64).flat_map(|k| [bits + k, bits - k]);
-    let mut exact = tried.map(f64::from_bits);
-    exact
-        .find(|step| (time / step).fract() == 0.0)
-        .unwrap_or(near)
+/// The stop time, and a step of which the time is a whole multiple to the last bit, which fmi-rs asks for: 20 ms in 1000 steps
+/// have none, but 20 ms and a unit in the last place have one.
+fn divided(start: f64, stop: f64, steps: u32) -> Option<(f64, f64)> {
+    let whole = |stop: f64, interval: f64| (stop - start) / interval == f64::from(steps);
+    neighbours(stop).find_map(|stop| {
+        let near = (stop - start) / f64::from(steps);
+        let interval = neighbours(near).find(|interval| whole(stop, *interval))?;
+        Some((stop, interval))
+    })
+}
+
+/// A positive number and those next to it, the nearest first.
+fn neighbours(number: f64) -> impl Iterator<Item = f64> {
+    let bits = number.to_bits();
+    let near = (1..4).flat_map(move |k| [bits + k, bits - k]);
+    std::iter::once(bits).chain(near).map(f64::from_bits)
 }
 
 fn three(asked: &Asked, description: &Path) -> Result<(), Box<dyn Error>> {
