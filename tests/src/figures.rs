@@ -99,6 +99,7 @@ pub const FIGURES: &[Figure] = &[
     traces::MUTATED,
     csv_reading::RATE,
     csv_reading::MEMORY,
+    csv_reading::OVER_POLARS,
     event_suite::FIGURE,
     events::P2,
     events::P3,

@@ -1,8 +1,12 @@
-//! `csv_mb_per_s` and `csv_memory_over_kept`: how a long record is read.
+//! `csv_mb_per_s`, `csv_memory_over_kept` and `csv_time_over_polars`: how a long record is read.
 //!
 //! A CSV of ten million rows and eight columns, 0.8 GB, is read by a process of its own: the file, its columns, and the checks
 //! of its time. The rate is that of CPU time, the kernel's included, so that it is one of one core. What is kept is eight
-//! doubles a row; the most memory that the process had, with all of the file's text, is compared with it.
+//! doubles a row; the most memory that the process had, with all of the file's text, is compared with it. Polars reads the same
+//! file on one thread, in Python.
+//!
+//! Each reading is repeated by turns and the quickest counts: a virtual machine that was idle gets its memory back from its host
+//! at the first touch, which took as long as the reading itself where it was measured.
 
 use super::process::{cpu_s, memory_kb, this_program};
 use super::promise::{Figure, Measured, Promise};
@@ -18,8 +22,51 @@ pub(super) const RATE: Figure = Figure {
     name: "csv_mb_per_s",
     unit: "MB/s",
     promise: Promise::AtLeast(200.0),
-    measure: |_| Ok(Measured::Value(read()?.mb_per_s)),
+    measure: |_| {
+        let mut quickest = 0.0_f64;
+        for _ in 0..ROUNDS {
+            quickest = quickest.max(read()?.mb_per_s);
+        }
+        Ok(Measured::Value(quickest))
+    },
 };
+
+/// The CPU time over that of Polars on one thread.
+pub(super) const OVER_POLARS: Figure = Figure {
+    name: "csv_time_over_polars",
+    unit: "ratio",
+    promise: Promise::AtMost(1.5),
+    measure: |_| {
+        let python = root().join("target/python/bin/python");
+        if !python.is_file() {
+            let reason = "Polars is not installed in target/python: `./dev test` does it";
+            return Ok(Measured::Absent(reason.to_owned()));
+        }
+        let (mut own, mut others) = (0.0_f64, 0.0_f64);
+        for _ in 0..ROUNDS {
+            own = own.max(read()?.mb_per_s);
+            let mut command = Command::new(&python);
+            command.env("POLARS_MAX_THREADS", "1");
+            command.args(["-c", READ_BY_POLARS]).arg(written()?);
+            let said = succeed(&mut command)?;
+            let rate = said.trim().parse::<f64>().map_err(|_| said)?;
+            others = others.max(rate);
+        }
+        Ok(Measured::Value(others / own))
+    },
+};
+
+/// Reads a file and prints the rate.
+const READ_BY_POLARS: &str = "
+import os, sys, time
+import polars
+start = time.process_time()
+polars.read_csv(sys.argv[1])
+print(os.path.getsize(sys.argv[1]) / 1e6 / (time.process_time() - start))
+";
+
+/// Each is measured so often.
+const ROUNDS: usize = 3;
 
 /// The most memory over that of the doubles that are kept.
 pub(super) const MEMORY: Figure = Figure {

@@ -1,5 +1,4 @@
-//! [`PlainRows`]: the rows of a text without quotes, as the places of their cells in it. A record has millions of rows: nothing is
-//! copied.
+//! [`PlainRows`]: the rows of a text without quotes, as parts of it. A record has millions of rows: nothing is copied.
 
 /// A line that begins with it is a comment.
 pub(super) const COMMENT: u8 = b'#';
@@ -11,8 +10,8 @@ pub(super) struct PlainRows<'a> {
     /// Where the search for the row began, and where it ends.
     begin: usize,
     end: usize,
-    /// Where each cell begins and ends.
-    cells: Vec<(usize, usize)>,
+    /// Without blanks round them.
+    cells: Vec<&'a str>,
 }
 
 impl<'a> PlainRows<'a> {
@@ -50,23 +49,22 @@ impl<'a> PlainRows<'a> {
         let mut cell = at;
         for (place, &byte) in bytes.iter().enumerate().skip(at) {
             if byte == self.separator {
-                self.cells.push((cell, place));
+                self.cells.push(trimmed(&self.text[cell..place]));
                 cell = place + 1;
             } else if matches!(byte, b'\n' | b'\r') {
-                self.cells.push((cell, place));
+                self.cells.push(trimmed(&self.text[cell..place]));
                 self.end = place + 1;
                 return true;
             }
         }
-        self.cells.push((cell, bytes.len()));
+        self.cells.push(trimmed(&self.text[cell..]));
         self.end = bytes.len();
         true
     }
 
-    /// A cell of the row; empty behind the last one.
+    /// A cell of the row, without blanks round it; empty behind the last one.
     pub(super) fn cell(&self, at: usize) -> &'a str {
-        let place = self.cells.get(at);
-        place.map_or("", |&(begin, end)| &self.text[begin..end])
+        self.cells.get(at).copied().unwrap_or("")
     }
 
     /// How many cells the row has.
@@ -82,5 +80,13 @@ impl<'a> PlainRows<'a> {
     /// Where the row ends.
     pub(super) fn end(&self) -> usize {
         self.end
+    }
+}
+
+/// Without blanks round it; most cells have none.
+pub(super) fn trimmed(cell: &str) -> &str {
+    match cell.as_bytes() {
+        [b'!'..=b'~'] | [b'!'..=b'~', .., b'!'..=b'~'] => cell,
+        _ => cell.trim(),
     }
 }

@@ -1,7 +1,7 @@
 //! The rows of a CSV text, without blank lines and comments, and the line each of them is on.
 
 use super::ReadError;
-use super::plain_rows::{COMMENT, PlainRows};
+use super::plain_rows::{COMMENT, PlainRows, trimmed};
 use crate::heading::Heading;
 use ::csv::{ReaderBuilder, StringRecord};
 
@@ -96,10 +96,10 @@ impl<'a> Rows<'a> {
 
     /// A cell of the row, without blanks and quotes round it; empty behind the last one.
     pub(super) fn cell(&self, at: usize) -> &str {
-        trimmed(match &self.source {
+        match &self.source {
             Source::Plain(rows) => rows.cell(at),
-            Source::Quoted(_, record) => record.get(at).unwrap_or(""),
-        })
+            Source::Quoted(_, record) => trimmed(record.get(at).unwrap_or("")),
+        }
     }
 
     /// The cells of the row.
@@ -176,15 +176,15 @@ impl<'a> Rows<'a> {
 
 /// The cells of one line.
 pub(super) fn cells_of(line: &str, separator: u8) -> Vec<String> {
-    let owned = |cell: &str| trimmed(cell).to_owned();
     if !line.contains('"') {
         let mut rows = PlainRows::new(line, separator);
         rows.advance();
-        return (0..rows.count()).map(|at| owned(rows.cell(at))).collect();
+        let cells = (0..rows.count()).map(|at| rows.cell(at).to_owned());
+        return cells.collect();
     }
     let mut record = StringRecord::new();
     match reader(line, separator).read_record(&mut record) {
-        Ok(true) => record.iter().map(owned).collect(),
+        Ok(true) => record.iter().map(|cell| trimmed(cell).to_owned()).collect(),
         Ok(false) | Err(_) => Vec::new(),
     }
 }
@@ -196,14 +196,6 @@ fn reader(text: &str, separator: u8) -> ::csv::Reader<&[u8]> {
         .has_headers(false)
         .flexible(true)
         .from_reader(text.as_bytes())
-}
-
-/// Without blanks round it; most cells have none.
-fn trimmed(cell: &str) -> &str {
-    match cell.as_bytes() {
-        [b'!'..=b'~'] | [b'!'..=b'~', .., b'!'..=b'~'] => cell,
-        _ => cell.trim(),
-    }
 }
 
 #[cfg(test)]
