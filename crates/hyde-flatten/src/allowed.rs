@@ -172,7 +172,7 @@ impl<'a> Model<'a, '_> {
             self.flat.asserts.push(Assert {
                 condition,
                 message: format!("`{name}{element}` is {side} its `{word}`, {limit_text}"),
-                origin: self.origin(instance, bound.span),
+                origin: self.tree.origin(instance, bound.span),
             });
         }
     }

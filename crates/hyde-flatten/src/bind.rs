@@ -2,6 +2,8 @@
 
 mod elements;
 
+use crate::wrap::wrapped;
+use crate::zero;
 use elements::Elements;
 
 use crate::dimension::Dim;
@@ -23,7 +25,7 @@ impl<'a> Model<'a, '_> {
         for param in self.flat.parameters.ids() {
             self.lower_parameter(param);
         }
-        for instance in 0..self.instances.len() {
+        for instance in self.tree.ids() {
             self.lower_clocks(instance);
         }
         for var in self.flat.variables.ids() {
@@ -137,7 +139,7 @@ impl<'a> Model<'a, '_> {
             Code::NoValue,
             format!("the parameter `{name}` has no value"),
         );
-        let instance = &self.instances[self.parameters[param.index()].of];
+        let instance = &self.tree[self.parameters[param.index()].of];
         match instance.parent {
             Some(_) => diagnostic
                 .label(instance.span, format!("gives no `{word}`"))
@@ -196,18 +198,17 @@ impl<'a> Model<'a, '_> {
     }
 
     fn lower_clocks(&mut self, instance: InstanceId) {
-        for (_, element) in self.instances[instance].elements.clone() {
+        for (_, element) in self.tree[instance].elements.clone() {
             let Element::Clocked(clocked) = element else {
                 continue;
             };
-            let Some(Member::Instance(part)) = self.instances[instance]
-                .members
-                .get(clocked.name.text.as_str())
+            let Some(Member::Instance(part)) =
+                self.tree[instance].members.get(clocked.name.text.as_str())
             else {
                 continue;
             };
             let part = *part;
-            let Some(clock) = self.instances[part].clock else {
+            let Some(clock) = self.clock_of(part) else {
                 continue;
             };
             if self.is_event_clock(clocked) {
@@ -314,7 +315,7 @@ impl<'a> Model<'a, '_> {
                 range: Range::SCALAR,
                 lhs: self.flat.exprs.add(Ir::Var(var, Index::fixed(at))),
                 rhs: self.flat.exprs.at_counter(start, at),
-                origin: self.origin(instance, span),
+                origin: self.tree.origin(instance, span),
             };
             self.flat.initial_equations.push(equation);
         }
@@ -358,7 +359,7 @@ impl<'a> Model<'a, '_> {
             role: Role::Plain,
             range: None,
             source: None,
-            origin: self.origin(instance, span),
+            origin: self.tree.origin(instance, span),
         });
         let start = self.flat.exprs.add(Ir::Param(param, Index::SCALAR));
         self.flat.variables[var].start = vec![start];
@@ -386,6 +387,7 @@ impl<'a> Model<'a, '_> {
         }
         let len = self.flat.variables[var].len;
         let origin = self
+            .tree
             .origin(self.notes(var).instance, binding.span)
             .made_by(MadeBy::Binding);
         let list: Vec<(Range, Index, Typed)> = match (self.elements(&binding, len, setting), len) {
@@ -402,7 +404,7 @@ impl<'a> Model<'a, '_> {
                 vec![(range, index, value)]
             }
             (Elements::All(value), None) => {
-                let value = self.wrapped(var, value, setting);
+                let value = wrapped(self, var, value, setting);
                 vec![(Range::SCALAR, Index::SCALAR, value)]
             }
         };
@@ -414,7 +416,7 @@ impl<'a> Model<'a, '_> {
             };
             self.same_kind(&declared, &value);
             self.check_whole(&declared, &value);
-            self.shown_as_difference(&declared, &value);
+            zero::show_difference(&mut self.flat, &mut self.variables, (&declared, &value));
             self.agree(
                 &declared,
                 &value,

@@ -82,15 +82,15 @@ impl<'a> Model<'a, '_> {
         for side in sides {
             match self.resolve(side, scope) {
                 Some(Resolved::Instance(instance))
-                    if self.instances[instance].class.kind == ClassKind::Connector =>
+                    if self.tree[instance].class.kind == ClassKind::Connector =>
                 {
-                    let outside = self.instances[instance].parent == Some(scope.instance);
-                    let inside_part = self.instances[instance]
+                    let outside = self.tree[instance].parent == Some(scope.instance);
+                    let inside_part = self.tree[instance]
                         .parent
-                        .and_then(|parent| self.instances[parent].parent);
+                        .and_then(|parent| self.tree[parent].parent);
                     if !outside
                         && inside_part != Some(scope.instance)
-                        && self.instances[scope.instance].outer.is_none()
+                        && self.tree[scope.instance].outer.is_none()
                     {
                         self.report(
                             Diagnostic::error(
@@ -112,8 +112,8 @@ impl<'a> Model<'a, '_> {
                     signals.push((var, index, side));
                 }
                 Some(Resolved::Instance(instance)) => {
-                    let class = self.instances[instance].class.name.text.clone();
-                    let known: Vec<&str> = self.instances[instance]
+                    let class = self.tree[instance].class.name.text.clone();
+                    let known: Vec<&str> = self.tree[instance]
                         .members
                         .iter()
                         .filter(|(_, member)| self.is_connector(member))
@@ -160,7 +160,7 @@ impl<'a> Model<'a, '_> {
             ),
             (Some((first, ..)), None) => {
                 let same = |instance: InstanceId| {
-                    std::ptr::eq(self.instances[instance].class, self.instances[first].class)
+                    std::ptr::eq(self.tree[instance].class, self.tree[first].class)
                 };
                 if let Some((other, _, side)) = connectors
                     .iter()
@@ -168,8 +168,8 @@ impl<'a> Model<'a, '_> {
                     .find(|(instance, ..)| !same(*instance))
                 {
                     let (a, b) = (
-                        &self.instances[first].class.name.text,
-                        &self.instances[other].class.name.text,
+                        &self.tree[first].class.name.text,
+                        &self.tree[other].class.name.text,
                     );
                     let message =
                         format!("connectors of different types are connected: `{a}` and `{b}`");
@@ -200,7 +200,7 @@ impl<'a> Model<'a, '_> {
                     .map(|(instance, inside, _)| (*instance, *inside))
                     .collect();
                 let origin = self
-                    .origin(scope.instance, span)
+                    .tree.origin(scope.instance, span)
                     .made_by(MadeBy::Connection);
                 self.connections.push(Connection { sides, origin });
             }
@@ -220,7 +220,7 @@ impl<'a> Model<'a, '_> {
                     self.same_kind(&left, &right);
                     self.agree(&left, &right, "`connect` joins", scope.instance);
                     let origin = self
-                        .origin(scope.instance, span)
+                        .tree.origin(scope.instance, span)
                         .made_by(MadeBy::Connection);
                     equations.push(Equation {
                         range: Range::SCALAR,
@@ -230,7 +230,7 @@ impl<'a> Model<'a, '_> {
                     });
                 }
                 let clocked = matches!(self.flat.variables[first].kind, VariableKind::Clocked(_));
-                match (clocked, self.instances[scope.instance].clock) {
+                match (clocked, self.clock_of(scope.instance)) {
                     (true, Some(clock)) if scope.setting == Setting::Clocked => {
                         let list = equations
                             .into_iter()
@@ -247,7 +247,7 @@ impl<'a> Model<'a, '_> {
     /// Turns all connections into equations.
     pub(crate) fn connect(&mut self) {
         let sets = self.connection_sets();
-        let mut connected_inside = vec![false; self.instances.len()];
+        let mut connected_inside = vec![false; self.tree.len()];
         for (members, origin) in &sets {
             for &(instance, inside) in members {
                 connected_inside[instance] |= inside;
@@ -256,7 +256,7 @@ impl<'a> Model<'a, '_> {
             self.flows(members);
         }
         for (id, connected) in connected_inside.into_iter().enumerate() {
-            if self.instances[id].class.kind != ClassKind::Connector || connected {
+            if self.tree[id].class.kind != ClassKind::Connector || connected {
                 continue;
             }
             // A top-level connector, and one that no parent connects: nothing flows in.
@@ -267,7 +267,8 @@ impl<'a> Model<'a, '_> {
                 let lhs = self.flat.exprs.var(var);
                 let rhs = self.flat.exprs.constant(0.0);
                 let origin = self
-                    .origin(id, self.instances[id].span)
+                    .tree
+                    .origin(id, self.tree[id].span)
                     .made_by(MadeBy::Unconnected);
                 self.flat.equations.push(Equation {
                     range: Range::SCALAR,
@@ -367,13 +368,13 @@ impl<'a> Model<'a, '_> {
         let told: Vec<(InstanceId, String)> = match *members {
             [_] => return,
             [(from, true), (to, true)] => {
-                let (from, to) = (&self.instances[from].path, to);
-                vec![(to, format!("{from} to {}", self.instances[to].path))]
+                let (from, to) = (&self.tree[from].path, to);
+                vec![(to, format!("{from} to {}", self.tree[to].path))]
             }
             [_, _] => return,
             _ => {
                 let inside = members.iter().filter(|(_, inside)| *inside);
-                let told = |&(id, _): &Side| (id, format!("into {}", self.instances[id].path));
+                let told = |&(id, _): &Side| (id, format!("into {}", self.tree[id].path));
                 inside.map(told).collect()
             }
         };
@@ -399,7 +400,7 @@ impl<'a> Model<'a, '_> {
 
     /// The variables of a connector in the order of their names.
     fn variables_of(&self, connector: InstanceId) -> Vec<VarId> {
-        let members = self.instances[connector].members.values();
+        let members = self.tree[connector].members.values();
         members
             .filter_map(|member| match member {
                 Member::Variable(var) => Some(*var),
@@ -412,7 +413,7 @@ impl<'a> Model<'a, '_> {
     }
 
     fn is_connector(&self, member: &Member) -> bool {
-        matches!(member, Member::Instance(id) if self.instances[*id].class.kind == ClassKind::Connector)
+        matches!(member, Member::Instance(id) if self.tree[*id].class.kind == ClassKind::Connector)
     }
 }
 

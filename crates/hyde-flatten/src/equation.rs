@@ -11,6 +11,7 @@ mod range;
 
 use crate::instance::{Counter, Elementwise, InstanceId, Position, Scope, Setting};
 use crate::model::Model;
+use crate::zero;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::Range;
 use hyde_ir::flat::{Assert, ClockedEquation, Equation};
@@ -19,15 +20,15 @@ use hyde_syntax::ast::{self, Element, EquationKind, Expr, ExprKind};
 impl<'a> Model<'a, '_> {
     /// Lowers the equations, modes and events of every instance.
     pub(crate) fn lower_equations(&mut self) {
-        for id in 0..self.instances.len() {
-            let clock = self.instances[id].clock;
+        for id in self.tree.ids() {
+            let clock = self.clock_of(id);
             let setting = if clock.is_some() {
                 Setting::Clocked
             } else {
                 Setting::Equation
             };
             let scope = Scope::new(id, setting);
-            for (_, element) in self.instances[id].elements.clone() {
+            for (_, element) in self.tree[id].elements.clone() {
                 match element {
                     Element::Equation(equation) | Element::Add(equation) => {
                         let list = self.equation(equation, &scope);
@@ -46,7 +47,7 @@ impl<'a> Model<'a, '_> {
                         self.flat.initial_equations.extend(list);
                     }
                     Element::Modes(modes) => self.modes(modes, id),
-                    Element::Measure(measure) if self.instances[id].parent.is_none() => {
+                    Element::Measure(measure) if self.tree[id].parent.is_none() => {
                         self.measure(measure, id)
                     }
                     Element::Measure(_)
@@ -67,8 +68,8 @@ impl<'a> Model<'a, '_> {
 
     /// Finds the end fluxes that field equations need, before anything reads them.
     pub(crate) fn make_traces_of_equations(&mut self) {
-        for id in 0..self.instances.len() {
-            for (_, element) in self.instances[id].elements.clone() {
+        for id in self.tree.ids() {
+            for (_, element) in self.tree[id].elements.clone() {
                 if let Element::Equation(ast::Equation {
                     kind:
                         EquationKind::Equality {
@@ -127,7 +128,7 @@ impl<'a> Model<'a, '_> {
             }
             EquationKind::Assert(condition, message) => {
                 let condition = self.truth(condition, &scope.with(Setting::Condition));
-                let origin = self.origin(scope.instance, span);
+                let origin = self.tree.origin(scope.instance, span);
                 self.flat.asserts.push(Assert {
                     condition,
                     message: message.clone(),
@@ -196,10 +197,10 @@ impl<'a> Model<'a, '_> {
         self.same_kind(&left, &right);
         if matches!(lhs.kind, ExprKind::Reference(_)) {
             self.check_whole(&left, &right);
-            self.shown_as_difference(&left, &right);
+            zero::show_difference(&mut self.flat, &mut self.variables, (&left, &right));
         }
         self.agree(&left, &right, "`=` equates", scope.instance);
-        let origin = self.origin(scope.instance, span);
+        let origin = self.tree.origin(scope.instance, span);
         (!self.needs_unrolling).then_some(Equation {
             range,
             lhs: left.id,

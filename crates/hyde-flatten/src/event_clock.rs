@@ -15,7 +15,7 @@ use hyde_ir::flat::{Action, ClockedEquation, Equation, When};
 use hyde_ir::{ClockId, Expr as Ir, ExprId, Id as _, Index, Memo, Range, VarId, VariableKind};
 use hyde_syntax::ast;
 use hyde_units::Dimension;
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// `x = e` at an event.
 struct Assignment {
@@ -238,7 +238,7 @@ impl<'a> Model<'a, '_> {
 
     /// Takes clocks out of the list; the others have new numbers then.
     fn remove_clocks(&mut self, gone: &[ClockId]) {
-        let mut numbers: HashMap<ClockId, ClockId> = HashMap::new();
+        let mut numbers: BTreeMap<ClockId, ClockId> = BTreeMap::new();
         let mut kept = Vec::new();
         for (clock, known) in self.flat.clocks.enumerate() {
             if !gone.contains(&clock) {
@@ -256,14 +256,10 @@ impl<'a> Model<'a, '_> {
                 *clock = numbers[clock];
             }
         }
-        for instance in &mut self.instances {
-            instance.clock = instance
-                .clock
-                .and_then(|clock| numbers.get(&clock).copied());
-        }
         let held = std::mem::take(&mut self.held).into_iter();
         let held = held
             .filter_map(|((clock, source), held)| Some(((*numbers.get(&clock)?, source), held)));
         self.held = held.collect();
+        self.kept_clocks = Some(numbers);
     }
 }

@@ -15,6 +15,7 @@ mod modification;
 mod offer;
 mod parameter;
 mod quantity;
+mod tree;
 mod variable;
 
 use crate::instance::{Instance, InstanceId};
@@ -26,6 +27,7 @@ use hyde_ir::ClockId;
 use hyde_syntax::ast::{Change, Class, ClassBody, Element, Prefix, Reference};
 use modification::Modifier;
 pub(crate) use offer::Offer;
+pub(crate) use tree::InstanceTree;
 
 /// Elements of a class and its bases, each with the modifications of the `extends` clauses on the way.
 struct Collected<'a> {
@@ -128,8 +130,7 @@ impl<'a> Model<'a, '_> {
             clock,
             span,
         } = place;
-        let id = self.instances.len();
-        self.instances.push(Instance {
+        let id = self.tree.push(Instance {
             path,
             file,
             class,
@@ -180,7 +181,7 @@ impl<'a> Model<'a, '_> {
         self.collect(walk, class, &mut collected);
         self.extended = extended;
         self.members(id, &collected);
-        self.offer(id);
+        offer::offer(self, id);
         id
     }
 
@@ -238,10 +239,11 @@ impl<'a> Model<'a, '_> {
                 | Element::Account(..) => {}
             }
         }
-        self.instances[id].elements = collected
+        let elements = collected
             .iter()
             .map(|item| (item.file, item.element))
             .collect();
+        self.tree.set_elements(id, elements);
     }
 
     /// The elements of a class, those of its bases first.
@@ -271,7 +273,7 @@ impl<'a> Model<'a, '_> {
             // Told once: what is beyond it is left out.
             if self.extended <= MAX_EXTENDED + 1 {
                 self.extended = MAX_EXTENDED + 1;
-                let name = &self.instances[walk.id].class.name;
+                let name = &self.tree[walk.id].class.name;
                 self.too_deep(
                     format!(
                         "`{}` extends more than {MAX_BASES} classes in a chain, or more than {MAX_EXTENDED} in all",
@@ -333,7 +335,7 @@ impl<'a> Model<'a, '_> {
 
     /// How many instances are around an instance, itself counted.
     fn depth(&self, id: InstanceId) -> usize {
-        std::iter::successors(Some(id), |&id| self.instances[id].parent).count()
+        self.tree.around(id).count()
     }
 
     /// Reports a limit that is passed.
@@ -344,10 +346,10 @@ impl<'a> Model<'a, '_> {
 
     /// How often the class of an instance is that of the instances around it, itself counted.
     fn nested(&self, id: InstanceId) -> usize {
-        let class = self.instances[id].class;
-        let around = std::iter::successors(Some(id), |&id| self.instances[id].parent);
+        let class = self.tree[id].class;
+        let around = self.tree.around(id);
         around
-            .filter(|&id| std::ptr::eq(self.instances[id].class, class))
+            .filter(|&id| std::ptr::eq(self.tree[id].class, class))
             .count()
     }
 }

@@ -9,10 +9,12 @@
 //! Whoever asks what a model lacks puts laws there: `add a.f = -(law)` on the connector, `wrap grip by grip + law` on the
 //! component. What is declared wrongly is reported for every class that the model has.
 
+use crate::candidates::sites;
 use crate::instance::{InstanceId, Member};
 use crate::law_roles::{Refusal, roles, wrong};
 use crate::model::{Model, listed};
 use crate::names::{FileIndex, nearest};
+use crate::site::declared_with;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{Quantity, VarId};
 use hyde_syntax::ast::{
@@ -63,7 +65,7 @@ impl<'a> Model<'a, '_> {
     /// Finds the sites that a law may act on, and reports those that are declared wrongly, each declaration once.
     pub(crate) fn find_law_sites(&mut self) {
         let mut wrong: BTreeSet<Span> = BTreeSet::new();
-        for id in 0..self.instances.len() {
+        for id in self.tree.ids() {
             for declared in self.with_over(id) {
                 let (.., declarator) = declared;
                 match self.law_site(id, declared) {
@@ -80,15 +82,15 @@ impl<'a> Model<'a, '_> {
     /// The sites of the model where a law may act, connectors that are one site once.
     pub(crate) fn named_law_sites(&mut self) -> Vec<LawSite> {
         let found = std::mem::take(&mut self.law_sites);
-        let sites = self.sites();
+        let sites = sites(&self.tree, &self.flat, &self.variables);
         let named = found.into_iter().filter_map(|(id, site)| {
-            if self.is_of_effect(id) || self.instances[id].clock.is_some() {
+            if self.tree.is_of_effect(id) || self.clock_of(id).is_some() {
                 return None;
             }
             let aliases = match sites.get(&id).map(Vec::as_slice) {
                 None => Vec::new(),
                 Some([first, others @ ..]) if *first == id => {
-                    let path = |&other: &InstanceId| self.path(other).as_str().to_owned();
+                    let path = |&other: &InstanceId| self.tree.path(other).as_str().to_owned();
                     others.iter().map(path).collect()
                 }
                 Some(_) => return None,
@@ -99,7 +101,7 @@ impl<'a> Model<'a, '_> {
     }
 
     fn with_over(&self, id: InstanceId) -> Vec<Declared<'a>> {
-        let elements = self.instances[id].elements.iter();
+        let elements = self.tree[id].elements.iter();
         let of = |&(file, element): &(FileIndex, &'a Element)| {
             let Element::Declaration(declaration) = element else {
                 return Vec::new();
@@ -120,7 +122,7 @@ impl<'a> Model<'a, '_> {
     ) -> Result<LawSite, Refusal> {
         let name = declarator.name.text.as_str();
         let span = declarator.name.span;
-        let instance = &self.instances[id];
+        let instance = &self.tree[id];
         let connector = instance.class.kind == ClassKind::Connector;
         if !may_have_laws(declaration, connector) {
             let (label, help) = match connector {
@@ -180,7 +182,7 @@ impl<'a> Model<'a, '_> {
         };
         let class = self.declaring_class((instance.file, instance.class), declaration);
         Ok(LawSite {
-            path: self.path(id).as_str().to_owned(),
+            path: self.tree.path(id).as_str().to_owned(),
             aliases: Vec::new(),
             host: self.full_name(file, class.ok_or(None)?),
             target,
@@ -223,7 +225,7 @@ impl<'a> Model<'a, '_> {
             if !part.subscripts.is_empty() {
                 return Err(not_a_variable(name.span));
             }
-            match self.instances[at].members.get(word) {
+            match self.tree[at].members.get(word) {
                 Some(Member::Instance(inner)) => at = *inner,
                 Some(Member::Variable(var))
                     if number + 1 == name.parts.len() && self.is_one_number(*var) =>
@@ -233,9 +235,9 @@ impl<'a> Model<'a, '_> {
                 Some(_) => break,
                 None if self.undeclared.contains(word) => return Err(None),
                 None => {
-                    let members = self.instances[at].members.keys();
+                    let members = self.tree[at].members.keys();
                     let known: Vec<&str> = members.copied().collect();
-                    let class = &self.instances[at].class.name.text;
+                    let class = &self.tree[at].class.name.text;
                     let message = format!("there is no `{word}` in `{class}`");
                     let diagnostic = Diagnostic::error(Code::UnknownName, message);
                     let diagnostic = diagnostic.label(part.name.span, "not known");
@@ -282,7 +284,7 @@ impl<'a> Model<'a, '_> {
         value: &Expr,
         dimension: Dimension,
     ) -> Result<String, Refusal> {
-        let mut names = self.declared(id, &WRAPPED);
+        let mut names = declared_with(&self.tree, id, &WRAPPED);
         names.retain(|name| *name != site);
         let word = if let ExprKind::Reference(name) = &value.kind {
             name.as_word()
@@ -303,7 +305,7 @@ impl<'a> Model<'a, '_> {
                 },
             ));
         };
-        if let Some(Member::Variable(var)) = self.instances[id].members.get(word) {
+        if let Some(Member::Variable(var)) = self.tree[id].members.get(word) {
             let own = self.flat.variables[*var].quantity.dimension;
             if own.agreement(dimension) == Agreement::Different {
                 return Err(wrong(
@@ -336,7 +338,7 @@ impl<'a> Model<'a, '_> {
             {
                 return Some(class);
             }
-            waiting.extend(self.bases(file, class));
+            waiting.extend(self.names.bases(file, class));
         }
         None
     }

@@ -22,8 +22,8 @@ impl<'a> Model<'a, '_> {
         if !self.input.ledger {
             return;
         }
-        for id in 0..self.instances.len() {
-            for (_, element) in self.instances[id].elements.clone() {
+        for id in self.tree.ids() {
+            for (_, element) in self.tree[id].elements.clone() {
                 if let Element::Account(kind, measure) = element {
                     self.account(id, *kind, measure);
                 }
@@ -61,7 +61,7 @@ impl<'a> Model<'a, '_> {
             pieces.push((range, value));
         }
         self.flat.experiment.ledger.accounts.push(Account {
-            component: self.instances[id].path.clone(),
+            component: self.tree[id].path.clone(),
             name: account.name.text.clone(),
             kind,
             pieces,
@@ -84,18 +84,18 @@ impl<'a> Model<'a, '_> {
         if !self.input.ledger {
             return;
         }
-        for id in 0..self.instances.len() {
-            let Some(parent) = self.instances[id].parent else {
+        for id in self.tree.ids() {
+            let Some(parent) = self.tree[id].parent else {
                 continue;
             };
-            let is_connector = self.instances[id].class.kind == ClassKind::Connector;
-            if !is_connector || self.instances[parent].parent.is_none() {
+            let is_connector = self.tree[id].class.kind == ClassKind::Connector;
+            if !is_connector || self.tree[parent].parent.is_none() {
                 continue;
             }
             let mut flows = Vec::new();
             let mut potentials = Vec::new();
             // In the order of declaration: the first flow belongs to the first potential.
-            let mut own: Vec<VarId> = self.instances[id]
+            let mut own: Vec<VarId> = self.tree[id]
                 .members
                 .values()
                 .filter_map(|member| match member {
@@ -125,7 +125,7 @@ impl<'a> Model<'a, '_> {
                 let mut leaf = |var| self.flat.exprs.add(Ir::Var(var, Index::SCALAR));
                 let (flow, potential) = (leaf(flow), leaf(potential));
                 self.flat.experiment.ledger.ports.push(Port {
-                    component: self.instances[parent].path.clone(),
+                    component: self.tree[parent].path.clone(),
                     kind,
                     flow,
                     potential,

@@ -177,6 +177,9 @@ pub fn laws(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Laws> {
     let before = diagnostics.error_count();
     let mut model = model::Model::new(input, diagnostics);
     build(&mut model)?;
+    if let Some(refused) = foreign::refuse_observer(&model.flat, input.form) {
+        model.report(refused);
+    }
     let sites = model.named_law_sites();
     let shapes = model.law_shapes();
     (diagnostics.error_count() == before).then_some(Laws { sites, shapes })
@@ -188,7 +191,13 @@ pub fn meaning(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Meaning {
     let mut model = model::Model::new(input, diagnostics);
     model.lowered = Some(Vec::new());
     match build(&mut model) {
-        Some(()) => model.meaning(),
+        Some(()) => meaning::meaning(
+            &model.lowered.unwrap_or_default(),
+            &model.flat,
+            &model.parameters,
+            &model.dimensions,
+            input.files.first().map(|(id, _)| *id),
+        ),
         None => Meaning::default(),
     }
 }
@@ -203,8 +212,11 @@ fn flat_model(
     let mut model = model::Model::new(input, diagnostics);
     model.offering = offering;
     build(&mut model)?;
-    let candidates = model.candidates();
+    let candidates = candidates::candidates(&mut model);
     let flat = model.flat;
+    if !offering && let Some(refused) = foreign::refuse_observer(&flat, input.form) {
+        diagnostics.push(refused);
+    }
     (diagnostics.error_count() == before).then_some((flat, candidates))
 }
 
@@ -217,7 +229,7 @@ fn build(model: &mut model::Model<'_, '_>) -> Option<()> {
     model.lower_equations();
     model.check_asserts();
     model.bounded_variables();
-    model.finish_effects();
+    wrap::finish_effects(model);
     model.replay_equations(false);
     model.connect();
     model.replay_equations(true);
@@ -225,10 +237,23 @@ fn build(model: &mut model::Model<'_, '_>) -> Option<()> {
     model.experiment(root);
     model.free_inputs(root);
     model.accounts();
-    model.finish();
+    model.flat.declared = model.tree.declared();
+    model.report_undriven();
+    model.solve_dimensions();
+    finish::settle_variables(
+        &mut model.flat.variables,
+        &model.variables,
+        &model.dimensions,
+    );
+    model.report_units_in_names();
+    finish::settle_parameters(
+        &mut model.flat.parameters,
+        &model.parameters,
+        &model.dimensions,
+    );
+    finish::order_parameters(&mut model.flat, model.diagnostics);
     model.ports();
     model.check_effect_words();
     model.find_law_sites();
-    model.check_foreign();
     Some(())
 }

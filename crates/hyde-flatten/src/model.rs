@@ -3,13 +3,12 @@
 use crate::Input;
 use crate::bind::short;
 use crate::dimension::{Demand, Dim, Dimensions};
-use crate::instance::{
-    Domain, Instance, InstanceId, Member, ParameterNotes, Scope, Typed, VariableNotes,
-};
+use crate::instance::{Domain, InstanceId, Member, ParameterNotes, Scope, Typed, VariableNotes};
+use crate::instantiate::InstanceTree;
 use crate::names::{self, Names};
-use crate::turns::Turns;
+use crate::turns::{Sides, Turns};
 use crate::zero::Zero;
-use hyde_diag::{Code, Diagnostic, Diagnostics, InstancePath, MadeBy, Origin, Severity, Span};
+use hyde_diag::{Code, Diagnostic, Diagnostics, InstancePath, MadeBy, Severity, Span};
 use hyde_ir::{
     ClockId, ColumnId, Expr, ExprId, FlatModel, Id as _, ParamId, Quantity, VarId, Variable,
     VariableKind,
@@ -22,7 +21,7 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) input: &'a Input<'a>,
     pub(crate) names: Names<'a>,
     pub(crate) flat: FlatModel,
-    pub(crate) instances: Vec<Instance<'a>>,
+    pub(crate) tree: InstanceTree<'a>,
     /// Beside `flat.variables`.
     pub(crate) variables: Vec<VariableNotes<'a>>,
     /// Beside `flat.parameters`.
@@ -54,6 +53,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) connections: Vec<crate::connect::Connection>,
     /// Clocks that tick at events: the condition and the variable that is the time of the last tick.
     pub(crate) event_clocks: BTreeMap<ClockId, (ExprId, VarId)>,
+    /// The numbers that the clocks of the instances have since those that tick at events are gone; none before that.
+    pub(crate) kept_clocks: Option<BTreeMap<ClockId, ClockId>>,
     /// Held variables by clock and source.
     pub(crate) held: BTreeMap<(ClockId, VarId), VarId>,
     /// Delayed variables by what is delayed and the time.
@@ -83,7 +84,7 @@ impl<'a, 'd> Model<'a, 'd> {
             input,
             names: Names::new(input),
             flat: FlatModel::default(),
-            instances: Vec::new(),
+            tree: InstanceTree::default(),
             variables: Vec::new(),
             parameters: Vec::new(),
             domains: Vec::new(),
@@ -102,6 +103,7 @@ impl<'a, 'd> Model<'a, 'd> {
             joined: Vec::new(),
             connections: Vec::new(),
             event_clocks: BTreeMap::new(),
+            kept_clocks: None,
             held: BTreeMap::new(),
             delayed: BTreeMap::new(),
             column_variables: BTreeMap::new(),
@@ -120,31 +122,26 @@ impl<'a, 'd> Model<'a, 'd> {
         self.diagnostics.push(diagnostic);
     }
 
-    pub(crate) fn path(&self, instance: InstanceId) -> InstancePath {
-        self.instances[instance].path.clone()
-    }
-
-    pub(crate) fn origin(&self, instance: InstanceId, span: Span) -> Origin {
-        Origin::source(span, &self.instances[instance].path)
+    /// The clock of an instance, if it still has one.
+    pub(crate) fn clock_of(&self, instance: InstanceId) -> Option<ClockId> {
+        let declared = self.tree[instance].clock?;
+        match &self.kept_clocks {
+            Some(kept) => kept.get(&declared).copied(),
+            None => Some(declared),
+        }
     }
 
     pub(crate) fn dim(&self, var: VarId) -> Dim {
         self.variables[hyde_ir::Id::index(var)].dim.clone()
     }
 
-    /// What a mere name means and is shown in: that of a variable or a parameter.
-    pub(crate) fn quantity_of(&self, id: ExprId) -> Option<&Quantity> {
-        if let Expr::Var(var, _) = self.flat.exprs[id] {
-            return Some(&self.flat.variables[var].quantity);
-        }
-        if let Expr::Param(param, _) = self.flat.exprs[id] {
-            return Some(&self.flat.parameters[param].quantity);
-        }
-        None
-    }
-
     pub(crate) fn notes(&self, var: VarId) -> &VariableNotes<'a> {
         &self.variables[hyde_ir::Id::index(var)]
+    }
+
+    /// What tells how the sides of an operation are written.
+    pub(crate) fn sides(&self) -> Sides<'_> {
+        Sides::new(self.input.sources, &self.flat)
     }
 
     /// Demands that two dimensions agree, and reports it if they cannot.
@@ -157,26 +154,27 @@ impl<'a, 'd> Model<'a, 'd> {
         what: &'static str,
         instance: InstanceId,
     ) -> bool {
+        let sides = self.sides();
         let demand = Demand {
             what,
             spans: (a.span, b.span),
             instance,
             bare: (a.bare, b.bare),
             written: (self.bare_text(a), self.bare_text(b)),
-            said: (self.said(a), self.said(b)),
+            said: (sides.said(a), sides.said(b)),
             sides: (a.id, b.id),
         };
         let Self {
             dimensions,
-            instances,
+            tree,
             parameters,
             flat,
             ..
         } = self;
         let found = dimensions.agree(&a.dim, &b.dim, demand, &|id| {
-            in_scope(instances, parameters, flat, id)
+            in_scope(tree, parameters, flat, id)
         });
-        let Some(diagnostic) = found.or_else(|| self.lost_turn(a, b)) else {
+        let Some(diagnostic) = found.or_else(|| self.sides().lost_turn(a, b)) else {
             return true;
         };
         let error = diagnostic.severity == Severity::Error;
@@ -275,12 +273,12 @@ impl<'a, 'd> Model<'a, 'd> {
     pub(crate) fn solve_dimensions(&mut self) {
         let Self {
             dimensions,
-            instances,
+            tree,
             parameters,
             flat,
             ..
         } = self;
-        let found = dimensions.solve(&|id| in_scope(instances, parameters, flat, id));
+        let found = dimensions.solve(&|id| in_scope(tree, parameters, flat, id));
         for (diagnostic, sides) in found {
             let diagnostic = self.with_parts(diagnostic, sides);
             self.report(diagnostic);
@@ -308,7 +306,7 @@ impl<'a, 'd> Model<'a, 'd> {
             fixed_elements: Vec::new(),
             field: None,
         });
-        let origin = self.origin(instance, span).made_by(made_by);
+        let origin = self.tree.origin(instance, span).made_by(made_by);
         self.flat.variables.push(Variable {
             name,
             len: None,
@@ -366,11 +364,11 @@ impl<'a, 'd> Model<'a, 'd> {
         if self.undeclared.contains(word) {
             return;
         }
-        let mut known: Vec<&str> = self.instances[at].members.keys().copied().collect();
-        let mut outer = self.instances[at].outer;
+        let mut known: Vec<&str> = self.tree[at].members.keys().copied().collect();
+        let mut outer = self.tree[at].outer;
         while let Some(instance) = outer {
-            known.extend(self.instances[instance].members.keys().copied());
-            outer = self.instances[instance].outer;
+            known.extend(self.tree[instance].members.keys().copied());
+            outer = self.tree[instance].outer;
         }
         if at == scope.instance {
             known.extend(scope.locals.iter().map(|(name, _)| *name));
@@ -380,7 +378,7 @@ impl<'a, 'd> Model<'a, 'd> {
                 known.extend(self.input.records.keys().map(String::as_str));
             }
         }
-        let instance = &self.instances[at];
+        let instance = &self.tree[at];
         let place = match (instance.path.as_str(), instance.class.name.text.as_str()) {
             ("", class) => format!("model `{class}`"),
             (path, class) => format!("`{path}` ({class})"),
@@ -412,17 +410,28 @@ impl<'a, 'd> Model<'a, 'd> {
     }
 }
 
+/// What a mere name means and is shown in: that of a variable or a parameter.
+pub(crate) fn quantity_of(flat: &FlatModel, id: ExprId) -> Option<&Quantity> {
+    if let Expr::Var(var, _) = flat.exprs[id] {
+        return Some(&flat.variables[var].quantity);
+    }
+    if let Expr::Param(param, _) = flat.exprs[id] {
+        return Some(&flat.parameters[param].quantity);
+    }
+    None
+}
+
 /// The path of an instance and its parameters with their dimensions, those of its parent after its own.
 fn in_scope(
-    instances: &[Instance<'_>],
+    tree: &InstanceTree<'_>,
     parameters: &[ParameterNotes<'_>],
     flat: &FlatModel,
     id: InstanceId,
 ) -> (InstancePath, Vec<(String, Dim)>) {
     let mut found = Vec::new();
-    let chain = [Some(id), instances[id].parent];
+    let chain = [Some(id), tree[id].parent];
     for instance in chain.into_iter().flatten() {
-        for member in instances[instance].members.values() {
+        for member in tree[instance].members.values() {
             if let Member::Parameter(param) = member {
                 let name = &flat.parameters[*param].name;
                 let dim = parameters[hyde_ir::Id::index(*param)].dim.clone();
@@ -430,7 +439,7 @@ fn in_scope(
             }
         }
     }
-    (instances[id].path.clone(), found)
+    (tree[id].path.clone(), found)
 }
 
 /// A few names for a message.

@@ -12,7 +12,7 @@ use hyde_syntax::ast::{self, Argument};
 impl<'a> Model<'a, '_> {
     /// Lowers a `modes` block of an instance.
     pub(crate) fn modes(&mut self, modes: &'a ast::Modes, id: InstanceId) {
-        if self.instances[id].clock.is_some() {
+        if self.clock_of(id).is_some() {
             self.report(
                 Diagnostic::error(Code::ClockBorder, "`modes` inside a clocked part")
                     .label(modes.span, "everything here happens at the tick")
@@ -51,7 +51,7 @@ impl<'a> Model<'a, '_> {
                 .iter()
                 .filter_map(|exit| self.exit(exit, from, modes, &parameters, &scope))
                 .collect();
-            let origin = self.origin(id, mode.name.span);
+            let origin = self.tree.origin(id, mode.name.span);
             list.push(Mode {
                 name: mode.name.text.clone(),
                 equations,
@@ -70,10 +70,10 @@ impl<'a> Model<'a, '_> {
             &modes.initial,
             &scope,
         );
-        let origin = self.origin(id, modes.span);
+        let origin = self.tree.origin(id, modes.span);
         let name = match &modes.name {
-            Some(name) => self.instances[id].path.member(&name.text),
-            None => self.instances[id].path.as_str().to_owned(),
+            Some(name) => self.tree[id].path.member(&name.text),
+            None => self.tree[id].path.as_str().to_owned(),
         };
         self.flat.automata.push(Automaton {
             name,
@@ -91,7 +91,7 @@ impl<'a> Model<'a, '_> {
         block: Option<&ast::Name>,
         id: InstanceId,
     ) -> Vec<(&'a str, VarId)> {
-        let file = self.instances[id].file;
+        let file = self.tree[id].file;
         let mut found = Vec::new();
         for (type_name, name) in &mode.parameters {
             let (dim, boolean) = match self.names.quantity(file, type_name) {
@@ -112,7 +112,7 @@ impl<'a> Model<'a, '_> {
                 }
             };
             let block = block.map_or(String::new(), |block| format!("{}.", block.text));
-            let full = self.instances[id]
+            let full = self.tree[id]
                 .path
                 .member(&format!("{block}{}.{}", mode.name.text, name.text));
             let var = self.add_variable(
@@ -159,7 +159,7 @@ impl<'a> Model<'a, '_> {
         let reinits = actions
             .iter()
             .any(|action| matches!(action, Action::Reinit(..)));
-        let origin = self.origin(scope.instance, exit.span);
+        let origin = self.tree.origin(scope.instance, exit.span);
         Some(Transition {
             guard,
             target,

@@ -8,6 +8,7 @@
 use crate::instance::{Scope, Setting, Typed};
 use crate::lower::Resolved;
 use crate::model::Model;
+use crate::zero;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::flat::{Action, When};
 use hyde_ir::{Expr as Ir, Index, VariableKind};
@@ -37,7 +38,7 @@ impl<'a> Model<'a, '_> {
                 .collect();
             list.push((condition, actions));
         }
-        let origin = self.origin(scope.instance, span);
+        let origin = self.tree.origin(scope.instance, span);
         self.flat.whens.push(When {
             branches: list,
             origin,
@@ -91,7 +92,7 @@ impl<'a> Model<'a, '_> {
         };
         self.same_kind(&declared, &value);
         self.check_whole(&declared, &value);
-        self.shown_as_difference(&declared, &value);
+        zero::show_difference(&mut self.flat, &mut self.variables, (&declared, &value));
         self.agree(
             &declared,
             &value,

@@ -3,7 +3,7 @@
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::lower::Resolved;
-use crate::model::{Model, listed};
+use crate::model::{Model, listed, quantity_of};
 use hyde_diag::{Code, Diagnostic, MadeBy};
 use hyde_ir::flat::{Bode, Moment};
 use hyde_ir::{ExprId, Quantity};
@@ -39,7 +39,10 @@ impl<'a> Model<'a, '_> {
         let band = Some(self.band(band, root));
         let at = self.moment(bode.at.as_ref(), root);
         let modes = self.chosen_modes(&bode.modes);
-        let origin = self.origin(root, input.span).made_by(MadeBy::Experiment);
+        let origin = self
+            .tree
+            .origin(root, input.span)
+            .made_by(MadeBy::Experiment);
         let names: Vec<&str> = list.iter().map(|(name, ..)| name.as_str()).collect();
         let stepped = bode
             .steps
@@ -77,7 +80,7 @@ impl<'a> Model<'a, '_> {
     pub(super) fn shown_quantity(&mut self, typed: &Typed) -> Quantity {
         let dimension = self.dimensions.resolve(&typed.dim).as_known();
         let usual = Quantity::usual(dimension.unwrap_or(Dimension::DIMENSIONLESS));
-        let declared = self.quantity_of(typed.id).cloned();
+        let declared = quantity_of(&self.flat, typed.id).cloned();
         let known = declared.filter(|known| known.unit.text() != "1");
         known.unwrap_or(usual)
     }

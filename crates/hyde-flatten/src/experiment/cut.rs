@@ -45,7 +45,10 @@ impl<'a> Model<'a, '_> {
             }
             let (input, d) = self.test_signal(signal, var, root);
             let (back, clock) = self.cut(var, giver, d, root);
-            let origin = self.origin(root, signal.span).made_by(MadeBy::Experiment);
+            let origin = self
+                .tree
+                .origin(root, signal.span)
+                .made_by(MadeBy::Experiment);
             self.flat.experiment.cuts.push(Cut {
                 signal: signal.dotted(),
                 input,
@@ -99,7 +102,7 @@ impl<'a> Model<'a, '_> {
             return Some(Giver::Left(at));
         }
         // A connection gives an input its value from outside the component, an output from inside.
-        let own = &self.instances[self.notes(var).instance].path;
+        let own = &self.tree[self.notes(var).instance].path;
         let input = self.flat.variables[var].input;
         let gives = |e: &Equation| {
             e.origin.made_by == MadeBy::Connection && (e.origin.instance != *own) == input
@@ -124,7 +127,10 @@ impl<'a> Model<'a, '_> {
         let number = self.flat.experiment.cuts.len() + 1;
         let name = format!("test signal {number} at {}", signal.dotted());
         let quantity = self.flat.variables[var].quantity.clone();
-        let origin = self.origin(root, signal.span).made_by(MadeBy::Experiment);
+        let origin = self
+            .tree
+            .origin(root, signal.span)
+            .made_by(MadeBy::Experiment);
         let zero = self.flat.exprs.constant(0.0);
         let d = self.outer_parameter(name.clone(), self.dim(var), quantity, zero, &origin);
         (name, d)

@@ -14,7 +14,7 @@ impl<'a> Model<'a, '_> {
     /// A measure of an experiment or a model; expectations behind it may use its name.
     pub(crate) fn add_measure(&mut self, measure: &'a ast::Measure, scope: &Scope<'a>) {
         let typed = self.lower(&measure.value, scope);
-        let file = self.instances[scope.instance].file;
+        let file = self.tree[scope.instance].file;
         let mut unit = None;
         match self.names.quantity(file, &measure.type_name) {
             Some(crate::names::TypeName::Quantity(file, item)) => {
@@ -88,7 +88,7 @@ impl<'a> Model<'a, '_> {
             },
             None => Quantity::usual(dimension),
         };
-        let origin = self.origin(0, typed.span).made_by(MadeBy::Experiment);
+        let origin = self.tree.origin(0, typed.span).made_by(MadeBy::Experiment);
         self.flat.experiment.measures.push(Measure {
             name,
             value: typed.id,

@@ -1,6 +1,9 @@
 //! Measured channels: a prepared column beside what the model has for it.
 
+use super::late::{moved, undelay};
+use super::observed::{observed, period};
 use crate::Form;
+use crate::call::clocks_of;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::lower::Resolved;
@@ -46,23 +49,27 @@ impl<'a> Model<'a, '_> {
         } else {
             Quantity::usual(dimension)
         };
-        let period = self.period(value.id);
+        let period = period(&mut self.flat, value.id);
         let (id, rounding) = match self.input.form {
             Form::Run => (value.id, None),
-            Form::Observed => self.observed(value.id),
+            Form::Observed => observed(&mut self.flat, value.id),
             // What a clock has counted is what the axis itself knows; a scale's noise comes before its rounding.
-            Form::Recorded if !self.clocks_of(value.id).is_empty() => (value.id, None),
-            Form::Recorded => self.observed(value.id),
+            Form::Recorded if !clocks_of(&self.flat, value.id).is_empty() => (value.id, None),
+            Form::Recorded => observed(&mut self.flat, value.id),
         };
-        let late = match self.input.form {
-            Form::Observed => self.undelayed(id, first_delay, channel.value.span),
+        let early = match self.input.form {
+            Form::Observed => undelay(&mut self.flat, &mut self.delayed, id, first_delay),
             Form::Run | Form::Recorded => None,
         };
-        let (id, late) = match late {
-            Some(late) => (late.value, Some((late.by_s, late.by))),
-            None => (id, None),
+        let id = match &early {
+            Some(early) if !early.by.is_empty() => {
+                let slope = self.time_derivative(id, channel.value.span);
+                moved(&mut self.flat.exprs, id, slope, early)
+            }
+            Some(_) | None => id,
         };
-        let clocked = !self.clocks_of(id).is_empty();
+        let late = early.map(|early| (early.by_s, early.by));
+        let clocked = !clocks_of(&self.flat, id).is_empty();
         let signal = hyde_syntax::format_expression(&channel.signal);
         let name = match (&channel.doc, signal.split_once('.')) {
             (Some(doc), _) => doc.clone(),
@@ -70,6 +77,7 @@ impl<'a> Model<'a, '_> {
             (None, _) => signal,
         };
         let origin = self
+            .tree
             .origin(root, channel.signal.span)
             .made_by(MadeBy::Experiment);
         self.flat.experiment.measured.push(Measured {

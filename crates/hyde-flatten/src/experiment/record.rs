@@ -266,7 +266,7 @@ impl<'a> Model<'a, '_> {
     ) -> hyde_ir::ParamId {
         let zero = self.flat.exprs.constant(0.0);
         self.parameters.push(ParameterNotes::made(dim));
-        let origin = self.origin(0, span).made_by(MadeBy::Experiment);
+        let origin = self.tree.origin(0, span).made_by(MadeBy::Experiment);
         let param = self.flat.parameters.push(Parameter {
             name: name.clone(),
             len: None,

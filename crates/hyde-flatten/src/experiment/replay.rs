@@ -9,6 +9,7 @@
 //! that wrap the variable stay: they act on the column.
 
 use crate::Form;
+use crate::call::clocks_of;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::lower::Resolved;
 use crate::model::Model;
@@ -183,8 +184,8 @@ impl<'a> Model<'a, '_> {
             let (Some((column, _)), Some(value)) = (column, value) else {
                 continue;
             };
-            let origin = self.origin(root, drive.target.span);
-            let clocked = self.is_held(var, value) || !self.clocks_of(value).is_empty();
+            let origin = self.tree.origin(root, drive.target.span);
+            let clocked = self.is_held(var, value) || !clocks_of(&self.flat, value).is_empty();
             self.flat.experiment.measured.push(Measured {
                 name: drive.target.dotted(),
                 column,

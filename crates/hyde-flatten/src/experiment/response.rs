@@ -64,6 +64,7 @@ impl<'a> Model<'a, '_> {
         };
         let place = self.place_of_response(input, &name, &value, root);
         let origin = self
+            .tree
             .origin(root, channel.signal.span)
             .made_by(MadeBy::Experiment);
         self.flat
@@ -286,7 +287,10 @@ impl<'a> Model<'a, '_> {
         // It is linearised where and in the modes in which that input is looked at elsewhere.
         let other = bodes.iter().find(|bode| bode.input == input);
         let (at, modes) = other.map_or_else(Default::default, |bode| (bode.at, bode.modes.clone()));
-        let origin = self.origin(root, value.span).made_by(MadeBy::Experiment);
+        let origin = self
+            .tree
+            .origin(root, value.span)
+            .made_by(MadeBy::Experiment);
         self.flat.experiment.bodes.push(Bode {
             input,
             outputs: vec![output],

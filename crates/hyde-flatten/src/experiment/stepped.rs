@@ -172,7 +172,10 @@ impl<'a> Model<'a, '_> {
         let amplitude = arena.times(amplitude, risen);
         let rhs = arena.times(amplitude, sine);
         let lhs = arena.var(input);
-        let origin = self.origin(root, origin.span).made_by(MadeBy::Experiment);
+        let origin = self
+            .tree
+            .origin(root, origin.span)
+            .made_by(MadeBy::Experiment);
         self.flat.equations.push(Equation {
             range: Range::SCALAR,
             lhs,

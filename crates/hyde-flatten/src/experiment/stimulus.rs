@@ -15,7 +15,7 @@ impl<'a> Model<'a, '_> {
     /// `stimulus r = e`: drives a free input.
     pub(super) fn stimulus(&mut self, drive: &'a Drive, root: InstanceId) {
         let word = drive.target.as_word().unwrap_or("");
-        let member = self.instances[root].members.get(word).cloned();
+        let member = self.tree[root].members.get(word).cloned();
         let is_input = |var: VarId| self.flat.variables[var].input;
         let is_bound = |var: VarId| self.notes(var).binding.is_some();
         let input = match member {
@@ -27,7 +27,7 @@ impl<'a> Model<'a, '_> {
             if self.undeclared.contains(drive.target.dotted().as_str()) {
                 return;
             }
-            let inputs: Vec<&str> = self.instances[root]
+            let inputs: Vec<&str> = self.tree[root]
                 .members
                 .iter()
                 .filter(|(_, member)| matches!(member, Member::Variable(var) if is_input(*var) && !is_bound(*var)))
@@ -75,6 +75,7 @@ impl<'a> Model<'a, '_> {
         self.agree(&left, &value, "the input and its stimulus are", root);
         self.noise_of_column(drive, (&left, value.id), root);
         let origin = self
+            .tree
             .origin(root, drive.target.span)
             .made_by(MadeBy::Experiment);
         self.flat.equations.push(Equation {
@@ -204,7 +205,7 @@ impl<'a> Model<'a, '_> {
         if free == FreeInputs::None {
             return;
         }
-        let members: Vec<VarId> = self.instances[root]
+        let members: Vec<VarId> = self.tree[root]
             .members
             .values()
             .filter_map(|member| {
@@ -253,7 +254,7 @@ impl<'a> Model<'a, '_> {
         let mut undriven = Vec::new();
         for (id, variable) in self.flat.variables.enumerate() {
             let notes = &self.variables[id.index()];
-            let top = self.instances[notes.instance].parent.is_none();
+            let top = self.tree[notes.instance].parent.is_none();
             if !variable.input || !top || notes.binding.is_some() {
                 continue;
             }

@@ -21,6 +21,7 @@ impl<'a> Model<'a, '_> {
     ) {
         let n = self.cells(field.domain);
         let origin = self
+            .tree
             .origin(scope.instance, span)
             .made_by(MadeBy::Discretization);
         let places = if field.flux {
@@ -104,7 +105,7 @@ impl<'a> Model<'a, '_> {
             self.fix_counter(left.id, range),
             self.fix_counter(right.id, range),
         );
-        let origin = self.origin(scope.instance, span);
+        let origin = self.tree.origin(scope.instance, span);
         self.flat.equations.push(Equation {
             range: Range::SCALAR,
             lhs,
@@ -141,6 +142,7 @@ impl<'a> Model<'a, '_> {
             .flat_map(|(point, _)| point.single_nodes(n))
             .collect();
         let origin = self
+            .tree
             .origin(scope.instance, span)
             .made_by(MadeBy::Discretization);
         let averaged = self.domains[domain].averaged && !fluxes.is_empty();

@@ -265,13 +265,13 @@ impl<'a> Model<'a, '_> {
         let mut found = None;
         for (position, part) in name.parts.iter().enumerate() {
             let word = part.name.text.as_str();
-            let mut member = self.instances[at].members.get(word);
+            let mut member = self.tree[at].members.get(word);
             while position == 0 && member.is_none() {
-                let Some(outer) = self.instances[at].outer else {
+                let Some(outer) = self.tree[at].outer else {
                     break;
                 };
                 at = outer;
-                member = self.instances[at].members.get(word);
+                member = self.tree[at].members.get(word);
             }
             match member {
                 Some(crate::instance::Member::Instance(inner)) => at = *inner,

@@ -1,6 +1,7 @@
 //! Clocked parts: instances whose variables belong to a clock.
 
 use super::Collected;
+use crate::foreign;
 use crate::instance::{Instance, InstanceId, Member};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic};
@@ -15,16 +16,16 @@ impl<'a> Model<'a, '_> {
         clocked: &'a ast::Clocked,
     ) {
         let name = clocked.name.text.as_str();
-        if self.instances[id].clock.is_some() {
+        if self.clock_of(id).is_some() {
             self.report(
                 Diagnostic::error(Code::ClockBorder, "a clocked part inside a clocked part")
                     .label(clocked.name.span, "move it out of the other"),
             );
             return;
         }
-        let origin = self.origin(id, clocked.name.span);
+        let origin = self.tree.origin(id, clocked.name.span);
         let nothing = self.flat.exprs.constant(0.0);
-        let path = self.path(id).child(name);
+        let path = self.tree.path(id).child(name);
         let clock = self.flat.clocks.push(flat::Clock {
             name: path.as_str().to_owned(),
             period: nothing,
@@ -32,11 +33,10 @@ impl<'a> Model<'a, '_> {
             phase: nothing,
             origin,
         });
-        let part = self.instances.len();
-        self.instances.push(Instance {
+        let part = self.tree.push(Instance {
             path,
             file: item.file,
-            class: self.instances[id].class,
+            class: self.tree[id].class,
             parent: Some(id),
             outer: Some(id),
             clock: Some(clock),
@@ -44,9 +44,7 @@ impl<'a> Model<'a, '_> {
             elements: Vec::new(),
             span: clocked.name.span,
         });
-        self.instances[id]
-            .members
-            .insert(name, Member::Instance(part));
+        self.tree.name(id, name, Member::Instance(part));
         let modifiers = self.modifiers_for(name, &item.modifiers);
         let collected: Vec<Collected<'a>> = clocked
             .elements
@@ -58,6 +56,12 @@ impl<'a> Model<'a, '_> {
             })
             .collect();
         self.members(part, &collected);
-        self.foreign_part(id, part, item.file);
+        foreign::note_part(
+            &mut self.flat,
+            self.input,
+            &self.tree,
+            (id, part),
+            item.file,
+        );
     }
 }

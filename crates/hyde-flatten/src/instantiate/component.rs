@@ -55,7 +55,7 @@ impl<'a> Model<'a, '_> {
             self.undeclared.insert(name);
             return;
         };
-        let (path, clock) = (self.path(id), self.instances[id].clock);
+        let (path, clock) = (self.tree.path(id), self.clock_of(id));
         let place = |path: InstancePath| Place {
             path,
             parent: Some(id),
@@ -65,9 +65,7 @@ impl<'a> Model<'a, '_> {
         match count {
             None => {
                 let part = self.instantiate(file, class, inner, place(path.child(name)));
-                self.instances[id]
-                    .members
-                    .insert(name, Member::Instance(part));
+                self.tree.name(id, name, Member::Instance(part));
             }
             Some(count) => {
                 let mut parts = Vec::new();
@@ -85,9 +83,7 @@ impl<'a> Model<'a, '_> {
                     let child = path.child(&format!("{name}[{}]", index + 1));
                     parts.push(self.instantiate(file, class, own, place(child)));
                 }
-                self.instances[id]
-                    .members
-                    .insert(name, Member::Instances(parts.into()));
+                self.tree.name(id, name, Member::Instances(parts.into()));
             }
         }
     }

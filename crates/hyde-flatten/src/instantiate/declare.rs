@@ -74,14 +74,14 @@ impl<'a> Model<'a, '_> {
 
     pub(super) fn free_name(&mut self, id: InstanceId, declarator: &'a Declarator) -> bool {
         let name = declarator.name.text.as_str();
-        let Some(member) = self.instances[id].members.get(name) else {
+        let Some(member) = self.tree[id].members.get(name) else {
             return true;
         };
         let first = match member {
             Member::Variable(var) => Some(self.flat.variables[*var].origin.span),
             Member::Parameter(param) => Some(self.flat.parameters[*param].origin.span),
-            Member::Instance(part) => Some(self.instances[*part].span),
-            Member::Instances(parts) => parts.first().map(|part| self.instances[*part].span),
+            Member::Instance(part) => Some(self.tree[*part].span),
+            Member::Instances(parts) => parts.first().map(|part| self.tree[*part].span),
             Member::Domain(domain) => Some(self.domains[*domain].span),
         };
         let diagnostic = Diagnostic::error(Code::Duplicate, format!("`{name}` is declared twice"))

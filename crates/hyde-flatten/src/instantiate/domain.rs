@@ -88,9 +88,8 @@ impl<'a> Model<'a, '_> {
             weights: Vec::new(),
         };
         self.domains.push(domain);
-        self.instances[id]
-            .members
-            .insert(name, Member::Domain(self.domains.len() - 1));
+        self.tree
+            .name(id, name, Member::Domain(self.domains.len() - 1));
     }
 
     /// The number of cells that a discretisation has, with what says so: `n`, or what waves up to `f_max` need, whichever is
@@ -150,7 +149,7 @@ impl<'a> Model<'a, '_> {
 
     /// The domain of that name in an instance; reported once if there is none.
     pub(crate) fn domain_named(&mut self, id: InstanceId, name: &'a ast::Name) -> Option<DomainId> {
-        if let Some(Member::Domain(domain)) = self.instances[id].members.get(name.text.as_str()) {
+        if let Some(Member::Domain(domain)) = self.tree[id].members.get(name.text.as_str()) {
             return Some(*domain);
         }
         if self.undeclared.insert(&name.text) {

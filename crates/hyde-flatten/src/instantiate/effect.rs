@@ -14,6 +14,7 @@ use crate::connect::Connection;
 use crate::instance::{Instance, InstanceId, Member};
 use crate::model::Model;
 use crate::names::FileIndex;
+use crate::names::Names;
 use crate::wrap::Wrap;
 use hyde_diag::{Code, Diagnostic, InstancePath, MadeBy, Span};
 use hyde_ir::{Expr as Ir, Index};
@@ -68,7 +69,7 @@ impl<'a> Model<'a, '_> {
             };
             for site in &used.sites {
                 self.hooks.push(Hook {
-                    host: self.path(id).child(&written(site)),
+                    host: self.tree.path(id).child(&written(site)),
                     site,
                     file,
                     class,
@@ -107,7 +108,7 @@ impl<'a> Model<'a, '_> {
     /// Makes the effects of an instance that was just made, before its own members. Its modifications may name them.
     pub(super) fn effects_of(&mut self, host: InstanceId, modifiers: &[Modifier<'a>]) {
         for number in 0..self.hooks.len() {
-            if self.hooks[number].host == self.instances[host].path && !self.hooks[number].used {
+            if self.hooks[number].host == self.tree[host].path && !self.hooks[number].used {
                 self.hooks[number].used = true;
                 self.effect(host, number, modifiers);
             }
@@ -125,17 +126,15 @@ impl<'a> Model<'a, '_> {
             keep,
             ..
         } = self.hooks[number];
-        if !self.fits_on(host, file, class) {
-            self.does_not_fit(host, file, class, site);
+        if !fits_on(self.names, &self.tree[host], (file, class)) {
+            let names = (&self.tree, self.names);
+            let diagnostic = crate::site::does_not_fit(names, host, (file, class), site);
+            self.report(diagnostic);
             return;
         }
-        let path = self.path(host);
+        let path = self.tree.path(host);
         let id = self.instance_of_effect(host, (file, class), name, site.span);
-        if self.instances[host]
-            .members
-            .insert(name, Member::Instance(id))
-            .is_some()
-        {
+        if self.tree.name(host, name, Member::Instance(id)).is_some() {
             self.report(
                 Diagnostic::error(
                     Code::Duplicate,
@@ -159,10 +158,11 @@ impl<'a> Model<'a, '_> {
         let (parameters, rest): (Vec<_>, Vec<_>) = collected.into_iter().partition(is_parameter);
         self.members(id, &parameters);
         if !keep && self.is_neutral(id, &parameters) {
-            self.instances[id].elements = Vec::new();
-            self.flat
-                .notes
-                .push(format!("`{}` has size 0 and is omitted", self.path(id)));
+            self.tree.set_elements(id, Vec::new());
+            self.flat.notes.push(format!(
+                "`{}` has size 0 and is omitted",
+                self.tree.path(id)
+            ));
             return;
         }
         let added = rest.iter().find_map(|item| {
@@ -172,14 +172,15 @@ impl<'a> Model<'a, '_> {
                 None
             }
         });
-        let connector = self.instances[host].class.kind == ClassKind::Connector;
+        let connector = self.tree[host].class.kind == ClassKind::Connector;
         if let (false, Some(span)) = (connector, added) {
-            self.nothing_to_join(host, class, span);
-            self.instances[id].elements = Vec::new();
+            let diagnostic = crate::site::nothing_to_join(&self.tree[host], class, span);
+            self.report(diagnostic);
+            self.tree.set_elements(id, Vec::new());
             return;
         }
         if connector {
-            let (file, class) = (self.instances[host].file, self.instances[host].class);
+            let (file, class) = (self.tree[host].file, self.tree[host].class);
             let place = Place {
                 path: path.child(name).child("a"),
                 parent: Some(id),
@@ -187,10 +188,11 @@ impl<'a> Model<'a, '_> {
                 span: site.span,
             };
             let own = self.instantiate(file, class, Vec::new(), place);
-            self.instances[id]
-                .members
-                .insert("a", Member::Instance(own));
-            let origin = self.origin(host, site.span).made_by(MadeBy::Connection);
+            self.tree.name(id, "a", Member::Instance(own));
+            let origin = self
+                .tree
+                .origin(host, site.span)
+                .made_by(MadeBy::Connection);
             self.joined
                 .push(Connection::joining(vec![(host, true), (own, true)], origin));
         }
@@ -236,7 +238,8 @@ impl<'a> Model<'a, '_> {
         }
         self.members(id, &rest);
         let all = parameters.iter().chain(&rest);
-        self.instances[id].elements = all.map(|item| (item.file, item.element)).collect();
+        self.tree
+            .set_elements(id, all.map(|item| (item.file, item.element)).collect());
     }
 
     /// An effect inside its host, without members yet.
@@ -247,96 +250,17 @@ impl<'a> Model<'a, '_> {
         name: &str,
         span: Span,
     ) -> InstanceId {
-        let id = self.instances.len();
-        self.instances.push(Instance {
-            path: self.path(host).child(name),
+        self.tree.push(Instance {
+            path: self.tree.path(host).child(name),
             file,
             class,
             parent: Some(host),
             outer: Some(host),
-            clock: self.instances[host].clock,
+            clock: self.clock_of(host),
             members: std::collections::BTreeMap::new(),
             elements: Vec::new(),
             span,
-        });
-        id
-    }
-
-    /// Whether an instance is an effect or a part of one.
-    pub(crate) fn is_of_effect(&self, id: InstanceId) -> bool {
-        std::iter::successors(Some(id), |&id| self.instances[id].parent)
-            .any(|id| self.instances[id].class.kind == ClassKind::Effect)
-    }
-
-    /// Whether an instance is of the type that an effect is for, or of one that extends it.
-    pub(super) fn fits_on(&self, host: InstanceId, file: FileIndex, effect: &'a Class) -> bool {
-        let Some(wanted) = host_of(effect).and_then(|host| self.names.class(file, host)) else {
-            return false;
-        };
-        let instance = &self.instances[host];
-        self.is_a((instance.file, instance.class), wanted.1)
-    }
-
-    /// The names of what a host declares that is of a class or extends it.
-    pub(crate) fn parts_that_are(&self, host: InstanceId, wanted: &'a Class) -> Vec<&'a str> {
-        // The host has no members yet: its class and the bases of that are read, of one that extends itself not for ever.
-        let mut classes = vec![(self.instances[host].file, self.instances[host].class)];
-        let mut found = Vec::new();
-        let mut seen: Vec<&'a Class> = Vec::new();
-        while let Some((file, class)) = classes.pop() {
-            if seen.iter().any(|&known| std::ptr::eq(known, class)) {
-                continue;
-            }
-            seen.push(class);
-            classes.extend(self.bases(file, class));
-            let ClassBody::Long { elements, .. } = &class.body else {
-                continue;
-            };
-            for element in elements {
-                if let Element::Declaration(declaration) = element
-                    && let Some(own) = self.names.class(file, &declaration.type_name)
-                    && self.is_a(own, wanted)
-                {
-                    let names = declaration.declarators.iter();
-                    found.extend(names.map(|own| own.name.text.as_str()));
-                }
-            }
-        }
-        found
-    }
-
-    /// Whether a class is another one or extends it.
-    fn is_a(&self, own: (FileIndex, &'a Class), other: &'a Class) -> bool {
-        let mut waiting = vec![own];
-        let mut seen: Vec<&'a Class> = Vec::new();
-        while let Some((file, class)) = waiting.pop() {
-            if std::ptr::eq(class, other) {
-                return true;
-            }
-            if !seen.iter().any(|&known| std::ptr::eq(known, class)) {
-                seen.push(class);
-                waiting.extend(self.bases(file, class));
-            }
-        }
-        false
-    }
-
-    /// The classes that a class extends, as far as they are known.
-    pub(crate) fn bases(&self, file: FileIndex, class: &'a Class) -> Vec<(FileIndex, &'a Class)> {
-        let known = |base| self.names.class(file, base);
-        match &class.body {
-            ClassBody::Short { base, .. } => known(base).into_iter().collect(),
-            ClassBody::Long { elements, .. } => {
-                let extended = elements.iter().filter_map(|element| {
-                    if let Element::Extends(base, _) = element {
-                        known(base)
-                    } else {
-                        None
-                    }
-                });
-                extended.collect()
-            }
-        }
+        })
     }
 
     /// Whether every size of an effect is exactly zero. Sizes that are not stay plain parameters.
@@ -353,7 +277,7 @@ impl<'a> Model<'a, '_> {
             }
             for declarator in &declaration.declarators {
                 let name = declarator.name.text.as_str();
-                let Some(Member::Parameter(param)) = self.instances[id].members.get(name) else {
+                let Some(Member::Parameter(param)) = self.tree[id].members.get(name) else {
                     continue;
                 };
                 let leaf = self.flat.exprs.add(Ir::Param(*param, Index::SCALAR));
@@ -427,4 +351,14 @@ pub(super) fn is_parameter(item: &Collected<'_>) -> bool {
 /// A site as written, subscripts included: `joint[2].flange`.
 pub(crate) fn written(site: &Reference) -> String {
     hyde_syntax::format_reference(site)
+}
+
+/// Whether an instance is of the type that an effect is for, or of one that extends it.
+pub(super) fn fits_on<'a>(
+    names: Names<'a>,
+    host: &Instance<'a>,
+    (file, effect): (FileIndex, &'a Class),
+) -> bool {
+    let wanted = host_of(effect).and_then(|host| names.class(file, host));
+    wanted.is_some_and(|(_, wanted)| names.is_a((host.file, host.class), wanted))
 }

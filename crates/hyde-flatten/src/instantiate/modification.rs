@@ -117,7 +117,7 @@ impl<'a> Model<'a, '_> {
                 Code::UnknownModification,
                 format!("there is no `{name}` to modify"),
             );
-            let Some(instance) = self.modified.get(&number).map(|&id| &self.instances[id]) else {
+            let Some(instance) = self.modified.get(&number).map(|&id| &self.tree[id]) else {
                 self.report(diagnostic.label(span, "changes nothing"));
                 continue;
             };

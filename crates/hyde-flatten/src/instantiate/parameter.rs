@@ -85,7 +85,7 @@ impl<'a> Model<'a, '_> {
             let span = binding
                 .as_ref()
                 .map_or(declarator.name.span, |binding| binding.span);
-            let path = self.path(id);
+            let path = self.tree.path(id);
             let is_final = has(Prefix::Final)
                 || has(Prefix::Constant)
                 || outermost.is_some_and(|m| m.change.is_final);
@@ -121,11 +121,9 @@ impl<'a> Model<'a, '_> {
                 role,
                 range: None,
                 source,
-                origin: self.origin(id, span),
+                origin: self.tree.origin(id, span),
             });
-            self.instances[id]
-                .members
-                .insert(name, Member::Parameter(param));
+            self.tree.name(id, name, Member::Parameter(param));
         }
     }
 

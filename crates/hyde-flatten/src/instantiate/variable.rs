@@ -34,14 +34,14 @@ impl<'a> Model<'a, '_> {
         // At the top, and in a modification, the author means this model; in a part's own declaration every use of it.
         let given = [&start, &fixed].into_iter().flatten();
         let start_given = given.into_iter().any(|attribute| attribute.scope != id)
-            || self.instances[id].parent.is_none();
+            || self.tree[id].parent.is_none();
         let truths = fixed.map(|fixed| self.truths(&fixed));
         let said = truths.as_ref().map(|list| list.iter().all(|&truth| truth));
         let fixed_elements = truths.filter(|_| said == Some(false)).unwrap_or_default();
         let (fixed, freed) = (said == Some(true), said == Some(false));
         let state = state.map_or(StateChoice::Open, |state| self.state_choice(state.expr));
         let (dim, quantity) = self.quantity(kind, binding.as_ref().map(|binding| binding.expr));
-        let clock = self.instances[id].clock;
+        let clock = self.clock_of(id);
         let variable_kind = match clock {
             Some(clock) => VariableKind::Clocked(clock),
             None if discrete.contains(&name) => VariableKind::Discrete,
@@ -67,9 +67,9 @@ impl<'a> Model<'a, '_> {
             }
             None => (self.length(id, &declaration.dims, &declarator.dims), 1),
         };
-        let origin = self.origin(id, declarator.name.span);
+        let origin = self.tree.origin(id, declarator.name.span);
         let flow = has(Prefix::Flow);
-        if flow && self.instances[id].class.kind != ClassKind::Connector {
+        if flow && self.tree[id].class.kind != ClassKind::Connector {
             self.report(
                 Diagnostic::error(
                     Code::BadConnection,
@@ -93,7 +93,7 @@ impl<'a> Model<'a, '_> {
             field,
         });
         let var = self.flat.variables.push(Variable {
-            name: self.instances[id].path.member(name),
+            name: self.tree[id].path.member(name),
             len,
             first,
             kind: variable_kind,
@@ -109,9 +109,7 @@ impl<'a> Model<'a, '_> {
             trace: None,
             origin,
         });
-        self.instances[id]
-            .members
-            .insert(name, Member::Variable(var));
+        self.tree.name(id, name, Member::Variable(var));
     }
 
     /// Whether `fixed = …` holds for the whole of a variable.
