@@ -69,7 +69,7 @@ impl Candidate {
 
 /// The list of what was offered, each site once.
 pub(crate) fn candidates(model: &mut Model<'_, '_>) -> Vec<Candidate> {
-    let mut offers = std::mem::take(&mut model.offers);
+    let mut offers = std::mem::take(&mut model.making.offers);
     if offers.is_empty() {
         return Vec::new();
     }

@@ -4,6 +4,7 @@
 //! grip = F        with  wrap grip by grip + dF        is  grip = F + dF
 //! ```
 
+use crate::experiment::replayed;
 use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
 use crate::site;
@@ -27,7 +28,7 @@ pub(crate) fn wrapped(
     value: Typed,
     setting: Setting,
 ) -> Typed {
-    let mut value = model.replayed(var, value);
+    let mut value = replayed(model, var, value);
     for number in wraps_of(model, var) {
         model.wraps[number].used = true;
         let Wrap {
@@ -59,7 +60,7 @@ fn before(model: &mut Model<'_, '_>, value: &Typed, scope: &Scope<'_>) -> VarId 
 
 fn wraps_of(model: &Model<'_, '_>, var: VarId) -> Vec<usize> {
     let instance = model.notes(var).instance;
-    let name = crate::bind::short(&model.flat.variables[var].name);
+    let name = crate::model::bind::short(&model.flat.variables[var].name);
     (0..model.wraps.len())
         .filter(|&number| {
             let wrap = &model.wraps[number];
@@ -78,6 +79,7 @@ pub(crate) fn finish_effects(model: &mut Model<'_, '_>) {
         }
     }
     let unused: Vec<(InstanceId, &Reference)> = model
+        .making
         .hooks
         .iter()
         .filter(|hook| !hook.used)
@@ -87,6 +89,7 @@ pub(crate) fn finish_effects(model: &mut Model<'_, '_>) {
         model.report(site::no_place(&model.tree, scope, site));
     }
     let unused: Vec<(InstanceId, &Reference)> = model
+        .making
         .replacements
         .iter()
         .filter(|replacement| !replacement.used)

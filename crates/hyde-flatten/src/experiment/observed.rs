@@ -6,7 +6,7 @@
 //! see [`super::wrapped`].
 
 use super::wrapped::unwrapped;
-use crate::call::clocks_of;
+use crate::model::call::clocks_of;
 use hyde_ir::{
     BinaryOp, Expr as Ir, ExprArena, ExprId, FlatModel, Index, Memo, UnaryOp, VariableKind,
 };

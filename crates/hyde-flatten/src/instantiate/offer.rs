@@ -1,7 +1,7 @@
 //! Offers: every effect on everything it fits on, as far as its parameters. [`crate::candidates`] makes the list of them.
 
-use super::Walk;
-use super::effect::{fits_on, is_parameter};
+use super::effect::{fits_on, instance_of_effect, is_parameter};
+use super::{Walk, collect, members};
 use crate::instance::InstanceId;
 use crate::model::Model;
 use hyde_syntax::ast::Element;
@@ -21,7 +21,7 @@ pub(crate) struct Offer<'a> {
 /// Makes the parameters of every effect that fits on an instance, and nothing else of it: for
 /// [`crate::candidates`].
 pub(super) fn offer(model: &mut Model<'_, '_>, host: InstanceId) {
-    if !model.offering || model.tree.is_of_effect(host) {
+    if !model.making.offering || model.tree.is_of_effect(host) {
         return;
     }
     for (file, package, class) in model.names.effects() {
@@ -35,7 +35,7 @@ pub(super) fn offer(model: &mut Model<'_, '_>, host: InstanceId) {
             true => numbered.find(|name| !taken(name)).unwrap_or_default(),
             false => first.to_owned(),
         };
-        let id = model.instance_of_effect(host, (file, class), &name, class.name.span);
+        let id = instance_of_effect(model, host, (file, class), &name, class.name.span);
         let mut collected = Vec::new();
         let walk = Walk {
             id,
@@ -43,12 +43,12 @@ pub(super) fn offer(model: &mut Model<'_, '_>, host: InstanceId) {
             modifiers: Vec::new(),
             chain: Vec::new(),
         };
-        model.collect(walk, class, &mut collected);
+        collect(model, walk, class, &mut collected);
         let elements = collected.iter().map(|item| item.element).collect();
         let (parameters, _): (Vec<_>, Vec<_>) = collected.into_iter().partition(is_parameter);
-        model.members(id, &parameters);
+        members(model, id, &parameters);
         model.tree.set_elements(id, Vec::new());
-        model.offers.push(Offer {
+        model.making.offers.push(Offer {
             host,
             effect: id,
             package,

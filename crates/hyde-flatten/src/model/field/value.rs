@@ -2,8 +2,8 @@
 
 use super::mesh::shifted;
 use crate::instance::{DomainId, Field, FieldPlace, Scope, Typed};
-use crate::lower::Resolved;
 use crate::model::Model;
+use crate::model::lower::Resolved;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{Expr as Ir, ExprId, Index, VarId};
 use hyde_syntax::ast::{Expr, ExprKind, Reference};

@@ -2,6 +2,9 @@
 
 mod elements;
 
+use crate::allowed::check_whole;
+use crate::equation::make_traces_of_equations;
+use crate::event_clock::{event_clock, is_event_clock};
 use crate::wrap::wrapped;
 use crate::zero;
 use elements::Elements;
@@ -31,7 +34,7 @@ impl<'a> Model<'a, '_> {
         for var in self.flat.variables.ids() {
             self.lower_start(var);
         }
-        self.make_traces_of_equations();
+        make_traces_of_equations(self);
         for var in self.flat.variables.ids().collect::<Vec<_>>() {
             self.lower_binding(var);
         }
@@ -211,8 +214,8 @@ impl<'a> Model<'a, '_> {
             let Some(clock) = self.clock_of(part) else {
                 continue;
             };
-            if self.is_event_clock(clocked) {
-                self.event_clock(clocked, (clock, part), instance);
+            if is_event_clock(clocked) {
+                event_clock(self, clocked, (clock, part), instance);
                 continue;
             }
             let scope = Scope::new(instance, Setting::Parameter);
@@ -415,7 +418,7 @@ impl<'a> Model<'a, '_> {
                 ..self.typed(lhs, self.dim(var), binding.span)
             };
             self.same_kind(&declared, &value);
-            self.check_whole(&declared, &value);
+            check_whole(self, &declared, &value);
             zero::show_difference(&mut self.flat, &mut self.variables, (&declared, &value));
             self.agree(
                 &declared,

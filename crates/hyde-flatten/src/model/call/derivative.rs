@@ -7,8 +7,8 @@
 
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
-use crate::lower::Resolved;
 use crate::model::Model;
+use crate::model::lower::Resolved;
 use crate::wrap::wrapped;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, Memo, VarId, VariableKind};

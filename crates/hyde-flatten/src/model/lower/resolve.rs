@@ -1,6 +1,7 @@
 //! Names: what they stand for in scope.
 
 use super::subscript::{mentions_counter, without_elements};
+use crate::experiment::record_column;
 use crate::instance::{
     Counter, Elementwise, FieldPlace, InstanceId, Member, Scope, Setting, Typed,
 };
@@ -92,7 +93,7 @@ impl<'a> Model<'a, '_> {
                 .iter()
                 .any(|record| record == word)
         {
-            return self.record_column(reference, scope);
+            return record_column(self, reference, scope);
         }
         let mut at = scope.instance;
         let mut member = loop {

@@ -1,9 +1,9 @@
 //! `pre`, `sample`, `hold`, `held` and `interval`: values across the borders of clocked parts.
 
-use crate::call::delay::moves_with_counter;
 use crate::dimension::Dim;
 use crate::instance::{Counter, Elementwise, Scope, Setting, Typed};
 use crate::model::Model;
+use crate::model::call::delay::moves_with_counter;
 use crate::turns::Turns;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::flat::{ClockedEquation, Equation};

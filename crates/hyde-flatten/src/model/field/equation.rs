@@ -3,6 +3,7 @@
 use super::mesh::{collapsed, counted_index, pieces, shifted};
 use super::point::Point;
 use crate::instance::{DomainId, Field, FieldPlace, Scope, Typed};
+use crate::instantiate::domain_named;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::flat::Equation;
@@ -69,7 +70,7 @@ impl<'a> Model<'a, '_> {
         span: Span,
     ) {
         let name = place.domain.text.as_str();
-        let Some(domain) = self.domain_named(scope.instance, &place.domain) else {
+        let Some(domain) = domain_named(self, scope.instance, &place.domain) else {
             return;
         };
         match place.end.as_ref().map(|end| (end.text.as_str(), end.span)) {
@@ -154,7 +155,7 @@ impl<'a> Model<'a, '_> {
                 let (left, right) = (self.value(lhs, &at(0)), self.value(rhs, &at(0)));
                 self.agree(&left, &right, "`=` equates", scope.instance);
                 let side = Typed {
-                    dim: crate::lower::sum_dim(&left.dim, &right.dim),
+                    dim: crate::model::lower::sum_dim(&left.dim, &right.dim),
                     ..left
                 };
                 self.agree_loads(&side, &loads, domain, scope);
