@@ -4,12 +4,14 @@
 //! model (outside, flow out of it). `connect(a, b, c)` joins; of each set all potentials are equal, and the flows of the
 //! inside ones minus those of the outside ones sum to zero. A connector in no set has zero flow (U4).
 
+use crate::equation::can_unroll;
 use crate::instance::{Elementwise, InstanceId, Member, Position, Scope, Setting, Typed};
-use crate::lower::Resolved;
+use crate::instantiate::InstanceTree;
 use crate::model::Model;
+use crate::model::lower::Resolved;
 use hyde_diag::{Code, Diagnostic, MadeBy, Origin, Span};
 use hyde_ir::flat::{Equation, Flow};
-use hyde_ir::{Expr as Ir, Index, Range, VarId, VariableKind};
+use hyde_ir::{Expr as Ir, FlatModel, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{ClassKind, Reference};
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap};
@@ -30,390 +32,399 @@ impl Connection {
     }
 }
 
-impl<'a> Model<'a, '_> {
-    /// Lowers `connect(a, b, …)`; whole arrays are connected element by element.
-    pub(crate) fn connection(&mut self, sides: &'a [Reference], scope: &Scope<'a>, span: Span) {
-        let errors = self.diagnostics.error_count();
-        let mut lengths = Vec::new();
-        for side in sides {
-            lengths.push((side, self.length_of(side, scope)));
-        }
-        if self.diagnostics.error_count() > errors {
-            return;
-        }
-        let array = lengths.iter().find_map(|&(side, len)| Some((side, len?)));
-        let Some((array, len)) = array else {
-            self.connect_one(sides, scope, span);
-            return;
+/// Lowers `connect(a, b, …)`; whole arrays are connected element by element.
+pub(crate) fn connection<'a>(
+    model: &mut Model<'a, '_>,
+    sides: &'a [Reference],
+    scope: &Scope<'a>,
+    span: Span,
+) {
+    let errors = model.diagnostics.error_count();
+    let mut lengths = Vec::new();
+    for side in sides {
+        lengths.push((side, model.length_of(side, scope)));
+    }
+    if model.diagnostics.error_count() > errors {
+        return;
+    }
+    let array = lengths.iter().find_map(|&(side, len)| Some((side, len?)));
+    let Some((array, len)) = array else {
+        connect_one(model, sides, scope, span);
+        return;
+    };
+    if let Some((side, other)) = lengths.iter().find(|(_, other)| *other != Some(len)) {
+        let (what, label, help) = match other {
+            Some(other) => (
+                "arrays of different lengths are connected".to_owned(),
+                format!("has {other} elements"),
+                "connect as many: `a[1:3]` means three elements of `a`",
+            ),
+            None => (
+                "an array and a single one are connected".to_owned(),
+                "one".to_owned(),
+                "name an element, `a[1]`, or join each with it: `for i in 1:n loop connect(a[i], b); end for;`",
+            ),
         };
-        if let Some((side, other)) = lengths.iter().find(|(_, other)| *other != Some(len)) {
-            let (what, label, help) = match other {
-                Some(other) => (
-                    "arrays of different lengths are connected".to_owned(),
-                    format!("has {other} elements"),
-                    "connect as many: `a[1:3]` means three elements of `a`",
-                ),
-                None => (
-                    "an array and a single one are connected".to_owned(),
-                    "one".to_owned(),
-                    "name an element, `a[1]`, or join each with it: `for i in 1:n loop connect(a[i], b); end for;`",
-                ),
-            };
-            self.report(
-                Diagnostic::error(Code::BadConnection, what)
-                    .label(side.span, label)
-                    .label(array.span, format!("has {len} elements"))
-                    .help(help),
-            );
-            return;
-        }
-        if self.can_unroll(len, span) {
-            for at in 0..len {
-                let one = Elementwise::One(Position { at, of: len });
-                self.connect_one(sides, &scope.elements(one), span);
-            }
+        model.report(
+            Diagnostic::error(Code::BadConnection, what)
+                .label(side.span, label)
+                .label(array.span, format!("has {len} elements"))
+                .help(help),
+        );
+        return;
+    }
+    if can_unroll(model.diagnostics, len, span) {
+        for at in 0..len {
+            let one = Elementwise::One(Position { at, of: len });
+            connect_one(model, sides, &scope.elements(one), span);
         }
     }
+}
 
-    /// Connectors are kept for the sets, signals are equated at once.
-    fn connect_one(&mut self, sides: &'a [Reference], scope: &Scope<'a>, span: Span) {
-        let mut connectors = Vec::new();
-        let mut signals: Vec<(VarId, Index, &'a Reference)> = Vec::new();
-        for side in sides {
-            match self.resolve(side, scope) {
-                Some(Resolved::Instance(instance))
-                    if self.instances[instance].class.kind == ClassKind::Connector =>
+/// Connectors are kept for the sets, signals are equated at once.
+fn connect_one<'a>(
+    model: &mut Model<'a, '_>,
+    sides: &'a [Reference],
+    scope: &Scope<'a>,
+    span: Span,
+) {
+    let mut connectors = Vec::new();
+    let mut signals: Vec<(VarId, Index, &'a Reference)> = Vec::new();
+    for side in sides {
+        match model.resolve(side, scope) {
+            Some(Resolved::Instance(instance))
+                if model.tree[instance].class.kind == ClassKind::Connector =>
+            {
+                let outside = model.tree[instance].parent == Some(scope.instance);
+                let inside_part = model.tree[instance]
+                    .parent
+                    .and_then(|parent| model.tree[parent].parent);
+                if !outside
+                    && inside_part != Some(scope.instance)
+                    && model.tree[scope.instance].outer.is_none()
                 {
-                    let outside = self.instances[instance].parent == Some(scope.instance);
-                    let inside_part = self.instances[instance]
-                        .parent
-                        .and_then(|parent| self.instances[parent].parent);
-                    if !outside
-                        && inside_part != Some(scope.instance)
-                        && self.instances[scope.instance].outer.is_none()
-                    {
-                        self.report(
-                            Diagnostic::error(
-                                Code::BadConnection,
-                                format!("`{}` is too deep to connect", side.dotted()),
-                            )
-                            .label(side.span, "a connector of a part of a part")
-                            .help("connect it inside the part, or give the part a connector"),
-                        );
-                        return;
-                    }
-                    connectors.push((instance, !outside, side));
-                }
-                Some(Resolved::Variable(var, index)) => {
-                    let len = self.flat.variables[var].len;
-                    let Some(index) = self.whole(index, len, scope, side.span) else {
-                        return;
-                    };
-                    signals.push((var, index, side));
-                }
-                Some(Resolved::Instance(instance)) => {
-                    let class = self.instances[instance].class.name.text.clone();
-                    let known: Vec<&str> = self.instances[instance]
-                        .members
-                        .iter()
-                        .filter(|(_, member)| self.is_connector(member))
-                        .map(|(name, _)| *name)
-                        .collect();
-                    let diagnostic = Diagnostic::error(
-                        Code::BadConnection,
-                        format!(
-                            "`{}` is a component ({class}), not a connector",
-                            side.dotted()
-                        ),
-                    )
-                    .label(side.span, "a component");
-                    let help = crate::model::listed(&known);
-                    self.report(if known.is_empty() {
-                        diagnostic
-                    } else {
-                        diagnostic.help(format!("connect one of its connectors: {help}"))
-                    });
-                    return;
-                }
-                Some(_) => {
-                    self.report(
+                    model.report(
                         Diagnostic::error(
                             Code::BadConnection,
-                            format!("`{}` is not a connector", side.dotted()),
+                            format!("`{}` is too deep to connect", side.dotted()),
                         )
-                        .label(side.span, "cannot be connected"),
+                        .label(side.span, "a connector of a part of a part")
+                        .help("connect it inside the part, or give the part a connector"),
                     );
                     return;
                 }
-                None => return,
+                connectors.push((instance, !outside, side));
             }
-        }
-        match (connectors.first().copied(), signals.first().copied()) {
-            (Some((_, _, connector)), Some((_, _, signal))) => self.report(
-                Diagnostic::error(
-                    Code::BadConnection,
-                    "a connector and a signal are connected",
-                )
-                .label(connector.span, "a connector")
-                .label(signal.span, "a signal")
-                .help("connect connectors with each other; a signal is the value of an input, `Part part(u = x);`, or stands in an equation"),
-            ),
-            (Some((first, ..)), None) => {
-                let same = |instance: InstanceId| {
-                    std::ptr::eq(self.instances[instance].class, self.instances[first].class)
+            Some(Resolved::Variable(var, index)) => {
+                let len = model.flat.variables[var].len;
+                let Some(index) = model.whole(index, len, scope, side.span) else {
+                    return;
                 };
-                if let Some((other, _, side)) = connectors
+                signals.push((var, index, side));
+            }
+            Some(Resolved::Instance(instance)) => {
+                let class = model.tree[instance].class.name.text.clone();
+                let known: Vec<&str> = model.tree[instance]
+                    .members
                     .iter()
-                    .copied()
-                    .find(|(instance, ..)| !same(*instance))
-                {
-                    let (a, b) = (
-                        &self.instances[first].class.name.text,
-                        &self.instances[other].class.name.text,
-                    );
-                    let message =
-                        format!("connectors of different types are connected: `{a}` and `{b}`");
-                    let diagnostic = Diagnostic::error(Code::BadConnection, message)
-                        .label(side.span, format!("a `{b}`"))
-                        .label(connectors[0].2.span, format!("a `{a}`"))
-                        .help(format!(
-                            "connect connectors of the same type; between `{a}` and `{b}` use a component that has both"
-                        ));
-                    self.report(diagnostic);
-                    return;
-                }
-                let twice = connectors.iter().enumerate().find(|(at, (instance, ..))| {
-                    connectors[..*at].iter().any(|(before, ..)| before == instance)
-                });
-                if let Some((_, (.., side))) = twice {
-                    let diagnostic = Diagnostic::error(
-                        Code::BadConnection,
-                        format!("`{}` is connected to itself", side.dotted()),
-                    )
-                    .label(side.span, "the same connector again")
-                    .help("name the connector of another component");
-                    self.report(diagnostic);
-                    return;
-                }
-                let sides = connectors
-                    .iter()
-                    .map(|(instance, inside, _)| (*instance, *inside))
+                    .filter(|(_, member)| is_connector(&model.tree, member))
+                    .map(|(name, _)| *name)
                     .collect();
-                let origin = self
-                    .origin(scope.instance, span)
-                    .made_by(MadeBy::Connection);
-                self.connections.push(Connection { sides, origin });
+                let diagnostic = Diagnostic::error(
+                    Code::BadConnection,
+                    format!(
+                        "`{}` is a component ({class}), not a connector",
+                        side.dotted()
+                    ),
+                )
+                .label(side.span, "a component");
+                let help = crate::model::listed(&known);
+                model.report(if known.is_empty() {
+                    diagnostic
+                } else {
+                    diagnostic.help(format!("connect one of its connectors: {help}"))
+                });
+                return;
             }
-            (None, Some((first, of_first, written))) => {
-                let mut equations = Vec::new();
-                for &(other, index, side) in &signals[1..] {
-                    let lhs = self.flat.exprs.add(Ir::Var(other, index));
-                    let rhs = self.flat.exprs.add(Ir::Var(first, of_first));
-                    let left = Typed {
-                        truth: self.flat.variables[other].boolean,
-                        ..self.typed(lhs, self.dim(other), side.span)
-                    };
-                    let right = Typed {
-                        truth: self.flat.variables[first].boolean,
-                        ..self.typed(rhs, self.dim(first), written.span)
-                    };
-                    self.same_kind(&left, &right);
-                    self.agree(&left, &right, "`connect` joins", scope.instance);
-                    let origin = self
-                        .origin(scope.instance, span)
-                        .made_by(MadeBy::Connection);
-                    equations.push(Equation {
-                        range: Range::SCALAR,
-                        lhs,
-                        rhs,
-                        origin,
-                    });
-                }
-                let clocked = matches!(self.flat.variables[first].kind, VariableKind::Clocked(_));
-                match (clocked, self.instances[scope.instance].clock) {
-                    (true, Some(clock)) if scope.setting == Setting::Clocked => {
-                        let list = equations
-                            .into_iter()
-                            .map(|equation| hyde_ir::flat::ClockedEquation { clock, equation });
-                        self.flat.clocked_equations.extend(list);
-                    }
-                    _ => self.flat.equations.extend(equations),
-                }
+            Some(_) => {
+                model.report(
+                    Diagnostic::error(
+                        Code::BadConnection,
+                        format!("`{}` is not a connector", side.dotted()),
+                    )
+                    .label(side.span, "cannot be connected"),
+                );
+                return;
             }
-            (None, None) => {}
+            None => return,
         }
     }
-
-    /// Turns all connections into equations.
-    pub(crate) fn connect(&mut self) {
-        let sets = self.connection_sets();
-        let mut connected_inside = vec![false; self.instances.len()];
-        for (members, origin) in &sets {
-            for &(instance, inside) in members {
-                connected_inside[instance] |= inside;
+    match (connectors.first().copied(), signals.first().copied()) {
+        (Some((_, _, connector)), Some((_, _, signal))) => model.report(
+            Diagnostic::error(
+                Code::BadConnection,
+                "a connector and a signal are connected",
+            )
+            .label(connector.span, "a connector")
+            .label(signal.span, "a signal")
+            .help("connect connectors with each other; a signal is the value of an input, `Part part(u = x);`, or stands in an equation"),
+        ),
+        (Some((first, ..)), None) => {
+            let same = |instance: InstanceId| {
+                std::ptr::eq(model.tree[instance].class, model.tree[first].class)
+            };
+            if let Some((other, _, side)) = connectors
+                .iter()
+                .copied()
+                .find(|(instance, ..)| !same(*instance))
+            {
+                let (a, b) = (
+                    &model.tree[first].class.name.text,
+                    &model.tree[other].class.name.text,
+                );
+                let message =
+                    format!("connectors of different types are connected: `{a}` and `{b}`");
+                let diagnostic = Diagnostic::error(Code::BadConnection, message)
+                    .label(side.span, format!("a `{b}`"))
+                    .label(connectors[0].2.span, format!("a `{a}`"))
+                    .help(format!(
+                        "connect connectors of the same type; between `{a}` and `{b}` use a component that has both"
+                    ));
+                model.report(diagnostic);
+                return;
             }
-            self.set_equations(members, origin);
-            self.flows(members);
+            let twice = connectors.iter().enumerate().find(|(at, (instance, ..))| {
+                connectors[..*at].iter().any(|(before, ..)| before == instance)
+            });
+            if let Some((_, (.., side))) = twice {
+                let diagnostic = Diagnostic::error(
+                    Code::BadConnection,
+                    format!("`{}` is connected to itself", side.dotted()),
+                )
+                .label(side.span, "the same connector again")
+                .help("name the connector of another component");
+                model.report(diagnostic);
+                return;
+            }
+            let sides = connectors
+                .iter()
+                .map(|(instance, inside, _)| (*instance, *inside))
+                .collect();
+            let origin = model
+                .tree.origin(scope.instance, span)
+                .made_by(MadeBy::Connection);
+            model.connections.push(Connection { sides, origin });
         }
-        for (id, connected) in connected_inside.into_iter().enumerate() {
-            if self.instances[id].class.kind != ClassKind::Connector || connected {
-                continue;
-            }
-            // A top-level connector, and one that no parent connects: nothing flows in.
-            for var in self.variables_of(id) {
-                if !self.flat.variables[var].flow {
-                    continue;
-                }
-                let lhs = self.flat.exprs.var(var);
-                let rhs = self.flat.exprs.constant(0.0);
-                let origin = self
-                    .origin(id, self.instances[id].span)
-                    .made_by(MadeBy::Unconnected);
-                self.flat.equations.push(Equation {
+        (None, Some((first, of_first, written))) => {
+            let mut equations = Vec::new();
+            for &(other, index, side) in &signals[1..] {
+                let lhs = model.flat.exprs.add(Ir::Var(other, index));
+                let rhs = model.flat.exprs.add(Ir::Var(first, of_first));
+                let left = Typed {
+                    truth: model.flat.variables[other].boolean,
+                    ..model.typed(lhs, model.dim(other), side.span)
+                };
+                let right = Typed {
+                    truth: model.flat.variables[first].boolean,
+                    ..model.typed(rhs, model.dim(first), written.span)
+                };
+                model.same_kind(&left, &right);
+                model.agree(&left, &right, "`connect` joins", scope.instance);
+                let origin = model
+                    .tree.origin(scope.instance, span)
+                    .made_by(MadeBy::Connection);
+                equations.push(Equation {
                     range: Range::SCALAR,
                     lhs,
                     rhs,
                     origin,
                 });
             }
-        }
-    }
-
-    /// The sets of joined connectors, in the order of the last `connect` that joined any.
-    fn connection_sets(&mut self) -> Vec<(Vec<Side>, Origin)> {
-        let mut sets: Vec<Option<(Vec<Side>, Origin)>> = Vec::new();
-        // The set that each side was put in, and the later set that each set went into.
-        let mut set_of: HashMap<Side, usize> = HashMap::new();
-        let mut into: Vec<usize> = Vec::new();
-        for connection in std::mem::take(&mut self.connections) {
-            let known = connection.sides.iter().filter_map(|side| set_of.get(side));
-            let joined: BTreeSet<usize> = known.map(|&set| latest(&mut into, set)).collect();
-            let number = sets.len();
-            let mut merged: Vec<Side> = Vec::new();
-            let mut origin = connection.origin;
-            for set in joined {
-                into[set] = number;
-                if let Some((members, first)) = sets[set].take() {
-                    match merged.is_empty() {
-                        true => merged = members,
-                        false => merged.extend(members),
-                    }
-                    origin = first;
+            let clocked = matches!(model.flat.variables[first].kind, VariableKind::Clocked(_));
+            match (clocked, model.clock_of(scope.instance)) {
+                (true, Some(clock)) if scope.setting == Setting::Clocked => {
+                    let list = equations
+                        .into_iter()
+                        .map(|equation| hyde_ir::flat::ClockedEquation { clock, equation });
+                    model.flat.clocked_equations.extend(list);
                 }
+                _ => model.flat.equations.extend(equations),
             }
-            for side in connection.sides {
-                if let Entry::Vacant(vacant) = set_of.entry(side) {
-                    vacant.insert(number);
-                    merged.push(side);
-                }
-            }
-            sets.push(Some((merged, origin)));
-            into.push(number);
         }
-        sets.into_iter().flatten().collect()
+        (None, None) => {}
     }
+}
 
-    fn set_equations(&mut self, members: &[Side], origin: &Origin) {
-        let Some(&(first, _)) = members.first() else {
-            return;
-        };
-        for (position, var) in self.variables_of(first).into_iter().enumerate() {
-            let of = |model: &Self, instance: InstanceId| {
-                model.variables_of(instance).get(position).copied()
-            };
-            if self.flat.variables[var].flow {
-                let mut sum = self.flat.exprs.constant(0.0);
-                for &(instance, inside) in members {
-                    let Some(flow) = of(self, instance) else {
-                        continue;
-                    };
-                    let term = self.flat.exprs.var(flow);
-                    sum = if inside {
-                        self.flat.exprs.plus(sum, term)
-                    } else {
-                        self.flat.exprs.minus(sum, term)
-                    };
-                }
-                let rhs = self.flat.exprs.constant(0.0);
-                self.flat.equations.push(Equation {
-                    range: Range::SCALAR,
-                    lhs: sum,
-                    rhs,
-                    origin: origin.clone(),
-                });
+/// Turns all connections into equations.
+pub(crate) fn connect(model: &mut Model<'_, '_>) {
+    let sets = connection_sets(model);
+    let mut connected_inside = vec![false; model.tree.len()];
+    for (members, origin) in &sets {
+        for &(instance, inside) in members {
+            connected_inside[instance] |= inside;
+        }
+        set_equations(model, members, origin);
+        flows(&model.tree, &mut model.flat, members);
+    }
+    for (id, connected) in connected_inside.into_iter().enumerate() {
+        if model.tree[id].class.kind != ClassKind::Connector || connected {
+            continue;
+        }
+        // A top-level connector, and one that no parent connects: nothing flows in.
+        for var in variables_of(&model.tree, id) {
+            if !model.flat.variables[var].flow {
                 continue;
             }
-            for &(instance, _) in &members[1..] {
-                let Some(other) = of(self, instance) else {
-                    continue;
-                };
-                if other == var {
-                    continue;
+            let lhs = model.flat.exprs.var(var);
+            let rhs = model.flat.exprs.constant(0.0);
+            let origin = model
+                .tree
+                .origin(id, model.tree[id].span)
+                .made_by(MadeBy::Unconnected);
+            model.flat.equations.push(Equation {
+                range: Range::SCALAR,
+                lhs,
+                rhs,
+                origin,
+            });
+        }
+    }
+}
+
+/// The sets of joined connectors, in the order of the last `connect` that joined any.
+fn connection_sets(model: &mut Model<'_, '_>) -> Vec<(Vec<Side>, Origin)> {
+    let mut sets: Vec<Option<(Vec<Side>, Origin)>> = Vec::new();
+    // The set that each side was put in, and the later set that each set went into.
+    let mut set_of: HashMap<Side, usize> = HashMap::new();
+    let mut into: Vec<usize> = Vec::new();
+    for connection in std::mem::take(&mut model.connections) {
+        let known = connection.sides.iter().filter_map(|side| set_of.get(side));
+        let joined: BTreeSet<usize> = known.map(|&set| latest(&mut into, set)).collect();
+        let number = sets.len();
+        let mut merged: Vec<Side> = Vec::new();
+        let mut origin = connection.origin;
+        for set in joined {
+            into[set] = number;
+            if let Some((members, first)) = sets[set].take() {
+                match merged.is_empty() {
+                    true => merged = members,
+                    false => merged.extend(members),
                 }
-                let (lhs, rhs) = (self.flat.exprs.var(other), self.flat.exprs.var(var));
-                self.flat.equations.push(Equation {
-                    range: Range::SCALAR,
-                    lhs,
-                    rhs,
-                    origin: origin.clone(),
-                });
+                origin = first;
             }
         }
+        for side in connection.sides {
+            if let Entry::Vacant(vacant) = set_of.entry(side) {
+                vacant.insert(number);
+                merged.push(side);
+            }
+        }
+        sets.push(Some((merged, origin)));
+        into.push(number);
     }
+    sets.into_iter().flatten().collect()
+}
 
-    /// Notes what goes from one of the joined connectors to another. That of a component whose connector leads on to one
-    /// part of it is told where the component is connected.
-    fn flows(&mut self, members: &[Side]) {
-        let told: Vec<(InstanceId, String)> = match *members {
-            [_] => return,
-            [(from, true), (to, true)] => {
-                let (from, to) = (&self.instances[from].path, to);
-                vec![(to, format!("{from} to {}", self.instances[to].path))]
-            }
-            [_, _] => return,
-            _ => {
-                let inside = members.iter().filter(|(_, inside)| *inside);
-                let told = |&(id, _): &Side| (id, format!("into {}", self.instances[id].path));
-                inside.map(told).collect()
-            }
+fn set_equations(model: &mut Model<'_, '_>, members: &[Side], origin: &Origin) {
+    let Some(&(first, _)) = members.first() else {
+        return;
+    };
+    for (position, var) in variables_of(&model.tree, first).into_iter().enumerate() {
+        let of = |model: &Model<'_, '_>, instance: InstanceId| {
+            variables_of(&model.tree, instance).get(position).copied()
         };
-        for (connector, name) in told {
-            let variables = self.variables_of(connector).into_iter();
-            let flows: Vec<VarId> = variables
-                .filter(|&var| {
-                    let variable = &self.flat.variables[var];
-                    variable.flow && variable.len.is_none()
-                })
-                .collect();
-            for &var in &flows {
-                let variable = &self.flat.variables[var].name;
-                let last = variable.rsplit('.').next().unwrap_or(variable);
-                let name = match flows.len() {
-                    1 => name.clone(),
-                    _ => format!("{name}.{last}"),
+        if model.flat.variables[var].flow {
+            let mut sum = model.flat.exprs.constant(0.0);
+            for &(instance, inside) in members {
+                let Some(flow) = of(model, instance) else {
+                    continue;
                 };
-                self.flat.experiment.flows.push(Flow { name, var });
+                let term = model.flat.exprs.var(flow);
+                sum = if inside {
+                    model.flat.exprs.plus(sum, term)
+                } else {
+                    model.flat.exprs.minus(sum, term)
+                };
             }
+            let rhs = model.flat.exprs.constant(0.0);
+            model.flat.equations.push(Equation {
+                range: Range::SCALAR,
+                lhs: sum,
+                rhs,
+                origin: origin.clone(),
+            });
+            continue;
+        }
+        for &(instance, _) in &members[1..] {
+            let Some(other) = of(model, instance) else {
+                continue;
+            };
+            if other == var {
+                continue;
+            }
+            let (lhs, rhs) = (model.flat.exprs.var(other), model.flat.exprs.var(var));
+            model.flat.equations.push(Equation {
+                range: Range::SCALAR,
+                lhs,
+                rhs,
+                origin: origin.clone(),
+            });
         }
     }
+}
 
-    /// The variables of a connector in the order of their names.
-    fn variables_of(&self, connector: InstanceId) -> Vec<VarId> {
-        let members = self.instances[connector].members.values();
-        members
-            .filter_map(|member| match member {
-                Member::Variable(var) => Some(*var),
-                Member::Parameter(_)
-                | Member::Instance(_)
-                | Member::Instances(_)
-                | Member::Domain(_) => None,
+/// Notes what goes from one of the joined connectors to another. That of a component whose connector leads on to one
+/// part of it is told where the component is connected.
+fn flows(tree: &InstanceTree<'_>, flat: &mut FlatModel, members: &[Side]) {
+    let told: Vec<(InstanceId, String)> = match *members {
+        [_] => return,
+        [(from, true), (to, true)] => {
+            let (from, to) = (&tree[from].path, to);
+            vec![(to, format!("{from} to {}", tree[to].path))]
+        }
+        [_, _] => return,
+        _ => {
+            let inside = members.iter().filter(|(_, inside)| *inside);
+            let told = |&(id, _): &Side| (id, format!("into {}", tree[id].path));
+            inside.map(told).collect()
+        }
+    };
+    for (connector, name) in told {
+        let variables = variables_of(tree, connector).into_iter();
+        let flows: Vec<VarId> = variables
+            .filter(|&var| {
+                let variable = &flat.variables[var];
+                variable.flow && variable.len.is_none()
             })
-            .collect()
+            .collect();
+        for &var in &flows {
+            let variable = &flat.variables[var].name;
+            let last = variable.rsplit('.').next().unwrap_or(variable);
+            let name = match flows.len() {
+                1 => name.clone(),
+                _ => format!("{name}.{last}"),
+            };
+            flat.experiment.flows.push(Flow { name, var });
+        }
     }
+}
 
-    fn is_connector(&self, member: &Member) -> bool {
-        matches!(member, Member::Instance(id) if self.instances[*id].class.kind == ClassKind::Connector)
-    }
+/// The variables of a connector in the order of their names.
+fn variables_of(tree: &InstanceTree<'_>, connector: InstanceId) -> Vec<VarId> {
+    let members = tree[connector].members.values();
+    members
+        .filter_map(|member| match member {
+            Member::Variable(var) => Some(*var),
+            Member::Parameter(_)
+            | Member::Instance(_)
+            | Member::Instances(_)
+            | Member::Domain(_) => None,
+        })
+        .collect()
+}
+
+fn is_connector(tree: &InstanceTree<'_>, member: &Member) -> bool {
+    matches!(member, Member::Instance(id) if tree[*id].class.kind == ClassKind::Connector)
 }
 
 /// The set that a set went into at last; the way there becomes shorter for the next time.

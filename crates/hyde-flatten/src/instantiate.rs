@@ -3,7 +3,7 @@
 //! `M m(R = 2)` with `model M extends B(R = 1); parameter Resistance R = 3; end M;` makes the instance `m` with the
 //! parameter `m.R`, whose binding is the outermost of: the modification in the enclosing model (evaluated there), the
 //! modification of the `extends` clause, the declaration. Nothing is evaluated here but what decides the structure:
-//! dimensions of arrays and numbers of cells ([`crate::structural`]).
+//! dimensions of arrays and numbers of cells ([`crate::model::structural`]).
 
 mod assigned;
 mod clocked;
@@ -15,23 +15,53 @@ mod modification;
 mod offer;
 mod parameter;
 mod quantity;
+mod tree;
 mod variable;
+
+pub(crate) use domain::domain_named;
+pub(crate) use effect::{Hook, Replacement, host_of, written};
+pub(crate) use offer::Offer;
+pub(crate) use quantity::{quantity, type_unit};
+pub(crate) use tree::InstanceTree;
 
 use crate::instance::{Instance, InstanceId};
 use crate::model::{Model, listed};
 use crate::names::{FileIndex, nearest};
-pub(crate) use effect::{Hook, Replacement, host_of, written};
-use hyde_diag::{Code, Diagnostic, InstancePath, Span};
+use clocked::declare_clocked;
+use declare::declare;
+use domain::declare_domain;
+use effect::{effects_of, hook, hook_additions};
+use hyde_diag::{Code, Diagnostic, Diagnostics, InstancePath, Span};
 use hyde_ir::ClockId;
 use hyde_syntax::ast::{Change, Class, ClassBody, Element, Prefix, Reference};
-use modification::Modifier;
-pub(crate) use offer::Offer;
+use modification::{Modifier, modifiers_of, note_modified, report_unused_modifications};
+use parameter::declare_parameters;
+use std::collections::BTreeMap;
 
 /// Elements of a class and its bases, each with the modifications of the `extends` clauses on the way.
 struct Collected<'a> {
     element: &'a Element,
     file: FileIndex,
     modifiers: Vec<Modifier<'a>>,
+}
+
+/// What is noted while instances are made.
+#[derive(Default)]
+pub(crate) struct Making<'a> {
+    /// Modifications with whether anything used them.
+    modifications: Vec<(Span, String, bool)>,
+    /// The instance that a modification with one word left was given to, by its number.
+    modified: BTreeMap<usize, InstanceId>,
+    /// Effects to be put on instances, and what they replace.
+    pub(crate) hooks: Vec<Hook<'a>>,
+    pub(crate) replacements: Vec<Replacement<'a>>,
+    /// Whether effects are offered to what they fit on, and those that were.
+    pub(crate) offering: bool,
+    pub(crate) offers: Vec<Offer<'a>>,
+    /// Classes that contain themselves, once reported.
+    endless: Vec<&'a Class>,
+    /// The classes that the instance being made extends, by whatever way.
+    extended: usize,
 }
 
 /// Where an instance stands.
@@ -60,294 +90,309 @@ const MAX_PARTS: usize = 200;
 const MAX_BASES: usize = 200;
 const MAX_EXTENDED: usize = 2000;
 
-impl<'a> Model<'a, '_> {
-    /// Instantiates the model asked for; `None` if there is none of that name.
-    pub(crate) fn instantiate_root(&mut self) -> Option<InstanceId> {
-        let name = self.input.model;
-        let Some(class) = self.names.own_class(name) else {
-            let file = self.input.files.first()?.0;
-            let diagnostic = Diagnostic::error(
-                Code::NoExperiment,
-                format!("the file has no model `{name}`"),
-            );
-            let models: Vec<&str> = self.names.own_models().collect();
-            let written = self
-                .input
-                .experiment
-                .and_then(|experiment| self.names.own_experiment(experiment))
-                .filter(|experiment| experiment.model.dotted() == name);
-            let diagnostic = match written {
-                Some(experiment) => diagnostic.label(experiment.model.span, "not in this file"),
-                None => diagnostic.label(Span::new(file, 0, 0), "searched in this file"),
-            };
-            self.report(match nearest(name, models.iter().copied()) {
-                Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-                None if models.is_empty() => diagnostic.help("it has none"),
-                None => diagnostic.help(format!("it has {}", listed(&models))),
-            });
-            return None;
-        };
-        self.flat.name = class.name.text.clone();
-        let mut modifiers = Vec::new();
-        if let Some(experiment) = self
+/// Instantiates the model asked for; `None` if there is none of that name.
+pub(crate) fn instantiate_root(model: &mut Model<'_, '_>) -> Option<InstanceId> {
+    let name = model.input.model;
+    let Some(class) = model.names.own_class(name) else {
+        let file = model.input.files.first()?.0;
+        let diagnostic = Diagnostic::error(
+            Code::NoExperiment,
+            format!("the file has no model `{name}`"),
+        );
+        let models: Vec<&str> = model.names.own_models().collect();
+        let written = model
             .input
             .experiment
-            .and_then(|name| self.names.own_experiment(name))
-        {
-            self.flat.experiment.records = experiment
-                .records
-                .iter()
-                .map(|record| record.name.text.clone())
-                .collect();
-            self.modifiers_of(&experiment.changes, 0, &mut modifiers);
-            modifiers
-                .iter_mut()
-                .for_each(|modifier| modifier.records = true);
-        }
-        let place = Place {
-            path: InstancePath::root(),
-            parent: None,
-            clock: None,
-            span: class.name.span,
+            .and_then(|experiment| model.names.own_experiment(experiment))
+            .filter(|experiment| experiment.model.dotted() == name);
+        let diagnostic = match written {
+            Some(experiment) => diagnostic.label(experiment.model.span, "not in this file"),
+            None => diagnostic.label(Span::new(file, 0, 0), "searched in this file"),
         };
-        let root = self.instantiate(0, class, modifiers, place);
-        self.report_unused_modifications();
-        Some(root)
-    }
-
-    fn instantiate(
-        &mut self,
-        file: FileIndex,
-        class: &'a Class,
-        modifiers: Vec<Modifier<'a>>,
-        place: Place,
-    ) -> InstanceId {
-        let Place {
-            path,
-            parent,
-            clock,
-            span,
-        } = place;
-        let id = self.instances.len();
-        self.instances.push(Instance {
-            path,
-            file,
-            class,
-            parent,
-            outer: None,
-            clock,
-            members: std::collections::BTreeMap::new(),
-            elements: Vec::new(),
-            span,
+        model.report(match nearest(name, models.iter().copied()) {
+            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+            None if models.is_empty() => diagnostic.help("it has none"),
+            None => diagnostic.help(format!("it has {}", listed(&models))),
         });
-        if self.endless.iter().any(|&known| std::ptr::eq(known, class)) {
-            return id;
-        }
-        if self.nested(id) > MAX_NESTED {
-            self.endless.push(class);
-            self.report(
-                Diagnostic::error(
-                    Code::Cycle,
-                    format!("`{}` contains itself", class.name.text),
-                )
-                .label(class.name.span, "contains itself")
-                .help("a model cannot be a component of itself"),
-            );
-            return id;
-        }
-        if self.depth(id) > MAX_PARTS {
-            self.endless.push(class);
-            self.too_deep(
-                format!("more than {MAX_PARTS} components are nested"),
-                (class.name.span, "instantiated inside that many others"),
-                "put parts beside each other and connect them",
-            );
-            return id;
-        }
-        self.note_modified(id, &modifiers);
-        if parent.is_none() {
-            self.hook_additions(id);
-        }
-        self.effects_of(id, &modifiers);
-        let mut collected = Vec::new();
-        let walk = Walk {
-            id,
-            file,
-            modifiers,
-            chain: Vec::new(),
-        };
-        let extended = std::mem::replace(&mut self.extended, 0);
-        self.collect(walk, class, &mut collected);
-        self.extended = extended;
-        self.members(id, &collected);
-        self.offer(id);
-        id
-    }
-
-    /// Makes the members of an instance from its collected elements: parameters first, for dimensions may use them.
-    fn members(&mut self, id: InstanceId, collected: &[Collected<'a>]) {
-        let discrete: Vec<&'a str> = collected
+        return None;
+    };
+    model.flat.name = class.name.text.clone();
+    let mut modifiers = Vec::new();
+    if let Some(experiment) = model
+        .input
+        .experiment
+        .and_then(|name| model.names.own_experiment(name))
+    {
+        model.flat.experiment.records = experiment
+            .records
             .iter()
-            .flat_map(|item| assigned::at_events(item.element))
+            .map(|record| record.name.text.clone())
             .collect();
-        let is_parameter = |element: &Element| {
-            matches!(element, Element::Declaration(d) if d.prefixes.iter().any(|p| {
-                matches!(p, Prefix::Parameter | Prefix::Constant | Prefix::Size | Prefix::Shape)
-            }))
-        };
-        for item in collected.iter().filter(|item| is_parameter(item.element)) {
-            if let Element::Declaration(declaration) = item.element {
-                self.declare_parameters(id, item, declaration);
-            }
+        modifiers_of(model, &experiment.changes, 0, &mut modifiers);
+        modifiers
+            .iter_mut()
+            .for_each(|modifier| modifier.records = true);
+    }
+    let place = Place {
+        path: InstancePath::root(),
+        parent: None,
+        clock: None,
+        span: class.name.span,
+    };
+    let root = instantiate(model, 0, class, modifiers, place);
+    report_unused_modifications(model);
+    Some(root)
+}
+
+fn instantiate<'a>(
+    model: &mut Model<'a, '_>,
+    file: FileIndex,
+    class: &'a Class,
+    modifiers: Vec<Modifier<'a>>,
+    place: Place,
+) -> InstanceId {
+    let Place {
+        path,
+        parent,
+        clock,
+        span,
+    } = place;
+    let id = model.tree.push(Instance {
+        path,
+        file,
+        class,
+        parent,
+        outer: None,
+        clock,
+        members: BTreeMap::new(),
+        elements: Vec::new(),
+        span,
+    });
+    if model
+        .making
+        .endless
+        .iter()
+        .any(|&known| std::ptr::eq(known, class))
+    {
+        return id;
+    }
+    if nested(&model.tree, id) > MAX_NESTED {
+        model.making.endless.push(class);
+        model.report(
+            Diagnostic::error(
+                Code::Cycle,
+                format!("`{}` contains itself", class.name.text),
+            )
+            .label(class.name.span, "contains itself")
+            .help("a model cannot be a component of itself"),
+        );
+        return id;
+    }
+    if depth(&model.tree, id) > MAX_PARTS {
+        model.making.endless.push(class);
+        too_deep(
+            model.diagnostics,
+            format!("more than {MAX_PARTS} components are nested"),
+            (class.name.span, "instantiated inside that many others"),
+            "put parts beside each other and connect them",
+        );
+        return id;
+    }
+    note_modified(model, id, &modifiers);
+    if parent.is_none() {
+        hook_additions(model, id);
+    }
+    effects_of(model, id, &modifiers);
+    let mut collected = Vec::new();
+    let walk = Walk {
+        id,
+        file,
+        modifiers,
+        chain: Vec::new(),
+    };
+    let extended = std::mem::replace(&mut model.making.extended, 0);
+    collect(model, walk, class, &mut collected);
+    model.making.extended = extended;
+    members(model, id, &collected);
+    offer::offer(model, id);
+    id
+}
+
+/// Makes the members of an instance from its collected elements: parameters first, for dimensions may use them.
+fn members<'a>(model: &mut Model<'a, '_>, id: InstanceId, collected: &[Collected<'a>]) {
+    let discrete: Vec<&'a str> = collected
+        .iter()
+        .flat_map(|item| assigned::at_events(item.element))
+        .collect();
+    let is_parameter = |element: &Element| {
+        matches!(element, Element::Declaration(d) if d.prefixes.iter().any(|p| {
+            matches!(p, Prefix::Parameter | Prefix::Constant | Prefix::Size | Prefix::Shape)
+        }))
+    };
+    for item in collected.iter().filter(|item| is_parameter(item.element)) {
+        if let Element::Declaration(declaration) = item.element {
+            declare_parameters(model, id, item, declaration);
         }
-        let elements: Vec<&'a Element> = collected.iter().map(|item| item.element).collect();
-        for item in collected {
-            if let Element::Domain(domain) = item.element {
-                let method = collected.iter().find_map(|other| {
-                    if let Element::Discretize(method) = other.element
-                        && method.domain.text == domain.name.text
-                    {
-                        Some(method)
-                    } else {
-                        None
-                    }
-                });
-                self.declare_domain(id, domain, method, &elements);
-            }
-        }
-        for item in collected.iter().filter(|item| !is_parameter(item.element)) {
-            match item.element {
-                Element::Declaration(declaration) => {
-                    self.declare(id, item, declaration, &discrete, collected)
+    }
+    let elements: Vec<&'a Element> = collected.iter().map(|item| item.element).collect();
+    for item in collected {
+        if let Element::Domain(domain) = item.element {
+            let method = collected.iter().find_map(|other| {
+                if let Element::Discretize(method) = other.element
+                    && method.domain.text == domain.name.text
+                {
+                    Some(method)
+                } else {
+                    None
                 }
-                Element::Clocked(clocked) => self.clocked(id, item, clocked),
-                Element::Discretize(method) => {
-                    self.domain_named(id, &method.domain);
-                }
-                Element::Extends(..)
-                | Element::Domain(_)
-                | Element::Modes(_)
-                | Element::Equation(_)
-                | Element::InitialEquation(_)
-                | Element::Wrap(..)
-                | Element::Add(_)
-                | Element::Replace(..)
-                | Element::Signature(_)
-                | Element::Confounds(_)
-                | Element::Measure(_)
-                | Element::Account(..) => {}
-            }
+            });
+            declare_domain(model, id, domain, method, &elements);
         }
-        self.instances[id].elements = collected
+    }
+    for item in collected.iter().filter(|item| !is_parameter(item.element)) {
+        match item.element {
+            Element::Declaration(declaration) => {
+                declare(model, id, item, declaration, &discrete, collected)
+            }
+            Element::Clocked(clocked) => declare_clocked(model, id, item, clocked),
+            Element::Discretize(method) => {
+                domain_named(model, id, &method.domain);
+            }
+            Element::Extends(..)
+            | Element::Domain(_)
+            | Element::Modes(_)
+            | Element::Equation(_)
+            | Element::InitialEquation(_)
+            | Element::Wrap(..)
+            | Element::Add(_)
+            | Element::Replace(..)
+            | Element::Signature(_)
+            | Element::Confounds(_)
+            | Element::Measure(_)
+            | Element::Account(..) => {}
+        }
+    }
+    let elements = collected
+        .iter()
+        .map(|item| (item.file, item.element))
+        .collect();
+    model.tree.set_elements(id, elements);
+}
+
+/// The elements of a class, those of its bases first.
+fn collect<'a>(
+    model: &mut Model<'a, '_>,
+    walk: Walk<'a>,
+    class: &'a Class,
+    out: &mut Vec<Collected<'a>>,
+) {
+    if let Some(own) = walk
+        .chain
+        .iter()
+        .position(|&known| std::ptr::eq(known, class))
+    {
+        let name = &class.name.text;
+        let names: Vec<String> = walk.chain[own..]
             .iter()
-            .map(|item| (item.file, item.element))
+            .chain([&class])
+            .map(|class| format!("`{}`", class.name.text))
             .collect();
+        let message = match names.len() {
+            2 => format!("`{name}` extends itself"),
+            _ => format!("`{name}` extends itself: {}", names.join(" extends ")),
+        };
+        model.report(
+            Diagnostic::error(Code::Cycle, message).label(class.name.span, "declared here"),
+        );
+        return;
     }
-
-    /// The elements of a class, those of its bases first.
-    fn collect(&mut self, walk: Walk<'a>, class: &'a Class, out: &mut Vec<Collected<'a>>) {
-        if let Some(own) = walk
-            .chain
-            .iter()
-            .position(|&known| std::ptr::eq(known, class))
-        {
-            let name = &class.name.text;
-            let names: Vec<String> = walk.chain[own..]
-                .iter()
-                .chain([&class])
-                .map(|class| format!("`{}`", class.name.text))
-                .collect();
-            let message = match names.len() {
-                2 => format!("`{name}` extends itself"),
-                _ => format!("`{name}` extends itself: {}", names.join(" extends ")),
-            };
-            self.report(
-                Diagnostic::error(Code::Cycle, message).label(class.name.span, "declared here"),
+    model.making.extended += 1;
+    if walk.chain.len() > MAX_BASES || model.making.extended > MAX_EXTENDED {
+        // Told once: what is beyond it is left out.
+        if model.making.extended <= MAX_EXTENDED + 1 {
+            model.making.extended = MAX_EXTENDED + 1;
+            let name = &model.tree[walk.id].class.name;
+            too_deep(
+                model.diagnostics,
+                format!(
+                    "`{}` extends more than {MAX_BASES} classes in a chain, or more than {MAX_EXTENDED} in all",
+                    name.text
+                ),
+                (name.span, "its chain of `extends` is too long"),
+                "remove classes that add nothing to the class they extend",
             );
-            return;
         }
-        self.extended += 1;
-        if walk.chain.len() > MAX_BASES || self.extended > MAX_EXTENDED {
-            // Told once: what is beyond it is left out.
-            if self.extended <= MAX_EXTENDED + 1 {
-                self.extended = MAX_EXTENDED + 1;
-                let name = &self.instances[walk.id].class.name;
-                self.too_deep(
-                    format!(
-                        "`{}` extends more than {MAX_BASES} classes in a chain, or more than {MAX_EXTENDED} in all",
-                        name.text
-                    ),
-                    (name.span, "its chain of `extends` is too long"),
-                    "remove classes that add nothing to the class they extend",
-                );
-            }
-            return;
+        return;
+    }
+    match &class.body {
+        ClassBody::Short {
+            base,
+            changes,
+            effects,
+            fmu: _,
+        } => {
+            hook(model, walk.id, walk.file, effects);
+            collect_base(model, walk, class, base, changes, out);
         }
-        match &class.body {
-            ClassBody::Short {
-                base,
-                changes,
-                effects,
-                fmu: _,
-            } => {
-                self.hook(walk.id, walk.file, effects);
-                self.collect_base(walk, class, base, changes, out);
-            }
-            ClassBody::Long { elements, .. } => {
-                for element in elements {
-                    if let Element::Extends(base, changes) = element {
-                        self.collect_base(walk.clone(), class, base, changes, out);
-                    } else {
-                        out.push(Collected {
-                            element,
-                            file: walk.file,
-                            modifiers: walk.modifiers.clone(),
-                        });
-                    }
+        ClassBody::Long { elements, .. } => {
+            for element in elements {
+                if let Element::Extends(base, changes) = element {
+                    collect_base(model, walk.clone(), class, base, changes, out);
+                } else {
+                    out.push(Collected {
+                        element,
+                        file: walk.file,
+                        modifiers: walk.modifiers.clone(),
+                    });
                 }
             }
         }
     }
+}
 
-    fn collect_base(
-        &mut self,
-        mut walk: Walk<'a>,
-        around: &'a Class,
-        base: &'a Reference,
-        changes: &'a [Change],
-        out: &mut Vec<Collected<'a>>,
-    ) {
-        self.modifiers_of(changes, walk.id, &mut walk.modifiers);
-        match self.names.class(walk.file, base) {
-            Some((file, class)) => {
-                walk.file = file;
-                walk.chain.push(around);
-                self.collect(walk, class, out);
-            }
-            None => {
-                let diagnostic = self.names.unknown(walk.file, base);
-                self.report(diagnostic);
-            }
+fn collect_base<'a>(
+    model: &mut Model<'a, '_>,
+    mut walk: Walk<'a>,
+    around: &'a Class,
+    base: &'a Reference,
+    changes: &'a [Change],
+    out: &mut Vec<Collected<'a>>,
+) {
+    modifiers_of(model, changes, walk.id, &mut walk.modifiers);
+    match model.names.class(walk.file, base) {
+        Some((file, class)) => {
+            walk.file = file;
+            walk.chain.push(around);
+            collect(model, walk, class, out);
+        }
+        None => {
+            let diagnostic = model.names.unknown(walk.file, base);
+            model.report(diagnostic);
         }
     }
+}
 
-    /// How many instances are around an instance, itself counted.
-    fn depth(&self, id: InstanceId) -> usize {
-        std::iter::successors(Some(id), |&id| self.instances[id].parent).count()
-    }
+/// How many instances are around an instance, itself counted.
+fn depth(tree: &InstanceTree<'_>, id: InstanceId) -> usize {
+    tree.around(id).count()
+}
 
-    /// Reports a limit that is passed.
-    pub(crate) fn too_deep(&mut self, message: String, at: (Span, &str), help: &str) {
-        let diagnostic = Diagnostic::error(Code::TooDeep, message).label(at.0, at.1);
-        self.report(diagnostic.help(help));
-    }
+/// Reports a limit that is passed.
+pub(crate) fn too_deep(
+    diagnostics: &mut Diagnostics,
+    message: String,
+    at: (Span, &str),
+    help: &str,
+) {
+    let diagnostic = Diagnostic::error(Code::TooDeep, message).label(at.0, at.1);
+    diagnostics.push(diagnostic.help(help));
+}
 
-    /// How often the class of an instance is that of the instances around it, itself counted.
-    fn nested(&self, id: InstanceId) -> usize {
-        let class = self.instances[id].class;
-        let around = std::iter::successors(Some(id), |&id| self.instances[id].parent);
-        around
-            .filter(|&id| std::ptr::eq(self.instances[id].class, class))
-            .count()
-    }
+/// How often the class of an instance is that of the instances around it, itself counted.
+fn nested(tree: &InstanceTree<'_>, id: InstanceId) -> usize {
+    let class = tree[id].class;
+    let around = tree.around(id);
+    around
+        .filter(|&id| std::ptr::eq(tree[id].class, class))
+        .count()
 }

@@ -18,13 +18,17 @@ mod text;
 use crate::dimension::Dim;
 use crate::effect_words::MARKS;
 use crate::instance::{Elementwise, InstanceId, Position, Scope, Setting, Typed};
+use crate::instantiate::quantity;
 use crate::law_roles::{Refusal, wrong};
+use crate::law_sites::full_name;
 use crate::model::{Model, listed};
 use crate::names::{FileIndex, TypeName, nearest};
+use attributes::{attributes_of_output, constant_of_shape};
+use filter::filters;
 use hyde_diag::{Diagnostic, FileId, MadeBy, Span};
 use hyde_ir::{
-    Expr as Ir, ExprArena, ExprId, Id as _, Index, LawAxis, LawConstant, LawInput, LawRole,
-    LawShape, LawUnit, VarId, VariableKind,
+    Expr as Ir, ExprArena, ExprId, FlatModel, Id as _, Index, LawAxis, LawConstant, LawInput,
+    LawRole, LawShape, LawUnit, VarId, VariableKind,
 };
 use hyde_syntax::ast::{
     Argument, Class, ClassBody, ClassKind, Declaration, Declarator, Element, Equation, Expr,
@@ -32,6 +36,7 @@ use hyde_syntax::ast::{
 };
 use hyde_units::{Dimension, NamedUnit};
 use std::sync::Arc;
+use text::text_in_shape;
 
 /// The instance in which shapes are read: the model; they see nothing of it.
 const READ_IN: InstanceId = 0;
@@ -57,225 +62,228 @@ struct Draft<'a> {
 /// A mark as written: its name and what stands in parentheses.
 type Mark = (Name, Vec<Argument>);
 
-impl<'a> Model<'a, '_> {
-    /// The shapes that the files declare; those that are declared wrongly are reported.
-    pub(crate) fn law_shapes(&mut self) -> Vec<LawShape> {
-        let mut found = Vec::new();
-        for (file, class, marks) in marked(self.input.files) {
-            match self.law_shape(file, class, marks) {
-                Ok(shape) => found.push(shape),
-                Err(Some(diagnostic)) => self.report(*diagnostic),
-                Err(None) => {}
-            }
+/// The shapes that the files declare; those that are declared wrongly are reported.
+pub(crate) fn law_shapes(model: &mut Model<'_, '_>) -> Vec<LawShape> {
+    let mut found = Vec::new();
+    for (file, class, marks) in marked(model.input.files) {
+        match law_shape(model, file, class, marks) {
+            Ok(shape) => found.push(shape),
+            Err(Some(diagnostic)) => model.report(*diagnostic),
+            Err(None) => {}
         }
-        found
     }
+    found
+}
 
-    fn law_shape(
-        &mut self,
-        file: FileIndex,
-        class: &'a Class,
-        marks: &'a [Mark],
-    ) -> Result<LawShape, Refusal> {
-        let mut draft = Draft {
-            file,
-            class,
-            shape: LawShape {
-                name: self.full_name(file, class),
-                words: class.doc.clone().unwrap_or_default(),
-                roles: Vec::new(),
-                exprs: ExprArena::new(),
-                inputs: Vec::new(),
-                constants: Vec::new(),
-                states: Vec::new(),
-                outputs: Vec::new(),
-                mark: (String::new(), None),
-                cost: 0,
-                few: None,
-            },
-            variables: Vec::new(),
-            names: Vec::new(),
-            locals: Vec::new(),
-            axes: Vec::new(),
-            declared: Vec::new(),
-            equations: Vec::new(),
-        };
-        for (declaration, declarator) in elements(class, &mut draft.equations)? {
-            if declaration.prefixes.contains(&Prefix::Output) {
-                draft.roles(declarator)?;
-            }
-            self.declared_in_shape(&mut draft, declaration, declarator)?;
+fn law_shape<'a>(
+    model: &mut Model<'a, '_>,
+    file: FileIndex,
+    class: &'a Class,
+    marks: &'a [Mark],
+) -> Result<LawShape, Refusal> {
+    let mut draft = Draft {
+        file,
+        class,
+        shape: LawShape {
+            name: full_name(model.input, file, class),
+            words: class.doc.clone().unwrap_or_default(),
+            roles: Vec::new(),
+            exprs: ExprArena::new(),
+            inputs: Vec::new(),
+            constants: Vec::new(),
+            states: Vec::new(),
+            outputs: Vec::new(),
+            mark: (String::new(), None),
+            cost: 0,
+            few: None,
+        },
+        variables: Vec::new(),
+        names: Vec::new(),
+        locals: Vec::new(),
+        axes: Vec::new(),
+        declared: Vec::new(),
+        equations: Vec::new(),
+    };
+    for (declaration, declarator) in elements(class, &mut draft.equations)? {
+        if declaration.prefixes.contains(&Prefix::Output) {
+            draft.roles(declarator)?;
         }
-        if draft.shape.roles.is_empty() {
-            return Err(wrong(
-                format!("the shape `{}` has no role", class.name.text),
-                class.name.span,
-                "tried at no site",
-                format!("write `output Real f = … over (ROLE);`: {}", every_role()),
-            ));
+        declared_in_shape(model, &mut draft, declaration, declarator)?;
+    }
+    if draft.shape.roles.is_empty() {
+        return Err(wrong(
+            format!("the shape `{}` has no role", class.name.text),
+            class.name.span,
+            "tried at no site",
+            format!("write `output Real f = … over (ROLE);`: {}", every_role()),
+        ));
+    }
+    for number in 0..draft.declared.len() {
+        constant_of_shape(model, &mut draft, number)?;
+    }
+    filters(model, &mut draft)?;
+    draft.shape.mark = draft.mark(marks)?;
+    Ok(finished(&model.flat, draft))
+}
+
+/// Reads a declaration of a shape.
+fn declared_in_shape<'a>(
+    model: &mut Model<'a, '_>,
+    draft: &mut Draft<'a>,
+    declaration: &'a Declaration,
+    declarator: &'a Declarator,
+) -> Result<(), Refusal> {
+    let name = declarator.name.text.as_str();
+    let span = declarator.name.span;
+    let has = |prefix| declaration.prefixes.contains(&prefix);
+    let Some(kind) = model.names.quantity(draft.file, &declaration.type_name) else {
+        let unknown = model.names.unknown(draft.file, &declaration.type_name);
+        return Err(Some(Box::new(unknown)));
+    };
+    let dim = match kind {
+        TypeName::Real => Dim::NUMBER,
+        TypeName::Integer | TypeName::Boolean | TypeName::Quantity(..) => {
+            quantity(model, kind, None).0
         }
-        for number in 0..draft.declared.len() {
-            self.constant_of_shape(&mut draft, number)?;
+    };
+    let dimension = dim.as_known().unwrap_or(Dimension::DIMENSIONLESS);
+    match (&declarator.binding, has(Prefix::Input)) {
+        (None, true) => {
+            let Some(input) = LawInput::named(name) else {
+                return Err(wrong(
+                    format!("the constant `{name}` of a shape has no value to begin with"),
+                    span,
+                    "neither a variable of a site nor with a value",
+                    format!(
+                        "write `{name} = {{…}} in … .. …`; the variables are `v`, `x`, `t`, `v1`, `x1`, `t1`, `v_max`, `x_min`, `x_max`, `t_min`, `t_max`"
+                    ),
+                ));
+            };
+            if let LawInput::Variable(axis)
+            | LawInput::Round(axis)
+            | LawInput::Least(axis)
+            | LawInput::Greatest(axis) = input
+            {
+                draft.axes.push((axis, dimension));
+            }
+            input_of_shape(model, draft, name, input, (dim, span));
         }
-        self.filters(&mut draft)?;
-        draft.shape.mark = draft.mark(marks)?;
-        Ok(self.finished(draft))
-    }
-
-    /// Reads a declaration of a shape.
-    fn declared_in_shape(
-        &mut self,
-        draft: &mut Draft<'a>,
-        declaration: &'a Declaration,
-        declarator: &'a Declarator,
-    ) -> Result<(), Refusal> {
-        let name = declarator.name.text.as_str();
-        let span = declarator.name.span;
-        let has = |prefix| declaration.prefixes.contains(&prefix);
-        let Some(kind) = self.names.quantity(draft.file, &declaration.type_name) else {
-            let unknown = self.names.unknown(draft.file, &declaration.type_name);
-            return Err(Some(Box::new(unknown)));
-        };
-        let dim = match kind {
-            TypeName::Real => Dim::NUMBER,
-            TypeName::Integer | TypeName::Boolean | TypeName::Quantity(..) => {
-                self.quantity(kind, None).0
-            }
-        };
-        let dimension = dim.as_known().unwrap_or(Dimension::DIMENSIONLESS);
-        match (&declarator.binding, has(Prefix::Input)) {
-            (None, true) => {
-                let Some(input) = LawInput::named(name) else {
-                    return Err(wrong(
-                        format!("the constant `{name}` of a shape has no value to begin with"),
-                        span,
-                        "neither a variable of a site nor with a value",
-                        format!(
-                            "write `{name} = {{…}} in … .. …`; the variables are `v`, `x`, `t`, `v1`, `x1`, `t1`, `v_max`, `x_min`, `x_max`, `t_min`, `t_max`"
-                        ),
-                    ));
-                };
-                if let LawInput::Variable(axis)
-                | LawInput::Round(axis)
-                | LawInput::Least(axis)
-                | LawInput::Greatest(axis) = input
-                {
-                    draft.axes.push((axis, dimension));
-                }
-                self.input_of_shape(draft, name, input, (dim, span));
-            }
-            (Some(values), true) => {
-                let values = self.values_of_constant(draft, values, &self.typed_as(&dim, span));
-                draft.shape.constants.push(LawConstant {
-                    name: name.to_owned(),
-                    unit: draft.unit(dimension),
-                    step: hyde_ir::LawStep::Ratio(values[0]),
-                    range: [values[0]; 2],
-                    limits: [values[0]; 2],
-                    values,
-                });
-                let number = draft.declared.len();
-                draft.declared.push(declarator);
-                self.input_of_shape(draft, name, LawInput::Constant(number), (dim, span));
-            }
-            (None, false) => {
-                let state = draft.state(declarator, dimension);
-                self.input_of_shape(draft, name, state, (dim, span));
-            }
-            (Some(value), false) => {
-                let typed = self.in_shape(draft, value, &self.typed_as(&dim, span));
-                if has(Prefix::Output) {
-                    let text = self.text_in_shape(draft, value, typed.id)?;
-                    draft.shape.outputs.push((name.to_owned(), text));
-                    self.attributes_of_output(draft, declarator)?;
-                }
-                draft.locals.push((name, value));
-                draft.names.push((name, Typed { dim, ..typed }));
-            }
+        (Some(values), true) => {
+            let values = values_of_constant(model, draft, values, &typed_as(model, &dim, span));
+            draft.shape.constants.push(LawConstant {
+                name: name.to_owned(),
+                unit: draft.unit(dimension),
+                step: hyde_ir::LawStep::Ratio(values[0]),
+                range: [values[0]; 2],
+                limits: [values[0]; 2],
+                values,
+            });
+            let number = draft.declared.len();
+            draft.declared.push(declarator);
+            input_of_shape(model, draft, name, LawInput::Constant(number), (dim, span));
         }
-        Ok(())
+        (None, false) => {
+            let state = draft.state(declarator, dimension);
+            input_of_shape(model, draft, name, state, (dim, span));
+        }
+        (Some(value), false) => {
+            let typed = in_shape(model, draft, value, &typed_as(model, &dim, span));
+            if has(Prefix::Output) {
+                let text = text_in_shape(model, draft, value, typed.id)?;
+                draft.shape.outputs.push((name.to_owned(), text));
+                attributes_of_output(model, draft, declarator)?;
+            }
+            draft.locals.push((name, value));
+            draft.names.push((name, Typed { dim, ..typed }));
+        }
     }
+    Ok(())
+}
 
-    /// Adds an input to a shape.
-    fn input_of_shape(
-        &mut self,
-        draft: &mut Draft<'a>,
-        name: &'a str,
-        input: LawInput,
-        (dim, span): (Dim, Span),
-    ) {
-        let kind = VariableKind::Continuous;
-        let made_by = MadeBy::Source;
-        let var = self.add_variable(READ_IN, name.to_owned(), kind, dim.clone(), span, made_by);
-        let id = self.flat.exprs.var(var);
-        draft.variables.push(var);
-        draft.shape.inputs.push(input);
-        draft.names.push((name, self.typed(id, dim, span)));
-    }
+/// Adds an input to a shape.
+fn input_of_shape<'a>(
+    model: &mut Model<'a, '_>,
+    draft: &mut Draft<'a>,
+    name: &'a str,
+    input: LawInput,
+    (dim, span): (Dim, Span),
+) {
+    let kind = VariableKind::Continuous;
+    let made_by = MadeBy::Source;
+    let var = model.add_variable(READ_IN, name.to_owned(), kind, dim.clone(), span, made_by);
+    let id = model.flat.exprs.var(var);
+    draft.variables.push(var);
+    draft.shape.inputs.push(input);
+    draft.names.push((name, model.typed(id, dim, span)));
+}
 
-    /// The values of a constant that are tried: of a list each one.
-    fn values_of_constant(
-        &mut self,
-        draft: &Draft<'a>,
-        values: &'a Expr,
-        declared: &Typed,
-    ) -> Vec<ExprId> {
-        let scope = draft.scope();
-        let Some(count) = self.array_length(values, &scope) else {
-            return vec![self.in_shape(draft, values, declared).id];
-        };
-        let each = (0..count.max(1)).map(|at| {
-            let position = Position { at, of: count };
-            let value = self.lower(values, &scope.elements(Elementwise::One(position)));
-            self.agree(
-                declared,
-                &value,
-                "the declared type and the value are",
-                READ_IN,
-            );
-            value.id
-        });
-        each.collect()
-    }
-
-    /// A value within a shape.
-    fn in_shape(&mut self, draft: &Draft<'a>, value: &'a Expr, declared: &Typed) -> Typed {
-        let typed = self.lower(value, &draft.scope());
-        self.agree(
+/// The values of a constant that are tried: of a list each one.
+fn values_of_constant<'a>(
+    model: &mut Model<'a, '_>,
+    draft: &Draft<'a>,
+    values: &'a Expr,
+    declared: &Typed,
+) -> Vec<ExprId> {
+    let scope = draft.scope();
+    let Some(count) = model.array_length(values, &scope) else {
+        return vec![in_shape(model, draft, values, declared).id];
+    };
+    let each = (0..count.max(1)).map(|at| {
+        let position = Position { at, of: count };
+        let value = model.lower(values, &scope.elements(Elementwise::One(position)));
+        model.agree(
             declared,
-            &typed,
+            &value,
             "the declared type and the value are",
             READ_IN,
         );
-        typed
-    }
+        value.id
+    });
+    each.collect()
+}
 
-    /// A quantity of a dimension that is not yet known by its value.
-    fn typed_as(&self, dim: &Dim, span: Span) -> Typed {
-        self.typed(ExprId::from_index(0), dim.clone(), span)
-    }
+/// A value within a shape.
+fn in_shape<'a>(
+    model: &mut Model<'a, '_>,
+    draft: &Draft<'a>,
+    value: &'a Expr,
+    declared: &Typed,
+) -> Typed {
+    let typed = model.lower(value, &draft.scope());
+    model.agree(
+        declared,
+        &typed,
+        "the declared type and the value are",
+        READ_IN,
+    );
+    typed
+}
 
-    /// The shape with its expressions in an arena of its own.
-    fn finished(&self, draft: Draft<'a>) -> LawShape {
-        let Draft {
-            mut shape,
-            variables,
-            ..
-        } = draft;
-        let mut roots = Vec::new();
-        shape.each_expression(&mut |id| roots.push(*id));
-        let number = |var: VarId| variables.iter().position(|known| *known == var);
-        let (exprs, copies) = self.flat.exprs.copied(&roots, |leaf| {
-            let number = leaf.access().and_then(|(var, ..)| number(var));
-            number.map_or(leaf, |number| {
-                Ir::Var(VarId::from_index(number), Index::SCALAR)
-            })
-        });
-        let mut copies = copies.into_iter();
-        shape.each_expression(&mut |id| *id = copies.next().unwrap_or(*id));
-        shape.exprs = exprs;
-        shape
-    }
+/// A quantity of a dimension that is not yet known by its value.
+fn typed_as(model: &Model<'_, '_>, dim: &Dim, span: Span) -> Typed {
+    model.typed(ExprId::from_index(0), dim.clone(), span)
+}
+
+/// The shape with its expressions in an arena of its own.
+fn finished<'a>(flat: &FlatModel, draft: Draft<'a>) -> LawShape {
+    let Draft {
+        mut shape,
+        variables,
+        ..
+    } = draft;
+    let mut roots = Vec::new();
+    shape.each_expression(&mut |id| roots.push(*id));
+    let number = |var: VarId| variables.iter().position(|known| *known == var);
+    let (exprs, copies) = flat.exprs.copied(&roots, |leaf| {
+        let number = leaf.access().and_then(|(var, ..)| number(var));
+        number.map_or(leaf, |number| {
+            Ir::Var(VarId::from_index(number), Index::SCALAR)
+        })
+    });
+    let mut copies = copies.into_iter();
+    shape.each_expression(&mut |id| *id = copies.next().unwrap_or(*id));
+    shape.exprs = exprs;
+    shape
 }
 
 impl<'a> Draft<'a> {

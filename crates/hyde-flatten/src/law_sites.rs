@@ -9,12 +9,16 @@
 //! Whoever asks what a model lacks puts laws there: `add a.f = -(law)` on the connector, `wrap grip by grip + law` on the
 //! component. What is declared wrongly is reported for every class that the model has.
 
+use crate::Input;
+use crate::candidates::sites;
 use crate::instance::{InstanceId, Member};
+use crate::instantiate::InstanceTree;
 use crate::law_roles::{Refusal, roles, wrong};
 use crate::model::{Model, listed};
-use crate::names::{FileIndex, nearest};
+use crate::names::{FileIndex, Names, nearest};
+use crate::site::declared_with;
 use hyde_diag::{Code, Diagnostic, Span};
-use hyde_ir::{Quantity, VarId};
+use hyde_ir::{FlatModel, Quantity, VarId};
 use hyde_syntax::ast::{
     Class, ClassBody, ClassKind, Declaration, Declarator, Element, Expr, ExprKind, Prefix,
     Reference,
@@ -59,296 +63,310 @@ const WRAPPED: [Prefix; 3] = [Prefix::Site, Prefix::Input, Prefix::Output];
 /// A declaration of an instance.
 type Declared<'a> = (FileIndex, &'a Declaration, &'a Declarator);
 
-impl<'a> Model<'a, '_> {
-    /// Finds the sites that a law may act on, and reports those that are declared wrongly, each declaration once.
-    pub(crate) fn find_law_sites(&mut self) {
-        let mut wrong: BTreeSet<Span> = BTreeSet::new();
-        for id in 0..self.instances.len() {
-            for declared in self.with_over(id) {
-                let (.., declarator) = declared;
-                match self.law_site(id, declared) {
-                    Ok(site) => self.law_sites.push((id, site)),
-                    Err(Some(diagnostic)) if wrong.insert(declarator.name.span) => {
-                        self.report(*diagnostic);
-                    }
-                    Err(_) => {}
+/// Finds the sites that a law may act on, and reports those that are declared wrongly, each declaration once.
+pub(crate) fn find_law_sites(model: &mut Model<'_, '_>) {
+    let mut wrong: BTreeSet<Span> = BTreeSet::new();
+    for id in model.tree.ids() {
+        for declared in with_over(&model.tree, id) {
+            let (.., declarator) = declared;
+            match law_site(model, id, declared) {
+                Ok(site) => model.law_sites.push((id, site)),
+                Err(Some(diagnostic)) if wrong.insert(declarator.name.span) => {
+                    model.report(*diagnostic);
                 }
+                Err(_) => {}
             }
         }
     }
+}
 
-    /// The sites of the model where a law may act, connectors that are one site once.
-    pub(crate) fn named_law_sites(&mut self) -> Vec<LawSite> {
-        let found = std::mem::take(&mut self.law_sites);
-        let sites = self.sites();
-        let named = found.into_iter().filter_map(|(id, site)| {
-            if self.is_of_effect(id) || self.instances[id].clock.is_some() {
-                return None;
+/// The sites of the model where a law may act, connectors that are one site once.
+pub(crate) fn named_law_sites(model: &mut Model<'_, '_>) -> Vec<LawSite> {
+    let found = std::mem::take(&mut model.law_sites);
+    let sites = sites(&model.tree, &model.flat, &model.variables);
+    let named = found.into_iter().filter_map(|(id, site)| {
+        if model.tree.is_of_effect(id) || model.clock_of(id).is_some() {
+            return None;
+        }
+        let aliases = match sites.get(&id).map(Vec::as_slice) {
+            None => Vec::new(),
+            Some([first, others @ ..]) if *first == id => {
+                let path = |&other: &InstanceId| model.tree.path(other).as_str().to_owned();
+                others.iter().map(path).collect()
             }
-            let aliases = match sites.get(&id).map(Vec::as_slice) {
-                None => Vec::new(),
-                Some([first, others @ ..]) if *first == id => {
-                    let path = |&other: &InstanceId| self.path(other).as_str().to_owned();
-                    others.iter().map(path).collect()
-                }
-                Some(_) => return None,
-            };
-            Some(LawSite { aliases, ..site })
-        });
-        named.collect()
-    }
+            Some(_) => return None,
+        };
+        Some(LawSite { aliases, ..site })
+    });
+    named.collect()
+}
 
-    fn with_over(&self, id: InstanceId) -> Vec<Declared<'a>> {
-        let elements = self.instances[id].elements.iter();
-        let of = |&(file, element): &(FileIndex, &'a Element)| {
-            let Element::Declaration(declaration) = element else {
-                return Vec::new();
-            };
-            let own = declaration.declarators.iter();
-            let own = own.filter(|declarator| !declarator.over.is_empty());
-            own.map(|declarator| (file, declaration, declarator))
-                .collect()
+fn with_over<'a>(tree: &InstanceTree<'a>, id: InstanceId) -> Vec<Declared<'a>> {
+    let elements = tree[id].elements.iter();
+    let of = |&(file, element): &(FileIndex, &'a Element)| {
+        let Element::Declaration(declaration) = element else {
+            return Vec::new();
         };
-        elements.flat_map(of).collect()
-    }
+        let own = declaration.declarators.iter();
+        let own = own.filter(|declarator| !declarator.over.is_empty());
+        own.map(|declarator| (file, declaration, declarator))
+            .collect()
+    };
+    elements.flat_map(of).collect()
+}
 
-    /// A site as declared.
-    fn law_site(
-        &self,
-        id: InstanceId,
-        (file, declaration, declarator): Declared<'a>,
-    ) -> Result<LawSite, Refusal> {
-        let name = declarator.name.text.as_str();
-        let span = declarator.name.span;
-        let instance = &self.instances[id];
-        let connector = instance.class.kind == ClassKind::Connector;
-        if !may_have_laws(declaration, connector) {
-            let (label, help) = match connector {
-                true => (
-                    "not a `flow` variable",
-                    format!("write `over` behind the `flow` variable instead of `{name}`"),
+/// A site as declared.
+fn law_site<'a>(
+    model: &Model<'a, '_>,
+    id: InstanceId,
+    (file, declaration, declarator): Declared<'a>,
+) -> Result<LawSite, Refusal> {
+    let name = declarator.name.text.as_str();
+    let span = declarator.name.span;
+    let instance = &model.tree[id];
+    let connector = instance.class.kind == ClassKind::Connector;
+    if !may_have_laws(declaration, connector) {
+        let (label, help) = match connector {
+            true => (
+                "not a `flow` variable",
+                format!("write `over` behind the `flow` variable instead of `{name}`"),
+            ),
+            false => (
+                "neither a site nor an input nor an output",
+                format!(
+                    "declare it as a site: `site {} {name} = … over (…);`",
+                    declaration.type_name.dotted()
                 ),
-                false => (
-                    "neither a site nor an input nor an output",
-                    format!(
-                        "declare it as a site: `site {} {name} = … over (…);`",
-                        declaration.type_name.dotted()
-                    ),
-                ),
-            };
-            let message = format!("no law can be added to `{name}`");
-            return Err(wrong(message, span, label, help));
-        }
-        if instance.outer.is_some() && instance.class.kind != ClassKind::Effect {
-            return Err(wrong(
-                format!("no law can be added to `{name}` in a clocked part"),
-                span,
-                "it changes only at ticks",
-                "remove `over`, or declare the site outside of the clocked part".to_owned(),
-            ));
-        }
-        let Some(Member::Variable(var)) = instance.members.get(name) else {
-            return Err(None);
+            ),
         };
-        if !self.is_one_number(*var) {
-            return Err(wrong(
-                format!("no law can be added to `{name}`, which is not a single number"),
-                span,
-                "a law is a single number",
-                "declare a site for the element or the place of the field that a law may change"
-                    .to_owned(),
-            ));
-        }
-        let (form, [first, second], hold) = roles(declarator)?;
-        let over = [
-            self.law_variable(id, first)?,
-            self.law_variable(id, second)?,
-        ];
-        self.rate_agrees(&over, second)?;
-        let dimension = self.flat.variables[*var].quantity.dimension;
-        let hold = match hold {
-            Some(hold) => Some(self.held_site(id, name, hold, dimension)?),
-            None => None,
-        };
-        let target = match connector {
-            true => LawTarget::Flow(name.to_owned()),
-            false => LawTarget::Value {
-                name: name.to_owned(),
-                hold,
-                output: declaration.prefixes.contains(&Prefix::Output),
-            },
-        };
-        let class = self.declaring_class((instance.file, instance.class), declaration);
-        Ok(LawSite {
-            path: self.path(id).as_str().to_owned(),
-            aliases: Vec::new(),
-            host: self.full_name(file, class.ok_or(None)?),
-            target,
+        let message = format!("no law can be added to `{name}`");
+        return Err(wrong(message, span, label, help));
+    }
+    if instance.outer.is_some() && instance.class.kind != ClassKind::Effect {
+        return Err(wrong(
+            format!("no law can be added to `{name}` in a clocked part"),
+            span,
+            "it changes only at ticks",
+            "remove `over`, or declare the site outside of the clocked part".to_owned(),
+        ));
+    }
+    let Some(Member::Variable(var)) = instance.members.get(name) else {
+        return Err(None);
+    };
+    if !is_one_number(&model.flat, *var) {
+        return Err(wrong(
+            format!("no law can be added to `{name}`, which is not a single number"),
+            span,
+            "a law is a single number",
+            "declare a site for the element or the place of the field that a law may change"
+                .to_owned(),
+        ));
+    }
+    let (form, [first, second], hold) = roles(declarator)?;
+    let over = [
+        law_variable(model, id, first)?,
+        law_variable(model, id, second)?,
+    ];
+    rate_agrees(&over, second)?;
+    let dimension = model.flat.variables[*var].quantity.dimension;
+    let hold = match hold {
+        Some(hold) => Some(held_site(
+            &model.tree,
+            &model.flat,
+            id,
+            name,
+            hold,
             dimension,
-            form,
-            over,
-        })
-    }
+        )?),
+        None => None,
+    };
+    let target = match connector {
+        true => LawTarget::Flow(name.to_owned()),
+        false => LawTarget::Value {
+            name: name.to_owned(),
+            hold,
+            output: declaration.prefixes.contains(&Prefix::Output),
+        },
+    };
+    let class = declaring_class(model.names, (instance.file, instance.class), declaration);
+    Ok(LawSite {
+        path: model.tree.path(id).as_str().to_owned(),
+        aliases: Vec::new(),
+        host: full_name(model.input, file, class.ok_or(None)?),
+        target,
+        dimension,
+        form,
+        over,
+    })
+}
 
-    fn is_one_number(&self, var: VarId) -> bool {
-        let variable = &self.flat.variables[var];
-        variable.len.is_none() && !variable.boolean
-    }
+fn is_one_number(flat: &FlatModel, var: VarId) -> bool {
+    let variable = &flat.variables[var];
+    variable.len.is_none() && !variable.boolean
+}
 
-    /// A variable of the host, or the derivative of one.
-    fn law_variable(&self, id: InstanceId, value: &Expr) -> Result<LawVariable, Refusal> {
-        let inside = if let ExprKind::Call(function, arguments) = &value.kind
-            && let (Some("der"), [only]) = (function.as_word(), &arguments[..])
-        {
-            Some(&only.value)
-        } else {
-            None
-        };
-        let ExprKind::Reference(name) = &inside.unwrap_or(value).kind else {
-            return Err(not_a_variable(value.span));
-        };
-        let var = self.variable_below(id, name)?;
-        Ok(LawVariable {
-            name: name.dotted(),
-            derivative: inside.is_some(),
-            quantity: self.flat.variables[var].quantity.clone(),
-        })
-    }
+/// A variable of the host, or the derivative of one.
+fn law_variable(
+    model: &Model<'_, '_>,
+    id: InstanceId,
+    value: &Expr,
+) -> Result<LawVariable, Refusal> {
+    let inside = if let ExprKind::Call(function, arguments) = &value.kind
+        && let (Some("der"), [only]) = (function.as_word(), &arguments[..])
+    {
+        Some(&only.value)
+    } else {
+        None
+    };
+    let ExprKind::Reference(name) = &inside.unwrap_or(value).kind else {
+        return Err(not_a_variable(value.span));
+    };
+    let var = variable_below(model, id, name)?;
+    Ok(LawVariable {
+        name: name.dotted(),
+        derivative: inside.is_some(),
+        quantity: model.flat.variables[var].quantity.clone(),
+    })
+}
 
-    /// The variable that a name means within an instance.
-    fn variable_below(&self, id: InstanceId, name: &Reference) -> Result<VarId, Refusal> {
-        let mut at = id;
-        for (number, part) in name.parts.iter().enumerate() {
-            let word = part.name.text.as_str();
-            if !part.subscripts.is_empty() {
-                return Err(not_a_variable(name.span));
+/// The variable that a name means within an instance.
+fn variable_below(
+    model: &Model<'_, '_>,
+    id: InstanceId,
+    name: &Reference,
+) -> Result<VarId, Refusal> {
+    let mut at = id;
+    for (number, part) in name.parts.iter().enumerate() {
+        let word = part.name.text.as_str();
+        if !part.subscripts.is_empty() {
+            return Err(not_a_variable(name.span));
+        }
+        match model.tree[at].members.get(word) {
+            Some(Member::Instance(inner)) => at = *inner,
+            Some(Member::Variable(var))
+                if number + 1 == name.parts.len() && is_one_number(&model.flat, *var) =>
+            {
+                return Ok(*var);
             }
-            match self.instances[at].members.get(word) {
-                Some(Member::Instance(inner)) => at = *inner,
-                Some(Member::Variable(var))
-                    if number + 1 == name.parts.len() && self.is_one_number(*var) =>
-                {
-                    return Ok(*var);
-                }
-                Some(_) => break,
-                None if self.undeclared.contains(word) => return Err(None),
-                None => {
-                    let members = self.instances[at].members.keys();
-                    let known: Vec<&str> = members.copied().collect();
-                    let class = &self.instances[at].class.name.text;
-                    let message = format!("there is no `{word}` in `{class}`");
-                    let diagnostic = Diagnostic::error(Code::UnknownName, message);
-                    let diagnostic = diagnostic.label(part.name.span, "not known");
-                    return Err(Some(Box::new(diagnostic.help(
-                        match nearest(word, known.iter().copied()) {
-                            Some(near) => format!("did you mean `{near}`?"),
-                            None => format!("known here: {}", listed(&known)),
-                        },
-                    ))));
-                }
+            Some(_) => break,
+            None if model.undeclared.contains(word) => return Err(None),
+            None => {
+                let members = model.tree[at].members.keys();
+                let known: Vec<&str> = members.copied().collect();
+                let class = &model.tree[at].class.name.text;
+                let message = format!("there is no `{word}` in `{class}`");
+                let diagnostic = Diagnostic::error(Code::UnknownName, message);
+                let diagnostic = diagnostic.label(part.name.span, "not known");
+                return Err(Some(Box::new(diagnostic.help(
+                    match nearest(word, known.iter().copied()) {
+                        Some(near) => format!("did you mean `{near}`?"),
+                        None => format!("known here: {}", listed(&known)),
+                    },
+                ))));
             }
         }
-        Err(not_a_variable(name.span))
     }
+    Err(not_a_variable(name.span))
+}
 
-    /// The second variable has the dimension of a rate of the first.
-    fn rate_agrees(&self, over: &[LawVariable; 2], second: &Expr) -> Result<(), Refusal> {
-        let [first_dimension, own] = over.each_ref().map(LawVariable::dimension);
-        let wanted = first_dimension.divide(Dimension::TIME);
-        if own.agreement(wanted) != Agreement::Different {
-            return Ok(());
-        }
-        let [first, _] = over;
-        Err(wrong(
-            format!("this is not a rate of `{}`", first.text()),
-            second.span,
-            &format!("in {}", own.usual_unit()),
-            match first.derivative {
-                true => format!("name a variable in {}", wanted.usual_unit()),
-                false => format!(
-                    "write `der({})`, or a variable in {}",
-                    first.name,
-                    wanted.usual_unit()
+/// The second variable has the dimension of a rate of the first.
+fn rate_agrees(over: &[LawVariable; 2], second: &Expr) -> Result<(), Refusal> {
+    let [first_dimension, own] = over.each_ref().map(LawVariable::dimension);
+    let wanted = first_dimension.divide(Dimension::TIME);
+    if own.agreement(wanted) != Agreement::Different {
+        return Ok(());
+    }
+    let [first, _] = over;
+    Err(wrong(
+        format!("this is not a rate of `{}`", first.text()),
+        second.span,
+        &format!("in {}", own.usual_unit()),
+        match first.derivative {
+            true => format!("name a variable in {}", wanted.usual_unit()),
+            false => format!(
+                "write `der({})`, or a variable in {}",
+                first.name,
+                wanted.usual_unit()
+            ),
+        },
+    ))
+}
+
+/// The site that holds a friction at rest.
+fn held_site(
+    tree: &InstanceTree<'_>,
+    flat: &FlatModel,
+    id: InstanceId,
+    site: &str,
+    value: &Expr,
+    dimension: Dimension,
+) -> Result<String, Refusal> {
+    let mut names = declared_with(tree, id, &WRAPPED);
+    names.retain(|name| *name != site);
+    let word = if let ExprKind::Reference(name) = &value.kind {
+        name.as_word()
+    } else {
+        None
+    };
+    let Some(word) = word.filter(|word| names.contains(word)) else {
+        return Err(wrong(
+            "`hold` is not another site".to_owned(),
+            value.span,
+            "not another site of the class",
+            match names.as_slice() {
+                [] => "declare the force that holds at rest as a site".to_owned(),
+                names => format!(
+                    "name the force that holds at rest: one of {}",
+                    listed(names)
                 ),
             },
-        ))
-    }
-
-    /// The site that holds a friction at rest.
-    fn held_site(
-        &self,
-        id: InstanceId,
-        site: &str,
-        value: &Expr,
-        dimension: Dimension,
-    ) -> Result<String, Refusal> {
-        let mut names = self.declared(id, &WRAPPED);
-        names.retain(|name| *name != site);
-        let word = if let ExprKind::Reference(name) = &value.kind {
-            name.as_word()
-        } else {
-            None
-        };
-        let Some(word) = word.filter(|word| names.contains(word)) else {
+        ));
+    };
+    if let Some(Member::Variable(var)) = tree[id].members.get(word) {
+        let own = flat.variables[*var].quantity.dimension;
+        if own.agreement(dimension) == Agreement::Different {
             return Err(wrong(
-                "`hold` is not another site".to_owned(),
+                format!("`{word}` cannot take the law of the site"),
                 value.span,
-                "not another site of the class",
-                match names.as_slice() {
-                    [] => "declare the force that holds at rest as a site".to_owned(),
-                    names => format!(
-                        "name the force that holds at rest: one of {}",
-                        listed(names)
-                    ),
-                },
+                &format!("in {}", own.usual_unit()),
+                format!("name a site in {}", dimension.usual_unit()),
             ));
-        };
-        if let Some(Member::Variable(var)) = self.instances[id].members.get(word) {
-            let own = self.flat.variables[*var].quantity.dimension;
-            if own.agreement(dimension) == Agreement::Different {
-                return Err(wrong(
-                    format!("`{word}` cannot take the law of the site"),
-                    value.span,
-                    &format!("in {}", own.usual_unit()),
-                    format!("name a site in {}", dimension.usual_unit()),
-                ));
-            }
         }
-        Ok(word.to_owned())
     }
+    Ok(word.to_owned())
+}
 
-    /// The class, the given one or a base of it, in which a declaration stands.
-    fn declaring_class(
-        &self,
-        own: (FileIndex, &'a Class),
-        declaration: &Declaration,
-    ) -> Option<&'a Class> {
-        let (mut waiting, mut seen) = (vec![own], Vec::<&'a Class>::new());
-        while let Some((file, class)) = waiting.pop() {
-            if seen.iter().any(|&known| std::ptr::eq(known, class)) {
-                continue;
-            }
-            seen.push(class);
-            if let ClassBody::Long { elements, .. } = &class.body
-                && elements.iter().any(|element| {
-                    matches!(element, Element::Declaration(known) if std::ptr::eq(known, declaration))
-                })
-            {
-                return Some(class);
-            }
-            waiting.extend(self.bases(file, class));
+/// The class, the given one or a base of it, in which a declaration stands.
+fn declaring_class<'a>(
+    names: Names<'a>,
+    own: (FileIndex, &'a Class),
+    declaration: &Declaration,
+) -> Option<&'a Class> {
+    let (mut waiting, mut seen) = (vec![own], Vec::<&'a Class>::new());
+    while let Some((file, class)) = waiting.pop() {
+        if seen.iter().any(|&known| std::ptr::eq(known, class)) {
+            continue;
         }
-        None
+        seen.push(class);
+        if let ClassBody::Long { elements, .. } = &class.body
+            && elements.iter().any(|element| {
+                matches!(element, Element::Declaration(known) if std::ptr::eq(known, declaration))
+            })
+        {
+            return Some(class);
+        }
+        waiting.extend(names.bases(file, class));
     }
+    None
+}
 
-    /// What the user's file may call a class of a file.
-    pub(crate) fn full_name(&self, file: FileIndex, class: &Class) -> String {
-        let tree = self.input.files.get(file).filter(|_| file > 0);
-        let package = tree.and_then(|(_, tree)| tree.package.as_ref());
-        match package {
-            Some((package, _)) => format!("{}.{}", package.dotted(), class.name.text),
-            None => class.name.text.clone(),
-        }
+/// What the user's file may call a class of a file.
+pub(crate) fn full_name(input: &Input<'_>, file: FileIndex, class: &Class) -> String {
+    let tree = input.files.get(file).filter(|_| file > 0);
+    let package = tree.and_then(|(_, tree)| tree.package.as_ref());
+    match package {
+        Some((package, _)) => format!("{}.{}", package.dotted(), class.name.text),
+        None => class.name.text.clone(),
     }
 }
 

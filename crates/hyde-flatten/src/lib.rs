@@ -14,8 +14,6 @@
 
 mod additions;
 mod allowed;
-mod bind;
-mod call;
 mod candidates;
 mod connect;
 mod dimension;
@@ -23,7 +21,6 @@ mod effect_words;
 mod equation;
 mod event_clock;
 mod experiment;
-mod field;
 mod finish;
 mod foreign;
 mod instance;
@@ -32,23 +29,21 @@ mod law_roles;
 mod law_shapes;
 mod law_sites;
 mod ledger;
-mod lower;
 mod meaning;
 mod model;
 mod modes;
 mod names;
 mod site;
-mod structural;
 mod turns;
 mod wrap;
 mod zero;
 
 pub use additions::Additions;
-pub use call::{FUNCTIONS, usage};
 pub use candidates::{Candidate, Knob};
 pub use foreign::fmu_has_no_equations;
 pub use law_sites::{LawSite, LawVariable};
 pub use meaning::{Meaning, MeaningOf, ValueOf};
+pub use model::call::{FUNCTIONS, usage};
 pub use names::nearest;
 
 use hyde_diag::{Diagnostics, FileId, Sources};
@@ -177,8 +172,11 @@ pub fn laws(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Option<Laws> {
     let before = diagnostics.error_count();
     let mut model = model::Model::new(input, diagnostics);
     build(&mut model)?;
-    let sites = model.named_law_sites();
-    let shapes = model.law_shapes();
+    if let Some(refused) = foreign::refuse_observer(&model.flat, input.form) {
+        model.report(refused);
+    }
+    let sites = law_sites::named_law_sites(&mut model);
+    let shapes = law_shapes::law_shapes(&mut model);
     (diagnostics.error_count() == before).then_some(Laws { sites, shapes })
 }
 
@@ -188,7 +186,13 @@ pub fn meaning(input: &Input<'_>, diagnostics: &mut Diagnostics) -> Meaning {
     let mut model = model::Model::new(input, diagnostics);
     model.lowered = Some(Vec::new());
     match build(&mut model) {
-        Some(()) => model.meaning(),
+        Some(()) => meaning::meaning(
+            &model.lowered.unwrap_or_default(),
+            &model.flat,
+            &model.parameters,
+            &model.dimensions,
+            input.files.first().map(|(id, _)| *id),
+        ),
         None => Meaning::default(),
     }
 }
@@ -201,34 +205,55 @@ fn flat_model(
 ) -> Option<(FlatModel, Vec<Candidate>)> {
     let before = diagnostics.error_count();
     let mut model = model::Model::new(input, diagnostics);
-    model.offering = offering;
+    model.making.offering = offering;
     build(&mut model)?;
-    let candidates = model.candidates();
+    let candidates = candidates::candidates(&mut model);
     let flat = model.flat;
+    if !offering && let Some(refused) = foreign::refuse_observer(&flat, input.form) {
+        diagnostics.push(refused);
+    }
     (diagnostics.error_count() == before).then_some((flat, candidates))
 }
 
 /// Builds the flat model; `None` if there is no model of that name.
+///
+/// A pass that takes the whole [`model::Model`] lowers expressions: it may add to everything but the tree of instances, which
+/// is read-only behind [`instantiate::instantiate_root`]. The others take what they read, and `&mut` what they write.
 fn build(model: &mut model::Model<'_, '_>) -> Option<()> {
-    let root = model.instantiate_root()?;
-    model.find_replays(root);
+    let root = instantiate::instantiate_root(model)?;
+
+    // Values and equations of every instance.
+    experiment::find_replays(model, root);
     model.lower_bindings();
-    model.check_parameters();
-    model.lower_equations();
-    model.check_asserts();
-    model.bounded_variables();
-    model.finish_effects();
-    model.replay_equations(false);
-    model.connect();
-    model.replay_equations(true);
-    model.event_clocks();
-    model.experiment(root);
-    model.free_inputs(root);
-    model.accounts();
-    model.finish();
-    model.ports();
-    model.check_effect_words();
-    model.find_law_sites();
-    model.check_foreign();
+    allowed::check_parameters(model);
+    equation::lower_equations(model);
+    allowed::check_asserts(model);
+    allowed::bounded_variables(model);
+    wrap::finish_effects(model);
+
+    // Connections.
+    experiment::replay_equations(model, false);
+    connect::connect(model);
+    experiment::replay_equations(model, true);
+    event_clock::event_clocks(model);
+
+    // The experiment, and what it leaves open.
+    experiment::experiment(model, root);
+    experiment::free_inputs(model, root);
+    ledger::accounts(model);
+    model.flat.declared = model.tree.declared();
+    experiment::report_undriven(model);
+
+    // Dimensions are known from here on.
+    model.solve_dimensions();
+    let (flat, dimensions) = (&mut model.flat, &model.dimensions);
+    finish::settle_variables(&mut flat.variables, &model.variables, dimensions);
+    let columns = &model.column_variables;
+    experiment::report_units_in_names(model.input, flat, columns, model.diagnostics);
+    finish::settle_parameters(&mut flat.parameters, &model.parameters, dimensions);
+    finish::order_parameters(flat, model.diagnostics);
+    ledger::ports(model.input, &model.tree, flat);
+    effect_words::check_effect_words(model);
+    law_sites::find_law_sites(model);
     Some(())
 }

@@ -1,9 +1,11 @@
 //! [`Meaning`]: what the expressions and parameters of a file are, for an editor: dimension, unit, value, spread, source.
 
-use crate::instance::Typed;
-use crate::model::Model;
-use hyde_diag::Span;
-use hyde_ir::{Expr as Ir, ExprId, Id as _, ParamId, Prior, Quantity};
+use crate::Input;
+use crate::dimension::Dimensions;
+use crate::instance::{ParameterNotes, Typed};
+use crate::model::quantity_of;
+use hyde_diag::{FileId, Span};
+use hyde_ir::{Expr as Ir, ExprId, FlatModel, Id as _, ParamId, Prior, Quantity};
 use std::collections::BTreeMap;
 
 /// What a file means as a part of one model.
@@ -61,120 +63,129 @@ pub(crate) struct Lowered {
 /// The values of parameters, by element; empty where one is not known.
 type Values = BTreeMap<ParamId, Vec<f64>>;
 
-impl Model<'_, '_> {
-    /// Notes an expression of the first file, if somebody asks for them.
-    pub(crate) fn note_meaning(&mut self, span: Span, typed: &Typed) {
-        let first = self.input.files.first().map(|(id, _)| *id);
-        if let Some(lowered) = &mut self.lowered
-            && first == Some(span.file)
-        {
-            lowered.push(Lowered {
-                span,
-                typed: typed.clone(),
-            });
-        }
-    }
-
-    /// What was noted, once dimensions are known and parameters are in order.
-    pub(crate) fn meaning(mut self) -> Meaning {
-        let values = self.parameter_values();
-        let mut found: BTreeMap<(u32, u32), MeaningOf> = BTreeMap::new();
-        for lowered in self.lowered.take().unwrap_or_default() {
-            let own = self.meaning_of(&lowered, &values);
-            let key = (own.span.start, own.span.end);
-            match found.get_mut(&key) {
-                None => drop(found.insert(key, own)),
-                Some(known) => known.keep_common(own),
-            }
-        }
-        let parameters = self.flat.parameters.ids();
-        let parameters = parameters.filter(|&id| !self.flat.parameters[id].derived);
-        let parameters = parameters.map(|id| {
-            let own = &self.flat.parameters[id];
-            ValueOf {
-                name: own.name.clone(),
-                span: own.origin.span,
-                values: values.get(&id).cloned().unwrap_or_default(),
-                boolean: self.parameters[id.index()].boolean,
-                quantity: own.quantity.clone(),
-                prior: own.prior,
-                source: own.source.clone(),
-            }
+/// Notes an expression of the first file, if somebody asks for them.
+pub(crate) fn note(
+    lowered: &mut Option<Vec<Lowered>>,
+    input: &Input<'_>,
+    span: Span,
+    typed: &Typed,
+) {
+    let first = input.files.first().map(|(id, _)| *id);
+    if let Some(lowered) = lowered
+        && first == Some(span.file)
+    {
+        lowered.push(Lowered {
+            span,
+            typed: typed.clone(),
         });
-        let first = self.input.files.first().map(|(id, _)| *id);
-        let all = || self.flat.variables.ids().map(|id| &self.flat.variables[id]);
-        let names = all().map(|own| (own.origin.span, own.name.clone()));
-        let names = names.collect();
-        let variables = all()
-            .filter(|own| Some(own.origin.span.file) == first && !own.boolean)
-            .map(|own| (own.origin.span, own.quantity.clone()));
-        Meaning {
-            variables: variables.collect(),
-            names,
-            parameters: parameters.collect(),
-            expressions: found.into_values().collect(),
+    }
+}
+
+/// What was noted, once dimensions are known and parameters are in order; `first` is the first file.
+pub(crate) fn meaning(
+    lowered: &[Lowered],
+    flat: &FlatModel,
+    notes: &[ParameterNotes<'_>],
+    dimensions: &Dimensions,
+    first: Option<FileId>,
+) -> Meaning {
+    let values = parameter_values(flat, notes);
+    let mut found: BTreeMap<(u32, u32), MeaningOf> = BTreeMap::new();
+    for lowered in lowered {
+        let own = meaning_of(lowered, flat, dimensions, &values);
+        let key = (own.span.start, own.span.end);
+        match found.get_mut(&key) {
+            None => drop(found.insert(key, own)),
+            Some(known) => known.keep_common(own),
         }
     }
+    let parameters = flat.parameters.enumerate();
+    let parameters = parameters.filter(|(_, own)| !own.derived);
+    let parameters = parameters.map(|(id, own)| ValueOf {
+        name: own.name.clone(),
+        span: own.origin.span,
+        values: values.get(&id).cloned().unwrap_or_default(),
+        boolean: notes[id.index()].boolean,
+        quantity: own.quantity.clone(),
+        prior: own.prior,
+        source: own.source.clone(),
+    });
+    let names = flat.variables.iter();
+    let names = names.map(|own| (own.origin.span, own.name.clone()));
+    let variables = flat.variables.iter();
+    let variables = variables
+        .filter(|own| Some(own.origin.span.file) == first && !own.boolean)
+        .map(|own| (own.origin.span, own.quantity.clone()));
+    Meaning {
+        variables: variables.collect(),
+        names: names.collect(),
+        parameters: parameters.collect(),
+        expressions: found.into_values().collect(),
+    }
+}
 
-    fn meaning_of(&self, lowered: &Lowered, values: &Values) -> MeaningOf {
-        let typed = &lowered.typed;
-        let dimension = self.dimensions.resolve(&typed.dim).as_known();
-        let declared = self.quantity_of(typed.id).cloned();
-        let quantity = dimension.filter(|_| !typed.truth).map(|dimension| {
-            let declared = declared.filter(|own| {
-                own.dimension.agreement(dimension) != hyde_units::Agreement::Different
-            });
-            declared.unwrap_or_else(|| Quantity::usual(dimension))
-        });
-        let mut parameter = None;
-        if let Ir::Param(param, _) = self.flat.exprs[typed.id] {
-            parameter = Some(&self.flat.parameters[param]).filter(|own| !own.derived);
+fn meaning_of(
+    lowered: &Lowered,
+    flat: &FlatModel,
+    dimensions: &Dimensions,
+    values: &Values,
+) -> MeaningOf {
+    let typed = &lowered.typed;
+    let dimension = dimensions.resolve(&typed.dim).as_known();
+    let declared = quantity_of(flat, typed.id).cloned();
+    let quantity = dimension.filter(|_| !typed.truth).map(|dimension| {
+        let declared = declared
+            .filter(|own| own.dimension.agreement(dimension) != hyde_units::Agreement::Different);
+        declared.unwrap_or_else(|| Quantity::usual(dimension))
+    });
+    let mut parameter = None;
+    if let Ir::Param(param, _) = flat.exprs[typed.id] {
+        parameter = Some(&flat.parameters[param]).filter(|own| !own.derived);
+    }
+    MeaningOf {
+        span: lowered.span,
+        value: quantity
+            .as_ref()
+            .and_then(|_| constant_value(flat, typed.id, values)),
+        quantity,
+        parameter: parameter.map(|own| own.name.clone()),
+    }
+}
+
+/// The values of all parameters, each after those that it uses.
+fn parameter_values(flat: &FlatModel, notes: &[ParameterNotes<'_>]) -> Values {
+    let mut known = Values::new();
+    for &id in &flat.parameter_order {
+        let own = &flat.parameters[id];
+        if own.found || notes[id.index()].binding.is_none() {
+            continue;
         }
-        MeaningOf {
-            span: lowered.span,
-            value: quantity
-                .as_ref()
-                .and_then(|_| self.constant_value(typed.id, values)),
-            quantity,
-            parameter: parameter.map(|own| own.name.clone()),
+        let all = own
+            .value
+            .iter()
+            .map(|&value| constant_value(flat, value, &known));
+        if let Some(all) = all.collect::<Option<Vec<f64>>>() {
+            known.insert(id, all);
         }
     }
+    known
+}
 
-    /// The values of all parameters, each after those that it uses.
-    fn parameter_values(&self) -> Values {
-        let mut known = Values::new();
-        for &id in &self.flat.parameter_order {
-            let own = &self.flat.parameters[id];
-            if own.found || self.parameters[id.index()].binding.is_none() {
-                continue;
-            }
-            let all = own
-                .value
-                .iter()
-                .map(|&value| self.constant_value(value, &known));
-            if let Some(all) = all.collect::<Option<Vec<f64>>>() {
-                known.insert(id, all);
-            }
-        }
-        known
-    }
-
-    /// The value of an expression that is made of numbers and known parameters.
-    fn constant_value(&self, id: ExprId, values: &Values) -> Option<f64> {
-        let leaf = |leaf: Ir| {
-            let Ir::Param(param, index) = leaf else {
-                return Err(());
-            };
-            let own = values.get(&param).filter(|_| index.stride == 0).ok_or(())?;
-            let at = usize::try_from(index.offset).map_err(drop)?;
-            match own.as_slice() {
-                [only] => Ok(*only),
-                several => several.get(at).copied().ok_or(()),
-            }
+/// The value of an expression that is made of numbers and known parameters.
+fn constant_value(flat: &FlatModel, id: ExprId, values: &Values) -> Option<f64> {
+    let leaf = |leaf: Ir| {
+        let Ir::Param(param, index) = leaf else {
+            return Err(());
         };
-        let value = self.flat.exprs.evaluate(id, leaf).ok()?;
-        value.is_finite().then_some(value)
-    }
+        let own = values.get(&param).filter(|_| index.stride == 0).ok_or(())?;
+        let at = usize::try_from(index.offset).map_err(drop)?;
+        match own.as_slice() {
+            [only] => Ok(*only),
+            several => several.get(at).copied().ok_or(()),
+        }
+    };
+    let value = flat.exprs.evaluate(id, leaf).ok()?;
+    value.is_finite().then_some(value)
 }
 
 impl MeaningOf {

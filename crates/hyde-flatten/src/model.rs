@@ -1,18 +1,23 @@
 //! [`Model`]: the flat model while it is being built, with the tree of instances beside it.
 
+pub(crate) mod bind;
+pub(crate) mod call;
+pub(crate) mod field;
+pub(crate) mod lower;
+pub(crate) mod structural;
+
+mod agreement;
+
 use crate::Input;
-use crate::bind::short;
-use crate::dimension::{Demand, Dim, Dimensions};
-use crate::instance::{
-    Domain, Instance, InstanceId, Member, ParameterNotes, Scope, Typed, VariableNotes,
-};
+use crate::dimension::{Dim, Dimensions};
+use crate::instance::{Domain, InstanceId, ParameterNotes, Scope, Typed, VariableNotes};
+use crate::instantiate::{InstanceTree, Making};
 use crate::names::{self, Names};
-use crate::turns::Turns;
+use crate::turns::{Sides, Turns};
 use crate::zero::Zero;
-use hyde_diag::{Code, Diagnostic, Diagnostics, InstancePath, MadeBy, Origin, Severity, Span};
+use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy, Span};
 use hyde_ir::{
-    ClockId, ColumnId, Expr, ExprId, FlatModel, Id as _, ParamId, Quantity, VarId, Variable,
-    VariableKind,
+    ClockId, ColumnId, Expr, ExprId, FlatModel, ParamId, Quantity, VarId, Variable, VariableKind,
 };
 use hyde_syntax::ast::Reference;
 use std::collections::{BTreeMap, BTreeSet};
@@ -22,28 +27,21 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) input: &'a Input<'a>,
     pub(crate) names: Names<'a>,
     pub(crate) flat: FlatModel,
-    pub(crate) instances: Vec<Instance<'a>>,
+    pub(crate) tree: InstanceTree<'a>,
     /// Beside `flat.variables`.
     pub(crate) variables: Vec<VariableNotes<'a>>,
     /// Beside `flat.parameters`.
     pub(crate) parameters: Vec<ParameterNotes<'a>>,
     pub(crate) domains: Vec<Domain<'a>>,
     pub(crate) dimensions: Dimensions,
-    /// Modifications with whether anything used them.
-    pub(crate) modifications: Vec<(Span, String, bool)>,
-    /// The instance that a modification with one word left was given to, by its number.
-    pub(crate) modified: BTreeMap<usize, InstanceId>,
+    /// What instantiation notes; of it, later passes tell what nothing used.
+    pub(crate) making: Making<'a>,
     /// The measures of the top so far, by name.
     pub(crate) measured_numbers: Vec<(&'a str, Typed)>,
-    /// Effects to be put on instances, what they wrap and what they replace.
-    pub(crate) hooks: Vec<crate::instantiate::Hook<'a>>,
+    /// What effects wrap.
     pub(crate) wraps: Vec<crate::wrap::Wrap<'a>>,
-    pub(crate) replacements: Vec<crate::instantiate::Replacement<'a>>,
     /// The expressions of the first file as they were lowered, where somebody asks for them.
     pub(crate) lowered: Option<Vec<crate::meaning::Lowered>>,
-    /// Whether effects are offered to what they fit on, and those that were.
-    pub(crate) offering: bool,
-    pub(crate) offers: Vec<crate::instantiate::Offer<'a>>,
     /// The sites where a law may act, each with its instance.
     pub(crate) law_sites: Vec<(InstanceId, crate::law_sites::LawSite)>,
     /// Variables whose equations recorded columns take the place of.
@@ -54,6 +52,8 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) connections: Vec<crate::connect::Connection>,
     /// Clocks that tick at events: the condition and the variable that is the time of the last tick.
     pub(crate) event_clocks: BTreeMap<ClockId, (ExprId, VarId)>,
+    /// The numbers that the clocks of the instances have since those that tick at events are gone; none before that.
+    pub(crate) kept_clocks: Option<BTreeMap<ClockId, ClockId>>,
     /// Held variables by clock and source.
     pub(crate) held: BTreeMap<(ClockId, VarId), VarId>,
     /// Delayed variables by what is delayed and the time.
@@ -64,14 +64,10 @@ pub(crate) struct Model<'a, 'd> {
     pub(crate) column_values: BTreeMap<String, ParamId>,
     /// Names whose declaration has an unknown type: their uses are no mistake of their own.
     pub(crate) undeclared: BTreeSet<&'a str>,
-    /// Classes that contain themselves, once reported.
-    pub(crate) endless: Vec<&'a hyde_syntax::ast::Class>,
     /// The values that elements of parameters have now, once they are known.
     pub(crate) current_values: BTreeMap<(ParamId, usize), f64>,
     /// The functions whose calls are being replaced, the outermost first, and what is known of calls.
-    pub(crate) calls: crate::call::Calls<'a>,
-    /// The classes that the instance being made extends, by whatever way.
-    pub(crate) extended: usize,
+    pub(crate) calls: crate::model::call::Calls<'a>,
     /// A subscript met that keeps its `for` equation from being one equation over a range.
     pub(crate) needs_unrolling: bool,
     pub(crate) diagnostics: &'d mut Diagnostics,
@@ -83,34 +79,28 @@ impl<'a, 'd> Model<'a, 'd> {
             input,
             names: Names::new(input),
             flat: FlatModel::default(),
-            instances: Vec::new(),
+            tree: InstanceTree::default(),
             variables: Vec::new(),
             parameters: Vec::new(),
             domains: Vec::new(),
             dimensions: Dimensions::default(),
-            modifications: Vec::new(),
-            modified: BTreeMap::new(),
+            making: Making::default(),
             measured_numbers: Vec::new(),
-            hooks: Vec::new(),
             wraps: Vec::new(),
-            replacements: Vec::new(),
             lowered: None,
-            offering: false,
-            offers: Vec::new(),
             law_sites: Vec::new(),
             replays: Vec::new(),
             joined: Vec::new(),
             connections: Vec::new(),
             event_clocks: BTreeMap::new(),
+            kept_clocks: None,
             held: BTreeMap::new(),
             delayed: BTreeMap::new(),
             column_variables: BTreeMap::new(),
             column_values: BTreeMap::new(),
             undeclared: BTreeSet::new(),
-            endless: Vec::new(),
             current_values: BTreeMap::new(),
-            calls: crate::call::Calls::default(),
-            extended: 0,
+            calls: crate::model::call::Calls::default(),
             needs_unrolling: false,
             diagnostics,
         }
@@ -120,171 +110,26 @@ impl<'a, 'd> Model<'a, 'd> {
         self.diagnostics.push(diagnostic);
     }
 
-    pub(crate) fn path(&self, instance: InstanceId) -> InstancePath {
-        self.instances[instance].path.clone()
-    }
-
-    pub(crate) fn origin(&self, instance: InstanceId, span: Span) -> Origin {
-        Origin::source(span, &self.instances[instance].path)
+    /// The clock of an instance, if it still has one.
+    pub(crate) fn clock_of(&self, instance: InstanceId) -> Option<ClockId> {
+        let declared = self.tree[instance].clock?;
+        match &self.kept_clocks {
+            Some(kept) => kept.get(&declared).copied(),
+            None => Some(declared),
+        }
     }
 
     pub(crate) fn dim(&self, var: VarId) -> Dim {
         self.variables[hyde_ir::Id::index(var)].dim.clone()
     }
 
-    /// What a mere name means and is shown in: that of a variable or a parameter.
-    pub(crate) fn quantity_of(&self, id: ExprId) -> Option<&Quantity> {
-        if let Expr::Var(var, _) = self.flat.exprs[id] {
-            return Some(&self.flat.variables[var].quantity);
-        }
-        if let Expr::Param(param, _) = self.flat.exprs[id] {
-            return Some(&self.flat.parameters[param].quantity);
-        }
-        None
-    }
-
     pub(crate) fn notes(&self, var: VarId) -> &VariableNotes<'a> {
         &self.variables[hyde_ir::Id::index(var)]
     }
 
-    /// Demands that two dimensions agree, and reports it if they cannot.
-    ///
-    /// False where they are known to disagree; that is reported.
-    pub(crate) fn agree(
-        &mut self,
-        a: &Typed,
-        b: &Typed,
-        what: &'static str,
-        instance: InstanceId,
-    ) -> bool {
-        let demand = Demand {
-            what,
-            spans: (a.span, b.span),
-            instance,
-            bare: (a.bare, b.bare),
-            written: (self.bare_text(a), self.bare_text(b)),
-            said: (self.said(a), self.said(b)),
-            sides: (a.id, b.id),
-        };
-        let Self {
-            dimensions,
-            instances,
-            parameters,
-            flat,
-            ..
-        } = self;
-        let found = dimensions.agree(&a.dim, &b.dim, demand, &|id| {
-            in_scope(instances, parameters, flat, id)
-        });
-        let Some(diagnostic) = found.or_else(|| self.lost_turn(a, b)) else {
-            return true;
-        };
-        let error = diagnostic.severity == Severity::Error;
-        let diagnostic = self.with_parts(diagnostic, (a.id, b.id));
-        self.report(diagnostic);
-        !error
-    }
-
-    /// Says what the names in two sides are, where one of them is more than a name. What was set in another file than that of
-    /// the sides, as a parameter of a library's component, is where the mistake is.
-    fn with_parts(&self, diagnostic: Diagnostic, sides: (ExprId, ExprId)) -> Diagnostic {
-        let exprs = &self.flat.exprs;
-        let written_in = diagnostic.labels.first().map(|label| label.span.file);
-        let mut set: Vec<(&str, &Dim, Span)> = Vec::new();
-        let mut named: Vec<(&str, &Dim, &Quantity)> = Vec::new();
-        let composed = [sides.0, sides.1].into_iter().filter(|&side| {
-            matches!(
-                exprs[side],
-                Expr::Unary(..) | Expr::Binary(..) | Expr::If(..)
-            )
-        });
-        for id in exprs.below(&composed.collect::<Vec<_>>()) {
-            let part = match exprs[id] {
-                Expr::Param(param, _) => {
-                    let own = &self.flat.parameters[param];
-                    let (name, dim) = (own.name.as_str(), &self.parameters[param.index()].dim);
-                    let span = own.origin.span;
-                    let known = set.iter().any(|(known, ..)| *known == name);
-                    if !known && !own.derived && Some(span.file) != written_in {
-                        set.push((name, dim, span));
-                    }
-                    (name, dim, &own.quantity)
-                }
-                Expr::Var(var, _) => (
-                    self.flat.variables[var].name.as_str(),
-                    &self.variables[var.index()].dim,
-                    &self.flat.variables[var].quantity,
-                ),
-                Expr::Const(_)
-                | Expr::Time
-                | Expr::Counter
-                | Expr::Der(..)
-                | Expr::Pre(..)
-                | Expr::Relation(_)
-                | Expr::InMode(..)
-                | Expr::Unary(..)
-                | Expr::Binary(..)
-                | Expr::If(..)
-                | Expr::NoEvent(_) => continue,
-            };
-            if !named.iter().any(|(name, ..)| *name == part.0) {
-                named.push(part);
-            }
-        }
-        let mut diagnostic = diagnostic;
-        for (name, dim, span) in set.into_iter().rev() {
-            if let Some(dimension) = self.dimensions.resolve(dim).as_known() {
-                let text = format!(
-                    "`{}` is {} here",
-                    short(name),
-                    crate::dimension::short(dimension)
-                );
-                diagnostic.labels.insert(0, hyde_diag::Label { span, text });
-            }
-        }
-        let parts: Vec<String> = named
-            .iter()
-            .take(6)
-            .filter_map(|(name, dim, quantity)| {
-                let dimension = self.dimensions.resolve(dim).as_known()?;
-                // In the unit it was declared in, as long as that says what it is.
-                let declared = quantity.unit.text();
-                let unit = match quantity.dimension == dimension && declared != "1" {
-                    true => declared.to_owned(),
-                    false => crate::dimension::short(dimension),
-                };
-                Some(format!("`{}` is {unit}", short(name)))
-            })
-            .collect();
-        match parts.as_slice() {
-            [] => diagnostic,
-            _ => diagnostic.note(parts.join(", ")),
-        }
-    }
-
-    /// A bare number as written, for a repair that gives it a unit.
-    fn bare_text(&self, typed: &Typed) -> String {
-        if typed.bare {
-            self.input.sources.text(typed.span).to_owned()
-        } else {
-            String::new()
-        }
-    }
-
-    /// Solves the dimensions that are still unknown, and reports what disagrees.
-    pub(crate) fn solve_dimensions(&mut self) {
-        let Self {
-            dimensions,
-            instances,
-            parameters,
-            flat,
-            ..
-        } = self;
-        let found = dimensions.solve(&|id| in_scope(instances, parameters, flat, id));
-        for (diagnostic, sides) in found {
-            let diagnostic = self.with_parts(diagnostic, sides);
-            self.report(diagnostic);
-        }
+    /// What tells how the sides of an operation are written.
+    pub(crate) fn sides(&self) -> Sides<'_> {
+        Sides::new(self.input.sources, &self.flat)
     }
 
     /// Adds a variable that the compiler makes.
@@ -308,7 +153,7 @@ impl<'a, 'd> Model<'a, 'd> {
             fixed_elements: Vec::new(),
             field: None,
         });
-        let origin = self.origin(instance, span).made_by(made_by);
+        let origin = self.tree.origin(instance, span).made_by(made_by);
         self.flat.variables.push(Variable {
             name,
             len: None,
@@ -366,11 +211,11 @@ impl<'a, 'd> Model<'a, 'd> {
         if self.undeclared.contains(word) {
             return;
         }
-        let mut known: Vec<&str> = self.instances[at].members.keys().copied().collect();
-        let mut outer = self.instances[at].outer;
+        let mut known: Vec<&str> = self.tree[at].members.keys().copied().collect();
+        let mut outer = self.tree[at].outer;
         while let Some(instance) = outer {
-            known.extend(self.instances[instance].members.keys().copied());
-            outer = self.instances[instance].outer;
+            known.extend(self.tree[instance].members.keys().copied());
+            outer = self.tree[instance].outer;
         }
         if at == scope.instance {
             known.extend(scope.locals.iter().map(|(name, _)| *name));
@@ -380,7 +225,7 @@ impl<'a, 'd> Model<'a, 'd> {
                 known.extend(self.input.records.keys().map(String::as_str));
             }
         }
-        let instance = &self.instances[at];
+        let instance = &self.tree[at];
         let place = match (instance.path.as_str(), instance.class.name.text.as_str()) {
             ("", class) => format!("model `{class}`"),
             (path, class) => format!("`{path}` ({class})"),
@@ -412,25 +257,15 @@ impl<'a, 'd> Model<'a, 'd> {
     }
 }
 
-/// The path of an instance and its parameters with their dimensions, those of its parent after its own.
-fn in_scope(
-    instances: &[Instance<'_>],
-    parameters: &[ParameterNotes<'_>],
-    flat: &FlatModel,
-    id: InstanceId,
-) -> (InstancePath, Vec<(String, Dim)>) {
-    let mut found = Vec::new();
-    let chain = [Some(id), instances[id].parent];
-    for instance in chain.into_iter().flatten() {
-        for member in instances[instance].members.values() {
-            if let Member::Parameter(param) = member {
-                let name = &flat.parameters[*param].name;
-                let dim = parameters[hyde_ir::Id::index(*param)].dim.clone();
-                found.push((short(name).to_owned(), dim));
-            }
-        }
+/// What a mere name means and is shown in: that of a variable or a parameter.
+pub(crate) fn quantity_of(flat: &FlatModel, id: ExprId) -> Option<&Quantity> {
+    if let Expr::Var(var, _) = flat.exprs[id] {
+        return Some(&flat.variables[var].quantity);
     }
-    (instances[id].path.clone(), found)
+    if let Expr::Param(param, _) = flat.exprs[id] {
+        return Some(&flat.parameters[param].quantity);
+    }
+    None
 }
 
 /// A few names for a message.

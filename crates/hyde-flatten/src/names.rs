@@ -4,7 +4,7 @@ use crate::Input;
 use hyde_diag::{Code, Diagnostic, FileId, Span};
 pub(crate) use hyde_syntax::FileIndex;
 use hyde_syntax::Lookup;
-use hyde_syntax::ast::{self, Class, Item, Reference, TypeItem};
+use hyde_syntax::ast::{self, Class, ClassBody, Element, Item, Reference, TypeItem};
 use hyde_units::Kind;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -56,6 +56,72 @@ impl<'a> Names<'a> {
     /// The class a name means in a file.
     pub(crate) fn class(self, file: FileIndex, name: &Reference) -> Option<(FileIndex, &'a Class)> {
         self.lookup().class(file, name)
+    }
+
+    /// The names of what a class and its bases declare that is of another class or extends it.
+    pub(crate) fn parts_that_are(
+        self,
+        host: (FileIndex, &'a Class),
+        wanted: &Class,
+    ) -> Vec<&'a str> {
+        // A class may extend itself.
+        let mut classes = vec![host];
+        let mut found = Vec::new();
+        let mut seen: Vec<&'a Class> = Vec::new();
+        while let Some((file, class)) = classes.pop() {
+            if seen.iter().any(|&known| std::ptr::eq(known, class)) {
+                continue;
+            }
+            seen.push(class);
+            classes.extend(self.bases(file, class));
+            let ClassBody::Long { elements, .. } = &class.body else {
+                continue;
+            };
+            for element in elements {
+                if let Element::Declaration(declaration) = element
+                    && let Some(own) = self.class(file, &declaration.type_name)
+                    && self.is_a(own, wanted)
+                {
+                    let names = declaration.declarators.iter();
+                    found.extend(names.map(|own| own.name.text.as_str()));
+                }
+            }
+        }
+        found
+    }
+
+    /// Whether a class is another one or extends it.
+    pub(crate) fn is_a(self, own: (FileIndex, &'a Class), other: &Class) -> bool {
+        let mut waiting = vec![own];
+        let mut seen: Vec<&'a Class> = Vec::new();
+        while let Some((file, class)) = waiting.pop() {
+            if std::ptr::eq(class, other) {
+                return true;
+            }
+            if !seen.iter().any(|&known| std::ptr::eq(known, class)) {
+                seen.push(class);
+                waiting.extend(self.bases(file, class));
+            }
+        }
+        false
+    }
+
+    /// The classes that a class extends, as far as they are known.
+    pub(crate) fn bases(self, file: FileIndex, class: &'a Class) -> Vec<(FileIndex, &'a Class)> {
+        let known = |base| self.class(file, base);
+        match &class.body {
+            ClassBody::Short { base, .. } => known(base).into_iter().collect(),
+            ClassBody::Long { elements, .. } => {
+                let extended = elements.iter().filter_map(|element| {
+                    if let Element::Extends(base, _) = element {
+                        known(base)
+                    } else {
+                        None
+                    }
+                });
+                extended.collect()
+            }
+        }
     }
 
     /// The type a name means in a file.

@@ -7,8 +7,9 @@
 
 use crate::dimension::{Dim, short};
 use crate::instance::Typed;
-use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use crate::model::quantity_of;
+use hyde_diag::{Code, Diagnostic, Diagnostics, Sources};
+use hyde_ir::FlatModel;
 use hyde_units::{AngleExponent, Dimension, with_angle_of};
 use std::f64::consts::TAU;
 
@@ -38,9 +39,25 @@ pub(crate) enum Said {
     Expression,
 }
 
-impl Model<'_, '_> {
-    /// The dimension of a product or a quotient, and what is known of turns in it.
-    pub(crate) fn product(&mut self, a: &Typed, b: &Typed, divides: bool) -> (Dim, Turns) {
+/// The sides of an operation: what they are made of and how they are written.
+#[derive(Clone, Copy)]
+pub(crate) struct Sides<'m> {
+    sources: &'m Sources,
+    flat: &'m FlatModel,
+}
+
+impl<'m> Sides<'m> {
+    pub(crate) fn new(sources: &'m Sources, flat: &'m FlatModel) -> Self {
+        Self { sources, flat }
+    }
+
+    /// The dimension of a product or a quotient, and what is known of turns in it; what is doubtful is told.
+    pub(crate) fn product(
+        self,
+        (a, b): (&Typed, &Typed),
+        divides: bool,
+        diagnostics: &mut Diagnostics,
+    ) -> (Dim, Turns) {
         let raw = match divides {
             true => a.dim.divide(&b.dim),
             false => a.dim.multiply(&b.dim),
@@ -60,25 +77,25 @@ impl Model<'_, '_> {
             return (raw, b.turns);
         }
         let turns = match divides {
-            true => self.turns_of_quotient(a, b),
-            false => self.turns_of_product(a, b),
+            true => turns_of_quotient(a, b, diagnostics),
+            false => self.turns_of_product(a, b, diagnostics),
         };
         (raw.composed(), turns)
     }
 
     /// Whether a number or its reciprocal is whole, so that it is no hidden 2*pi.
-    fn is_whole_factor(&self, typed: &Typed) -> bool {
+    fn is_whole_factor(self, typed: &Typed) -> bool {
         let value = self.flat.exprs.as_constant(typed.id);
         typed.bare
             && value.is_some_and(|value| value.fract() == 0.0 || value.recip().fract() == 0.0)
     }
 
-    fn turns_of_product(&mut self, a: &Typed, b: &Typed) -> Turns {
+    fn turns_of_product(self, a: &Typed, b: &Typed, diagnostics: &mut Diagnostics) -> Turns {
         for (one, other) in [(a, b), (b, a)] {
             match one.turns {
                 Turns::TwoPi if is_per_angle(other) => return Turns::PerTurn,
                 Turns::PerTurn if is_turned(other) => {
-                    self.report(
+                    diagnostics.push(
                         Diagnostic::warning(
                             Code::AngleMismatch,
                             "the factor 2*pi for one turn is applied twice",
@@ -107,35 +124,8 @@ impl Model<'_, '_> {
         Turns::Plain
     }
 
-    fn turns_of_quotient(&mut self, a: &Typed, b: &Typed) -> Turns {
-        if is_per_angle(a) && b.turns == Turns::TwoPi {
-            self.report(
-                Diagnostic::warning(
-                    Code::AngleMismatch,
-                    "a quantity that is per radian already, over 2*pi",
-                )
-                .label(
-                    a.span,
-                    format!(
-                        "this is {}",
-                        a.dim.as_known().map_or_else(String::new, short)
-                    ),
-                )
-                .label(b.span, "divides by the turn again")
-                .note("units such as mm/rev are converted to m/rad when they are read")
-                .help("remove the `2*pi`"),
-            );
-        }
-        match a.turns {
-            Turns::Lost if has_no_angle(b) => Turns::Lost,
-            Turns::Plain | Turns::TwoPi | Turns::PerTurn | Turns::Counted | Turns::Lost => {
-                Turns::Plain
-            }
-        }
-    }
-
     /// `lead*f` beside what has its angle: the 2*pi between them is lost.
-    pub(crate) fn lost_turn(&self, a: &Typed, b: &Typed) -> Option<Diagnostic> {
+    pub(crate) fn lost_turn(self, a: &Typed, b: &Typed) -> Option<Diagnostic> {
         let angle = |typed: &Typed| Some(typed.dim.as_known()?.angle());
         let (lost, other) = match (a.turns, b.turns) {
             (Turns::Lost, Turns::Lost) => return None,
@@ -160,23 +150,21 @@ impl Model<'_, '_> {
     }
 
     /// `sin(f*time)`: of turns.
-    pub(crate) fn sine_of_turns(&mut self, function: &str, argument: &Typed) {
+    pub(crate) fn sine_of_turns(self, function: &str, argument: &Typed) -> Option<Diagnostic> {
         if argument.turns != Turns::Counted {
-            return;
+            return None;
         }
         let text = self.text_as_factor(argument);
-        self.report(
-            Diagnostic::warning(
-                Code::AngleMismatch,
-                format!("`{function}` of a number of turns: a factor 2*pi is missing"),
-            )
-            .label(argument.span, "a frequency times a time counts turns")
-            .help(format!("write `{function}(2*pi*{text})`")),
+        let diagnostic = Diagnostic::warning(
+            Code::AngleMismatch,
+            format!("`{function}` of a number of turns: a factor 2*pi is missing"),
         );
+        let diagnostic = diagnostic.label(argument.span, "a frequency times a time counts turns");
+        Some(diagnostic.help(format!("write `{function}(2*pi*{text})`")))
     }
 
-    fn text_as_factor(&self, typed: &Typed) -> String {
-        let text = self.input.sources.text(typed.span);
+    fn text_as_factor(self, typed: &Typed) -> String {
+        let text = self.sources.text(typed.span);
         match text.contains(['+', '-', ' ']) {
             true => format!("({text})"),
             false => text.to_owned(),
@@ -184,7 +172,7 @@ impl Model<'_, '_> {
     }
 
     /// `20 [1/s]` may be an angular velocity, the radian left out; `20 [Hz]` and `1200 [1/min]` count turns.
-    fn may_be_radians(&self, typed: &Typed) -> bool {
+    fn may_be_radians(self, typed: &Typed) -> bool {
         match self.said(typed) {
             Said::Literal(_, unit) | Said::Name(_, unit) => unit.starts_with("1/s"),
             Said::Expression => false,
@@ -192,8 +180,8 @@ impl Model<'_, '_> {
     }
 
     /// What a side of a comparison is, for a repair.
-    pub(crate) fn said(&self, typed: &Typed) -> Said {
-        let text = self.input.sources.text(typed.span);
+    pub(crate) fn said(self, typed: &Typed) -> Said {
+        let text = self.sources.text(typed.span);
         if text.parse::<f64>().is_ok() {
             return Said::Literal(text.to_owned(), "1".to_owned());
         }
@@ -203,7 +191,7 @@ impl Model<'_, '_> {
         {
             return Said::Literal(number.trim().to_owned(), unit.trim().to_owned());
         }
-        let Some(quantity) = self.quantity_of(typed.id) else {
+        let Some(quantity) = quantity_of(self.flat, typed.id) else {
             return Said::Expression;
         };
         let is_name = text
@@ -213,6 +201,31 @@ impl Model<'_, '_> {
             true => Said::Name(text.to_owned(), quantity.unit.text().to_owned()),
             false => Said::Expression,
         }
+    }
+}
+
+fn turns_of_quotient(a: &Typed, b: &Typed, diagnostics: &mut Diagnostics) -> Turns {
+    if is_per_angle(a) && b.turns == Turns::TwoPi {
+        diagnostics.push(
+            Diagnostic::warning(
+                Code::AngleMismatch,
+                "a quantity that is per radian already, over 2*pi",
+            )
+            .label(
+                a.span,
+                format!(
+                    "this is {}",
+                    a.dim.as_known().map_or_else(String::new, short)
+                ),
+            )
+            .label(b.span, "divides by the turn again")
+            .note("units such as mm/rev are converted to m/rad when they are read")
+            .help("remove the `2*pi`"),
+        );
+    }
+    match a.turns {
+        Turns::Lost if has_no_angle(b) => Turns::Lost,
+        Turns::Plain | Turns::TwoPi | Turns::PerTurn | Turns::Counted | Turns::Lost => Turns::Plain,
     }
 }
 

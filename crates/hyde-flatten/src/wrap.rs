@@ -4,8 +4,10 @@
 //! grip = F        with  wrap grip by grip + dF        is  grip = F + dF
 //! ```
 
+use crate::experiment::replayed;
 use crate::instance::{InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
+use crate::site;
 use hyde_diag::{Code, Diagnostic};
 use hyde_ir::{Index, Memo, VarId};
 use hyde_syntax::ast::{Element, Expr, ExprKind, Prefix, Reference};
@@ -19,150 +21,151 @@ pub(crate) struct Wrap<'a> {
     pub(crate) used: bool,
 }
 
-impl Model<'_, '_> {
-    /// A value with the effects that wrap its variable, in the order written.
-    pub(crate) fn wrapped(&mut self, var: VarId, value: Typed, setting: Setting) -> Typed {
-        let mut value = self.replayed(var, value);
-        for number in self.wraps_of(var) {
-            self.wraps[number].used = true;
-            let Wrap {
-                value: by, effect, ..
-            } = self.wraps[number];
-            let mut scope = Scope::new(effect, setting);
-            if has_a_past(by)
-                && let Some(site) = self.wraps[number].site.as_word()
-            {
-                scope.locals.push((site, self.before(&value, &scope)));
-            }
-            let new = self.value(by, &scope);
-            let declared = self.typed(value.id, self.dim(var), value.span);
-            self.agree(&declared, &new, "the site and its wrapper are", effect);
-            let leaf = self.flat.exprs.var(var);
-            let mut memo = Memo::from_iter([(leaf, value.id)]);
-            value.id = self.flat.exprs.rewrite(new.id, &mut memo, |_, _, _| None);
+/// A value with the effects that wrap its variable, in the order written.
+pub(crate) fn wrapped(
+    model: &mut Model<'_, '_>,
+    var: VarId,
+    value: Typed,
+    setting: Setting,
+) -> Typed {
+    let mut value = replayed(model, var, value);
+    for number in wraps_of(model, var) {
+        model.wraps[number].used = true;
+        let Wrap {
+            value: by, effect, ..
+        } = model.wraps[number];
+        let mut scope = Scope::new(effect, setting);
+        if has_a_past(by)
+            && let Some(site) = model.wraps[number].site.as_word()
+        {
+            scope.locals.push((site, before(model, &value, &scope)));
         }
-        value
+        let new = model.value(by, &scope);
+        let declared = model.typed(value.id, model.dim(var), value.span);
+        model.agree(&declared, &new, "the site and its wrapper are", effect);
+        let leaf = model.flat.exprs.var(var);
+        let mut memo = Memo::from_iter([(leaf, value.id)]);
+        value.id = model.flat.exprs.rewrite(new.id, &mut memo, |_, _, _| None);
     }
+    value
+}
 
-    /// A variable for the value that a site has without the effect: a delay or a derivative is of a variable.
-    fn before(&mut self, value: &Typed, scope: &Scope<'_>) -> VarId {
-        match self.flat.exprs[value.id].access() {
-            Some((var, Index::SCALAR, false)) => var,
-            Some(_) | None => self.named(value, scope),
+/// A variable for the value that a site has without the effect: a delay or a derivative is of a variable.
+fn before(model: &mut Model<'_, '_>, value: &Typed, scope: &Scope<'_>) -> VarId {
+    match model.flat.exprs[value.id].access() {
+        Some((var, Index::SCALAR, false)) => var,
+        Some(_) | None => model.named(value, scope),
+    }
+}
+
+fn wraps_of(model: &Model<'_, '_>, var: VarId) -> Vec<usize> {
+    let instance = model.notes(var).instance;
+    let name = crate::model::bind::short(&model.flat.variables[var].name);
+    (0..model.wraps.len())
+        .filter(|&number| {
+            let wrap = &model.wraps[number];
+            wrap.host == instance && wrap.site.as_word() == Some(name)
+        })
+        .collect()
+}
+
+/// Wraps the sites that an equation determines, joins connectors, and reports what found no site.
+pub(crate) fn finish_effects(model: &mut Model<'_, '_>) {
+    model.connections.append(&mut model.joined);
+    for number in 0..model.wraps.len() {
+        check_site(model, number);
+        if !model.wraps[number].used {
+            wrap_equation(model, number);
         }
     }
-
-    fn wraps_of(&self, var: VarId) -> Vec<usize> {
-        let instance = self.notes(var).instance;
-        let name = crate::bind::short(&self.flat.variables[var].name);
-        (0..self.wraps.len())
-            .filter(|&number| {
-                let wrap = &self.wraps[number];
-                wrap.host == instance && wrap.site.as_word() == Some(name)
-            })
-            .collect()
+    let unused: Vec<(InstanceId, &Reference)> = model
+        .making
+        .hooks
+        .iter()
+        .filter(|hook| !hook.used)
+        .map(|hook| (hook.scope, hook.site))
+        .collect();
+    for (scope, site) in unused {
+        model.report(site::no_place(&model.tree, scope, site));
     }
+    let unused: Vec<(InstanceId, &Reference)> = model
+        .making
+        .replacements
+        .iter()
+        .filter(|replacement| !replacement.used)
+        .map(|replacement| (replacement.host, replacement.component))
+        .collect();
+    for (host, component) in unused {
+        model.report(site::no_component(&model.tree, host, component));
+    }
+}
 
-    /// Wraps the sites that an equation determines, joins connectors, and reports what found no site.
-    pub(crate) fn finish_effects(&mut self) {
-        self.connections.append(&mut self.joined);
-        for number in 0..self.wraps.len() {
-            self.check_site(number);
-            if !self.wraps[number].used {
-                self.wrap_equation(number);
-            }
-        }
-        let unused: Vec<(InstanceId, &Reference)> = self
-            .hooks
+/// Only what is declared a site, an input or an output may be wrapped (E1).
+fn check_site(model: &mut Model<'_, '_>, number: usize) {
+    let Wrap { host, site, .. } = model.wraps[number];
+    let declared = model.tree[host].elements.iter().find_map(|(_, element)| {
+        let Element::Declaration(declaration) = element else {
+            return None;
+        };
+        declaration
+            .declarators
             .iter()
-            .filter(|hook| !hook.used)
-            .map(|hook| (hook.scope, hook.site))
-            .collect();
-        for (scope, site) in unused {
-            self.no_place(scope, site);
-        }
-        let unused: Vec<(InstanceId, &Reference)> = self
-            .replacements
-            .iter()
-            .filter(|replacement| !replacement.used)
-            .map(|replacement| (replacement.host, replacement.component))
-            .collect();
-        for (host, component) in unused {
-            self.no_component(host, component);
-        }
+            .any(|declarator| site.as_word() == Some(declarator.name.text.as_str()))
+            .then_some(declaration)
+    });
+    let is_site = |prefix: &Prefix| matches!(prefix, Prefix::Site | Prefix::Input | Prefix::Output);
+    if declared.is_some_and(|declaration| declaration.prefixes.iter().any(is_site)) {
+        return;
     }
+    model.wraps[number].used = true;
+    let declared = declared.map(|declaration| declaration.span);
+    model.report(site::no_site(&model.tree, host, site, declared));
+}
 
-    /// Only what is declared a site, an input or an output may be wrapped (E1).
-    fn check_site(&mut self, number: usize) {
-        let Wrap { host, site, .. } = self.wraps[number];
-        let declared = self.instances[host]
-            .elements
-            .iter()
-            .find_map(|(_, element)| {
-                let Element::Declaration(declaration) = element else {
-                    return None;
-                };
-                declaration
-                    .declarators
-                    .iter()
-                    .any(|declarator| site.as_word() == Some(declarator.name.text.as_str()))
-                    .then_some(declaration)
-            });
-        let is_site =
-            |prefix: &Prefix| matches!(prefix, Prefix::Site | Prefix::Input | Prefix::Output);
-        if declared.is_some_and(|declaration| declaration.prefixes.iter().any(is_site)) {
+/// `x = e`, written as an equation of the host, becomes `x = e2` with e for x.
+fn wrap_equation(model: &mut Model<'_, '_>, number: usize) {
+    let Wrap { host, site, .. } = model.wraps[number];
+    let Some(Member::Variable(var)) = site
+        .as_word()
+        .and_then(|name| model.tree[host].members.get(name))
+    else {
+        return;
+    };
+    let var = *var;
+    let leaf = model.flat.exprs.var(var);
+    let plain = model.flat.equations.iter().position(|e| e.lhs == leaf);
+    let clocked = model
+        .flat
+        .clocked_equations
+        .iter()
+        .position(|e| e.equation.lhs == leaf);
+    let (rhs, setting) = match (plain, clocked) {
+        (Some(at), _) => (model.flat.equations[at].rhs, Setting::Equation),
+        (None, Some(at)) => (
+            model.flat.clocked_equations[at].equation.rhs,
+            Setting::Clocked,
+        ),
+        (None, None) => {
+            model.report(
+                Diagnostic::error(
+                    Code::NotYet,
+                    format!(
+                        "no single equation `{} = …` defines this site",
+                        site.dotted()
+                    ),
+                )
+                .label(site.span, "cannot be wrapped")
+                .help("give the site its value in one equation, its name on the left"),
+            );
             return;
         }
-        self.wraps[number].used = true;
-        let declared = declared.map(|declaration| declaration.span);
-        self.no_site(host, site, declared);
-    }
-
-    /// `x = e`, written as an equation of the host, becomes `x = e2` with e for x.
-    fn wrap_equation(&mut self, number: usize) {
-        let Wrap { host, site, .. } = self.wraps[number];
-        let Some(Member::Variable(var)) = site
-            .as_word()
-            .and_then(|name| self.instances[host].members.get(name))
-        else {
-            return;
-        };
-        let var = *var;
-        let leaf = self.flat.exprs.var(var);
-        let plain = self.flat.equations.iter().position(|e| e.lhs == leaf);
-        let clocked = self
-            .flat
-            .clocked_equations
-            .iter()
-            .position(|e| e.equation.lhs == leaf);
-        let (rhs, setting) = match (plain, clocked) {
-            (Some(at), _) => (self.flat.equations[at].rhs, Setting::Equation),
-            (None, Some(at)) => (
-                self.flat.clocked_equations[at].equation.rhs,
-                Setting::Clocked,
-            ),
-            (None, None) => {
-                self.report(
-                    Diagnostic::error(
-                        Code::NotYet,
-                        format!(
-                            "no single equation `{} = …` defines this site",
-                            site.dotted()
-                        ),
-                    )
-                    .label(site.span, "cannot be wrapped")
-                    .help("give the site its value in one equation, its name on the left"),
-                );
-                return;
-            }
-        };
-        let value = self.typed(rhs, self.dim(var), site.span);
-        let new = self.wrapped(var, value, setting).id;
-        match (plain, clocked) {
-            (Some(at), _) => self.flat.equations[at].rhs = new,
-            (None, Some(at)) => self.flat.clocked_equations[at].equation.rhs = new,
-            (None, None) => {}
-        }
+    };
+    let value = model.typed(rhs, model.dim(var), site.span);
+    let new = wrapped(model, var, value, setting).id;
+    match (plain, clocked) {
+        (Some(at), _) => model.flat.equations[at].rhs = new,
+        (None, Some(at)) => model.flat.clocked_equations[at].equation.rhs = new,
+        (None, None) => {}
     }
 }
 

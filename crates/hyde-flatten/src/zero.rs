@@ -3,10 +3,10 @@
 //! Inside there are kelvins alone, and `20 [degC]` is 293.15 K. So a difference that is declared in degC would be shown
 //! 273.15 too low, and `T + 5 [degC]` adds 278.15 K.
 
-use crate::instance::Typed;
-use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
-use hyde_ir::{BinaryOp, Expr, Id as _, Quantity};
+use crate::instance::{Typed, VariableNotes};
+use crate::model::quantity_of;
+use hyde_diag::{Code, Diagnostic, Sources};
+use hyde_ir::{BinaryOp, Expr, ExprId, FlatModel, Id as _, Quantity};
 
 /// What is known of the zero point of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -19,68 +19,74 @@ pub(crate) enum Zero {
     Difference,
 }
 
-impl Model<'_, '_> {
-    /// The zero point of a sum or a difference; a literal in degC that is added is told.
-    pub(crate) fn zero_of_sum(&mut self, op: BinaryOp, a: &Typed, b: &Typed) -> Zero {
-        let own = [a.zero, b.zero].contains(&Zero::Own);
-        if op == BinaryOp::Sub {
-            return match (a.zero, b.zero) {
-                (Zero::Own, Zero::Difference) => Zero::Own,
-                _ if own => Zero::Difference,
-                _ => Zero::Open,
-            };
+impl Zero {
+    /// The zero point of a sum or a difference.
+    pub(crate) fn of_sum(op: BinaryOp, a: Self, b: Self) -> Self {
+        let own = a == Self::Own || b == Self::Own;
+        match (a, b) {
+            (Self::Own, Self::Difference) if op == BinaryOp::Sub => Self::Own,
+            _ if own && op == BinaryOp::Sub => Self::Difference,
+            _ if own => Self::Own,
+            _ => Self::Open,
         }
-        for (literal, other) in [(b, a), (a, b)] {
-            let is_literal = self.flat.exprs.as_constant(literal.id).is_some();
-            if literal.zero == Zero::Own && is_literal && other.zero != Zero::Difference {
-                let text = self.input.sources.text(literal.span);
-                let number = text.split('[').next().unwrap_or("").trim();
-                let unit = literal
-                    .dim
-                    .as_known()
-                    .map_or_else(String::new, |dim| dim.usual_unit());
-                self.report(
-                    Diagnostic::warning(
-                        Code::ZeroPoint,
-                        "a temperature with its zero point is added as a difference",
-                    )
-                    .label(literal.span, "adds its zero point as well")
-                    .help(format!("write `{number} [{unit}]` for a difference")),
-                );
-                return Zero::Own;
-            }
-        }
-        match own {
-            true => Zero::Own,
-            false => Zero::Open,
-        }
-    }
-
-    /// What is set to a difference is shown as one: in K where its type says degC.
-    pub(crate) fn shown_as_difference(&mut self, target: &Typed, value: &Typed) {
-        if value.zero != Zero::Difference {
-            return;
-        }
-        let Expr::Var(var, _) = self.flat.exprs[target.id] else {
-            return;
-        };
-        let quantity = &mut self.flat.variables[var].quantity;
-        if quantity.unit.unit().is_absolute() {
-            *quantity = Quantity::usual(quantity.dimension);
-        }
-        self.variables[var.index()].difference = true;
     }
 
     /// The zero point of what is read: that of its declared unit.
-    pub(crate) fn zero_of_name(&self, id: hyde_ir::ExprId) -> Zero {
-        if let Expr::Var(var, _) = self.flat.exprs[id]
-            && self.notes(var).difference
+    pub(crate) fn of_name(flat: &FlatModel, notes: &[VariableNotes<'_>], id: ExprId) -> Self {
+        if let Expr::Var(var, _) = flat.exprs[id]
+            && notes[var.index()].difference
         {
-            return Zero::Difference;
+            return Self::Difference;
         }
-        match self.quantity_of(id) {
-            Some(quantity) if quantity.unit.unit().is_absolute() => Zero::Own,
-            Some(_) | None => Zero::Open,
+        match quantity_of(flat, id) {
+            Some(quantity) if quantity.unit.unit().is_absolute() => Self::Own,
+            Some(_) | None => Self::Open,
         }
     }
+}
+
+/// What to say of a literal in degC that is added: its zero point is added as well.
+pub(crate) fn added_as_difference(
+    op: BinaryOp,
+    (a, b): (&Typed, &Typed),
+    sources: &Sources,
+    flat: &FlatModel,
+) -> Option<Diagnostic> {
+    if op == BinaryOp::Sub {
+        return None;
+    }
+    let (literal, _) = [(b, a), (a, b)].into_iter().find(|(literal, other)| {
+        let is_literal = flat.exprs.as_constant(literal.id).is_some();
+        literal.zero == Zero::Own && is_literal && other.zero != Zero::Difference
+    })?;
+    let text = sources.text(literal.span);
+    let number = text.split('[').next().unwrap_or("").trim();
+    let unit = literal
+        .dim
+        .as_known()
+        .map_or_else(String::new, |dim| dim.usual_unit());
+    let message = "a temperature with its zero point is added as a difference";
+    let diagnostic = Diagnostic::warning(Code::ZeroPoint, message)
+        .label(literal.span, "adds its zero point as well")
+        .help(format!("write `{number} [{unit}]` for a difference"));
+    Some(diagnostic)
+}
+
+/// What is set to a difference is shown as one: in K where its type says degC.
+pub(crate) fn show_difference(
+    flat: &mut FlatModel,
+    notes: &mut [VariableNotes<'_>],
+    (target, value): (&Typed, &Typed),
+) {
+    if value.zero != Zero::Difference {
+        return;
+    }
+    let Expr::Var(var, _) = flat.exprs[target.id] else {
+        return;
+    };
+    let quantity = &mut flat.variables[var].quantity;
+    if quantity.unit.unit().is_absolute() {
+        *quantity = Quantity::usual(quantity.dimension);
+    }
+    notes[var.index()].difference = true;
 }

@@ -1,9 +1,10 @@
 //! The house rules that a program can check: which crate may depend on which, which [folder](folders) on which, how files
-//! open, what they are called, how long they are, what stands in none of them, and that every number that decides a diagnosis is
-//! in [one table](thresholds).
+//! open, what they are called, how long they are, what stands in none of them, where the [methods of a type](methods) stand, and
+//! that every number that decides a diagnosis is in [one table](thresholds).
 #![allow(clippy::unwrap_used, reason = "tests unwrap what must be there")]
 
 mod folders;
+mod methods;
 mod thresholds;
 
 use serde_json::Value;

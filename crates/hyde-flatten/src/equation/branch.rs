@@ -6,107 +6,111 @@
 //! if s > 0 then x = a; else y = b; end if;     0 = if s > 0 then a - x else b - y
 //! ```
 
+use super::lower_equation;
 use crate::instance::Scope;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::flat::Equation;
-use hyde_ir::{Expr as Ir, ExprId};
+use hyde_ir::{Expr as Ir, ExprId, FlatModel};
 use hyde_syntax::ast::{self, Expr};
 
-impl<'a> Model<'a, '_> {
-    pub(super) fn if_equation(
-        &mut self,
-        branches: &'a [(Expr, Vec<ast::Equation>)],
-        otherwise: &'a [ast::Equation],
-        scope: &Scope<'a>,
-        span: Span,
-    ) -> Vec<Equation> {
-        let conditions: Vec<ExprId> = branches
+pub(super) fn if_equation<'a>(
+    model: &mut Model<'a, '_>,
+    branches: &'a [(Expr, Vec<ast::Equation>)],
+    otherwise: &'a [ast::Equation],
+    scope: &Scope<'a>,
+    span: Span,
+) -> Vec<Equation> {
+    let conditions: Vec<ExprId> = branches
+        .iter()
+        .map(|(condition, _)| model.truth(condition, scope))
+        .collect();
+    let parametric = conditions.iter().all(|&id| {
+        !model.flat.exprs.any(id, |e| {
+            matches!(
+                e,
+                Ir::Var(..) | Ir::Der(..) | Ir::Pre(..) | Ir::Time | Ir::Counter
+            )
+        })
+    });
+    if parametric {
+        for (&condition, (_, list)) in conditions.iter().zip(branches) {
+            if model.evaluate(condition).is_some_and(|value| value != 0.0) {
+                return list
+                    .iter()
+                    .flat_map(|equation| lower_equation(model, equation, scope))
+                    .collect();
+            }
+        }
+        return otherwise
             .iter()
-            .map(|(condition, _)| self.truth(condition, scope))
+            .flat_map(|equation| lower_equation(model, equation, scope))
             .collect();
-        let parametric = conditions.iter().all(|&id| {
-            !self.flat.exprs.any(id, |e| {
-                matches!(
-                    e,
-                    Ir::Var(..) | Ir::Der(..) | Ir::Pre(..) | Ir::Time | Ir::Counter
-                )
-            })
-        });
-        if parametric {
-            for (&condition, (_, list)) in conditions.iter().zip(branches) {
-                if self.evaluate(condition).is_some_and(|value| value != 0.0) {
-                    return list
-                        .iter()
-                        .flat_map(|equation| self.equation(equation, scope))
-                        .collect();
-                }
-            }
-            return otherwise
-                .iter()
-                .flat_map(|equation| self.equation(equation, scope))
-                .collect();
-        }
-        let mut lists: Vec<Vec<Equation>> = Vec::new();
-        for list in branches
-            .iter()
-            .map(|(_, list)| list.as_slice())
-            .chain([otherwise])
-        {
-            lists.push(
-                list.iter()
-                    .flat_map(|equation| self.equation(equation, scope))
-                    .collect(),
-            );
-        }
-        let counts: Vec<usize> = lists.iter().map(Vec::len).collect();
-        if counts.iter().any(|count| *count != counts[0]) {
-            let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
-            self.report(
-                Diagnostic::error(
-                    Code::ModeEquations,
-                    "the branches have different numbers of equations",
-                )
-                .label(span, format!("{} equations", counts.join(", ")))
-                .help("every branch, `else` too, determines the same variables"),
-            );
-            return Vec::new();
-        }
-        (0..counts[0])
-            .map(|at| self.merged(&conditions, &lists, at))
-            .collect()
     }
+    let mut lists: Vec<Vec<Equation>> = Vec::new();
+    for list in branches
+        .iter()
+        .map(|(_, list)| list.as_slice())
+        .chain([otherwise])
+    {
+        lists.push(
+            list.iter()
+                .flat_map(|equation| lower_equation(model, equation, scope))
+                .collect(),
+        );
+    }
+    let counts: Vec<usize> = lists.iter().map(Vec::len).collect();
+    if counts.iter().any(|count| *count != counts[0]) {
+        let counts: Vec<String> = counts.iter().map(usize::to_string).collect();
+        model.report(
+            Diagnostic::error(
+                Code::ModeEquations,
+                "the branches have different numbers of equations",
+            )
+            .label(span, format!("{} equations", counts.join(", ")))
+            .help("every branch, `else` too, determines the same variables"),
+        );
+        return Vec::new();
+    }
+    (0..counts[0])
+        .map(|at| merged(&mut model.flat, &conditions, &lists, at))
+        .collect()
+}
 
-    /// The equations at one position of all branches as one.
-    fn merged(&mut self, conditions: &[ExprId], lists: &[Vec<Equation>], at: usize) -> Equation {
-        let equations: Vec<&Equation> = lists.iter().map(|list| &list[at]).collect();
-        let first = equations[0];
-        let same_left = equations.iter().all(|equation| equation.lhs == first.lhs);
-        let arena = &mut self.flat.exprs;
-        let side = |arena: &mut hyde_ir::ExprArena, equation: &Equation| {
-            if same_left {
-                equation.rhs
-            } else {
-                arena.minus(equation.rhs, equation.lhs)
-            }
-        };
-        let mut value = equations
-            .last()
-            .map_or(first.rhs, |equation| side(arena, equation));
-        for (&condition, equation) in conditions.iter().zip(&equations).rev() {
-            let branch = side(arena, equation);
-            value = arena.if_else(condition, branch, value);
-        }
-        let lhs = if same_left {
-            first.lhs
+/// The equations at one position of all branches as one.
+fn merged(
+    flat: &mut FlatModel,
+    conditions: &[ExprId],
+    lists: &[Vec<Equation>],
+    at: usize,
+) -> Equation {
+    let equations: Vec<&Equation> = lists.iter().map(|list| &list[at]).collect();
+    let first = equations[0];
+    let same_left = equations.iter().all(|equation| equation.lhs == first.lhs);
+    let arena = &mut flat.exprs;
+    let side = |arena: &mut hyde_ir::ExprArena, equation: &Equation| {
+        if same_left {
+            equation.rhs
         } else {
-            arena.constant(0.0)
-        };
-        Equation {
-            range: first.range,
-            lhs,
-            rhs: value,
-            origin: first.origin.clone(),
+            arena.minus(equation.rhs, equation.lhs)
         }
+    };
+    let mut value = equations
+        .last()
+        .map_or(first.rhs, |equation| side(arena, equation));
+    for (&condition, equation) in conditions.iter().zip(&equations).rev() {
+        let branch = side(arena, equation);
+        value = arena.if_else(condition, branch, value);
+    }
+    let lhs = if same_left {
+        first.lhs
+    } else {
+        arena.constant(0.0)
+    };
+    Equation {
+        range: first.range,
+        lhs,
+        rhs: value,
+        origin: first.origin.clone(),
     }
 }

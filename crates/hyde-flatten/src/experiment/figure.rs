@@ -1,144 +1,155 @@
 //! Figures that an experiment asks for: `figure lag = r - s, {guide.a.f, screw.F} over time in 0.8 [s] .. 1 [s] "title";`
 
+use super::agree_time;
+use super::bode::shown_quantity;
 use crate::dimension::Dim;
 use crate::instance::{InstanceId, Scope, Setting, Typed};
 use crate::model::Model;
-use hyde_diag::{Code, Diagnostic};
+use hyde_diag::{Code, Diagnostic, Diagnostics};
 use hyde_ir::flat::{Curve, Figure, FigureKind};
 use hyde_syntax::ast::{self, Argument, Expr, ExprKind};
 use hyde_units::Dimension;
 
-impl<'a> Model<'a, '_> {
-    pub(super) fn figure(&mut self, figure: &'a ast::Figure, root: InstanceId) {
-        let name = &figure.name;
-        let known = &mut self.flat.experiment.figures;
-        if known.iter().any(|known| known.name == name.text) {
-            let message = format!("there is already a figure `{}`", name.text);
-            let diagnostic = Diagnostic::error(Code::Duplicate, message)
-                .label(name.span, "its files would overwrite those of the first")
-                .help("give it another name");
-            self.report(diagnostic);
-            return;
-        }
-        let kind = match figure.panels.as_slice() {
-            [only] if circle_of(only).is_some() => self.circle_figure(only, figure, root),
-            panels => Some(self.panels(panels, figure.over.as_ref(), root)),
-        };
-        let within = figure.within.as_ref().map(|within| {
-            let scope = Scope::new(root, Setting::Parameter);
-            let (from, to) = (
-                self.value(&within.from, &scope),
-                self.value(&within.to, &scope),
-            );
-            self.agree_time(&from, "a figure shows times, found", root);
-            self.agree_time(&to, "a figure shows times, found", root);
-            (from.id, to.id)
-        });
-        if let Some(kind) = kind {
-            self.flat.experiment.figures.push(Figure {
-                name: name.text.clone(),
-                title: figure.doc.clone().unwrap_or_default(),
-                kind,
-                within,
-            });
-        }
+pub(super) fn lower_figure<'a>(
+    model: &mut Model<'a, '_>,
+    figure: &'a ast::Figure,
+    root: InstanceId,
+) {
+    let name = &figure.name;
+    let known = &mut model.flat.experiment.figures;
+    if known.iter().any(|known| known.name == name.text) {
+        let message = format!("there is already a figure `{}`", name.text);
+        let diagnostic = Diagnostic::error(Code::Duplicate, message)
+            .label(name.span, "its files would overwrite those of the first")
+            .help("give it another name");
+        model.report(diagnostic);
+        return;
     }
-
-    /// Each expression a panel; the curves of a list share one.
-    fn panels(
-        &mut self,
-        panels: &'a [Expr],
-        over: Option<&'a Expr>,
-        root: InstanceId,
-    ) -> FigureKind {
-        let panels = panels.iter().map(|panel| {
-            let list = if let ExprKind::Array(list, None) = &panel.kind {
-                list.as_slice()
-            } else {
-                std::slice::from_ref(panel)
-            };
-            if circle_of(panel).is_some() {
-                let message = "a circle is combined with other panels";
-                let diagnostic = Diagnostic::error(Code::BadArguments, message)
-                    .label(panel.span, "its axes are lengths, not times")
-                    .help("use a separate figure: `figure contour = circle(x, y, R);`");
-                self.report(diagnostic);
-                return Vec::new();
-            }
-            let curves: Vec<(Curve, Typed)> =
-                list.iter().map(|one| self.curve(one, root)).collect();
-            for pair in curves.windows(2) {
-                self.agree(&pair[0].1, &pair[1].1, "the curves of a panel are", root);
-            }
-            curves.into_iter().map(|(curve, _)| curve).collect()
+    let kind = match figure.panels.as_slice() {
+        [only] if circle_of(only).is_some() => circle_figure(model, only, figure, root),
+        panels => Some(lower_panels(model, panels, figure.over.as_ref(), root)),
+    };
+    let within = figure.within.as_ref().map(|within| {
+        let scope = Scope::new(root, Setting::Parameter);
+        let (from, to) = (
+            model.value(&within.from, &scope),
+            model.value(&within.to, &scope),
+        );
+        agree_time(model, &from, "a figure shows times, found", root);
+        agree_time(model, &to, "a figure shows times, found", root);
+        (from.id, to.id)
+    });
+    if let Some(kind) = kind {
+        model.flat.experiment.figures.push(Figure {
+            name: name.text.clone(),
+            title: figure.doc.clone().unwrap_or_default(),
+            kind,
+            within,
         });
-        let panels = panels.collect();
-        FigureKind::Panels(panels, over.map(|over| self.curve(over, root).0))
     }
+}
 
-    /// `circle(x, y, R)`
-    fn circle_figure(
-        &mut self,
-        call: &'a Expr,
-        figure: &'a ast::Figure,
-        root: InstanceId,
-    ) -> Option<FigureKind> {
-        let arguments = circle_of(call)?;
-        let positional = arguments.iter().all(|argument| argument.name.is_none());
-        let [x, y, radius] = arguments else {
-            self.not_a_circle(call, "`circle` takes x, y and the radius");
-            return None;
+/// Each expression a panel; the curves of a list share one.
+fn lower_panels<'a>(
+    model: &mut Model<'a, '_>,
+    panels: &'a [Expr],
+    over: Option<&'a Expr>,
+    root: InstanceId,
+) -> FigureKind {
+    let panels = panels.iter().map(|panel| {
+        let list = if let ExprKind::Array(list, None) = &panel.kind {
+            list.as_slice()
+        } else {
+            std::slice::from_ref(panel)
         };
-        if !positional {
-            self.not_a_circle(call, "the arguments of `circle` have no names");
-            return None;
+        if circle_of(panel).is_some() {
+            let message = "a circle is combined with other panels";
+            let diagnostic = Diagnostic::error(Code::BadArguments, message)
+                .label(panel.span, "its axes are lengths, not times")
+                .help("use a separate figure: `figure contour = circle(x, y, R);`");
+            model.report(diagnostic);
+            return Vec::new();
         }
-        if let Some(over) = &figure.over {
-            let diagnostic = Diagnostic::error(
-                Code::BadArguments,
-                "a circle cannot be plotted over another variable",
-            )
-            .label(over.span, "x and y are its axes")
-            .help("leave out `over`");
-            self.report(diagnostic);
+        let curves: Vec<(Curve, Typed)> = list.iter().map(|one| curve(model, one, root)).collect();
+        for pair in curves.windows(2) {
+            model.agree(&pair[0].1, &pair[1].1, "the curves of a panel are", root);
         }
-        let (x, of_x) = self.curve(&x.value, root);
-        let (y, of_y) = self.curve(&y.value, root);
-        let radius = self.value(&radius.value, &Scope::new(root, Setting::Parameter));
+        curves.into_iter().map(|(curve, _)| curve).collect()
+    });
+    let panels = panels.collect();
+    FigureKind::Panels(panels, over.map(|over| curve(model, over, root).0))
+}
+
+/// `circle(x, y, R)`
+fn circle_figure<'a>(
+    model: &mut Model<'a, '_>,
+    call: &'a Expr,
+    figure: &'a ast::Figure,
+    root: InstanceId,
+) -> Option<FigureKind> {
+    let arguments = circle_of(call)?;
+    let positional = arguments.iter().all(|argument| argument.name.is_none());
+    let [x, y, radius] = arguments else {
+        not_a_circle(
+            model.diagnostics,
+            call,
+            "`circle` takes x, y and the radius",
+        );
+        return None;
+    };
+    if !positional {
+        not_a_circle(
+            model.diagnostics,
+            call,
+            "the arguments of `circle` have no names",
+        );
+        return None;
+    }
+    if let Some(over) = &figure.over {
+        let diagnostic = Diagnostic::error(
+            Code::BadArguments,
+            "a circle cannot be plotted over another variable",
+        )
+        .label(over.span, "x and y are its axes")
+        .help("leave out `over`");
+        model.report(diagnostic);
+    }
+    let (x, of_x) = curve(model, &x.value, root);
+    let (y, of_y) = curve(model, &y.value, root);
+    let radius = model.value(&radius.value, &Scope::new(root, Setting::Parameter));
+    let length = Typed {
+        dim: Dim::known(Dimension::LENGTH),
+        ..of_x.clone()
+    };
+    for given in [&of_x, &of_y, &radius] {
         let length = Typed {
-            dim: Dim::known(Dimension::LENGTH),
-            ..of_x.clone()
+            span: given.span,
+            ..length.clone()
         };
-        for given in [&of_x, &of_y, &radius] {
-            let length = Typed {
-                span: given.span,
-                ..length.clone()
-            };
-            self.agree(&length, given, "a circle has lengths, found", root);
-        }
-        Some(FigureKind::Circle([x, y], radius.id))
+        model.agree(&length, given, "a circle has lengths, found", root);
     }
+    Some(FigureKind::Circle([x, y], radius.id))
+}
 
-    fn not_a_circle(&mut self, call: &'a Expr, message: &str) {
-        let diagnostic = Diagnostic::error(Code::BadArguments, message)
-            .label(call.span, "x and y are relative to the centre")
-            .help("write `circle(x, y - 25 [mm], 25 [mm])`");
-        self.report(diagnostic);
-    }
+fn not_a_circle(diagnostics: &mut Diagnostics, call: &Expr, message: &str) {
+    let diagnostic = Diagnostic::error(Code::BadArguments, message)
+        .label(call.span, "x and y are relative to the centre")
+        .help("write `circle(x, y - 25 [mm], 25 [mm])`");
+    diagnostics.push(diagnostic);
+}
 
-    fn curve(&mut self, expr: &'a Expr, root: InstanceId) -> (Curve, Typed) {
-        let scope = Scope {
-            records: true,
-            ..Scope::new(root, Setting::Report)
-        };
-        let typed = self.value(expr, &scope);
-        let curve = Curve {
-            name: hyde_syntax::format_expression(expr),
-            value: typed.id,
-            quantity: self.shown_quantity(&typed),
-        };
-        (curve, typed)
-    }
+fn curve<'a>(model: &mut Model<'a, '_>, expr: &'a Expr, root: InstanceId) -> (Curve, Typed) {
+    let scope = Scope {
+        records: true,
+        ..Scope::new(root, Setting::Report)
+    };
+    let typed = model.value(expr, &scope);
+    let curve = Curve {
+        name: hyde_syntax::format_expression(expr),
+        value: typed.id,
+        quantity: shown_quantity(model, &typed),
+    };
+    (curve, typed)
 }
 
 /// The arguments of `circle(…)`.

@@ -1,291 +1,306 @@
 //! Columns of records: read between rows, held, one row ahead, and their first value and mean; begin and end of a record.
 
+use crate::Input;
 use crate::dimension::Dim;
 use crate::instance::{ParameterNotes, Scope, Setting};
-use crate::lower::Resolved;
+use crate::model::lower::Resolved;
 use crate::model::{Model, listed};
 use crate::names::nearest;
-use hyde_diag::{Code, Diagnostic, MadeBy, Span};
-use hyde_ir::{Column, ColumnId, Interpolation, Parameter, Quantity, VarId, VariableKind};
+use hyde_diag::{Code, Diagnostic, Diagnostics, MadeBy, Span};
+use hyde_ir::{
+    Column, ColumnId, FlatModel, Interpolation, Parameter, Quantity, VarId, VariableKind,
+};
 use hyde_syntax::ast::Reference;
 use hyde_syntax::member;
 use hyde_units::{Allowed, Dimension, NamedUnit, unit_in_name};
+use std::collections::BTreeMap;
 
-impl<'a> Model<'a, '_> {
-    /// `record.column`, `.next`, `.first`, `.mean`; `record.begin` and `record.end`.
-    pub(crate) fn record_column(
-        &mut self,
-        reference: &'a Reference,
-        scope: &Scope<'a>,
-    ) -> Option<Resolved> {
-        let record = reference.parts.first()?.name.text.clone();
-        let (column, suffix) = match reference.parts.as_slice() {
-            [_, column] => (column.name.text.as_str(), None),
-            [_, column, suffix] => (column.name.text.as_str(), Some(suffix.name.text.as_str())),
-            _ => {
-                self.report(
-                    Diagnostic::error(Code::NoColumn, "which column of the record?")
-                        .label(reference.span, "names a record")
-                        .help(format!("write `{record}.column`")),
-                );
-                return None;
-            }
-        };
-        let header = self.input.records.get(&record);
-        let among = |columns: &'_ [(String, Option<NamedUnit>)]| {
-            let own = columns.iter().find(|(name, _)| name == column);
-            own.map(|(_, unit)| unit.clone())
-        };
-        let sparse = header.filter(|_| scope.measured);
-        let sparse = sparse.and_then(|header| among(&header.sparse));
-        let known = header.and_then(|header| among(&header.columns));
-        let known = known.or_else(|| sparse.clone());
-        if known.is_none()
-            && header.is_some()
-            && suffix.is_none()
-            && matches!(column, "begin" | "end")
-        {
-            let instant = self.record_instant(&record, column, reference.span);
-            return Some(Resolved::Parameter(instant, None));
-        }
-        let unusable =
-            header.and_then(|header| header.unusable.iter().find(|(name, ..)| name == column));
-        if let Some((_, message, repair)) = unusable.filter(|_| sparse.is_none()) {
-            let message = format!("the record `{record}`: {message}");
-            let diagnostic = Diagnostic::error(Code::BadRecord, message)
-                .label(reference.span, "read here")
-                .help(repair);
-            self.report(diagnostic);
-            return None;
-        }
-        let Some(unit) = known else {
-            let names: Vec<&str> = header
-                .map(|header| {
-                    header
-                        .columns
-                        .iter()
-                        .map(|(name, _)| name.as_str())
-                        .collect()
-                })
-                .unwrap_or_default();
-            let near = nearest(column, names.iter().copied());
-            let diagnostic = Diagnostic::error(
-                Code::NoColumn,
-                format!("the record `{record}` has no column `{column}`"),
-            )
-            .label(
-                reference
-                    .parts
-                    .get(1)
-                    .map_or(reference.span, |part| part.name.span),
-                "not in its header",
+/// `record.column`, `.next`, `.first`, `.mean`; `record.begin` and `record.end`.
+pub(crate) fn record_column<'a>(
+    model: &mut Model<'a, '_>,
+    reference: &'a Reference,
+    scope: &Scope<'a>,
+) -> Option<Resolved> {
+    let record = reference.parts.first()?.name.text.clone();
+    let (column, suffix) = match reference.parts.as_slice() {
+        [_, column] => (column.name.text.as_str(), None),
+        [_, column, suffix] => (column.name.text.as_str(), Some(suffix.name.text.as_str())),
+        _ => {
+            model.report(
+                Diagnostic::error(Code::NoColumn, "which column of the record?")
+                    .label(reference.span, "names a record")
+                    .help(format!("write `{record}.column`")),
             );
-            let diagnostic = match near {
-                Some(near) => diagnostic
-                    .note(format!("its columns are {}", listed(&names)))
-                    .help(match member(near) {
-                    name if name == near => format!("did you mean `{record}.{name}`?"),
-                    name => format!(
-                        "did you mean `{record}.{name}`? A name that is not a word is written in quotes"
-                    ),
-                }),
-                None if names.is_empty() => {
-                    diagnostic.help("the record was not given: `--record NAME=PATH`")
-                }
-                None => {
-                    let written: Vec<_> = names.iter().map(|name| member(name)).collect();
-                    let written: Vec<&str> = written.iter().map(|name| &**name).collect();
-                    let quoted = match written == names {
-                        true => "",
-                        false => "; a name that is not a word is written in quotes",
-                    };
-                    diagnostic.help(format!("its columns are {}{quoted}", listed(&written)))
-                }
-            };
-            self.report(diagnostic);
             return None;
-        };
-        match suffix {
-            None | Some("next") => {
-                if scope.setting == Setting::Parameter {
-                    self.not_constant(&format!("`{record}.{column}`"), reference.span);
-                    return None;
-                }
-                let (_, linear, _) =
-                    self.column(&record, column, unit, suffix.is_some(), reference.span);
-                Some(Resolved::Variable(linear, None))
-            }
-            Some(value @ ("first" | "mean")) => Some(Resolved::Parameter(
-                self.column_value(&record, column, value, unit, reference.span),
-                None,
-            )),
-            Some(other) => {
-                self.report(
-                    Diagnostic::error(Code::NoColumn, format!("a column has no `{other}`"))
-                        .label(reference.span, "unknown")
-                        .help("write `.next` for the value of the next sample, `.first` for the first, `.mean` for the mean"),
-                );
-                None
-            }
         }
+    };
+    let header = model.input.records.get(&record);
+    let among = |columns: &'_ [(String, Option<NamedUnit>)]| {
+        let own = columns.iter().find(|(name, _)| name == column);
+        own.map(|(_, unit)| unit.clone())
+    };
+    let sparse = header.filter(|_| scope.measured);
+    let sparse = sparse.and_then(|header| among(&header.sparse));
+    let known = header.and_then(|header| among(&header.columns));
+    let known = known.or_else(|| sparse.clone());
+    if known.is_none() && header.is_some() && suffix.is_none() && matches!(column, "begin" | "end")
+    {
+        let instant = record_instant(model, &record, column, reference.span);
+        return Some(Resolved::Parameter(instant, None));
     }
-
-    /// The column and its linear and held variables, made at first use.
-    pub(super) fn column(
-        &mut self,
-        record: &str,
-        column: &str,
-        unit: Option<NamedUnit>,
-        next: bool,
-        span: Span,
-    ) -> (ColumnId, VarId, VarId) {
-        let known = self.flat.columns.enumerate().find(|(_, known)| {
-            known.record == record && known.column == column && known.next == next
-        });
-        if let Some((id, _)) = known {
-            let (linear, held) = self.column_variables[&id];
-            return (id, linear, held);
-        }
-        let id = self.flat.columns.push(Column {
-            record: record.to_owned(),
-            column: column.to_owned(),
-            next,
-            scale: (1.0, 0.0),
-            noise: 0.0,
-            ticks_s: None,
-            drives: None,
-        });
-        let dim = match &unit {
-            Some(unit) => Dim::known(unit.unit().dimension),
-            None => Dim::unknown(self.dimensions.fresh()),
-        };
-        let name = format!("{record}.{column}{}", if next { ".next" } else { "" });
-        let linear = VariableKind::Column(id, Interpolation::Linear);
-        let held = VariableKind::Column(id, Interpolation::Held);
-        let linear = self.add_variable(
-            0,
-            name.clone(),
-            linear,
-            dim.clone(),
-            span,
-            MadeBy::Experiment,
-        );
-        let held = self.add_variable(
-            0,
-            format!("held({name})"),
-            held,
-            dim,
-            span,
-            MadeBy::Experiment,
-        );
-        if let Some(unit) = unit {
-            let quantity = Quantity {
-                dimension: unit.unit().dimension,
-                unit,
-            };
-            self.flat.variables[linear].quantity = quantity.clone();
-            self.flat.variables[held].quantity = quantity;
-        }
-        self.column_variables.insert(id, (linear, held));
-        (id, linear, held)
+    let unusable =
+        header.and_then(|header| header.unusable.iter().find(|(name, ..)| name == column));
+    if let Some((_, message, repair)) = unusable.filter(|_| sparse.is_none()) {
+        let message = format!("the record `{record}`: {message}");
+        let diagnostic = Diagnostic::error(Code::BadRecord, message)
+            .label(reference.span, "read here")
+            .help(repair);
+        model.report(diagnostic);
+        return None;
     }
-
-    /// Refuses a column without a unit whose name ends with one that it is not taken in: `position_mm` as a length in m.
-    pub(crate) fn report_units_in_names(&mut self) {
-        for (id, column) in self.flat.columns.enumerate() {
-            let header = self.input.records.get(&column.record);
-            let own = header.and_then(|header| {
+    let Some(unit) = known else {
+        let names: Vec<&str> = header
+            .map(|header| {
                 header
                     .columns
                     .iter()
-                    .find(|(name, _)| *name == column.column)
-            });
-            let (Some((name, None)), Some((linear, _))) = (own, self.column_variables.get(&id))
-            else {
-                continue;
-            };
-            let variable = &self.flat.variables[*linear];
-            let Some(unit) = other_unit_in_name(name, variable.quantity.dimension) else {
-                continue;
-            };
-            let record = &column.record;
-            let taken = NamedUnit::usual(variable.quantity.dimension);
-            let message = format!(
-                "`{record}.{}` has no unit: is it in {taken}, or in {unit} as its name says?",
-                member(name)
-            );
-            let diagnostic = Diagnostic::error(Code::BadRecord, message)
-                .label(variable.origin.span, format!("read in {taken} here"))
-                .help(format!(
-                    "say the unit: `record {record}(column = {name:?} in [{unit}])`, or `in [{taken}]`"
-                ));
-            self.diagnostics.push(diagnostic);
-        }
-    }
-
-    /// The first value of a column or its mean: a parameter that the run fills in.
-    fn column_value(
-        &mut self,
-        record: &str,
-        column: &str,
-        value: &str,
-        unit: Option<NamedUnit>,
-        span: Span,
-    ) -> hyde_ir::ParamId {
-        let name = format!("{record}.{column}.{value}");
-        if let Some(&param) = self.column_values.get(&name) {
-            return param;
-        }
-        let (_, linear, _) = self.column(record, column, unit, false, span);
-        let dim = self.dim(linear);
-        let quantity = self.flat.variables[linear].quantity.clone();
-        self.recorded_parameter(record, name, (dim, quantity), span)
-    }
-
-    /// The time of the first row of a record, or of the last one.
-    fn record_instant(&mut self, record: &str, which: &str, span: Span) -> hyde_ir::ParamId {
-        let name = format!("{record}.{which}");
-        if let Some(&param) = self.column_values.get(&name) {
-            return param;
-        }
-        let quantity = Quantity {
-            dimension: Dimension::TIME,
-            unit: NamedUnit::usual(Dimension::TIME),
+                    .map(|(name, _)| name.as_str())
+                    .collect()
+            })
+            .unwrap_or_default();
+        let near = nearest(column, names.iter().copied());
+        let diagnostic = Diagnostic::error(
+            Code::NoColumn,
+            format!("the record `{record}` has no column `{column}`"),
+        )
+        .label(
+            reference
+                .parts
+                .get(1)
+                .map_or(reference.span, |part| part.name.span),
+            "not in its header",
+        );
+        let diagnostic = match near {
+            Some(near) => diagnostic
+                .note(format!("its columns are {}", listed(&names)))
+                .help(match member(near) {
+                name if name == near => format!("did you mean `{record}.{name}`?"),
+                name => format!(
+                    "did you mean `{record}.{name}`? A name that is not a word is written in quotes"
+                ),
+            }),
+            None if names.is_empty() => {
+                diagnostic.help("the record was not given: `--record NAME=PATH`")
+            }
+            None => {
+                let written: Vec<_> = names.iter().map(|name| member(name)).collect();
+                let written: Vec<&str> = written.iter().map(|name| &**name).collect();
+                let quoted = match written == names {
+                    true => "",
+                    false => "; a name that is not a word is written in quotes",
+                };
+                diagnostic.help(format!("its columns are {}{quoted}", listed(&written)))
+            }
         };
-        let dim = Dim::known(Dimension::TIME);
-        self.recorded_parameter(record, name, (dim, quantity), span)
+        model.report(diagnostic);
+        return None;
+    };
+    match suffix {
+        None | Some("next") => {
+            if scope.setting == Setting::Parameter {
+                model.not_constant(&format!("`{record}.{column}`"), reference.span);
+                return None;
+            }
+            let (_, linear, _) = column_of(
+                model,
+                &record,
+                column,
+                unit,
+                suffix.is_some(),
+                reference.span,
+            );
+            Some(Resolved::Variable(linear, None))
+        }
+        Some(value @ ("first" | "mean")) => Some(Resolved::Parameter(
+            column_value(model, &record, column, value, unit, reference.span),
+            None,
+        )),
+        Some(other) => {
+            model.report(
+                Diagnostic::error(Code::NoColumn, format!("a column has no `{other}`"))
+                    .label(reference.span, "unknown")
+                    .help("write `.next` for the value of the next sample, `.first` for the first, `.mean` for the mean"),
+            );
+            None
+        }
     }
+}
 
-    /// A parameter that the run fills in from a record.
-    fn recorded_parameter(
-        &mut self,
-        record: &str,
-        name: String,
-        (dim, quantity): (Dim, Quantity),
-        span: Span,
-    ) -> hyde_ir::ParamId {
-        let zero = self.flat.exprs.constant(0.0);
-        self.parameters.push(ParameterNotes::made(dim));
-        let origin = self.origin(0, span).made_by(MadeBy::Experiment);
-        let param = self.flat.parameters.push(Parameter {
-            name: name.clone(),
-            len: None,
-            value: vec![zero],
-            quantity,
-            allowed: Allowed::default(),
-            structural: false,
-            is_final: false,
-            found: false,
-            derived: false,
-            prior: None,
-            role: hyde_ir::Role::Plain,
-            range: None,
-            source: Some(format!("record {record}")),
-            origin,
+/// The column and its linear and held variables, made at first use.
+pub(super) fn column_of(
+    model: &mut Model<'_, '_>,
+    record: &str,
+    column: &str,
+    unit: Option<NamedUnit>,
+    next: bool,
+    span: Span,
+) -> (ColumnId, VarId, VarId) {
+    let known =
+        model.flat.columns.enumerate().find(|(_, known)| {
+            known.record == record && known.column == column && known.next == next
         });
-        self.column_values.insert(name, param);
-        param
+    if let Some((id, _)) = known {
+        let (linear, held) = model.column_variables[&id];
+        return (id, linear, held);
     }
+    let id = model.flat.columns.push(Column {
+        record: record.to_owned(),
+        column: column.to_owned(),
+        next,
+        scale: (1.0, 0.0),
+        noise: 0.0,
+        ticks_s: None,
+        drives: None,
+    });
+    let dim = match &unit {
+        Some(unit) => Dim::known(unit.unit().dimension),
+        None => Dim::unknown(model.dimensions.fresh()),
+    };
+    let name = format!("{record}.{column}{}", if next { ".next" } else { "" });
+    let linear = VariableKind::Column(id, Interpolation::Linear);
+    let held = VariableKind::Column(id, Interpolation::Held);
+    let linear = model.add_variable(
+        0,
+        name.clone(),
+        linear,
+        dim.clone(),
+        span,
+        MadeBy::Experiment,
+    );
+    let held = model.add_variable(
+        0,
+        format!("held({name})"),
+        held,
+        dim,
+        span,
+        MadeBy::Experiment,
+    );
+    if let Some(unit) = unit {
+        let quantity = Quantity {
+            dimension: unit.unit().dimension,
+            unit,
+        };
+        model.flat.variables[linear].quantity = quantity.clone();
+        model.flat.variables[held].quantity = quantity;
+    }
+    model.column_variables.insert(id, (linear, held));
+    (id, linear, held)
+}
+
+/// Refuses a column without a unit whose name ends with one that it is not taken in: `position_mm` as a length in m.
+pub(crate) fn report_units_in_names(
+    input: &Input<'_>,
+    flat: &FlatModel,
+    columns: &BTreeMap<ColumnId, (VarId, VarId)>,
+    diagnostics: &mut Diagnostics,
+) {
+    for (id, column) in flat.columns.enumerate() {
+        let header = input.records.get(&column.record);
+        let own = header.and_then(|header| {
+            header
+                .columns
+                .iter()
+                .find(|(name, _)| *name == column.column)
+        });
+        let (Some((name, None)), Some((linear, _))) = (own, columns.get(&id)) else {
+            continue;
+        };
+        let variable = &flat.variables[*linear];
+        let Some(unit) = other_unit_in_name(name, variable.quantity.dimension) else {
+            continue;
+        };
+        let record = &column.record;
+        let taken = NamedUnit::usual(variable.quantity.dimension);
+        let message = format!(
+            "`{record}.{}` has no unit: is it in {taken}, or in {unit} as its name says?",
+            member(name)
+        );
+        let diagnostic = Diagnostic::error(Code::BadRecord, message)
+            .label(variable.origin.span, format!("read in {taken} here"))
+            .help(format!(
+                "say the unit: `record {record}(column = {name:?} in [{unit}])`, or `in [{taken}]`"
+            ));
+        diagnostics.push(diagnostic);
+    }
+}
+
+/// The first value of a column or its mean: a parameter that the run fills in.
+fn column_value(
+    model: &mut Model<'_, '_>,
+    record: &str,
+    column: &str,
+    value: &str,
+    unit: Option<NamedUnit>,
+    span: Span,
+) -> hyde_ir::ParamId {
+    let name = format!("{record}.{column}.{value}");
+    if let Some(&param) = model.column_values.get(&name) {
+        return param;
+    }
+    let (_, linear, _) = column_of(model, record, column, unit, false, span);
+    let dim = model.dim(linear);
+    let quantity = model.flat.variables[linear].quantity.clone();
+    recorded_parameter(model, record, name, (dim, quantity), span)
+}
+
+/// The time of the first row of a record, or of the last one.
+fn record_instant(
+    model: &mut Model<'_, '_>,
+    record: &str,
+    which: &str,
+    span: Span,
+) -> hyde_ir::ParamId {
+    let name = format!("{record}.{which}");
+    if let Some(&param) = model.column_values.get(&name) {
+        return param;
+    }
+    let quantity = Quantity {
+        dimension: Dimension::TIME,
+        unit: NamedUnit::usual(Dimension::TIME),
+    };
+    let dim = Dim::known(Dimension::TIME);
+    recorded_parameter(model, record, name, (dim, quantity), span)
+}
+
+/// A parameter that the run fills in from a record.
+fn recorded_parameter(
+    model: &mut Model<'_, '_>,
+    record: &str,
+    name: String,
+    (dim, quantity): (Dim, Quantity),
+    span: Span,
+) -> hyde_ir::ParamId {
+    let zero = model.flat.exprs.constant(0.0);
+    model.parameters.push(ParameterNotes::made(dim));
+    let origin = model.tree.origin(0, span).made_by(MadeBy::Experiment);
+    let param = model.flat.parameters.push(Parameter {
+        name: name.clone(),
+        len: None,
+        value: vec![zero],
+        quantity,
+        allowed: Allowed::default(),
+        structural: false,
+        is_final: false,
+        found: false,
+        derived: false,
+        prior: None,
+        role: hyde_ir::Role::Plain,
+        range: None,
+        source: Some(format!("record {record}")),
+        origin,
+    });
+    model.column_values.insert(name, param);
+    param
 }
 
 /// The unit of that dimension that a name ends with, unless it is the one of SI.

@@ -1,6 +1,8 @@
 //! A declaration: whether it means variables or components, its names and its length.
 
 use super::Collected;
+use super::component::declare_component;
+use super::variable::declare_variable;
 use crate::instance::{InstanceId, Member};
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic};
@@ -8,125 +10,128 @@ use hyde_syntax::ast::{
     self, Declaration, Declarator, Element, EquationKind, Expr, ExprKind, Prefix, Reference,
 };
 
-impl<'a> Model<'a, '_> {
-    /// Declares variables or components.
-    pub(super) fn declare(
-        &mut self,
-        id: InstanceId,
-        item: &Collected<'a>,
-        declaration: &'a Declaration,
-        discrete: &[&'a str],
-        collected: &[Collected<'a>],
-    ) {
-        let class = self.names.class(item.file, &declaration.type_name);
-        let quantity = self.names.quantity(item.file, &declaration.type_name);
-        for declarator in &declaration.declarators {
-            if !self.free_name(id, declarator) {
-                continue;
+/// Declares variables or components.
+pub(super) fn declare<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    item: &Collected<'a>,
+    declaration: &'a Declaration,
+    discrete: &[&'a str],
+    collected: &[Collected<'a>],
+) {
+    let class = model.names.class(item.file, &declaration.type_name);
+    let quantity = model.names.quantity(item.file, &declaration.type_name);
+    for declarator in &declaration.declarators {
+        if !free_name(model, id, declarator) {
+            continue;
+        }
+        let as_component = match (&class, &quantity) {
+            (Some(_), None) => true,
+            (None, Some(_)) => false,
+            (Some(_), Some(_)) => means_component(declaration, declarator, collected),
+            (None, None) => {
+                let diagnostic = model.names.unknown(item.file, &declaration.type_name);
+                model.report(diagnostic);
+                let names = declaration.declarators.iter();
+                model
+                    .undeclared
+                    .extend(names.map(|declarator| declarator.name.text.as_str()));
+                return;
             }
-            let as_component = match (&class, &quantity) {
-                (Some(_), None) => true,
-                (None, Some(_)) => false,
-                (Some(_), Some(_)) => means_component(declaration, declarator, collected),
-                (None, None) => {
-                    let diagnostic = self.names.unknown(item.file, &declaration.type_name);
-                    self.report(diagnostic);
-                    let names = declaration.declarators.iter();
-                    self.undeclared
-                        .extend(names.map(|declarator| declarator.name.text.as_str()));
-                    return;
-                }
-            };
-            if class.is_none()
-                && declarator.is_modified()
-                && let Some(diagnostic) = self
-                    .names
-                    .component_elsewhere(item.file, &declaration.type_name)
-            {
-                self.report(diagnostic);
-                self.undeclared.insert(declarator.name.text.as_str());
-                continue;
+        };
+        if class.is_none()
+            && declarator.is_modified()
+            && let Some(diagnostic) = model
+                .names
+                .component_elsewhere(item.file, &declaration.type_name)
+        {
+            model.report(diagnostic);
+            model.undeclared.insert(declarator.name.text.as_str());
+            continue;
+        }
+        let has_value = declarator.binding.is_some()
+            || declaration.prefixes.contains(&Prefix::Input)
+            || declaration.prefixes.contains(&Prefix::Output);
+        if quantity.is_none()
+            && has_value
+            && let Some(diagnostic) = model
+                .names
+                .quantity_elsewhere(item.file, &declaration.type_name)
+        {
+            model.report(diagnostic);
+            model.undeclared.insert(declarator.name.text.as_str());
+            continue;
+        }
+        match (as_component, class, quantity) {
+            (true, Some((file, class)), _) => {
+                declare_component(model, id, item, declaration, declarator, file, class)
             }
-            let has_value = declarator.binding.is_some()
-                || declaration.prefixes.contains(&Prefix::Input)
-                || declaration.prefixes.contains(&Prefix::Output);
-            if quantity.is_none()
-                && has_value
-                && let Some(diagnostic) = self
-                    .names
-                    .quantity_elsewhere(item.file, &declaration.type_name)
-            {
-                self.report(diagnostic);
-                self.undeclared.insert(declarator.name.text.as_str());
-                continue;
+            (_, _, Some(quantity)) => {
+                declare_variable(model, id, item, declaration, declarator, quantity, discrete)
             }
-            match (as_component, class, quantity) {
-                (true, Some((file, class)), _) => {
-                    self.declare_component(id, item, declaration, declarator, file, class)
-                }
-                (_, _, Some(quantity)) => {
-                    self.declare_variable(id, item, declaration, declarator, quantity, discrete)
-                }
-                _ => {}
-            }
+            _ => {}
         }
     }
+}
 
-    pub(super) fn free_name(&mut self, id: InstanceId, declarator: &'a Declarator) -> bool {
-        let name = declarator.name.text.as_str();
-        let Some(member) = self.instances[id].members.get(name) else {
-            return true;
-        };
-        let first = match member {
-            Member::Variable(var) => Some(self.flat.variables[*var].origin.span),
-            Member::Parameter(param) => Some(self.flat.parameters[*param].origin.span),
-            Member::Instance(part) => Some(self.instances[*part].span),
-            Member::Instances(parts) => parts.first().map(|part| self.instances[*part].span),
-            Member::Domain(domain) => Some(self.domains[*domain].span),
-        };
-        let diagnostic = Diagnostic::error(Code::Duplicate, format!("`{name}` is declared twice"))
-            .label(declarator.name.span, "declared again here");
-        let diagnostic = match first {
-            Some(first) => diagnostic.label(first, "declared first here"),
-            None => diagnostic,
-        };
-        self.report(diagnostic.help("rename one of the two, or remove it"));
-        false
-    }
+pub(super) fn free_name<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    declarator: &'a Declarator,
+) -> bool {
+    let name = declarator.name.text.as_str();
+    let Some(member) = model.tree[id].members.get(name) else {
+        return true;
+    };
+    let first = match member {
+        Member::Variable(var) => Some(model.flat.variables[*var].origin.span),
+        Member::Parameter(param) => Some(model.flat.parameters[*param].origin.span),
+        Member::Instance(part) => Some(model.tree[*part].span),
+        Member::Instances(parts) => parts.first().map(|part| model.tree[*part].span),
+        Member::Domain(domain) => Some(model.domains[*domain].span),
+    };
+    let diagnostic = Diagnostic::error(Code::Duplicate, format!("`{name}` is declared twice"))
+        .label(declarator.name.span, "declared again here");
+    let diagnostic = match first {
+        Some(first) => diagnostic.label(first, "declared first here"),
+        None => diagnostic,
+    };
+    model.report(diagnostic.help("rename one of the two, or remove it"));
+    false
+}
 
-    /// The length that dimensions after the type or the name give.
-    pub(super) fn length(
-        &mut self,
-        id: InstanceId,
-        of_type: &'a [Expr],
-        of_name: &'a [Expr],
-    ) -> Option<usize> {
-        let dims: Vec<&'a Expr> = of_name.iter().chain(of_type).collect();
-        match dims.as_slice() {
-            [] => None,
-            [dim] => {
-                let Some(length) = self.structural_integer(id, dim) else {
-                    return Some(0); // Reported; no element is looked for in it.
-                };
-                if !(0..=100_000_000).contains(&length) {
-                    self.report(
-                        Diagnostic::error(
-                            Code::BadShape,
-                            format!("an array cannot have {length} elements"),
-                        )
-                        .label(dim.span, "the number of elements"),
-                    );
-                    return Some(0);
-                }
-                usize::try_from(length).ok()
-            }
-            [_, second, ..] => {
-                self.report(
-                    Diagnostic::error(Code::NotYet, "arrays have one dimension in this version")
-                        .label(second.span, "a second dimension"),
+/// The length that dimensions after the type or the name give.
+pub(super) fn length<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    of_type: &'a [Expr],
+    of_name: &'a [Expr],
+) -> Option<usize> {
+    let dims: Vec<&'a Expr> = of_name.iter().chain(of_type).collect();
+    match dims.as_slice() {
+        [] => None,
+        [dim] => {
+            let Some(length) = model.structural_integer(id, dim) else {
+                return Some(0); // Reported; no element is looked for in it.
+            };
+            if !(0..=100_000_000).contains(&length) {
+                model.report(
+                    Diagnostic::error(
+                        Code::BadShape,
+                        format!("an array cannot have {length} elements"),
+                    )
+                    .label(dim.span, "the number of elements"),
                 );
-                None
+                return Some(0);
             }
+            usize::try_from(length).ok()
+        }
+        [_, second, ..] => {
+            model.report(
+                Diagnostic::error(Code::NotYet, "arrays have one dimension in this version")
+                    .label(second.span, "a second dimension"),
+            );
+            None
         }
     }
 }

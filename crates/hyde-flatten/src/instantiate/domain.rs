@@ -10,185 +10,191 @@ use hyde_units::Dimension;
 /// Cells of a domain at most.
 const MAX_CELLS: usize = 10_000_000;
 
-impl<'a> Model<'a, '_> {
-    pub(super) fn declare_domain(
-        &mut self,
-        id: InstanceId,
-        domain: &'a ast::Domain,
-        method: Option<&'a ast::Discretize>,
-        elements: &[&'a ast::Element],
-    ) {
-        let name = domain.name.text.as_str();
-        let span = domain.name.span;
-        let Some(method) = method else {
-            self.report(
+pub(super) fn declare_domain<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    domain: &'a ast::Domain,
+    method: Option<&'a ast::Discretize>,
+    elements: &[&'a ast::Element],
+) {
+    let name = domain.name.text.as_str();
+    let span = domain.name.span;
+    let Some(method) = method else {
+        model.report(
+            Diagnostic::error(
+                Code::FieldUse,
+                format!("the domain `{name}` is not discretised"),
+            )
+            .label(span, "how many cells?")
+            .help(format!("write `discretize {name} by fem(n = 24);`")),
+        );
+        model.undeclared.insert(name);
+        return;
+    };
+    let averaged = match method.method.text.as_str() {
+        "fem" => true,
+        "fv" => false,
+        other => {
+            model.report(
                 Diagnostic::error(
-                    Code::FieldUse,
-                    format!("the domain `{name}` is not discretised"),
+                    Code::NotYet,
+                    format!("this version has no discretisation `{other}`"),
                 )
-                .label(span, "how many cells?")
-                .help(format!("write `discretize {name} by fem(n = 24);`")),
+                .label(method.method.span, "not known")
+                .help("write `fem(n = …)` or `fv(n = …)`, or `f_max = …` for `n = …`"),
             );
-            self.undeclared.insert(name);
+            model.undeclared.insert(name);
             return;
-        };
-        let averaged = match method.method.text.as_str() {
-            "fem" => true,
-            "fv" => false,
-            other => {
-                self.report(
-                    Diagnostic::error(
-                        Code::NotYet,
-                        format!("this version has no discretisation `{other}`"),
-                    )
-                    .label(method.method.span, "not known")
-                    .help("write `fem(n = …)` or `fv(n = …)`, or `f_max = …` for `n = …`"),
+        }
+    };
+    let Some((count, span_of_count)) =
+        number_of_cells(model, id, domain, method, averaged, elements)
+    else {
+        model.undeclared.insert(name);
+        return;
+    };
+    let Some(cells) = usize::try_from(count)
+        .ok()
+        .filter(|&n| (2..=MAX_CELLS).contains(&n))
+    else {
+        model.report(
+            Diagnostic::error(
+                Code::BadArguments,
+                format!("`{name}` cannot have {count} cells"),
+            )
+            .label(
+                span_of_count,
+                if count < 2 {
+                    "at least 2".to_owned()
+                } else {
+                    format!("at most {MAX_CELLS}")
+                },
+            ),
+        );
+        model.undeclared.insert(name);
+        return;
+    };
+    let domain = Domain {
+        instance: id,
+        name,
+        coordinate: &domain.coordinate.text,
+        from: &domain.range.from,
+        to: &domain.range.to,
+        cells,
+        averaged,
+        span,
+        mesh: None,
+        weights: Vec::new(),
+    };
+    model.domains.push(domain);
+    model
+        .tree
+        .name(id, name, Member::Domain(model.domains.len() - 1));
+}
+
+/// The number of cells that a discretisation has, with what says so: `n`, or what waves up to `f_max` need, whichever is
+/// more; without both what those need that the experiment asks for.
+fn number_of_cells<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    domain: &'a ast::Domain,
+    method: &'a ast::Discretize,
+    averaged: bool,
+    elements: &[&'a ast::Element],
+) -> Option<(i64, Span)> {
+    let (mut n, mut f_max) = (None, None);
+    for argument in &method.arguments {
+        let name = argument.name.as_ref();
+        match name.map(|name| name.text.as_str()) {
+            Some("n") => n = Some(&argument.value),
+            Some("f_max") => f_max = Some(&argument.value),
+            Some(_) | None => {
+                let span = name.map_or(argument.value.span, |name| name.span);
+                model.report(
+                    Diagnostic::error(Code::BadArguments, "a mesh has no such option")
+                        .label(span, "not known")
+                        .help("options are `n`, the number of cells, and `f_max`, the highest frequency of waves"),
                 );
-                self.undeclared.insert(name);
-                return;
-            }
-        };
-        let Some((count, span_of_count)) =
-            self.number_of_cells(id, domain, method, averaged, elements)
-        else {
-            self.undeclared.insert(name);
-            return;
-        };
-        let Some(cells) = usize::try_from(count)
-            .ok()
-            .filter(|&n| (2..=MAX_CELLS).contains(&n))
-        else {
-            self.report(
-                Diagnostic::error(
-                    Code::BadArguments,
-                    format!("`{name}` cannot have {count} cells"),
-                )
-                .label(
-                    span_of_count,
-                    if count < 2 {
-                        "at least 2".to_owned()
-                    } else {
-                        format!("at most {MAX_CELLS}")
-                    },
-                ),
-            );
-            self.undeclared.insert(name);
-            return;
-        };
-        let domain = Domain {
-            instance: id,
-            name,
-            coordinate: &domain.coordinate.text,
-            from: &domain.range.from,
-            to: &domain.range.to,
-            cells,
-            averaged,
-            span,
-            mesh: None,
-            weights: Vec::new(),
-        };
-        self.domains.push(domain);
-        self.instances[id]
-            .members
-            .insert(name, Member::Domain(self.domains.len() - 1));
-    }
-
-    /// The number of cells that a discretisation has, with what says so: `n`, or what waves up to `f_max` need, whichever is
-    /// more; without both what those need that the experiment asks for.
-    fn number_of_cells(
-        &mut self,
-        id: InstanceId,
-        domain: &'a ast::Domain,
-        method: &'a ast::Discretize,
-        averaged: bool,
-        elements: &[&'a ast::Element],
-    ) -> Option<(i64, Span)> {
-        let (mut n, mut f_max) = (None, None);
-        for argument in &method.arguments {
-            let name = argument.name.as_ref();
-            match name.map(|name| name.text.as_str()) {
-                Some("n") => n = Some(&argument.value),
-                Some("f_max") => f_max = Some(&argument.value),
-                Some(_) | None => {
-                    let span = name.map_or(argument.value.span, |name| name.span);
-                    self.report(
-                        Diagnostic::error(Code::BadArguments, "a mesh has no such option")
-                            .label(span, "not known")
-                            .help("options are `n`, the number of cells, and `f_max`, the highest frequency of waves"),
-                    );
-                    return None;
-                }
+                return None;
             }
         }
-        let given = match n {
-            Some(n) => Some((self.structural_integer(id, n)?, n.span)),
-            None => None,
-        };
-        let (f_max, span) = match (f_max, n) {
-            (Some(expr), _) => {
-                let scope = Scope::new(id, Setting::Parameter);
-                let frequency = self.value(expr, &scope);
-                let hertz = Typed {
-                    dim: Dim::known(Dimension::FREQUENCY),
-                    ..frequency.clone()
-                };
-                self.agree(&hertz, &frequency, "waves have a frequency, found", id);
-                (self.structural_number(&scope, expr)?, expr.span)
-            }
-            (None, Some(_)) => return given,
-            (None, None) => (self.highest_frequency(), method.method.span),
-        };
-        if let (true, Some(given)) = (f_max <= 0.0, given) {
-            return Some(given);
-        }
-        let wanted = self.cells_for(id, domain, elements, averaged, (f_max, span))?;
-        Some(match given {
-            Some(given) if given.0 >= wanted => given,
-            Some(_) | None => (wanted, span),
-        })
     }
+    let given = match n {
+        Some(n) => Some((model.structural_integer(id, n)?, n.span)),
+        None => None,
+    };
+    let (f_max, span) = match (f_max, n) {
+        (Some(expr), _) => {
+            let scope = Scope::new(id, Setting::Parameter);
+            let frequency = model.value(expr, &scope);
+            let hertz = Typed {
+                dim: Dim::known(Dimension::FREQUENCY),
+                ..frequency.clone()
+            };
+            model.agree(&hertz, &frequency, "waves have a frequency, found", id);
+            (model.structural_number(&scope, expr)?, expr.span)
+        }
+        (None, Some(_)) => return given,
+        (None, None) => (model.highest_frequency(), method.method.span),
+    };
+    if let (true, Some(given)) = (f_max <= 0.0, given) {
+        return Some(given);
+    }
+    let wanted = model.cells_for(id, domain, elements, averaged, (f_max, span))?;
+    Some(match given {
+        Some(given) if given.0 >= wanted => given,
+        Some(_) | None => (wanted, span),
+    })
+}
 
-    /// The domain of that name in an instance; reported once if there is none.
-    pub(crate) fn domain_named(&mut self, id: InstanceId, name: &'a ast::Name) -> Option<DomainId> {
-        if let Some(Member::Domain(domain)) = self.instances[id].members.get(name.text.as_str()) {
-            return Some(*domain);
-        }
-        if self.undeclared.insert(&name.text) {
-            self.report(
-                Diagnostic::error(
-                    Code::UnknownName,
-                    format!("there is no domain `{}` here", name.text),
-                )
-                .label(name.span, "not known")
-                .help("declare it: `domain bar(x in 0 .. len);`"),
-            );
-        }
-        None
+/// The domain of that name in an instance; reported once if there is none.
+pub(crate) fn domain_named<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    name: &'a ast::Name,
+) -> Option<DomainId> {
+    if let Some(Member::Domain(domain)) = model.tree[id].members.get(name.text.as_str()) {
+        return Some(*domain);
     }
+    if model.undeclared.insert(&name.text) {
+        model.report(
+            Diagnostic::error(
+                Code::UnknownName,
+                format!("there is no domain `{}` here", name.text),
+            )
+            .label(name.span, "not known")
+            .help("declare it: `domain bar(x in 0 .. len);`"),
+        );
+    }
+    None
+}
 
-    /// The domain of a field and whether its values lie between the nodes: those of a flux, whose binding has `pder`.
-    pub(super) fn field(&mut self, id: InstanceId, declarator: &'a Declarator) -> Option<Field> {
-        let name = &declarator.name;
-        let Some(domain) = &declarator.domain else {
-            self.report(
-                Diagnostic::error(
-                    Code::FieldUse,
-                    format!("on which domain is the field `{}`?", name.text),
-                )
-                .label(name.span, "a field needs a domain")
-                .help(format!("write `field … {} on bar;`", name.text)),
-            );
-            return None;
-        };
-        let domain = self.domain_named(id, domain)?;
-        let flux = declarator
-            .binding
-            .as_ref()
-            .is_some_and(|binding| binding.calls("pder"));
-        Some(Field {
-            domain,
-            flux,
-            traces: None,
-        })
-    }
+/// The domain of a field and whether its values lie between the nodes: those of a flux, whose binding has `pder`.
+pub(super) fn field<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    declarator: &'a Declarator,
+) -> Option<Field> {
+    let name = &declarator.name;
+    let Some(domain) = &declarator.domain else {
+        model.report(
+            Diagnostic::error(
+                Code::FieldUse,
+                format!("on which domain is the field `{}`?", name.text),
+            )
+            .label(name.span, "a field needs a domain")
+            .help(format!("write `field … {} on bar;`", name.text)),
+        );
+        return None;
+    };
+    let domain = domain_named(model, id, domain)?;
+    let flux = declarator
+        .binding
+        .as_ref()
+        .is_some_and(|binding| binding.calls("pder"));
+    Some(Field {
+        domain,
+        flux,
+        traces: None,
+    })
 }

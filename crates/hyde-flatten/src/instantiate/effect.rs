@@ -8,12 +8,12 @@
 //! An effect is an instance inside its host, `guide.Stribeck`, that sees its host's names after its own. Everything else
 //! of the model stays as it is. At exactly neutral sizes the effect is left out: only its parameters remain.
 
-use super::modification::Modifier;
-use super::{Collected, Place, Walk};
+use super::modification::{Modifier, modifiers_for, modifiers_of, note_modified};
+use super::{Collected, Place, Walk, collect, instantiate, members};
 use crate::connect::Connection;
 use crate::instance::{Instance, InstanceId, Member};
 use crate::model::Model;
-use crate::names::FileIndex;
+use crate::names::{FileIndex, Names};
 use crate::wrap::Wrap;
 use hyde_diag::{Code, Diagnostic, InstancePath, MadeBy, Span};
 use hyde_ir::{Expr as Ir, Index};
@@ -48,366 +48,302 @@ pub(crate) struct Replacement<'a> {
     pub(crate) used: bool,
 }
 
-impl<'a> Model<'a, '_> {
-    /// Notes the effects of a model, to be put on their sites as those are made.
-    pub(super) fn hook(&mut self, id: InstanceId, file: FileIndex, effects: &'a [EffectUse]) {
-        for used in effects {
-            let found = self.names.class(file, &used.effect);
-            let Some((file, class)) = found.filter(|(_, class)| class.kind == ClassKind::Effect)
-            else {
-                let diagnostic = match found {
-                    Some((_, class)) => Diagnostic::error(
-                        Code::WrongType,
-                        format!("`{}` is not an effect", class.name.text),
-                    )
-                    .label(used.effect.span, "only effects may follow `with`"),
-                    None => self.names.unknown(file, &used.effect),
-                };
-                self.report(diagnostic);
-                continue;
+/// Notes the effects of a model, to be put on their sites as those are made.
+pub(super) fn hook<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    file: FileIndex,
+    effects: &'a [EffectUse],
+) {
+    for used in effects {
+        let found = model.names.class(file, &used.effect);
+        let Some((file, class)) = found.filter(|(_, class)| class.kind == ClassKind::Effect) else {
+            let diagnostic = match found {
+                Some((_, class)) => Diagnostic::error(
+                    Code::WrongType,
+                    format!("`{}` is not an effect", class.name.text),
+                )
+                .label(used.effect.span, "only effects may follow `with`"),
+                None => model.names.unknown(file, &used.effect),
             };
-            for site in &used.sites {
-                self.hooks.push(Hook {
-                    host: self.path(id).child(&written(site)),
-                    site,
-                    file,
-                    class,
-                    changes: &used.changes,
-                    scope: id,
-                    name: &class.name.text,
-                    keep: false,
-                    used: false,
-                });
-            }
-        }
-    }
-
-    /// Notes the effects that are put on the model from outside its text.
-    pub(super) fn hook_additions(&mut self, root: InstanceId) {
-        for addition in self.input.additions.list() {
-            let Some((file, class)) = self.names.class(0, &addition.effect) else {
-                let diagnostic = self.names.unknown(0, &addition.effect);
-                self.report(diagnostic);
-                continue;
-            };
-            self.hooks.push(Hook {
-                host: InstancePath::root().child(&written(&addition.site)),
-                site: &addition.site,
+            model.report(diagnostic);
+            continue;
+        };
+        for site in &used.sites {
+            model.making.hooks.push(Hook {
+                host: model.tree.path(id).child(&written(site)),
+                site,
                 file,
                 class,
-                changes: &[],
-                scope: root,
-                name: &addition.name,
-                keep: self.input.additions.keeps_neutral(),
+                changes: &used.changes,
+                scope: id,
+                name: &class.name.text,
+                keep: false,
                 used: false,
             });
         }
     }
+}
 
-    /// Makes the effects of an instance that was just made, before its own members. Its modifications may name them.
-    pub(super) fn effects_of(&mut self, host: InstanceId, modifiers: &[Modifier<'a>]) {
-        for number in 0..self.hooks.len() {
-            if self.hooks[number].host == self.instances[host].path && !self.hooks[number].used {
-                self.hooks[number].used = true;
-                self.effect(host, number, modifiers);
-            }
-        }
-    }
-
-    fn effect(&mut self, host: InstanceId, number: usize, of_host: &[Modifier<'a>]) {
-        let Hook {
-            site,
+/// Notes the effects that are put on the model from outside its text.
+pub(super) fn hook_additions(model: &mut Model<'_, '_>, root: InstanceId) {
+    for addition in model.input.additions.list() {
+        let Some((file, class)) = model.names.class(0, &addition.effect) else {
+            let diagnostic = model.names.unknown(0, &addition.effect);
+            model.report(diagnostic);
+            continue;
+        };
+        model.making.hooks.push(Hook {
+            host: InstancePath::root().child(&written(&addition.site)),
+            site: &addition.site,
             file,
             class,
-            changes,
-            scope,
-            name,
-            keep,
-            ..
-        } = self.hooks[number];
-        if !self.fits_on(host, file, class) {
-            self.does_not_fit(host, file, class, site);
-            return;
-        }
-        let path = self.path(host);
-        let id = self.instance_of_effect(host, (file, class), name, site.span);
-        if self.instances[host]
-            .members
-            .insert(name, Member::Instance(id))
-            .is_some()
-        {
-            self.report(
-                Diagnostic::error(
-                    Code::Duplicate,
-                    format!("`{name}` is on `{}` twice", written(site)),
-                )
-                .label(site.span, "the second time")
-                .help("give the second another name: `effect Other on … extends …`"),
-            );
-        }
-        let mut modifiers = self.modifiers_for(name, of_host);
-        self.modifiers_of(changes, scope, &mut modifiers);
-        self.note_modified(id, &modifiers);
-        let mut collected = Vec::new();
-        let walk = Walk {
-            id,
-            file,
-            modifiers,
-            chain: Vec::new(),
-        };
-        self.collect(walk, class, &mut collected);
-        let (parameters, rest): (Vec<_>, Vec<_>) = collected.into_iter().partition(is_parameter);
-        self.members(id, &parameters);
-        if !keep && self.is_neutral(id, &parameters) {
-            self.instances[id].elements = Vec::new();
-            self.flat
-                .notes
-                .push(format!("`{}` has size 0 and is omitted", self.path(id)));
-            return;
-        }
-        let added = rest.iter().find_map(|item| {
-            if let Element::Add(equation) = item.element {
-                Some(equation.span)
-            } else {
-                None
-            }
+            changes: &[],
+            scope: root,
+            name: &addition.name,
+            keep: model.input.additions.keeps_neutral(),
+            used: false,
         });
-        let connector = self.instances[host].class.kind == ClassKind::Connector;
-        if let (false, Some(span)) = (connector, added) {
-            self.nothing_to_join(host, class, span);
-            self.instances[id].elements = Vec::new();
-            return;
+    }
+}
+
+/// Makes the effects of an instance that was just made, before its own members. Its modifications may name them.
+pub(super) fn effects_of<'a>(
+    model: &mut Model<'a, '_>,
+    host: InstanceId,
+    modifiers: &[Modifier<'a>],
+) {
+    for number in 0..model.making.hooks.len() {
+        if model.making.hooks[number].host == model.tree[host].path
+            && !model.making.hooks[number].used
+        {
+            model.making.hooks[number].used = true;
+            effect(model, host, number, modifiers);
         }
-        if connector {
-            let (file, class) = (self.instances[host].file, self.instances[host].class);
-            let place = Place {
-                path: path.child(name).child("a"),
-                parent: Some(id),
-                clock: None,
-                span: site.span,
-            };
-            let own = self.instantiate(file, class, Vec::new(), place);
-            self.instances[id]
-                .members
-                .insert("a", Member::Instance(own));
-            let origin = self.origin(host, site.span).made_by(MadeBy::Connection);
-            self.joined
-                .push(Connection::joining(vec![(host, true), (own, true)], origin));
+    }
+}
+
+fn effect<'a>(
+    model: &mut Model<'a, '_>,
+    host: InstanceId,
+    number: usize,
+    of_host: &[Modifier<'a>],
+) {
+    let Hook {
+        site,
+        file,
+        class,
+        changes,
+        scope,
+        name,
+        keep,
+        ..
+    } = model.making.hooks[number];
+    if !fits_on(model.names, &model.tree[host], (file, class)) {
+        let names = (&model.tree, model.names);
+        let diagnostic = crate::site::does_not_fit(names, host, (file, class), site);
+        model.report(diagnostic);
+        return;
+    }
+    let path = model.tree.path(host);
+    let id = instance_of_effect(model, host, (file, class), name, site.span);
+    if model.tree.name(host, name, Member::Instance(id)).is_some() {
+        model.report(
+            Diagnostic::error(
+                Code::Duplicate,
+                format!("`{name}` is on `{}` twice", written(site)),
+            )
+            .label(site.span, "the second time")
+            .help("give the second another name: `effect Other on … extends …`"),
+        );
+    }
+    let mut modifiers = modifiers_for(model, name, of_host);
+    modifiers_of(model, changes, scope, &mut modifiers);
+    note_modified(model, id, &modifiers);
+    let mut collected = Vec::new();
+    let walk = Walk {
+        id,
+        file,
+        modifiers,
+        chain: Vec::new(),
+    };
+    collect(model, walk, class, &mut collected);
+    let (parameters, rest): (Vec<_>, Vec<_>) = collected.into_iter().partition(is_parameter);
+    members(model, id, &parameters);
+    if !keep && is_neutral(model, id, &parameters) {
+        model.tree.set_elements(id, Vec::new());
+        model.flat.notes.push(format!(
+            "`{}` has size 0 and is omitted",
+            model.tree.path(id)
+        ));
+        return;
+    }
+    let added = rest.iter().find_map(|item| {
+        if let Element::Add(equation) = item.element {
+            Some(equation.span)
+        } else {
+            None
         }
-        for item in &rest {
-            match item.element {
-                Element::Wrap(site, value) => self.wraps.push(Wrap {
+    });
+    let connector = model.tree[host].class.kind == ClassKind::Connector;
+    if let (false, Some(span)) = (connector, added) {
+        let diagnostic = crate::site::nothing_to_join(&model.tree[host], class, span);
+        model.report(diagnostic);
+        model.tree.set_elements(id, Vec::new());
+        return;
+    }
+    if connector {
+        let (file, class) = (model.tree[host].file, model.tree[host].class);
+        let place = Place {
+            path: path.child(name).child("a"),
+            parent: Some(id),
+            clock: None,
+            span: site.span,
+        };
+        let own = instantiate(model, file, class, Vec::new(), place);
+        model.tree.name(id, "a", Member::Instance(own));
+        let origin = model
+            .tree
+            .origin(host, site.span)
+            .made_by(MadeBy::Connection);
+        model
+            .joined
+            .push(Connection::joining(vec![(host, true), (own, true)], origin));
+    }
+    for item in &rest {
+        match item.element {
+            Element::Wrap(site, value) => model.wraps.push(Wrap {
+                host,
+                site,
+                value,
+                effect: id,
+                used: false,
+            }),
+            Element::Replace(component, by, changes) => match model.names.class(item.file, by) {
+                Some(class) => model.making.replacements.push(Replacement {
                     host,
-                    site,
-                    value,
+                    component,
+                    class,
+                    changes,
                     effect: id,
                     used: false,
                 }),
-                Element::Replace(component, model, changes) => {
-                    match self.names.class(item.file, model) {
-                        Some(class) => self.replacements.push(Replacement {
-                            host,
-                            component,
-                            class,
-                            changes,
-                            effect: id,
-                            used: false,
-                        }),
-                        None => {
-                            let diagnostic = self.names.unknown(item.file, model);
-                            self.report(diagnostic);
-                        }
-                    }
+                None => {
+                    let diagnostic = model.names.unknown(item.file, by);
+                    model.report(diagnostic);
                 }
-                Element::Extends(..)
-                | Element::Declaration(_)
-                | Element::Domain(_)
-                | Element::Discretize(_)
-                | Element::Modes(_)
-                | Element::Clocked(_)
-                | Element::Equation(_)
-                | Element::InitialEquation(_)
-                | Element::Add(_)
-                | Element::Signature(_)
-                | Element::Confounds(_)
-                | Element::Measure(_)
-                | Element::Account(..) => {}
-            }
+            },
+            Element::Extends(..)
+            | Element::Declaration(_)
+            | Element::Domain(_)
+            | Element::Discretize(_)
+            | Element::Modes(_)
+            | Element::Clocked(_)
+            | Element::Equation(_)
+            | Element::InitialEquation(_)
+            | Element::Add(_)
+            | Element::Signature(_)
+            | Element::Confounds(_)
+            | Element::Measure(_)
+            | Element::Account(..) => {}
         }
-        self.members(id, &rest);
-        let all = parameters.iter().chain(&rest);
-        self.instances[id].elements = all.map(|item| (item.file, item.element)).collect();
     }
+    members(model, id, &rest);
+    let all = parameters.iter().chain(&rest);
+    model
+        .tree
+        .set_elements(id, all.map(|item| (item.file, item.element)).collect());
+}
 
-    /// An effect inside its host, without members yet.
-    pub(super) fn instance_of_effect(
-        &mut self,
-        host: InstanceId,
-        (file, class): (FileIndex, &'a Class),
-        name: &str,
-        span: Span,
-    ) -> InstanceId {
-        let id = self.instances.len();
-        self.instances.push(Instance {
-            path: self.path(host).child(name),
-            file,
-            class,
-            parent: Some(host),
-            outer: Some(host),
-            clock: self.instances[host].clock,
-            members: std::collections::BTreeMap::new(),
-            elements: Vec::new(),
-            span,
-        });
-        id
-    }
+/// An effect inside its host, without members yet.
+pub(super) fn instance_of_effect<'a>(
+    model: &mut Model<'a, '_>,
+    host: InstanceId,
+    (file, class): (FileIndex, &'a Class),
+    name: &str,
+    span: Span,
+) -> InstanceId {
+    model.tree.push(Instance {
+        path: model.tree.path(host).child(name),
+        file,
+        class,
+        parent: Some(host),
+        outer: Some(host),
+        clock: model.clock_of(host),
+        members: std::collections::BTreeMap::new(),
+        elements: Vec::new(),
+        span,
+    })
+}
 
-    /// Whether an instance is an effect or a part of one.
-    pub(crate) fn is_of_effect(&self, id: InstanceId) -> bool {
-        std::iter::successors(Some(id), |&id| self.instances[id].parent)
-            .any(|id| self.instances[id].class.kind == ClassKind::Effect)
-    }
-
-    /// Whether an instance is of the type that an effect is for, or of one that extends it.
-    pub(super) fn fits_on(&self, host: InstanceId, file: FileIndex, effect: &'a Class) -> bool {
-        let Some(wanted) = host_of(effect).and_then(|host| self.names.class(file, host)) else {
-            return false;
+/// Whether every size of an effect is exactly zero. Sizes that are not stay plain parameters.
+fn is_neutral<'a>(model: &mut Model<'a, '_>, id: InstanceId, parameters: &[Collected<'a>]) -> bool {
+    let before: Vec<bool> = model.flat.parameters.iter().map(|p| p.structural).collect();
+    let mut sizes = 0;
+    let mut neutral = true;
+    for item in parameters {
+        let Element::Declaration(declaration) = item.element else {
+            continue;
         };
-        let instance = &self.instances[host];
-        self.is_a((instance.file, instance.class), wanted.1)
-    }
-
-    /// The names of what a host declares that is of a class or extends it.
-    pub(crate) fn parts_that_are(&self, host: InstanceId, wanted: &'a Class) -> Vec<&'a str> {
-        // The host has no members yet: its class and the bases of that are read, of one that extends itself not for ever.
-        let mut classes = vec![(self.instances[host].file, self.instances[host].class)];
-        let mut found = Vec::new();
-        let mut seen: Vec<&'a Class> = Vec::new();
-        while let Some((file, class)) = classes.pop() {
-            if seen.iter().any(|&known| std::ptr::eq(known, class)) {
-                continue;
-            }
-            seen.push(class);
-            classes.extend(self.bases(file, class));
-            let ClassBody::Long { elements, .. } = &class.body else {
+        if !declaration.prefixes.contains(&Prefix::Size) {
+            continue;
+        }
+        for declarator in &declaration.declarators {
+            let name = declarator.name.text.as_str();
+            let Some(Member::Parameter(param)) = model.tree[id].members.get(name) else {
                 continue;
             };
-            for element in elements {
-                if let Element::Declaration(declaration) = element
-                    && let Some(own) = self.names.class(file, &declaration.type_name)
-                    && self.is_a(own, wanted)
-                {
-                    let names = declaration.declarators.iter();
-                    found.extend(names.map(|own| own.name.text.as_str()));
-                }
-            }
+            let leaf = model.flat.exprs.add(Ir::Param(*param, Index::SCALAR));
+            sizes += 1;
+            neutral &= model.evaluate(leaf) == Some(0.0);
         }
-        found
     }
+    let neutral = neutral && sizes > 0;
+    if !neutral {
+        for (parameter, was) in model.flat.parameters.iter_mut().zip(before) {
+            parameter.structural = was;
+        }
+    }
+    neutral
+}
 
-    /// Whether a class is another one or extends it.
-    fn is_a(&self, own: (FileIndex, &'a Class), other: &'a Class) -> bool {
-        let mut waiting = vec![own];
-        let mut seen: Vec<&'a Class> = Vec::new();
-        while let Some((file, class)) = waiting.pop() {
-            if std::ptr::eq(class, other) {
-                return true;
-            }
-            if !seen.iter().any(|&known| std::ptr::eq(known, class)) {
-                seen.push(class);
-                waiting.extend(self.bases(file, class));
-            }
-        }
-        false
+/// What an effect puts in the place of a component, with the modifications it brings.
+pub(super) fn replaced<'a>(
+    model: &mut Model<'a, '_>,
+    host: InstanceId,
+    declaration: &Declaration,
+    declarator: &Declarator,
+    modifiers: &mut Vec<Modifier<'a>>,
+) -> Option<(FileIndex, &'a Class)> {
+    let name = declarator.name.text.as_str();
+    let number = model.making.replacements.iter().position(|replacement| {
+        replacement.host == host && replacement.component.as_word() == Some(name)
+    })?;
+    model.making.replacements[number].used = true;
+    let Replacement {
+        component,
+        class,
+        changes,
+        effect,
+        ..
+    } = model.making.replacements[number];
+    if !declaration.prefixes.contains(&Prefix::Replaceable) {
+        model.report(
+            Diagnostic::error(Code::FinalModified, format!("`{name}` is not replaceable"))
+                .label(component.span, "cannot be replaced")
+                .label(declarator.name.span, "declared here as not replaceable")
+                .help(format!(
+                    "declare it `replaceable {} {name}`",
+                    declaration.type_name.dotted()
+                )),
+        );
+        return None;
     }
-
-    /// The classes that a class extends, as far as they are known.
-    pub(crate) fn bases(&self, file: FileIndex, class: &'a Class) -> Vec<(FileIndex, &'a Class)> {
-        let known = |base| self.names.class(file, base);
-        match &class.body {
-            ClassBody::Short { base, .. } => known(base).into_iter().collect(),
-            ClassBody::Long { elements, .. } => {
-                let extended = elements.iter().filter_map(|element| {
-                    if let Element::Extends(base, _) = element {
-                        known(base)
-                    } else {
-                        None
-                    }
-                });
-                extended.collect()
-            }
-        }
-    }
-
-    /// Whether every size of an effect is exactly zero. Sizes that are not stay plain parameters.
-    fn is_neutral(&mut self, id: InstanceId, parameters: &[Collected<'a>]) -> bool {
-        let before: Vec<bool> = self.flat.parameters.iter().map(|p| p.structural).collect();
-        let mut sizes = 0;
-        let mut neutral = true;
-        for item in parameters {
-            let Element::Declaration(declaration) = item.element else {
-                continue;
-            };
-            if !declaration.prefixes.contains(&Prefix::Size) {
-                continue;
-            }
-            for declarator in &declaration.declarators {
-                let name = declarator.name.text.as_str();
-                let Some(Member::Parameter(param)) = self.instances[id].members.get(name) else {
-                    continue;
-                };
-                let leaf = self.flat.exprs.add(Ir::Param(*param, Index::SCALAR));
-                sizes += 1;
-                neutral &= self.evaluate(leaf) == Some(0.0);
-            }
-        }
-        let neutral = neutral && sizes > 0;
-        if !neutral {
-            for (parameter, was) in self.flat.parameters.iter_mut().zip(before) {
-                parameter.structural = was;
-            }
-        }
-        neutral
-    }
-
-    /// What an effect puts in the place of a component, with the modifications it brings.
-    pub(super) fn replaced(
-        &mut self,
-        host: InstanceId,
-        declaration: &Declaration,
-        declarator: &Declarator,
-        modifiers: &mut Vec<Modifier<'a>>,
-    ) -> Option<(FileIndex, &'a Class)> {
-        let name = declarator.name.text.as_str();
-        let number = self.replacements.iter().position(|replacement| {
-            replacement.host == host && replacement.component.as_word() == Some(name)
-        })?;
-        self.replacements[number].used = true;
-        let Replacement {
-            component,
-            class,
-            changes,
-            effect,
-            ..
-        } = self.replacements[number];
-        if !declaration.prefixes.contains(&Prefix::Replaceable) {
-            self.report(
-                Diagnostic::error(Code::FinalModified, format!("`{name}` is not replaceable"))
-                    .label(component.span, "cannot be replaced")
-                    .label(declarator.name.span, "declared here as not replaceable")
-                    .help(format!(
-                        "declare it `replaceable {} {name}`",
-                        declaration.type_name.dotted()
-                    )),
-            );
-            return None;
-        }
-        let mut own = Vec::new();
-        self.modifiers_of(changes, effect, &mut own);
-        // The effect's own modifications come before those of the component it replaces.
-        modifiers.splice(0..0, own);
-        Some(class)
-    }
+    let mut own = Vec::new();
+    modifiers_of(model, changes, effect, &mut own);
+    // The effect's own modifications come before those of the component it replaces.
+    modifiers.splice(0..0, own);
+    Some(class)
 }
 
 /// The type an effect is for.
@@ -427,4 +363,14 @@ pub(super) fn is_parameter(item: &Collected<'_>) -> bool {
 /// A site as written, subscripts included: `joint[2].flange`.
 pub(crate) fn written(site: &Reference) -> String {
     hyde_syntax::format_reference(site)
+}
+
+/// Whether an instance is of the type that an effect is for, or of one that extends it.
+pub(super) fn fits_on<'a>(
+    names: Names<'a>,
+    host: &Instance<'a>,
+    (file, effect): (FileIndex, &'a Class),
+) -> bool {
+    let wanted = host_of(effect).and_then(|host| names.class(file, host));
+    wanted.is_some_and(|(_, wanted)| names.is_a((host.file, host.class), wanted))
 }

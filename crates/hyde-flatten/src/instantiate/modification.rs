@@ -22,235 +22,245 @@ pub(super) struct Modifier<'a> {
     pub(super) number: usize,
 }
 
-impl<'a> Model<'a, '_> {
-    /// The modifications of `name`, with it taken off their targets.
-    pub(super) fn modifiers_for(
-        &mut self,
-        name: &str,
-        modifiers: &[Modifier<'a>],
-    ) -> Vec<Modifier<'a>> {
-        let mut found = Vec::new();
-        for modifier in modifiers
-            .iter()
-            .filter(|modifier| modifier.target.first() == Some(&name))
+/// The modifications of `name`, with it taken off their targets.
+pub(super) fn modifiers_for<'a>(
+    model: &mut Model<'a, '_>,
+    name: &str,
+    modifiers: &[Modifier<'a>],
+) -> Vec<Modifier<'a>> {
+    let mut found = Vec::new();
+    for modifier in modifiers
+        .iter()
+        .filter(|modifier| modifier.target.first() == Some(&name))
+    {
+        let mut inner = modifier.clone();
+        inner.target.remove(0);
+        if inner.target.is_empty() {
+            model.making.modifications[inner.number].2 = true;
+        }
+        found.push(inner);
+    }
+    found
+}
+
+/// Nested changes as a list of single ones.
+pub(super) fn modifiers_of<'a>(
+    model: &mut Model<'a, '_>,
+    changes: &'a [Change],
+    scope: InstanceId,
+    out: &mut Vec<Modifier<'a>>,
+) {
+    modifiers_below(model, changes, scope, (&[], 0), out);
+}
+
+fn modifiers_below<'a>(
+    model: &mut Model<'a, '_>,
+    changes: &'a [Change],
+    scope: InstanceId,
+    (above, each): (&[&'a str], usize),
+    out: &mut Vec<Modifier<'a>>,
+) {
+    for change in changes {
+        let mut target = above.to_vec();
+        target.extend(
+            change
+                .target
+                .parts
+                .iter()
+                .map(|part| part.name.text.as_str()),
+        );
+        let each = each + usize::from(change.each);
+        modifiers_below(model, &change.changes, scope, (&target, each), out);
+        if change.redeclare.is_some()
+            || change.value.is_some()
+            || change.prior.is_some()
+            || change.source.is_some()
         {
-            let mut inner = modifier.clone();
-            inner.target.remove(0);
-            if inner.target.is_empty() {
-                self.modifications[inner.number].2 = true;
-            }
-            found.push(inner);
-        }
-        found
-    }
-
-    /// Nested changes as a list of single ones.
-    pub(super) fn modifiers_of(
-        &mut self,
-        changes: &'a [Change],
-        scope: InstanceId,
-        out: &mut Vec<Modifier<'a>>,
-    ) {
-        self.modifiers_below(changes, scope, (&[], 0), out);
-    }
-
-    fn modifiers_below(
-        &mut self,
-        changes: &'a [Change],
-        scope: InstanceId,
-        (above, each): (&[&'a str], usize),
-        out: &mut Vec<Modifier<'a>>,
-    ) {
-        for change in changes {
-            let mut target = above.to_vec();
-            target.extend(
-                change
-                    .target
-                    .parts
-                    .iter()
-                    .map(|part| part.name.text.as_str()),
-            );
-            let each = each + usize::from(change.each);
-            self.modifiers_below(&change.changes, scope, (&target, each), out);
-            if change.redeclare.is_some()
-                || change.value.is_some()
-                || change.prior.is_some()
-                || change.source.is_some()
-            {
-                let number = self.modifications.len();
-                self.modifications
-                    .push((change.target.span, target.join("."), false));
-                out.push(Modifier {
-                    target,
-                    change,
-                    scope,
-                    records: false,
-                    elements: Vec::new(),
-                    each,
-                    number,
-                });
-            }
-        }
-    }
-
-    /// Notes the instance that the last words of modifications are looked up in.
-    pub(super) fn note_modified(&mut self, id: InstanceId, modifiers: &[Modifier<'a>]) {
-        let last_words = modifiers
-            .iter()
-            .filter(|modifier| modifier.target.len() == 1);
-        self.modified
-            .extend(last_words.map(|modifier| (modifier.number, id)));
-    }
-
-    pub(super) fn report_unused_modifications(&mut self) {
-        let unused: Vec<(usize, Span, String)> = (0..)
-            .zip(&self.modifications)
-            .filter(|(_, (.., used))| !used)
-            .map(|(number, (span, name, _))| (number, *span, name.clone()))
-            .collect();
-        for (number, span, name) in unused {
-            let last = name.rsplit('.').next().unwrap_or(&name);
-            if name.split('.').any(|word| self.undeclared.contains(word)) {
-                continue;
-            }
-            let diagnostic = Diagnostic::error(
-                Code::UnknownModification,
-                format!("there is no `{name}` to modify"),
-            );
-            let Some(instance) = self.modified.get(&number).map(|&id| &self.instances[id]) else {
-                self.report(diagnostic.label(span, "changes nothing"));
-                continue;
-            };
-            let known: Vec<&str> = instance.members.keys().copied().collect();
-            let diagnostic = diagnostic.label(
-                span,
-                format!("`{}` has no such element", instance.class.name.text),
-            );
-            let near = nearest(last, known.iter().copied()).filter(|near| *near != last);
-            self.report(match near {
-                Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
-                None => diagnostic.help(format!("it has {}", listed(&known))),
+            let number = model.making.modifications.len();
+            model
+                .making
+                .modifications
+                .push((change.target.span, target.join("."), false));
+            out.push(Modifier {
+                target,
+                change,
+                scope,
+                records: false,
+                elements: Vec::new(),
+                each,
+                number,
             });
         }
     }
+}
 
-    /// The value of a name: the outermost modification, else the declaration.
-    pub(super) fn binding(
-        &mut self,
-        id: InstanceId,
-        declarator: &'a Declarator,
-        modifiers: &[Modifier<'a>],
-    ) -> Option<Binding<'a>> {
-        let modified = modifiers
-            .iter()
-            .find(|modifier| modifier.target.is_empty() && modifier.change.value.is_some());
-        match modified {
-            Some(modifier) => {
-                let expr = modifier.change.value.as_ref()?;
-                Some(Binding {
-                    expr,
-                    scope: modifier.scope,
-                    records: modifier.records,
-                    elements: modifier.elements.clone(),
-                    span: modifier.change.target.span,
-                })
-            }
-            None => {
-                let expr = declarator.binding.as_ref()?;
-                Some(Binding {
-                    expr,
-                    scope: id,
-                    records: false,
-                    elements: Vec::new(),
-                    span: declarator.name.span,
-                })
-            }
+/// Notes the instance that the last words of modifications are looked up in.
+pub(super) fn note_modified<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    modifiers: &[Modifier<'a>],
+) {
+    let last_words = modifiers
+        .iter()
+        .filter(|modifier| modifier.target.len() == 1);
+    model
+        .making
+        .modified
+        .extend(last_words.map(|modifier| (modifier.number, id)));
+}
+
+pub(super) fn report_unused_modifications(model: &mut Model<'_, '_>) {
+    let unused: Vec<(usize, Span, String)> = (0..)
+        .zip(&model.making.modifications)
+        .filter(|(_, (.., used))| !used)
+        .map(|(number, (span, name, _))| (number, *span, name.clone()))
+        .collect();
+    for (number, span, name) in unused {
+        let last = name.rsplit('.').next().unwrap_or(&name);
+        if name.split('.').any(|word| model.undeclared.contains(word)) {
+            continue;
         }
+        let diagnostic = Diagnostic::error(
+            Code::UnknownModification,
+            format!("there is no `{name}` to modify"),
+        );
+        let Some(instance) = model
+            .making
+            .modified
+            .get(&number)
+            .map(|&id| &model.tree[id])
+        else {
+            model.report(diagnostic.label(span, "changes nothing"));
+            continue;
+        };
+        let known: Vec<&str> = instance.members.keys().copied().collect();
+        let diagnostic = diagnostic.label(
+            span,
+            format!("`{}` has no such element", instance.class.name.text),
+        );
+        let near = nearest(last, known.iter().copied()).filter(|near| *near != last);
+        model.report(match near {
+            Some(near) => diagnostic.help(format!("did you mean `{near}`?")),
+            None => diagnostic.help(format!("it has {}", listed(&known))),
+        });
     }
+}
 
-    /// `start`, `fixed` or `state` of a variable: the outermost modification, else the declaration.
-    pub(super) fn attribute(
-        &mut self,
-        id: InstanceId,
-        declarator: &'a Declarator,
-        modifiers: &[Modifier<'a>],
-        word: &str,
-    ) -> Option<Binding<'a>> {
-        let modified = modifiers
-            .iter()
-            .find(|modifier| modifier.target == [word] && modifier.change.value.is_some());
-        if let Some(modifier) = modified {
-            self.modifications[modifier.number].2 = true;
+/// The value of a name: the outermost modification, else the declaration.
+pub(super) fn binding<'a>(
+    id: InstanceId,
+    declarator: &'a Declarator,
+    modifiers: &[Modifier<'a>],
+) -> Option<Binding<'a>> {
+    let modified = modifiers
+        .iter()
+        .find(|modifier| modifier.target.is_empty() && modifier.change.value.is_some());
+    match modified {
+        Some(modifier) => {
             let expr = modifier.change.value.as_ref()?;
-            return Some(Binding {
+            Some(Binding {
                 expr,
                 scope: modifier.scope,
                 records: modifier.records,
                 elements: modifier.elements.clone(),
-                span: expr.span,
-            });
+                span: modifier.change.target.span,
+            })
         }
-        let change = declarator
-            .changes
-            .iter()
-            .find(|change| change.target.as_word() == Some(word))?;
-        let expr = change.value.as_ref()?;
-        Some(Binding {
+        None => {
+            let expr = declarator.binding.as_ref()?;
+            Some(Binding {
+                expr,
+                scope: id,
+                records: false,
+                elements: Vec::new(),
+                span: declarator.name.span,
+            })
+        }
+    }
+}
+
+/// `start`, `fixed` or `state` of a variable: the outermost modification, else the declaration.
+pub(super) fn attribute<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    declarator: &'a Declarator,
+    modifiers: &[Modifier<'a>],
+    word: &str,
+) -> Option<Binding<'a>> {
+    let modified = modifiers
+        .iter()
+        .find(|modifier| modifier.target == [word] && modifier.change.value.is_some());
+    if let Some(modifier) = modified {
+        model.making.modifications[modifier.number].2 = true;
+        let expr = modifier.change.value.as_ref()?;
+        return Some(Binding {
             expr,
-            scope: id,
-            records: false,
-            elements: Vec::new(),
+            scope: modifier.scope,
+            records: modifier.records,
+            elements: modifier.elements.clone(),
             span: expr.span,
-        })
+        });
     }
+    let change = declarator
+        .changes
+        .iter()
+        .find(|change| change.target.as_word() == Some(word))?;
+    let expr = change.value.as_ref()?;
+    Some(Binding {
+        expr,
+        scope: id,
+        records: false,
+        elements: Vec::new(),
+        span: expr.span,
+    })
+}
 
-    /// The bounds that a quantity declares, `min` and `max`.
-    pub(super) fn declared_bounds(
-        &mut self,
-        id: InstanceId,
-        declarator: &'a Declarator,
-        modifiers: &[Modifier<'a>],
-    ) -> [Option<Binding<'a>>; 2] {
-        ["min", "max"].map(|word| self.attribute(id, declarator, modifiers, word))
-    }
+/// The bounds that a quantity declares, `min` and `max`.
+pub(super) fn declared_bounds<'a>(
+    model: &mut Model<'a, '_>,
+    id: InstanceId,
+    declarator: &'a Declarator,
+    modifiers: &[Modifier<'a>],
+) -> [Option<Binding<'a>>; 2] {
+    ["min", "max"].map(|word| attribute(model, id, declarator, modifiers, word))
+}
 
-    /// Reports attributes that are not among those that the declaration can have.
-    pub(super) fn check_attributes(
-        &mut self,
-        declarator: &'a Declarator,
-        modifiers: &[Modifier<'a>],
-        known: &[&str],
-    ) {
-        for modifier in modifiers {
-            if modifier.target.is_empty()
-                || matches!(modifier.target.as_slice(), [word] if known.contains(word))
-            {
-                self.modifications[modifier.number].2 = true;
-            }
+/// Reports attributes that are not among those that the declaration can have.
+pub(super) fn check_attributes<'a>(
+    model: &mut Model<'a, '_>,
+    declarator: &'a Declarator,
+    modifiers: &[Modifier<'a>],
+    known: &[&str],
+) {
+    for modifier in modifiers {
+        if modifier.target.is_empty()
+            || matches!(modifier.target.as_slice(), [word] if known.contains(word))
+        {
+            model.making.modifications[modifier.number].2 = true;
         }
-        for change in &declarator.changes {
-            let word = change.target.as_word();
-            if word.is_none_or(|word| !known.contains(&word)) {
-                let of = if known.contains(&"state") {
-                    "variable"
-                } else {
-                    "parameter"
-                };
-                let diagnostic = Diagnostic::error(
-                    Code::UnknownModification,
-                    format!("a {of} has no attribute `{}`", change.target.dotted()),
-                )
-                .label(change.target.span, "changes nothing");
-                let text = match change.value.as_ref().map(|value| &value.kind) {
-                    Some(ExprKind::String(text)) => text.as_str(),
-                    Some(_) | None => "unit",
-                };
-                let instead = word.and_then(|word| hyde_syntax::instead_of_attribute(word, text));
-                self.report(match instead {
-                    Some(help) => diagnostic.help(help),
-                    None => diagnostic.help(format!("attributes are {}", listed(known))),
-                });
-            }
+    }
+    for change in &declarator.changes {
+        let word = change.target.as_word();
+        if word.is_none_or(|word| !known.contains(&word)) {
+            let of = if known.contains(&"state") {
+                "variable"
+            } else {
+                "parameter"
+            };
+            let diagnostic = Diagnostic::error(
+                Code::UnknownModification,
+                format!("a {of} has no attribute `{}`", change.target.dotted()),
+            )
+            .label(change.target.span, "changes nothing");
+            let text = match change.value.as_ref().map(|value| &value.kind) {
+                Some(ExprKind::String(text)) => text.as_str(),
+                Some(_) | None => "unit",
+            };
+            let instead = word.and_then(|word| hyde_syntax::instead_of_attribute(word, text));
+            model.report(match instead {
+                Some(help) => diagnostic.help(help),
+                None => diagnostic.help(format!("attributes are {}", listed(known))),
+            });
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The filters of a shape: `tau*der(late) = v - late;`.
 
+use super::text::text_in_shape;
 use super::{Draft, refused};
 use crate::law_roles::{Refusal, wrong};
 use crate::model::Model;
@@ -27,61 +28,59 @@ impl<'a> Draft<'a> {
     }
 }
 
-impl<'a> Model<'a, '_> {
-    /// Reads the equations of a shape, one for each of its states.
-    pub(super) fn filters(&mut self, draft: &mut Draft<'a>) -> Result<(), Refusal> {
-        let mut read = vec![false; draft.shape.states.len()];
-        for equation in draft.equations.clone() {
-            let Some((time_constant, name, input)) = filter(&equation.kind) else {
-                return Err(wrong(
-                    "this equation of a shape is not a filter".to_owned(),
-                    equation.span,
-                    "a shape can only filter one of its values",
-                    "write `tau*der(late) = v - late;`".to_owned(),
-                ));
-            };
-            let states = draft.shape.states.iter();
-            let Some(number) = states.clone().position(|state| state.name == name) else {
-                let known: Vec<&str> = states.map(|state| state.name.as_str()).collect();
-                let message = format!("there is no `{name}` in this shape that is filtered");
-                let diagnostic = Diagnostic::error(Code::UnknownName, message);
-                let diagnostic = diagnostic.label(equation.span, "not known");
-                let help = format!("known here: {}", crate::model::listed(&known));
-                return Err(refused(diagnostic.help(help)));
-            };
-            let scope = draft.scope();
-            let [first, second] = [time_constant, input].map(|value| self.lower(value, &scope));
-            let state = draft.names.iter().find(|(known, _)| *known == name);
-            if let Some((_, state)) = state {
-                self.agree(
-                    state,
-                    &second,
-                    "the filter and its input are",
-                    super::READ_IN,
-                );
-            }
-            let time = crate::dimension::Dim::known(Dimension::TIME);
-            let time = self.typed(first.id, time, first.span);
-            self.agree(&time, &first, "a time constant is", super::READ_IN);
-            let time_constant = self.text_in_shape(draft, time_constant, first.id)?;
-            let input = self.text_in_shape(draft, input, second.id)?;
-            let state = &mut draft.shape.states[number];
-            (state.time_constant, state.input) = (time_constant, input);
-            read[number] = true;
+/// Reads the equations of a shape, one for each of its states.
+pub(super) fn filters<'a>(model: &mut Model<'a, '_>, draft: &mut Draft<'a>) -> Result<(), Refusal> {
+    let mut read = vec![false; draft.shape.states.len()];
+    for equation in draft.equations.clone() {
+        let Some((time_constant, name, input)) = filter(&equation.kind) else {
+            return Err(wrong(
+                "this equation of a shape is not a filter".to_owned(),
+                equation.span,
+                "a shape can only filter one of its values",
+                "write `tau*der(late) = v - late;`".to_owned(),
+            ));
+        };
+        let states = draft.shape.states.iter();
+        let Some(number) = states.clone().position(|state| state.name == name) else {
+            let known: Vec<&str> = states.map(|state| state.name.as_str()).collect();
+            let message = format!("there is no `{name}` in this shape that is filtered");
+            let diagnostic = Diagnostic::error(Code::UnknownName, message);
+            let diagnostic = diagnostic.label(equation.span, "not known");
+            let help = format!("known here: {}", crate::model::listed(&known));
+            return Err(refused(diagnostic.help(help)));
+        };
+        let scope = draft.scope();
+        let [first, second] = [time_constant, input].map(|value| model.lower(value, &scope));
+        let state = draft.names.iter().find(|(known, _)| *known == name);
+        if let Some((_, state)) = state {
+            model.agree(
+                state,
+                &second,
+                "the filter and its input are",
+                super::READ_IN,
+            );
         }
-        let mut states = draft.shape.states.iter().zip(read);
-        match states.find(|(_, read)| !read) {
-            None => Ok(()),
-            Some((state, _)) => Err(wrong(
-                format!("`{}` of a shape has no value", state.name),
-                draft.class.name.span,
-                "declared without one",
-                format!(
-                    "write `{0} = …`, or its filter `tau*der({0}) = … - {0};`",
-                    state.name
-                ),
-            )),
-        }
+        let time = crate::dimension::Dim::known(Dimension::TIME);
+        let time = model.typed(first.id, time, first.span);
+        model.agree(&time, &first, "a time constant is", super::READ_IN);
+        let time_constant = text_in_shape(model, draft, time_constant, first.id)?;
+        let input = text_in_shape(model, draft, input, second.id)?;
+        let state = &mut draft.shape.states[number];
+        (state.time_constant, state.input) = (time_constant, input);
+        read[number] = true;
+    }
+    let mut states = draft.shape.states.iter().zip(read);
+    match states.find(|(_, read)| !read) {
+        None => Ok(()),
+        Some((state, _)) => Err(wrong(
+            format!("`{}` of a shape has no value", state.name),
+            draft.class.name.span,
+            "declared without one",
+            format!(
+                "write `{0} = …`, or its filter `tau*der({0}) = … - {0};`",
+                state.name
+            ),
+        )),
     }
 }
 

@@ -3,6 +3,7 @@
 
 use super::Draft;
 use crate::law_roles::{Refusal, wrong};
+use crate::law_sites::full_name;
 use crate::model::Model;
 use hyde_ir::{ExprId, LawInput, LawPiece, LawText};
 use hyde_syntax::ast::{Binary, Expr, ExprKind, Name, Part, Reference};
@@ -10,75 +11,73 @@ use hyde_syntax::ast::{Binary, Expr, ExprKind, Name, Part, Reference};
 /// Stands for an input in a text, with its number and a `_` behind.
 const OPEN: &str = "input_of_shape_";
 
-impl<'a> Model<'a, '_> {
-    /// The text of an expression of a shape.
-    pub(super) fn text_in_shape(
-        &self,
-        draft: &Draft<'a>,
-        expr: &Expr,
-        value: ExprId,
-    ) -> Result<LawText, Refusal> {
-        let mut open = expr.clone();
-        self.open(draft, &mut open);
-        let text = hyde_syntax::format_expression(&open);
-        let mut parts = text.split(OPEN);
-        let mut pieces: Vec<LawPiece> = Vec::new();
-        let letters = |text: &str| (!text.is_empty()).then(|| LawPiece::Letters(text.to_owned()));
-        pieces.extend(parts.next().and_then(letters));
-        for part in parts {
-            let (number, rest) = part.split_once('_').unwrap_or((part, ""));
-            let number = number.parse().unwrap_or(0);
-            if let LawInput::Least(_) | LawInput::Greatest(_) = draft.shape.inputs[number] {
-                return Err(wrong(
-                    "a shape depends on what records show".to_owned(),
-                    expr.span,
-                    "a law holds for other records too",
-                    "use a constant of the shape, or a round value: `v1`, `x1`, `t1`".to_owned(),
-                ));
-            }
-            pieces.push(LawPiece::Input(number));
-            pieces.extend(letters(rest));
+/// The text of an expression of a shape.
+pub(super) fn text_in_shape<'a>(
+    model: &Model<'a, '_>,
+    draft: &Draft<'a>,
+    expr: &Expr,
+    value: ExprId,
+) -> Result<LawText, Refusal> {
+    let mut open = expr.clone();
+    open_calls(model, draft, &mut open);
+    let text = hyde_syntax::format_expression(&open);
+    let mut parts = text.split(OPEN);
+    let mut pieces: Vec<LawPiece> = Vec::new();
+    let letters = |text: &str| (!text.is_empty()).then(|| LawPiece::Letters(text.to_owned()));
+    pieces.extend(parts.next().and_then(letters));
+    for part in parts {
+        let (number, rest) = part.split_once('_').unwrap_or((part, ""));
+        let number = number.parse().unwrap_or(0);
+        if let LawInput::Least(_) | LawInput::Greatest(_) = draft.shape.inputs[number] {
+            return Err(wrong(
+                "a shape depends on what records show".to_owned(),
+                expr.span,
+                "a law holds for other records too",
+                "use a constant of the shape, or a round value: `v1`, `x1`, `t1`".to_owned(),
+            ));
         }
-        let product = |op: &Binary| matches!(op, Binary::Mul | Binary::Div | Binary::Pow);
-        Ok(LawText {
-            value,
-            pieces,
-            is_sum: match &open.kind {
-                ExprKind::Binary(op, ..) => !product(op),
-                ExprKind::If(..) | ExprKind::Unary(..) => true,
-                ExprKind::Number(..)
-                | ExprKind::String(_)
-                | ExprKind::Boolean(_)
-                | ExprKind::Reference(_)
-                | ExprKind::Call(..)
-                | ExprKind::Array(..)
-                | ExprKind::Comprehension(_)
-                | ExprKind::Slice(..) => false,
-            },
-        })
+        pieces.push(LawPiece::Input(number));
+        pieces.extend(letters(rest));
     }
+    let product = |op: &Binary| matches!(op, Binary::Mul | Binary::Div | Binary::Pow);
+    Ok(LawText {
+        value,
+        pieces,
+        is_sum: match &open.kind {
+            ExprKind::Binary(op, ..) => !product(op),
+            ExprKind::If(..) | ExprKind::Unary(..) => true,
+            ExprKind::Number(..)
+            | ExprKind::String(_)
+            | ExprKind::Boolean(_)
+            | ExprKind::Reference(_)
+            | ExprKind::Call(..)
+            | ExprKind::Array(..)
+            | ExprKind::Comprehension(_)
+            | ExprKind::Slice(..) => false,
+        },
+    })
+}
 
-    /// Replaces the names in an expression.
-    fn open(&self, draft: &Draft<'a>, expr: &mut Expr) {
-        if let ExprKind::Reference(name) = &mut expr.kind {
-            let word = name.as_word().unwrap_or_default();
-            if let Some((_, value)) = draft.locals.iter().find(|(own, _)| *own == word) {
-                let mut value = (*value).clone();
-                self.open(draft, &mut value);
-                *expr = value;
-            } else if let Some(number) = draft.input(word) {
-                *name = word_at(format!("{OPEN}{number}_"), name);
-            }
-            return;
+/// Replaces the names in an expression.
+fn open_calls<'a>(model: &Model<'a, '_>, draft: &Draft<'a>, expr: &mut Expr) {
+    if let ExprKind::Reference(name) = &mut expr.kind {
+        let word = name.as_word().unwrap_or_default();
+        if let Some((_, value)) = draft.locals.iter().find(|(own, _)| *own == word) {
+            let mut value = (*value).clone();
+            open_calls(model, draft, &mut value);
+            *expr = value;
+        } else if let Some(number) = draft.input(word) {
+            *name = word_at(format!("{OPEN}{number}_"), name);
         }
-        if let ExprKind::Call(function, _) = &mut expr.kind
-            && let Some((file, class)) = self.function_named(function)
-        {
-            *function = word_at(self.full_name(file, class), function);
-        }
-        for child in expr.children_mut() {
-            self.open(draft, child);
-        }
+        return;
+    }
+    if let ExprKind::Call(function, _) = &mut expr.kind
+        && let Some((file, class)) = model.function_named(function)
+    {
+        *function = word_at(full_name(model.input, file, class), function);
+    }
+    for child in expr.children_mut() {
+        open_calls(model, draft, child);
     }
 }
 

@@ -2,8 +2,8 @@
 
 use super::mesh::shifted;
 use crate::instance::{DomainId, Field, FieldPlace, Scope, Typed};
-use crate::lower::Resolved;
 use crate::model::Model;
+use crate::model::lower::Resolved;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{Expr as Ir, ExprId, Index, VarId};
 use hyde_syntax::ast::{Expr, ExprKind, Reference};
@@ -265,13 +265,13 @@ impl<'a> Model<'a, '_> {
         let mut found = None;
         for (position, part) in name.parts.iter().enumerate() {
             let word = part.name.text.as_str();
-            let mut member = self.instances[at].members.get(word);
+            let mut member = self.tree[at].members.get(word);
             while position == 0 && member.is_none() {
-                let Some(outer) = self.instances[at].outer else {
+                let Some(outer) = self.tree[at].outer else {
                     break;
                 };
                 at = outer;
-                member = self.instances[at].members.get(word);
+                member = self.tree[at].members.get(word);
             }
             match member {
                 Some(crate::instance::Member::Instance(inner)) => at = *inner,

@@ -4,6 +4,7 @@ use super::resolve::Resolved;
 use crate::dimension::Dim;
 use crate::instance::{Counter, InstanceId, Member, Scope, Setting, Typed};
 use crate::model::Model;
+use crate::zero::Zero;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{Expr as Ir, Id as _, Index, VarId, VariableKind};
 use hyde_syntax::ast::{ClassKind, Reference};
@@ -26,7 +27,7 @@ impl<'a> Model<'a, '_> {
                 let id = self.flat.exprs.add(Ir::Param(param, index));
                 Typed {
                     truth,
-                    zero: self.zero_of_name(id),
+                    zero: Zero::of_name(&self.flat, &self.variables, id),
                     ..self.typed(id, dim, span)
                 }
             }
@@ -66,7 +67,7 @@ impl<'a> Model<'a, '_> {
 
     /// A component or a connector stands where a value is needed.
     fn not_a_value(&mut self, instance: InstanceId, reference: &Reference, span: Span) {
-        let part = &self.instances[instance];
+        let part = &self.tree[instance];
         let name = &part.class.name.text;
         let path = reference.dotted();
         let connector = part.class.kind == ClassKind::Connector;
@@ -132,7 +133,7 @@ impl<'a> Model<'a, '_> {
         let truth = self.flat.variables[var].boolean;
         Typed {
             truth,
-            zero: self.zero_of_name(id),
+            zero: Zero::of_name(&self.flat, &self.variables, id),
             ..self.typed(id, self.dim(var), span)
         }
     }

@@ -2,6 +2,11 @@
 
 mod elements;
 
+use crate::allowed::check_whole;
+use crate::equation::make_traces_of_equations;
+use crate::event_clock::{event_clock, is_event_clock};
+use crate::wrap::wrapped;
+use crate::zero;
 use elements::Elements;
 
 use crate::dimension::Dim;
@@ -23,13 +28,13 @@ impl<'a> Model<'a, '_> {
         for param in self.flat.parameters.ids() {
             self.lower_parameter(param);
         }
-        for instance in 0..self.instances.len() {
+        for instance in self.tree.ids() {
             self.lower_clocks(instance);
         }
         for var in self.flat.variables.ids() {
             self.lower_start(var);
         }
-        self.make_traces_of_equations();
+        make_traces_of_equations(self);
         for var in self.flat.variables.ids().collect::<Vec<_>>() {
             self.lower_binding(var);
         }
@@ -137,7 +142,7 @@ impl<'a> Model<'a, '_> {
             Code::NoValue,
             format!("the parameter `{name}` has no value"),
         );
-        let instance = &self.instances[self.parameters[param.index()].of];
+        let instance = &self.tree[self.parameters[param.index()].of];
         match instance.parent {
             Some(_) => diagnostic
                 .label(instance.span, format!("gives no `{word}`"))
@@ -196,22 +201,21 @@ impl<'a> Model<'a, '_> {
     }
 
     fn lower_clocks(&mut self, instance: InstanceId) {
-        for (_, element) in self.instances[instance].elements.clone() {
+        for (_, element) in self.tree[instance].elements.clone() {
             let Element::Clocked(clocked) = element else {
                 continue;
             };
-            let Some(Member::Instance(part)) = self.instances[instance]
-                .members
-                .get(clocked.name.text.as_str())
+            let Some(Member::Instance(part)) =
+                self.tree[instance].members.get(clocked.name.text.as_str())
             else {
                 continue;
             };
             let part = *part;
-            let Some(clock) = self.instances[part].clock else {
+            let Some(clock) = self.clock_of(part) else {
                 continue;
             };
-            if self.is_event_clock(clocked) {
-                self.event_clock(clocked, (clock, part), instance);
+            if is_event_clock(clocked) {
+                event_clock(self, clocked, (clock, part), instance);
                 continue;
             }
             let scope = Scope::new(instance, Setting::Parameter);
@@ -314,7 +318,7 @@ impl<'a> Model<'a, '_> {
                 range: Range::SCALAR,
                 lhs: self.flat.exprs.add(Ir::Var(var, Index::fixed(at))),
                 rhs: self.flat.exprs.at_counter(start, at),
-                origin: self.origin(instance, span),
+                origin: self.tree.origin(instance, span),
             };
             self.flat.initial_equations.push(equation);
         }
@@ -358,7 +362,7 @@ impl<'a> Model<'a, '_> {
             role: Role::Plain,
             range: None,
             source: None,
-            origin: self.origin(instance, span),
+            origin: self.tree.origin(instance, span),
         });
         let start = self.flat.exprs.add(Ir::Param(param, Index::SCALAR));
         self.flat.variables[var].start = vec![start];
@@ -386,6 +390,7 @@ impl<'a> Model<'a, '_> {
         }
         let len = self.flat.variables[var].len;
         let origin = self
+            .tree
             .origin(self.notes(var).instance, binding.span)
             .made_by(MadeBy::Binding);
         let list: Vec<(Range, Index, Typed)> = match (self.elements(&binding, len, setting), len) {
@@ -402,7 +407,7 @@ impl<'a> Model<'a, '_> {
                 vec![(range, index, value)]
             }
             (Elements::All(value), None) => {
-                let value = self.wrapped(var, value, setting);
+                let value = wrapped(self, var, value, setting);
                 vec![(Range::SCALAR, Index::SCALAR, value)]
             }
         };
@@ -413,8 +418,8 @@ impl<'a> Model<'a, '_> {
                 ..self.typed(lhs, self.dim(var), binding.span)
             };
             self.same_kind(&declared, &value);
-            self.check_whole(&declared, &value);
-            self.shown_as_difference(&declared, &value);
+            check_whole(self, &declared, &value);
+            zero::show_difference(&mut self.flat, &mut self.variables, (&declared, &value));
             self.agree(
                 &declared,
                 &value,

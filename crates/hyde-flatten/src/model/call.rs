@@ -12,6 +12,7 @@ mod reduction;
 mod sum;
 mod table;
 
+pub(crate) use clock::clocks_of;
 pub(crate) use function::Calls;
 
 use crate::dimension::Dim;
@@ -213,7 +214,9 @@ impl<'a> Model<'a, '_> {
                     dim: Dim::known(Dimension::ANGLE.composed()),
                     ..a.clone()
                 };
-                self.sine_of_turns(name, &a);
+                if let Some(doubt) = self.sides().sine_of_turns(name, &a) {
+                    self.report(doubt);
+                }
                 self.agree(
                     &angle,
                     &a,
@@ -309,7 +312,7 @@ impl<'a> Model<'a, '_> {
         if self.input.records.contains_key(name) {
             return Some(format!("a column of the record is written `{name}.column`"));
         }
-        match self.instances[scope.instance].members.get(name)? {
+        match self.tree[scope.instance].members.get(name)? {
             Member::Variable(_) | Member::Parameter(_) | Member::Instances(_) => Some(format!(
                 "`{name}` is not a function: an element of an array is written `{name}[1]`, a product `{name}*(…)`"
             )),

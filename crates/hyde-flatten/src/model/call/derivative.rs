@@ -7,8 +7,9 @@
 
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
-use crate::lower::Resolved;
 use crate::model::Model;
+use crate::model::lower::Resolved;
+use crate::wrap::wrapped;
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{Expr as Ir, ExprId, Id as _, Index, Memo, VarId, VariableKind};
 use hyde_syntax::ast::{Expr, ExprKind};
@@ -39,7 +40,7 @@ impl<'a> Model<'a, '_> {
     /// In a clocked part, `der(x)` is the difference to the last tick over the time since then: backward Euler.
     fn difference(&mut self, a: &'a Expr, scope: &Scope<'a>, span: Span) -> Typed {
         let inner = self.value(a, scope);
-        let clock = self.instances[scope.instance].clock;
+        let clock = self.clock_of(scope.instance);
         if let (Some(clock), Ir::Var(var, index)) = (clock, self.flat.exprs[inner.id])
             && self.flat.variables[var].kind == VariableKind::Clocked(clock)
         {
@@ -174,7 +175,7 @@ impl<'a> Model<'a, '_> {
                 continue;
             }
             let value = self.bound_value(&binding, Setting::Equation);
-            let value = self.wrapped(var, value, Setting::Equation);
+            let value = wrapped(self, var, value, Setting::Equation);
             let value = self.expand_bindings(value.id, keep, depth + 1);
             memo.insert(inner, value);
         }

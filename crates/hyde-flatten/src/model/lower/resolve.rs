@@ -1,6 +1,7 @@
 //! Names: what they stand for in scope.
 
 use super::subscript::{mentions_counter, without_elements};
+use crate::experiment::record_column;
 use crate::instance::{
     Counter, Elementwise, FieldPlace, InstanceId, Member, Scope, Setting, Typed,
 };
@@ -92,14 +93,14 @@ impl<'a> Model<'a, '_> {
                 .iter()
                 .any(|record| record == word)
         {
-            return self.record_column(reference, scope);
+            return record_column(self, reference, scope);
         }
         let mut at = scope.instance;
         let mut member = loop {
-            if let Some(member) = self.instances[at].members.get(word) {
+            if let Some(member) = self.tree[at].members.get(word) {
                 break member.clone();
             }
-            match (self.instances[at].outer, word) {
+            match (self.tree[at].outer, word) {
                 (Some(outer), _) => at = outer,
                 (None, "time") => return Some(Resolved::Time),
                 (None, "pi") => return Some(Resolved::Pi),
@@ -168,7 +169,7 @@ impl<'a> Model<'a, '_> {
                 return Some(Resolved::Instance(instance));
             };
             let word = next.name.text.as_str();
-            let Some(inner) = self.instances[instance].members.get(word) else {
+            let Some(inner) = self.tree[instance].members.get(word) else {
                 self.unknown_name(scope, instance, word, reference);
                 return None;
             };

@@ -5,6 +5,7 @@
 
 use crate::dimension::Dim;
 use crate::instance::{FieldPlace, InstanceId, Scope, Setting, Typed};
+use crate::instantiate::{quantity, too_deep};
 use crate::model::Model;
 use crate::names::FileIndex;
 use crate::turns::Turns;
@@ -118,7 +119,8 @@ impl<'a> Model<'a, '_> {
             return false;
         }
         if within.len() == MAX_DEPTH {
-            self.too_deep(
+            too_deep(
+                self.diagnostics,
                 format!("more than {MAX_DEPTH} functions call each other in a chain"),
                 name,
                 "write the expression where it is called, in fewer functions",
@@ -127,7 +129,8 @@ impl<'a> Model<'a, '_> {
         }
         if self.calls.count == MAX_CALLS + 1 {
             let outermost = within.first().map_or("", |class| &class.name.text);
-            self.too_deep(
+            too_deep(
+                self.diagnostics,
                 format!("a call of `{outermost}` leads to more than {MAX_CALLS} others"),
                 name,
                 "give a call that a function uses twice a name: `Real part = f(x);`",
@@ -217,7 +220,7 @@ impl<'a> Model<'a, '_> {
                 }
             };
             if !value.truth {
-                let (dim, _) = self.quantity(kind, declarator.binding.as_ref());
+                let (dim, _) = quantity(self, kind, declarator.binding.as_ref());
                 let declared = self.typed(value.id, dim, declarator.name.span);
                 if has(Prefix::Input) {
                     let what = "the argument and its input are";

@@ -48,7 +48,7 @@ impl<'a> Model<'a, '_> {
             return self.flat.exprs.var(known.var);
         }
         let text = self.input.sources.text(span).to_owned();
-        let path = &self.instances[scope.instance].path;
+        let path = &self.tree[scope.instance].path;
         let var = self.add_variable(
             scope.instance,
             path.member(&format!("edge({text})")),
@@ -58,7 +58,7 @@ impl<'a> Model<'a, '_> {
             MadeBy::Expression,
         );
         self.flat.variables[var].boolean = true;
-        let origin = self.origin(scope.instance, span);
+        let origin = self.tree.origin(scope.instance, span);
         self.flat.edges.push(Edge {
             condition,
             var,

@@ -1,8 +1,8 @@
 //! `min` and `max` of two values, and `clamp`: in a continuous equation the change from one to the other is an event.
 
 use crate::instance::{Scope, Setting, Typed};
-use crate::lower::sum_dim;
 use crate::model::Model;
+use crate::model::lower::sum_dim;
 use hyde_diag::Span;
 use hyde_ir::{BinaryOp, ExprId};
 use hyde_syntax::ast::Expr;

@@ -1,13 +1,13 @@
 //! `pre`, `sample`, `hold`, `held` and `interval`: values across the borders of clocked parts.
 
-use crate::call::delay::moves_with_counter;
 use crate::dimension::Dim;
 use crate::instance::{Counter, Elementwise, Scope, Setting, Typed};
 use crate::model::Model;
+use crate::model::call::delay::moves_with_counter;
 use crate::turns::Turns;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::flat::{ClockedEquation, Equation};
-use hyde_ir::{ClockId, Expr as Ir, ExprId, Index, Range, VarId, VariableKind};
+use hyde_ir::{ClockId, Expr as Ir, ExprId, FlatModel, Index, Range, VarId, VariableKind};
 use hyde_syntax::ast::{Expr, ExprKind};
 use hyde_units::Dimension;
 
@@ -30,7 +30,7 @@ impl<'a> Model<'a, '_> {
         };
         let allowed = match (self.flat.variables[var].kind, scope.setting) {
             (VariableKind::Clocked(clock), Setting::Clocked) => {
-                Some(clock) == self.instances[scope.instance].clock
+                Some(clock) == self.clock_of(scope.instance)
             }
             (VariableKind::Discrete, Setting::Action | Setting::Condition | Setting::Equation) => {
                 true
@@ -66,7 +66,7 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         }
         let inner = self.lower(a, &scope.with(Setting::Report));
-        if let Some(clock) = self.clocks_of(inner.id).first().copied() {
+        if let Some(clock) = clocks_of(&self.flat, inner.id).first().copied() {
             let name = self.flat.clocks[clock].name.clone();
             self.report(
                 Diagnostic::error(
@@ -104,7 +104,7 @@ impl<'a> Model<'a, '_> {
             return self.poison(span);
         }
         let inner = self.value(a, &scope.with(Setting::Clocked));
-        let clocks = self.clocks_of(inner.id);
+        let clocks = clocks_of(&self.flat, inner.id);
         let [clock] = clocks.as_slice() else {
             self.report(
                 Diagnostic::error(
@@ -183,7 +183,7 @@ impl<'a> Model<'a, '_> {
             MadeBy::Source,
         );
         let lhs = self.flat.exprs.var(var);
-        let origin = self.origin(scope.instance, span);
+        let origin = self.tree.origin(scope.instance, span);
         let equation = Equation {
             range: Range::SCALAR,
             lhs,
@@ -194,20 +194,6 @@ impl<'a> Model<'a, '_> {
             .clocked_equations
             .push(ClockedEquation { clock, equation });
         var
-    }
-
-    /// The clocks of the variables in an expression, each once.
-    pub(crate) fn clocks_of(&self, id: ExprId) -> Vec<ClockId> {
-        let mut clocks = Vec::new();
-        for id in self.flat.exprs.below(&[id]) {
-            if let Ir::Var(var, _) | Ir::Pre(var, _) = self.flat.exprs[id]
-                && let VariableKind::Clocked(clock) = self.flat.variables[var].kind
-                && !clocks.contains(&clock)
-            {
-                clocks.push(clock);
-            }
-        }
-        clocks
     }
 
     /// `held(file.r)`: a record's column held between rows, where it would be read linearly.
@@ -241,7 +227,7 @@ impl<'a> Model<'a, '_> {
         let Some([]) = self.exactly("interval", args, span) else {
             return self.poison(span);
         };
-        match self.instances[scope.instance].clock {
+        match self.clock_of(scope.instance) {
             Some(clock) if matches!(scope.setting, Setting::Clocked | Setting::Condition) => {
                 let id = self.flat.clocks[clock].period;
                 self.typed(id, Dim::known(Dimension::TIME), span)
@@ -255,4 +241,18 @@ impl<'a> Model<'a, '_> {
             }
         }
     }
+}
+
+/// The clocks of the variables in an expression, each once.
+pub(crate) fn clocks_of(flat: &FlatModel, id: ExprId) -> Vec<ClockId> {
+    let mut clocks = Vec::new();
+    for id in flat.exprs.below(&[id]) {
+        if let Ir::Var(var, _) | Ir::Pre(var, _) = flat.exprs[id]
+            && let VariableKind::Clocked(clock) = flat.variables[var].kind
+            && !clocks.contains(&clock)
+        {
+            clocks.push(clock);
+        }
+    }
+    clocks
 }

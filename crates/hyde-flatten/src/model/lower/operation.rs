@@ -4,7 +4,8 @@ use super::sum_dim;
 use crate::dimension::Dim;
 use crate::instance::{Scope, Setting, Typed};
 use crate::model::Model;
-use crate::turns::Turns;
+use crate::turns::{Sides, Turns};
+use crate::zero::{self, Zero};
 use hyde_diag::{Code, Diagnostic, Span};
 use hyde_ir::{BinaryOp, Expr as Ir, UnaryOp, VariableKind};
 use hyde_syntax::ast::{Binary, Expr, Unary};
@@ -84,6 +85,10 @@ impl<'a> Model<'a, '_> {
                     (BinaryOp::Sub, "`-` subtracts")
                 };
                 let agree = self.agree(&a, &b, what, scope.instance);
+                let doubt = zero::added_as_difference(ir, (&a, &b), self.input.sources, &self.flat);
+                if let Some(doubt) = doubt {
+                    self.report(doubt);
+                }
                 let id = self.flat.exprs.binary(ir, a.id, b.id);
                 // A sum that is wrong already is not held against what it is compared with.
                 let dim = match agree {
@@ -98,14 +103,15 @@ impl<'a> Model<'a, '_> {
                 Typed {
                     bare: a.bare && b.bare,
                     turns,
-                    zero: self.zero_of_sum(ir, &a, &b),
+                    zero: Zero::of_sum(ir, a.zero, b.zero),
                     ..self.typed(id, dim, span)
                 }
             }
             Binary::Mul | Binary::Div => {
                 let (a, b) = (self.value(left, scope), self.value(right, scope));
                 let divides = op == Binary::Div;
-                let (dim, turns) = self.product(&a, &b, divides);
+                let sides = Sides::new(self.input.sources, &self.flat);
+                let (dim, turns) = sides.product((&a, &b), divides, self.diagnostics);
                 let ir = if divides {
                     BinaryOp::Div
                 } else {

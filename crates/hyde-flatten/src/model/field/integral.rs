@@ -105,7 +105,7 @@ impl<'a> Model<'a, '_> {
         let ExprKind::Reference(name) = &expr.kind else {
             return None;
         };
-        match self.instances[instance].members.get(name.as_word()?) {
+        match self.tree[instance].members.get(name.as_word()?) {
             Some(crate::instance::Member::Domain(domain)) => Some(*domain),
             Some(_) | None => None,
         }

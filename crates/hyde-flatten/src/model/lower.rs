@@ -11,6 +11,7 @@ pub(crate) use resolve::Resolved;
 
 use crate::dimension::Dim;
 use crate::instance::{Scope, Typed};
+use crate::meaning;
 use crate::model::Model;
 use crate::turns::Turns;
 use crate::zero::Zero;
@@ -22,7 +23,7 @@ impl<'a> Model<'a, '_> {
     /// Lowers an expression. What is wrong with it is reported, and something harmless takes its place.
     pub(crate) fn lower(&mut self, expr: &'a Expr, scope: &Scope<'a>) -> Typed {
         let typed = self.lower_kind(expr, scope);
-        self.note_meaning(expr.span, &typed);
+        meaning::note(&mut self.lowered, self.input, expr.span, &typed);
         typed
     }
 

@@ -139,7 +139,7 @@ impl<'a> Model<'a, '_> {
             .iter()
             .any(|known| known.condition == condition)
         {
-            let path = self.instances[scope.instance].path.clone();
+            let path = self.tree[scope.instance].path.clone();
             let place = if let ExprKind::Reference(name) = &at.kind {
                 format!("`{}`", path.member(&name.dotted()))
             } else {
@@ -147,7 +147,7 @@ impl<'a> Model<'a, '_> {
             };
             let domain = path.member(self.domains[domain].name);
             let message = format!("{place} has left the domain `{domain}`");
-            let origin = self.origin(scope.instance, at.span);
+            let origin = self.tree.origin(scope.instance, at.span);
             self.flat.asserts.push(Assert {
                 condition,
                 message,
@@ -238,7 +238,7 @@ impl<'a> Model<'a, '_> {
         value: impl FnOnce(&mut ExprArena, ExprId) -> ExprId,
     ) -> VarId {
         let (of, bar) = (self.domains[domain].instance, self.domains[domain].name);
-        let name = self.instances[of].path.member(&format!("{bar}.{name}"));
+        let name = self.tree[of].path.member(&format!("{bar}.{name}"));
         let kind = VariableKind::Continuous;
         let array = self.add_variable(of, name, kind, Dim::NUMBER, span, MadeBy::Expression);
         let nodes = self.cells(domain) + 3;
@@ -250,7 +250,7 @@ impl<'a> Model<'a, '_> {
         let (counter, one) = (arena.add(Ir::Counter), arena.constant(1.0));
         let node = arena.minus(counter, one);
         let rhs = value(arena, node);
-        let origin = self.origin(of, span).made_by(MadeBy::Expression);
+        let origin = self.tree.origin(of, span).made_by(MadeBy::Expression);
         self.flat.equations.push(Equation {
             range: Range {
                 first: 0,

@@ -46,8 +46,8 @@ impl<'a> Model<'a, '_> {
         let mut part = parts.next()?;
         let mut member = loop {
             match (
-                self.instances[at].members.get(part.name.text.as_str()),
-                self.instances[at].outer,
+                self.tree[at].members.get(part.name.text.as_str()),
+                self.tree[at].outer,
             ) {
                 (Some(member), _) => break member.clone(),
                 (None, Some(outer)) => at = outer,
@@ -100,7 +100,7 @@ impl<'a> Model<'a, '_> {
                 return components;
             };
             part = next;
-            let inner = self.instances[at].members.get(part.name.text.as_str());
+            let inner = self.tree[at].members.get(part.name.text.as_str());
             member = inner?.clone();
         }
     }

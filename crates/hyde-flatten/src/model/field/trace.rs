@@ -17,7 +17,7 @@ impl<'a> Model<'a, '_> {
         scope: &Scope<'a>,
         span: Span,
     ) {
-        let member = self.instances[scope.instance]
+        let member = self.tree[scope.instance]
             .members
             .get(place.domain.text.as_str());
         let Some(crate::instance::Member::Domain(domain)) = member else {

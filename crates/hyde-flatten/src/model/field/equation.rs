@@ -3,6 +3,7 @@
 use super::mesh::{collapsed, counted_index, pieces, shifted};
 use super::point::Point;
 use crate::instance::{DomainId, Field, FieldPlace, Scope, Typed};
+use crate::instantiate::domain_named;
 use crate::model::Model;
 use hyde_diag::{Code, Diagnostic, MadeBy, Span};
 use hyde_ir::flat::Equation;
@@ -21,6 +22,7 @@ impl<'a> Model<'a, '_> {
     ) {
         let n = self.cells(field.domain);
         let origin = self
+            .tree
             .origin(scope.instance, span)
             .made_by(MadeBy::Discretization);
         let places = if field.flux {
@@ -68,7 +70,7 @@ impl<'a> Model<'a, '_> {
         span: Span,
     ) {
         let name = place.domain.text.as_str();
-        let Some(domain) = self.domain_named(scope.instance, &place.domain) else {
+        let Some(domain) = domain_named(self, scope.instance, &place.domain) else {
             return;
         };
         match place.end.as_ref().map(|end| (end.text.as_str(), end.span)) {
@@ -104,7 +106,7 @@ impl<'a> Model<'a, '_> {
             self.fix_counter(left.id, range),
             self.fix_counter(right.id, range),
         );
-        let origin = self.origin(scope.instance, span);
+        let origin = self.tree.origin(scope.instance, span);
         self.flat.equations.push(Equation {
             range: Range::SCALAR,
             lhs,
@@ -141,6 +143,7 @@ impl<'a> Model<'a, '_> {
             .flat_map(|(point, _)| point.single_nodes(n))
             .collect();
         let origin = self
+            .tree
             .origin(scope.instance, span)
             .made_by(MadeBy::Discretization);
         let averaged = self.domains[domain].averaged && !fluxes.is_empty();
@@ -152,7 +155,7 @@ impl<'a> Model<'a, '_> {
                 let (left, right) = (self.value(lhs, &at(0)), self.value(rhs, &at(0)));
                 self.agree(&left, &right, "`=` equates", scope.instance);
                 let side = Typed {
-                    dim: crate::lower::sum_dim(&left.dim, &right.dim),
+                    dim: crate::model::lower::sum_dim(&left.dim, &right.dim),
                     ..left
                 };
                 self.agree_loads(&side, &loads, domain, scope);

@@ -147,9 +147,7 @@ impl<'a> Model<'a, '_> {
     /// A variable for an expression that is delayed: its relations are events, and its derivatives are known.
     pub(crate) fn named(&mut self, u: &Typed, scope: &Scope<'_>) -> VarId {
         let text = self.input.sources.text(u.span).to_owned();
-        let name = self.instances[scope.instance]
-            .path
-            .member(&format!("({text})"));
+        let name = self.tree[scope.instance].path.member(&format!("({text})"));
         let var = self.add_variable(
             scope.instance,
             name,
@@ -161,6 +159,7 @@ impl<'a> Model<'a, '_> {
         self.flat.variables[var].boolean = u.truth;
         let lhs = self.flat.exprs.var(var);
         let origin = self
+            .tree
             .origin(scope.instance, u.span)
             .made_by(MadeBy::Expression);
         self.flat.equations.push(Equation {
@@ -203,7 +202,7 @@ impl<'a> Model<'a, '_> {
         self.flat.variables[var].boolean = u.truth;
         let last = i32::try_from(len.unwrap_or(1)).unwrap_or(i32::MAX) - 1;
         let value = self.flat.exprs.add(Ir::Var(source, of));
-        let origin = self.origin(scope.instance, span);
+        let origin = self.tree.origin(scope.instance, span);
         self.flat.delays.push(Delay {
             range: Range { first: 0, last },
             value,
