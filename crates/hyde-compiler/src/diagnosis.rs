@@ -204,22 +204,39 @@ fn pattern(
         true => format!("no package `{text}` has effects"),
         false => format!("no effect is called `{text}`"),
     };
-    let mut packages: Vec<&str> = known
-        .iter()
-        .filter_map(|name| Some(name.rsplit_once('.')?.0))
-        .collect();
-    packages.sort_unstable();
-    packages.dedup();
+    let near = (!everything).then(|| meant(&text, &known)).flatten();
+    let help = match near {
+        Some(name) => format!("did you mean `{name}`?"),
+        None => format!(
+            "packages with effects are `{}`",
+            packages(&known).join("`, `")
+        ),
+    };
     diagnostics.push(
         Diagnostic::error(Code::BadDiagnosis, what)
             .label(path.span, "not known")
-            .help(format!(
-                "packages with effects are `{}`",
-                packages.join("`, `")
-            ))
+            .help(help)
             .note("`hyde effects FILE` lists the effects that fit on the model"),
     );
     None
+}
+
+/// The effect that was misspelt, or named without its package or with another one.
+fn meant<'k>(text: &str, known: &'k [String]) -> Option<&'k str> {
+    let word = |name: &'k String| name.rsplit('.').next().unwrap_or(name);
+    let near = hyde_flatten::nearest(text, known.iter().map(word))?;
+    known
+        .iter()
+        .find(|name| word(name) == near)
+        .map(String::as_str)
+}
+
+fn packages(known: &[String]) -> Vec<&str> {
+    let split = known.iter().filter_map(|name| name.rsplit_once('.'));
+    let mut packages: Vec<&str> = split.map(|(package, _)| package).collect();
+    packages.sort_unstable();
+    packages.dedup();
+    packages
 }
 
 /// The one whole number that a setting has.
