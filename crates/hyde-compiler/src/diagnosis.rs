@@ -231,6 +231,7 @@ fn meant<'k>(text: &str, known: &'k [String]) -> Option<&'k str> {
         .map(String::as_str)
 }
 
+/// The packages of effects, each once.
 fn packages(known: &[String]) -> Vec<&str> {
     let split = known.iter().filter_map(|name| name.rsplit_once('.'));
     let mut packages: Vec<&str> = split.map(|(package, _)| package).collect();

@@ -137,8 +137,8 @@ fn far_from_their_type(files: &[File]) -> Vec<Far> {
 
 /// Whether a path is that of a file, or lies in the folder of that name.
 fn is_beside(path: &str, file: &str) -> bool {
-    let folder = file.trim_end_matches("rs").trim_end_matches('.');
-    let rest = path.strip_prefix(folder);
+    let folder = file.strip_suffix(".rs");
+    let rest = folder.and_then(|folder| path.strip_prefix(folder));
     path == file || rest.is_some_and(|rest| rest.starts_with('/'))
 }
 
