@@ -5,7 +5,7 @@
 //! 2. the model is instantiated: a tree of instances with their variables, parameters and parts, every modification
 //!    laid where it belongs (`instantiate`);
 //! 3. bindings, equations, modes, events and clocked parts are lowered to IR in the scope of their instance
-//!    (`equation`, `modes`; the expressions in them by `model`), each expression with its dimension (`dimension`);
+//!    (`equation`, `modes`; in model/: `lower` the expressions, `field` the fields), each with its dimension (`dimension`);
 //! 4. connection sets become equations (`connect`);
 //! 5. the experiment drives the free inputs and names what is measured (`experiment`);
 //! 6. what is known of dimensions is solved for the rest, and parameters are put in order (`finish`).
