@@ -4,6 +4,7 @@
 //! tick, or after the clock's delay with the value of its tick.
 
 use crate::failure::Failure;
+use crate::moment::At;
 use crate::sensitivity::{Sensitivities, Slopes};
 use crate::setup::same_instant;
 use crate::state::State;
@@ -137,32 +138,30 @@ impl Schedule {
     pub(crate) fn run(
         &mut self,
         state: &mut State<'_>,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
+        at: At<'_>,
         delayed: &[f64],
         mut slopes: Option<(&Sensitivities, &mut Slopes)>,
     ) -> Result<Ticked, Box<Failure>> {
         let program = state.program;
         let mut ticked = Ticked::default();
         for &clock in &program.clock_order {
-            if !same_instant(self.clocks[clock].at(), t) {
+            if !same_instant(self.clocks[clock].at(), at.t) {
                 continue;
             }
             if let Some((sensitivities, slopes)) = &mut slopes {
-                sensitivities.tick(state, clock, (t, y, yp), delayed, slopes);
+                sensitivities.tick(state, clock, at, delayed, slopes);
                 ticked.written.extend(program.kernels.tick_targets(clock));
             }
-            state.tick(clock, t, y, yp, delayed);
-            let times = (t, self.clocks[clock].period);
+            state.tick(clock, at, delayed);
+            let times = (at.t, self.clocks[clock].period);
             state.foreign.tick(program, clock, times, &mut state.z)?;
             self.clocks[clock].next += 1;
             ticked.ticks += 1;
             let slopes = slopes.as_ref().map(|(_, slopes)| &**slopes);
-            self.hold(program, state, clock, t, slopes);
+            self.hold(program, state, clock, at.t, slopes);
         }
         for pending in std::mem::take(&mut self.pending) {
-            if pending.t > t && !same_instant(pending.t, t) {
+            if pending.t > at.t && !same_instant(pending.t, at.t) {
                 self.pending.push(pending);
                 continue;
             }

@@ -6,6 +6,7 @@
 //! how large the first step may be.
 
 use crate::failure::{Failure, FailureKind};
+use crate::moment::{At, Moment};
 use crate::singular;
 use crate::state::State;
 use hyde_ida::{LinearMethod, Pattern, Singular, SparseSolver};
@@ -58,16 +59,14 @@ impl Consistent {
     pub(crate) fn solve(
         &mut self,
         state: &mut State<'_>,
-        t: f64,
-        y: &mut [f64],
-        yp: &mut [f64],
+        now: &mut Moment,
         at_start: bool,
     ) -> Result<(), Box<Failure>> {
         if self.solver.is_none() {
             return Ok(());
         }
-        let (start, rates) = (y.to_vec(), yp.to_vec());
-        let Err(failure) = self.newton(state, t, y, yp, at_start) else {
+        let start = now.clone();
+        let Err(failure) = self.newton(state, now, at_start) else {
             return Ok(());
         };
         let singular = matches!(
@@ -77,18 +76,16 @@ impl Consistent {
         if at_start && singular {
             // A product of unknowns that both start at 0, such as resistance and current, says nothing there: look from
             // elsewhere once.
-            y.copy_from_slice(&start);
-            yp.copy_from_slice(&rates);
-            for (index, value) in y.iter_mut().enumerate() {
+            now.clone_from(&start);
+            for (index, value) in now.y.iter_mut().enumerate() {
                 if !state.differential[index] && value.abs() < f64::MIN_POSITIVE {
                     *value = 1.0;
                 }
             }
-            if self.newton(state, t, y, yp, at_start).is_ok() {
+            if self.newton(state, now, at_start).is_ok() {
                 return Ok(());
             }
-            y.copy_from_slice(&start);
-            yp.copy_from_slice(&rates);
+            *now = start;
         }
         Err(failure)
     }
@@ -96,22 +93,20 @@ impl Consistent {
     fn newton(
         &mut self,
         state: &mut State<'_>,
-        t: f64,
-        y: &mut [f64],
-        yp: &mut [f64],
+        now: &mut Moment,
         at_start: bool,
     ) -> Result<(), Box<Failure>> {
-        state.apply_pins(y, yp);
-        self.evaluate(state, t, y, yp)?;
+        state.apply_pins(now);
+        self.evaluate(state, now.at())?;
         let mut last = f64::INFINITY;
         let mut small_steps = 0;
         for _ in 0..MAX_ITERATIONS {
-            self.factor(state, t, y, yp, at_start)?;
+            self.factor(state, now.at(), at_start)?;
             self.correction.copy_from_slice(&self.residual);
             if let Some(solver) = &mut self.solver {
                 solver.solve(&mut self.correction);
             }
-            let size = self.take_step(state, t, y, yp)?;
+            let size = self.take_step(state, now)?;
             // Steps that are small and become no smaller are rounding: a small inductance turns that of volts into amperes
             // per second.
             let smaller = size <= 0.25 * last && size.is_finite();
@@ -119,46 +114,39 @@ impl Consistent {
             last = size;
             let mut done = size <= 1.0 || rounding;
             if (done || !smaller) && state.slides.is_empty() {
-                let left = self.left_over_terms(state, y, yp);
+                let left = self.left_over_terms(state, now.at());
                 done |= left <= SOLVED;
                 small_steps += usize::from(done);
                 done &= left <= UNSOLVED * SOLVED || small_steps > MAX_SMALL_STEPS;
             }
             if done {
                 // States' rows that a mode fixes hold to the last bit.
-                state.apply_pins(y, yp);
+                state.apply_pins(now);
                 return Ok(());
             }
         }
         let worst = largest(&self.residual);
-        state.consistent_matrix(t, y, yp, &mut self.matrix);
+        let at = now.at();
+        state.consistent_matrix(at, &mut self.matrix);
         if singular::is_singular(state, &self.matrix) {
-            return Err(singular::failure(
-                state,
-                &self.matrix,
-                worst,
-                t,
-                y,
-                at_start,
-            ));
+            return Err(singular::failure(state, &self.matrix, worst, at, at_start));
         }
         let kind = FailureKind::Inconsistent {
             singular: Vec::new(),
             at_start,
         };
-        let failure = Failure::new(kind, t).at_row(state.program, worst, y);
+        let failure = Failure::new(kind, at.t).at_row(state.program, worst, at.y);
         let left = Some(self.residual[worst]);
-        Err(failure.with_equation(state, (t, y, yp), worst, left))
+        Err(failure.with_equation(state, at, worst, left))
     }
 
     /// The derivatives along the flow of y (all of it) and of the states' y', after [`Consistent::solve`] at the point.
     pub(crate) fn flow(
         &mut self,
         state: &mut State<'_>,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
+        at: At<'_>,
     ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let At { y, yp, .. } = at;
         let n = y.len();
         let mut dy = vec![0.0; n];
         let mut dyp = vec![0.0; n];
@@ -171,12 +159,12 @@ impl Consistent {
             }
         }
         let mut right = vec![0.0; n];
-        state.directional(t, y, yp, &dy, &dyp, &mut right);
-        let by_time = state.by_time(Function::Residual, t, y, yp);
+        state.directional(at, &dy, &dyp, &mut right);
+        let by_time = state.by_time(Function::Residual, at);
         for (right, by_time) in right.iter_mut().zip(by_time) {
             *right = -(*right + by_time);
         }
-        state.consistent_matrix(t, y, yp, &mut self.matrix);
+        state.consistent_matrix(at, &mut self.matrix);
         self.factor_matrix().ok()?;
         self.solver.as_mut()?.solve(&mut right);
         for (index, value) in right.into_iter().enumerate() {
@@ -194,13 +182,13 @@ impl Consistent {
     pub(crate) fn correct(
         &mut self,
         state: &mut State<'_>,
-        (t, y, yp): (f64, &[f64], &[f64]),
+        at: At<'_>,
         rights: &mut [Vec<f64>],
     ) -> bool {
         if self.solver.is_none() {
             return true;
         }
-        state.consistent_matrix(t, y, yp, &mut self.matrix);
+        state.consistent_matrix(at, &mut self.matrix);
         if self.factor_matrix().is_err() {
             return false;
         }
@@ -212,52 +200,37 @@ impl Consistent {
 
     /// Consistent values while sliding, where the weights follow from the rates: those of an interpolant are less exact than
     /// its values. Else the values stay.
-    pub(crate) fn refine(&mut self, state: &mut State<'_>, t: f64, y: &mut [f64], yp: &mut [f64]) {
+    pub(crate) fn refine(&mut self, state: &mut State<'_>, now: &mut Moment) {
         if !state.slides.is_empty() {
-            self.make_exact(state, t, y, yp);
+            self.make_exact(state, now);
         }
     }
 
     /// Consistent values with the states of an interpolant. Where there are none the values stay.
-    pub(crate) fn make_exact(
-        &mut self,
-        state: &mut State<'_>,
-        t: f64,
-        y: &mut [f64],
-        yp: &mut [f64],
-    ) {
-        let (before, rates) = (y.to_vec(), yp.to_vec());
-        if self.solve(state, t, y, yp, false).is_err() {
-            y.copy_from_slice(&before);
-            yp.copy_from_slice(&rates);
+    pub(crate) fn make_exact(&mut self, state: &mut State<'_>, now: &mut Moment) {
+        let before = now.clone();
+        if self.solve(state, now, false).is_err() {
+            *now = before;
         }
     }
 
-    fn evaluate(
-        &mut self,
-        state: &mut State<'_>,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-    ) -> Result<(), Box<Failure>> {
-        state.evaluate(Function::Residual, t, y, yp, &mut self.residual);
-        match self.residual.iter().position(|value| !value.is_finite()) {
-            Some(row) => Err(Failure::new(FailureKind::NotFinite, t).at_row(state.program, row, y)),
-            None => Ok(()),
-        }
+    fn evaluate(&mut self, state: &mut State<'_>, at: At<'_>) -> Result<(), Box<Failure>> {
+        state.evaluate(Function::Residual, at, &mut self.residual);
+        let Some(row) = self.residual.iter().position(|value| !value.is_finite()) else {
+            return Ok(());
+        };
+        Err(Failure::new(FailureKind::NotFinite, at.t).at_row(state.program, row, at.y))
     }
 
     fn factor(
         &mut self,
         state: &mut State<'_>,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
+        at: At<'_>,
         at_start: bool,
     ) -> Result<(), Box<Failure>> {
-        state.consistent_matrix(t, y, yp, &mut self.matrix);
+        state.consistent_matrix(at, &mut self.matrix);
         self.factor_matrix().map_err(|stopped| {
-            singular::failure(state, &self.matrix, stopped.unknown, t, y, at_start)
+            singular::failure(state, &self.matrix, stopped.unknown, at, at_start)
         })
     }
 
@@ -279,30 +252,26 @@ impl Consistent {
     /// is smaller (the natural monotonicity test: Deuflhard, Newton Methods for Nonlinear Problems, §3.3): rows with large
     /// terms leave more by rounding than other rows have left to correct. Returns its size over the tolerance; of a halved
     /// one infinity.
-    fn take_step(
-        &mut self,
-        state: &mut State<'_>,
-        t: f64,
-        y: &mut [f64],
-        yp: &mut [f64],
-    ) -> Result<f64, Box<Failure>> {
+    fn take_step(&mut self, state: &mut State<'_>, now: &mut Moment) -> Result<f64, Box<Failure>> {
         let norm = |residual: &[f64]| residual.iter().map(|r| r * r).sum::<f64>().sqrt();
         let before = norm(&self.residual);
         let mut factor = 1.0;
         let mut whole = false;
-        let old: Vec<f64> = (0..y.len())
-            .map(|i| if state.differential[i] { yp[i] } else { y[i] })
-            .collect();
+        let solved = |i: usize| match state.differential[i] {
+            true => now.yp[i],
+            false => now.y[i],
+        };
+        let old: Vec<f64> = (0..now.y.len()).map(solved).collect();
         for halving in 0..=MAX_HALVINGS {
             for (index, &value) in old.iter().enumerate() {
                 let new = value - factor * self.correction[index];
                 if state.differential[index] {
-                    yp[index] = new;
+                    now.yp[index] = new;
                 } else {
-                    y[index] = new;
+                    now.y[index] = new;
                 }
             }
-            let finite = self.evaluate(state, t, y, yp);
+            let finite = self.evaluate(state, now.at());
             let after = norm(&self.residual);
             // Near the solution the residual is rounding and may as well grow.
             let rounding = 1e-13 * before.max(1e-300);
@@ -330,13 +299,13 @@ impl Consistent {
 
     /// What a row leaves, over what its terms amount to: the most of all rows. The derivatives are those of the last
     /// factorisation.
-    fn left_over_terms(&self, state: &State<'_>, y: &[f64], yp: &[f64]) -> f64 {
+    fn left_over_terms(&self, state: &State<'_>, at: At<'_>) -> f64 {
         let mut terms = vec![0.0; self.residual.len()];
         let entries = state.program.partials(Function::Residual);
         for (entry, value) in entries.iter().zip(&state.partials) {
             let factor = match entry.wrt {
-                Wrt::Unknown(column) => y[column],
-                Wrt::Derivative(column) => yp[column],
+                Wrt::Unknown(column) => at.y[column],
+                Wrt::Derivative(column) => at.yp[column],
                 Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => 0.0,
             };
             terms[entry.row] += (value * factor).abs();

@@ -143,12 +143,12 @@ pub(crate) fn limits(
     if count == 0 {
         return None;
     }
-    let (t, y, yp) = (integrator.t, integrator.y.clone(), integrator.yp.clone());
+    let now = integrator.now.clone();
     let state = integrator.state_mut();
     let mut values = vec![0.0; count];
-    state.evaluate(Function::Delayed, t, &y, &yp, &mut values);
+    state.evaluate(Function::Delayed, now.at(), &mut values);
     let slopes = consistent
-        .and_then(|consistent| rates_at(Function::Delayed, state, consistent, t, &y, &yp))
+        .and_then(|consistent| rates_at(Function::Delayed, state, consistent, now.at()))
         .map_or_else(|| vec![0.0; count], |(rates, ..)| rates);
     Some(Limits { values, slopes })
 }
@@ -158,15 +158,11 @@ pub(crate) fn arrive(
     integrator: &mut Integrator<'_>,
     consistent: &mut Consistent,
 ) -> Result<Arrival, Box<Failure>> {
-    let t = integrator.t;
+    let t = integrator.now.t;
     let arrival = integrator.state_mut().delays.arrive(t);
-    if !arrival.read {
-        return Ok(arrival);
+    if arrival.read {
+        integrator.be_consistent(consistent)?;
     }
-    let (mut y, mut yp) = (integrator.y.clone(), integrator.yp.clone());
-    consistent.solve(integrator.state_mut(), t, &mut y, &mut yp, false)?;
-    integrator.y = y;
-    integrator.yp = yp;
     Ok(arrival)
 }
 
@@ -177,7 +173,7 @@ pub(crate) fn mark(
     left: Option<Limits>,
 ) {
     if let (Some(left), Some(right)) = (left, limits(integrator, Some(consistent))) {
-        let t = integrator.t;
+        let t = integrator.now.t;
         let lines = &mut integrator.state_mut().delays.lines;
         for (number, line) in lines.iter_mut().enumerate() {
             line.history.mark(
@@ -225,13 +221,10 @@ fn record_part(integrator: &mut Integrator<'_>, from: f64, to: f64, depth: usize
 
 /// The quantities at a time within the last step.
 fn now(integrator: &mut Integrator<'_>, t: f64) -> Vec<f64> {
-    let program = integrator.state().program;
-    let n = program.n_unknowns;
-    let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-    integrator.solution(t, &mut y, &mut yp);
-    let mut out = vec![0.0; program.rows(Function::Delayed)];
-    integrator
-        .state_mut()
-        .evaluate(Function::Delayed, t, &y, &yp, &mut out);
+    let mut then = integrator.room(t);
+    integrator.solution(&mut then);
+    let state = integrator.state_mut();
+    let mut out = vec![0.0; state.program.rows(Function::Delayed)];
+    state.evaluate(Function::Delayed, then.at(), &mut out);
     out
 }

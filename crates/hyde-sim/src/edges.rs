@@ -6,10 +6,10 @@ use hyde_program::ReactionKind;
 impl Instant<'_, '_> {
     /// The truths of all conditions, where an edge is that its own has become true since the round before.
     pub(crate) fn conditions_with_edges(&mut self, first_at_start: bool) -> Vec<bool> {
-        let now = self.state.conditions(self.t, self.y, self.yp);
+        let now = self.state.conditions(self.now.at());
         let became = |number: usize, before: &[bool]| now[number] && !before[number];
         if self.set_edges(|number, before| !first_at_start && became(number, before)) {
-            return self.state.conditions(self.t, self.y, self.yp);
+            return self.state.conditions(self.now.at());
         }
         now
     }

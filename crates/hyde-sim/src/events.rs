@@ -20,6 +20,7 @@ mod struck;
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
 use crate::guards::is_active;
+use crate::moment::Moment;
 use crate::results::{Event, EventKind};
 use crate::root_rates::{root_rates, rounding};
 use crate::sensitivity::Sensitivities;
@@ -37,9 +38,7 @@ const MAX_NESTED: usize = 8;
 pub(crate) struct Instant<'s, 'a> {
     pub(crate) state: &'s mut State<'a>,
     pub(crate) consistent: &'s mut Consistent,
-    pub(crate) t: f64,
-    pub(crate) y: &'s mut Vec<f64>,
-    pub(crate) yp: &'s mut Vec<f64>,
+    pub(crate) now: &'s mut Moment,
     /// The largest value of each unknown so far.
     pub(crate) largest: &'s [f64],
     /// Conditions as they were, to tell which become true.
@@ -128,7 +127,7 @@ impl Instant<'_, '_> {
             if fired.is_empty() && flipped.is_empty() && !slid {
                 // As long as others turn, it may be a division in a branch that is left.
                 if let Some(relation) = not_finite {
-                    let failure = Failure::new(FailureKind::NotFinite, self.t);
+                    let failure = Failure::new(FailureKind::NotFinite, self.now.t);
                     return Err(failure.at_origin(&program.relations[relation].origin));
                 }
                 if struck && let Some(relation) = self.comes_back_at_once(&truths, &roots) {
@@ -161,7 +160,7 @@ impl Instant<'_, '_> {
             }
             let found = self.solve_or_tip(&mut branches, scheduled, &located, at_start)?;
             if let Some(sensitivities) = &mut self.sensitivities {
-                let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+                let at = self.now.at();
                 sensitivities.be_consistent(self.state, self.consistent, at);
             }
             if found == Found::Indifferent && fired.is_empty() {
@@ -196,7 +195,7 @@ impl Instant<'_, '_> {
             }
             let mut roots = vec![0.0; program.relations.len()];
             self.state
-                .evaluate(Function::Roots, self.t, self.y, self.yp, &mut roots);
+                .evaluate(Function::Roots, self.now.at(), &mut roots);
             let same = roots.iter().zip(&found.roots);
             if same.into_iter().all(|(a, b)| a.to_bits() == b.to_bits()) {
                 break;
@@ -216,8 +215,8 @@ impl Instant<'_, '_> {
         let program = self.state.program;
         let mut roots = vec![0.0; program.relations.len()];
         self.state
-            .evaluate(Function::Roots, self.t, self.y, self.yp, &mut roots);
-        let rounding = rounding(self.state, self.t, self.y, self.yp, self.largest);
+            .evaluate(Function::Roots, self.now.at(), &mut roots);
+        let rounding = rounding(self.state, self.now.at(), self.largest);
         let mut zeros = Vec::new();
         let mut not_finite = None;
         for (number, &root) in roots.iter().enumerate() {
@@ -247,7 +246,7 @@ impl Instant<'_, '_> {
         let mut truths: Vec<bool> = roots.iter().enumerate().map(sign).collect();
         let mut doubtful = Vec::new();
         if !zeros.is_empty() {
-            let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+            let at = self.now.at();
             let rates = root_rates(self.state, self.consistent, at, &zeros);
             for number in zeros {
                 let (root, rate) = (roots[number], rates[number]);
@@ -310,9 +309,9 @@ impl Instant<'_, '_> {
         let program = self.state.program;
         for (reaction, now) in program.reactions.iter().zip(conditions) {
             if let (ReactionKind::Assert(message), true) = (&reaction.kind, now) {
-                let failure = Failure::new(FailureKind::Assert(message.clone()), self.t);
+                let failure = Failure::new(FailureKind::Assert(message.clone()), self.now.t);
                 let failure = failure.at_origin(&reaction.origin);
-                let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+                let at = self.now.at();
                 return Err(failure.with_values(self.state, at, &reaction.text));
             }
         }
@@ -336,7 +335,7 @@ impl Instant<'_, '_> {
         let mut values = vec![0.0; program.rows(Function::Assignments)];
         Program::turn(&mut self.state.z, flipped);
         self.state
-            .evaluate(Function::Assignments, self.t, self.y, self.yp, &mut values);
+            .evaluate(Function::Assignments, self.now.at(), &mut values);
         let slopes = self.slopes_of_assignments();
         Program::turn(&mut self.state.z, flipped);
         let mut entered: Vec<(usize, usize, bool)> = Vec::new();
@@ -365,7 +364,7 @@ impl Instant<'_, '_> {
             }
             for index in reaction.assignments.clone() {
                 let target = program.assignments[index].target;
-                target.set(values[index], self.y, &mut self.state.z);
+                target.set(values[index], &mut self.now.y, &mut self.state.z);
                 if let Some(sensitivities) = &mut self.sensitivities {
                     sensitivities.assign(target, &slopes, index);
                 }
@@ -382,7 +381,7 @@ impl Instant<'_, '_> {
 
     /// The derivatives by parameters of what events assign and of the values of pins, if they are asked for.
     fn slopes_of_assignments(&mut self) -> Vec<Vec<f64>> {
-        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let at = self.now.at();
         let sensitivities = self.sensitivities.as_ref();
         sensitivities.map_or_else(Vec::new, |sensitivities| {
             sensitivities.of(Function::Assignments, self.state, at)
@@ -397,7 +396,7 @@ impl Instant<'_, '_> {
         }
         let mut values = vec![0.0; program.rows(Function::Assignments)];
         self.state
-            .evaluate(Function::Assignments, self.t, self.y, self.yp, &mut values);
+            .evaluate(Function::Assignments, self.now.at(), &mut values);
         let slopes = self.slopes_of_assignments();
         let mut pinned = Vec::new();
         for (row, pin) in program.pins_in(&self.state.z) {
@@ -406,13 +405,13 @@ impl Instant<'_, '_> {
                 .iter()
                 .find(|(automaton, ..)| *automaton == pin.automaton);
             if let Some((_, _, impact)) = entry {
-                let now = self.y[pin.state];
+                let now = self.now.y[pin.state];
                 // The instant was located to rounding of the time: the state may be off by what it moves meanwhile.
-                let rounding = self.yp[pin.state].abs() * 1e-12 * (1.0 + self.t.abs());
+                let rounding = self.now.yp[pin.state].abs() * 1e-12 * (1.0 + self.now.t.abs());
                 let tolerance = 1e-6 * now.abs().max(value.abs()) + 1e-7 + rounding;
                 if !impact && (now - value).abs() > tolerance {
                     let name = program.unknown_name(pin.state);
-                    let failure = Failure::new(FailureKind::Impact(name, now, value), self.t);
+                    let failure = Failure::new(FailureKind::Impact(name, now, value), self.now.t);
                     return Err(failure.at_origin(&pin.origin));
                 }
             }
@@ -422,7 +421,7 @@ impl Instant<'_, '_> {
             }
         }
         self.state.pinned = pinned;
-        self.state.apply_pins(self.y, self.yp);
+        self.state.apply_pins(self.now);
         Ok(())
     }
 
@@ -435,7 +434,7 @@ impl Instant<'_, '_> {
     ) {
         if !at_start {
             self.log.push(Event {
-                t: self.t,
+                t: self.now.t,
                 kind,
                 cause: cause.to_owned(),
                 origin: origin.clone(),

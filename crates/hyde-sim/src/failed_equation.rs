@@ -2,6 +2,7 @@
 //! and by how much its sides differ.
 
 use crate::failure::{Failure, FailureKind};
+use crate::moment::At;
 use crate::state::State;
 use hyde_program::{Function, Wrt};
 
@@ -29,17 +30,17 @@ impl Failure {
     pub(crate) fn with_equation(
         mut self: Box<Self>,
         state: &mut State<'_>,
-        (t, y, yp): (f64, &[f64], &[f64]),
+        at: At<'_>,
         row: usize,
         left: Option<f64>,
     ) -> Box<Self> {
         let program = state.program;
         let mut out = vec![0.0; program.n_unknowns];
-        let mut residual = |y: &[f64], yp: &[f64]| {
-            state.evaluate(Function::Residual, t, y, yp, &mut out);
+        let mut residual = |at: At<'_>| {
+            state.evaluate(Function::Residual, at, &mut out);
             out.get(row).copied().unwrap_or(f64::NAN)
         };
-        let here = residual(y, yp);
+        let here = residual(at);
         let mut terms: Vec<Reading> = Vec::new();
         let entries = program.partials(Function::Residual).iter();
         for entry in entries.filter(|entry| entry.row == row) {
@@ -48,8 +49,11 @@ impl Failure {
                 Wrt::Derivative(column) => (column, true),
                 Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => continue,
             };
-            let (mut changed, mut rates) = (y.to_vec(), yp.to_vec());
-            let values = if is_rate { &mut rates } else { &mut changed };
+            let mut changed = at.to_moment();
+            let values = match is_rate {
+                true => &mut changed.yp,
+                false => &mut changed.y,
+            };
             let value = std::mem::replace(&mut values[column], 0.0);
             let name = program.unknown_name(column);
             if terms
@@ -57,7 +61,7 @@ impl Failure {
                 .all(|own| own.name != name || own.is_rate != is_rate)
             {
                 terms.push(Reading {
-                    part: here - residual(&changed, &rates),
+                    part: here - residual(changed.at()),
                     name,
                     is_rate,
                     value,

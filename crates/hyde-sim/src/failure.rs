@@ -1,6 +1,7 @@
 //! [`Failure`]: why a run could not go on, in the words of the model.
 
 use crate::failed_equation::Reading;
+use crate::moment::At;
 use crate::results::Results;
 use crate::state::State;
 use hyde_diag::Origin;
@@ -155,12 +156,12 @@ impl Failure {
     pub(crate) fn with_values(
         mut self: Box<Self>,
         state: &mut State<'_>,
-        (t, y, yp): (f64, &[f64], &[f64]),
+        at: At<'_>,
         condition: &str,
     ) -> Box<Self> {
         let program = state.program;
         let mut values = vec![0.0; program.rows(Function::Outputs)];
-        state.evaluate(Function::Outputs, t, y, yp, &mut values);
+        state.evaluate(Function::Outputs, at, &mut values);
         let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']');
         for word in condition.split(|c| !is_name(c)) {
             let known = self.unknowns.iter().any(|(name, _)| name == word);

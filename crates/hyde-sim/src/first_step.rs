@@ -6,6 +6,7 @@
 use crate::consistent::Consistent;
 use crate::guards::is_active;
 use crate::integrator::Integrator;
+use crate::moment::At;
 use crate::setup::Setup;
 use crate::state::State;
 use hyde_program::{Function, Wrt};
@@ -28,28 +29,28 @@ pub(crate) fn first_step(
     consistent: &mut Consistent,
     setup: &Setup<'_>,
 ) -> FirstStep {
-    let t = integrator.t;
+    let t = integrator.now.t;
     let span = (setup.stop_s - t).max(1e-12);
-    let (y, yp) = (integrator.y.clone(), integrator.yp.clone());
-    let flow = consistent.flow(integrator.state_mut(), t, &y, &yp);
+    let now = integrator.now.clone();
+    let flow = consistent.flow(integrator.state_mut(), now.at());
     let (mut by_curvature_s, mut longest_s) = (f64::INFINITY, 1e-2 * span);
     if let Some((dy, dyp)) = flow {
         for (index, slope) in dy.iter().enumerate() {
             if !integrator.state().differential[index] && slope.is_finite() {
-                integrator.yp[index] = *slope;
+                integrator.now.yp[index] = *slope;
             }
         }
         // The first step is of order 1: its error is half the square of the step times the second derivative.
         let mut square = 0.0;
-        for (value, rate) in y.iter().zip(&dyp) {
+        for (value, rate) in now.y.iter().zip(&dyp) {
             let weighted = rate / (setup.rtol * value.abs() + setup.atol);
             square += weighted * weighted;
         }
-        let norm = (square / y.len().max(1) as f64).sqrt();
+        let norm = (square / now.y.len().max(1) as f64).sqrt();
         if norm.is_finite() && norm > 0.0 {
             by_curvature_s = (0.5 / norm).sqrt();
         }
-        let back = shortest_return(integrator.state_mut(), t, (&y, &yp), (&dy, &dyp));
+        let back = shortest_return(integrator.state_mut(), now.at(), (&dy, &dyp));
         longest_s = longest_s.min(PART_OF_RETURN * back);
     }
     let least = 64.0 * f64::EPSILON * (1e-3 + t.abs());
@@ -60,21 +61,16 @@ pub(crate) fn first_step(
 }
 
 /// The shortest time in s after which a root function that is zero now, and leaves zero, comes back.
-fn shortest_return(
-    state: &mut State<'_>,
-    t: f64,
-    (y, yp): (&[f64], &[f64]),
-    (dy, dyp): (&[f64], &[f64]),
-) -> f64 {
+fn shortest_return(state: &mut State<'_>, at: At<'_>, (dy, dyp): (&[f64], &[f64])) -> f64 {
     let program = state.program;
     let n = program.relations.len();
     if n == 0 {
         return f64::INFINITY;
     }
     let mut roots = vec![0.0; n];
-    state.evaluate(Function::Roots, t, y, yp, &mut roots);
+    state.evaluate(Function::Roots, at, &mut roots);
     let (mut rates, mut bends, mut sizes) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
-    let partials = state.partials(Function::Roots, t, y, yp);
+    let partials = state.partials(Function::Roots, at);
     for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
         match entry.wrt {
             Wrt::Unknown(column) => {
@@ -82,7 +78,7 @@ fn shortest_return(
                 if state.differential[column] {
                     bends[entry.row] += value * dyp[column];
                 }
-                sizes[entry.row] += (value * y[column]).abs();
+                sizes[entry.row] += (value * at.y[column]).abs();
             }
             Wrt::Derivative(column) => rates[entry.row] += value * dyp[column],
             Wrt::Time => rates[entry.row] += value,
@@ -90,7 +86,7 @@ fn shortest_return(
         }
     }
     // The instant was located to rounding of the time.
-    let moment = 1e-12 * (1.0 + t.abs());
+    let moment = 1e-12 * (1.0 + at.t.abs());
     let at_zero = |k: &usize| {
         let near = rates[*k].abs() * moment + 16.0 * f64::EPSILON * sizes[*k];
         is_active(state, *k) && roots[*k].abs() <= near

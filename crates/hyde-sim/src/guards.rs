@@ -9,6 +9,7 @@
 
 use crate::consistent::Consistent;
 use crate::integrator::Integrator;
+use crate::moment::Moment;
 use crate::slides::margins;
 use crate::state::State;
 use hyde_program::Function;
@@ -33,8 +34,7 @@ pub(crate) struct Trail {
     points: Vec<(f64, Roots)>,
     /// Room for what is watched in a step.
     in_step: Vec<Watched>,
-    y: Vec<f64>,
-    yp: Vec<f64>,
+    then: Moment,
     roots: Vec<f64>,
 }
 
@@ -104,7 +104,7 @@ pub(crate) fn first_change(
     if watched.is_empty() {
         return None;
     }
-    let (start, end) = (from, integrator.t);
+    let (start, end) = (from, integrator.now.t);
     trail.lead_to(start, watched);
     let n_relations = integrator.state().program.relations.len();
     let state = integrator.state();
@@ -449,8 +449,8 @@ impl<'c> Probe<'c> {
         room: &'c mut Trail,
     ) -> Self {
         let program = integrator.state().program;
-        room.y.resize(program.n_unknowns, 0.0);
-        room.yp.resize(program.n_unknowns, 0.0);
+        room.then.y.resize(program.n_unknowns, 0.0);
+        room.then.yp.resize(program.n_unknowns, 0.0);
         Self {
             consistent,
             exact: false,
@@ -459,17 +459,18 @@ impl<'c> Probe<'c> {
     }
 
     fn roots(&mut self, integrator: &mut Integrator<'_>, t: f64) -> &[f64] {
-        let Trail { y, yp, roots, .. } = &mut *self.room;
-        integrator.interpolate(t, y, yp);
+        let Trail { then, roots, .. } = &mut *self.room;
+        then.t = t;
+        integrator.interpolate(then);
         let state = integrator.state_mut();
         roots.resize(state.program.relations.len(), 0.0);
         match self.exact {
-            true => self.consistent.make_exact(state, t, y, yp),
-            false => self.consistent.refine(state, t, y, yp),
+            true => self.consistent.make_exact(state, then),
+            false => self.consistent.refine(state, then),
         }
-        state.evaluate(Function::Roots, t, y, yp, roots);
+        state.evaluate(Function::Roots, then.at(), roots);
         if !state.slides.is_empty() {
-            let weights = state.weights(t, y, yp);
+            let weights = state.weights(then.at());
             roots.extend(weights.into_iter().flat_map(margins));
         }
         roots

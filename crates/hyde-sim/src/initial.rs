@@ -6,6 +6,7 @@
 
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
+use crate::moment::{At, Moment};
 use crate::released::{self, by_parameter};
 use crate::selection;
 use crate::state::State;
@@ -20,13 +21,12 @@ const START_RTOL: f64 = 1e-5;
 const START_ATOL: f64 = 1e-9;
 
 /// Start values of y and the memory, before anything is solved.
-pub(crate) fn start(state: &mut State<'_>, t: f64) -> (Vec<f64>, Vec<f64>) {
-    let n = state.program.n_unknowns;
-    let (mut y, yp) = (vec![0.0; n], vec![0.0; n]);
+pub(crate) fn start(state: &mut State<'_>, t: f64) -> Moment {
+    let mut now = Moment::zero(t, state.program.n_unknowns);
     let p = state.p.clone();
-    state.program.kernels.start(&p, &mut y, &mut state.z);
-    state.guess_past(t, &y, &yp);
-    (y, yp)
+    state.program.kernels.start(&p, &mut now.y, &mut state.z);
+    state.guess_past(now.at());
+    now
 }
 
 /// What the initial system is solved from.
@@ -44,14 +44,12 @@ pub(crate) enum Round {
 pub(crate) fn solve(
     state: &mut State<'_>,
     consistent: &mut Consistent,
-    t: f64,
-    y: &mut [f64],
-    yp: &mut [f64],
+    now: &mut Moment,
     round: Round,
 ) -> Result<(), Box<Failure>> {
     let program = state.program;
     if round != Round::StatesKept {
-        selection::choose_at_start(state, t, y, yp);
+        selection::choose_at_start(state, now);
     }
     let count = match round {
         Round::First | Round::Again => program.n_initial_equations(),
@@ -60,23 +58,19 @@ pub(crate) fn solve(
     let delays = program.delays.len();
     if count == 0 && delays == 0 {
         if round == Round::First {
-            guess_relations(state, t, y, yp, Known::Guesses);
+            guess_relations(state, now.at(), Known::Guesses);
         }
-        consistent.solve(state, t, y, yp, true)?;
-        return check(state, t, y, yp, round);
+        consistent.solve(state, now, true)?;
+        return check(state, now.at(), round);
     }
     // A first guess for the rest from the states' start values; it need not exist.
-    let (mut guess_y, mut guess_yp) = (y.to_vec(), yp.to_vec());
-    if consistent
-        .solve(state, t, &mut guess_y, &mut guess_yp, true)
-        .is_ok()
-    {
-        y.copy_from_slice(&guess_y);
-        yp.copy_from_slice(&guess_yp);
+    let mut guess = now.clone();
+    if consistent.solve(state, &mut guess, true).is_ok() {
+        *now = guess;
     }
     if round == Round::First && count > 0 {
-        guess_relations(state, t, y, yp, Known::All);
-        released::choose(state, consistent, (t, y, yp), count)?;
+        guess_relations(state, now.at(), Known::All);
+        released::choose(state, consistent, now.at(), count)?;
     }
     let Shape {
         n,
@@ -88,8 +82,9 @@ pub(crate) fn solve(
         pattern,
         positions,
         ..
-    } = Shape::new(state, count, t)?;
-    let targets: Vec<f64> = fixed.iter().map(|&i| y[i]).collect();
+    } = Shape::new(state, count, now.t)?;
+    let targets: Vec<f64> = fixed.iter().map(|&i| now.y[i]).collect();
+    let t = now.t;
     let mut past = state.delayed_at(t).to_vec();
     let failed = |singular: Vec<String>| {
         let mut failure = Failure::new(
@@ -108,32 +103,32 @@ pub(crate) fn solve(
     };
     let mut solver =
         SparseSolver::new(pattern, LinearMethod::Auto).map_err(|_| failed(Vec::new()))?;
-    let residual = |state: &mut State<'_>, y: &[f64], yp: &[f64], past: &[f64]| {
+    let residual = |state: &mut State<'_>, at: At<'_>, past: &[f64]| {
         let mut out = vec![0.0; size];
-        state.delays.set_past(t, past);
-        state.evaluate(Function::Residual, t, y, yp, &mut out[..n]);
+        state.delays.set_past(at.t, past);
+        state.evaluate(Function::Residual, at, &mut out[..n]);
         let mut equations = vec![0.0; program.rows(Function::Initial)];
-        state.evaluate(Function::Initial, t, y, yp, &mut equations);
+        state.evaluate(Function::Initial, at, &mut equations);
         out[n..n + count].copy_from_slice(&equations[..count]);
         for (number, (&i, target)) in fixed.iter().zip(&targets).enumerate() {
-            out[n + count + number] = y[i] - target;
+            out[n + count + number] = at.y[i] - target;
         }
         let mut now = vec![0.0; delays];
-        state.evaluate(Function::Delayed, t, y, yp, &mut now);
+        state.evaluate(Function::Delayed, at, &mut now);
         for ((out, past), now) in out[size - delays..].iter_mut().zip(past).zip(now) {
             *out = past - now;
         }
         out
     };
     let norm = |r: &[f64]| r.iter().map(|v| v * v).sum::<f64>().sqrt();
-    let mut r = residual(state, y, yp, &past);
+    let mut r = residual(state, now.at(), &past);
     for iteration in 0..MAX_ITERATIONS {
-        let mut values_now = values(state, (t, y, yp), &positions, &found, count);
+        let mut values_now = values(state, now.at(), &positions, &found, count);
         if solver.factor(&values_now).is_err() && iteration == 0 {
             // A product of unknowns that both start at 0 says nothing there: look from elsewhere once.
-            released::move_released(state, y);
-            r = residual(state, y, yp, &past);
-            values_now = values(state, (t, y, yp), &positions, &found, count);
+            released::move_released(state, &mut now.y);
+            r = residual(state, now.at(), &past);
+            values_now = values(state, now.at(), &positions, &found, count);
         }
         if let Err(singular) = solver.factor(&values_now) {
             let column = singular.unknown;
@@ -146,16 +141,16 @@ pub(crate) fn solve(
         }
         let mut step = r.clone();
         solver.solve(&mut step);
-        let (old_y, old_yp, before) = (y.to_vec(), yp.to_vec(), norm(&r));
+        let (old, before) = (now.clone(), norm(&r));
         let old_past = past.clone();
         let old_found: Vec<f64> = found.iter().map(|&place| state.p[place]).collect();
         let mut factor = 1.0;
         let mut whole = false;
         for halving in 0..=MAX_HALVINGS {
             for i in 0..n {
-                y[i] = old_y[i] - factor * step[i];
+                now.y[i] = old.y[i] - factor * step[i];
                 if let Some(column) = column_of_rate[i] {
-                    yp[i] = old_yp[i] - factor * step[column];
+                    now.yp[i] = old.yp[i] - factor * step[column];
                 }
             }
             for (number, past) in past.iter_mut().enumerate() {
@@ -164,7 +159,7 @@ pub(crate) fn solve(
             let each = found.iter().zip(&old_found).zip(&step[n + states.len()..]);
             let each = each.map(|((&place, old), step)| (place, old - factor * step));
             state.set_parameters(&each.collect::<Vec<_>>());
-            r = residual(state, y, yp, &past);
+            r = residual(state, now.at(), &past);
             let after = norm(&r);
             if after.is_finite() && (after <= before || halving == MAX_HALVINGS || after < 1e-12) {
                 whole = halving == 0;
@@ -173,12 +168,12 @@ pub(crate) fn solve(
             factor *= 0.5;
         }
         let size_of = |v: &[f64]| v.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-        let most = size_of(&old_y)
-            .max(size_of(&old_yp))
+        let most = size_of(&old.y)
+            .max(size_of(&old.yp))
             .max(size_of(&old_found));
         if whole && size_of(&step) <= 1e-11 * (1.0 + most) {
-            consistent.solve(state, t, y, yp, true)?;
-            return check(state, t, y, yp, round);
+            consistent.solve(state, now, true)?;
+            return check(state, now.at(), round);
         }
     }
     Err(failed(Vec::new()))
@@ -261,13 +256,8 @@ impl Shape {
     }
 
     /// Solves the linearised system at a point for several right sides, in place. Whether it could be.
-    pub(crate) fn solve(
-        self,
-        state: &mut State<'_>,
-        (t, y, yp): (f64, &[f64], &[f64]),
-        rights: &mut [Vec<f64>],
-    ) -> bool {
-        let values = values(state, (t, y, yp), &self.positions, &self.found, self.count);
+    pub(crate) fn solve(self, state: &mut State<'_>, at: At<'_>, rights: &mut [Vec<f64>]) -> bool {
+        let values = values(state, at, &self.positions, &self.found, self.count);
         let Ok(mut solver) = SparseSolver::new(self.pattern, LinearMethod::Auto) else {
             return false;
         };
@@ -280,19 +270,13 @@ impl Shape {
 }
 
 /// Start values that the other conditions have to meet; events at the start may have changed them since.
-fn check(
-    state: &mut State<'_>,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-    round: Round,
-) -> Result<(), Box<Failure>> {
+fn check(state: &mut State<'_>, at: At<'_>, round: Round) -> Result<(), Box<Failure>> {
     let program = state.program;
     let mut values = vec![0.0; program.rows(Function::Initial)];
     if values.len() == program.n_initial_equations() || round == Round::StatesKept {
         return Ok(());
     }
-    state.evaluate(Function::Initial, t, y, yp, &mut values);
+    state.evaluate(Function::Initial, at, &mut values);
     let pairs = values[program.n_initial_equations()..].chunks_exact(2);
     let checks = program
         .initial
@@ -305,7 +289,7 @@ fn check(
         let (found, wanted) = (pair[0], pair[1]);
         if (found - wanted).abs() > START_RTOL * found.abs().max(wanted.abs()) + START_ATOL {
             let kind = FailureKind::Start(name.clone(), wanted, found);
-            let mut failure = Failure::new(kind, t).at_origin(origin);
+            let mut failure = Failure::new(kind, at.t).at_origin(origin);
             for condition in &program.initial {
                 if let InitialCondition::Equation { origin, .. } = condition {
                     failure = failure.at_origin(origin);
@@ -329,16 +313,16 @@ enum Known {
 /// The relations of equations as they are at the first guess: of the solutions that an equation with a switch may have it
 /// chooses one, and a limiter that is at no limit there must not begin at one, where its input determines nothing. Events
 /// at the start then settle them.
-fn guess_relations(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64], known: Known) {
+fn guess_relations(state: &mut State<'_>, at: At<'_>, known: Known) {
     let program = state.program;
     let relations = &program.relations;
     let mut roots = vec![0.0; relations.len()];
-    state.evaluate(Function::Roots, t, y, yp, &mut roots);
+    state.evaluate(Function::Roots, at, &mut roots);
     let mut open = vec![false; relations.len()];
     if known == Known::Guesses {
         for entry in program.partials(Function::Roots) {
             open[entry.row] |= match entry.wrt {
-                Wrt::Unknown(column) => !state.differential[column] && y[column] == 0.0,
+                Wrt::Unknown(column) => !state.differential[column] && at.y[column] == 0.0,
                 Wrt::Derivative(_) => true,
                 Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => false,
             };
@@ -424,7 +408,7 @@ fn pattern(
 
 fn values(
     state: &mut State<'_>,
-    (t, y, yp): (f64, &[f64], &[f64]),
+    at: At<'_>,
     positions: &[Vec<Option<usize>>],
     found: &[usize],
     count: usize,
@@ -436,15 +420,14 @@ fn values(
         .max()
         .map_or(0, |last| last + 1);
     let mut values = vec![0.0; size];
-    let residual = state.partials(Function::Residual, t, y, yp);
-    let initial = state.partials(Function::Initial, t, y, yp);
+    let residual = state.partials(Function::Residual, at);
+    let initial = state.partials(Function::Initial, at);
     let ones = |list: &[Option<usize>]| vec![1.0; list.len()];
     let (fixed, past) = (ones(&positions[2]), ones(&positions[3]));
-    let delayed = state.partials(Function::Delayed, t, y, yp);
+    let delayed = state.partials(Function::Delayed, at);
     let delayed = delayed.into_iter().map(|value| -value).collect();
     let mut by_found = Vec::new();
     for &place in found {
-        let at = (t, y, yp);
         by_found.extend(by_parameter(state, place, Function::Residual, at));
         let initial = by_parameter(state, place, Function::Initial, at);
         by_found.extend(initial.into_iter().take(count));

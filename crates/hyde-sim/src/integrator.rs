@@ -2,8 +2,10 @@
 //!
 //! What the tolerances of a step are is decided here; how a step is taken, by the [`Solver`] inside.
 
+use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
 use crate::first_step::FirstStep;
+use crate::moment::{At, Moment};
 use crate::setup::Setup;
 use crate::solver::Solver;
 use crate::state::State;
@@ -12,9 +14,8 @@ use hyde_ida::Error;
 /// The state of a run and the solver that advances it.
 pub(crate) struct Integrator<'a> {
     solver: Solver<'a>,
-    pub(crate) t: f64,
-    pub(crate) y: Vec<f64>,
-    pub(crate) yp: Vec<f64>,
+    /// Where the run is.
+    pub(crate) now: Moment,
     tolerances: (f64, f64),
     conserve: bool,
     /// Steps since the last start, and the part of the tolerances that a step is given.
@@ -45,18 +46,14 @@ impl<'a> Integrator<'a> {
     pub(crate) fn new(
         state: State<'a>,
         setup: &Setup<'_>,
-        t: f64,
-        y: Vec<f64>,
-        yp: Vec<f64>,
+        now: Moment,
         first_step_s: f64,
     ) -> Result<Self, Box<Failure>> {
-        let n = y.len();
-        let solver = Solver::new(state, setup, (t, &y, &yp), first_step_s)?;
+        let n = now.y.len();
+        let solver = Solver::new(state, setup, now.at(), first_step_s)?;
         Ok(Self {
             solver,
-            t,
-            y,
-            yp,
+            now,
             tolerances: (setup.rtol, setup.atol),
             conserve: setup.conserve,
             steps: 0,
@@ -82,8 +79,8 @@ impl<'a> Integrator<'a> {
 
     /// One step, never past `stop`. Returns where the step began.
     pub(crate) fn step(&mut self, stop: f64) -> Result<f64, Box<Failure>> {
-        let before = self.t;
-        match self.solver.leaves_ida(before, &self.y, &self.yp) {
+        let before = self.now.t;
+        match self.solver.leaves_ida(self.now.at()) {
             Ok(true) => self.left_ida_s = Some(before),
             Ok(false) => {}
             Err(error) => return Err(self.failure(&error)),
@@ -100,9 +97,8 @@ impl<'a> Integrator<'a> {
         } else if self.has_grown() {
             self.set_tolerances(self.part)?;
         }
-        match self.solver.step(before, stop, &mut self.y, &mut self.yp) {
-            Ok(t) => self.t = t,
-            Err(error) => return Err(self.failure(&error)),
+        if let Err(error) = self.solver.step(&mut self.now, stop) {
+            return Err(self.failure(&error));
         }
         self.apply_pins();
         self.note_largest();
@@ -116,34 +112,49 @@ impl<'a> Integrator<'a> {
 
     /// Takes note of the largest values.
     pub(crate) fn note_largest(&mut self) {
-        for (largest, value) in self.largest.iter_mut().zip(&self.y) {
+        for (largest, value) in self.largest.iter_mut().zip(&self.now.y) {
             *largest = largest.max(value.abs());
         }
     }
 
     /// Takes the last step once more, to end at `end`; returns false where the method cannot.
     pub(crate) fn step_again(&mut self, end: f64) -> Result<bool, Box<Failure>> {
-        match self.solver.step_again(end, &mut self.y, &mut self.yp) {
-            Ok(None) => return Ok(false),
-            Ok(Some(t)) => self.t = t,
+        match self.solver.step_again(&mut self.now, end) {
+            Ok(true) => self.apply_pins(),
+            Ok(false) => return Ok(false),
             Err(error) => return Err(self.failure(&error)),
         }
-        self.apply_pins();
         Ok(true)
     }
 
-    /// The solution at a time within the last step.
-    pub(crate) fn solution(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) {
-        let inside = t.to_bits() != self.t.to_bits();
-        let found = inside && self.solver.solution(t, y, yp);
-        self.finish(found, t, y, yp);
+    /// Room for the values at a time.
+    pub(crate) fn room(&self, t: f64) -> Moment {
+        Moment::zero(t, self.now.y.len())
+    }
+
+    /// Writes the solution at the time of `then`, within the last step.
+    pub(crate) fn solution(&mut self, then: &mut Moment) {
+        let inside = then.t.to_bits() != self.now.t.to_bits();
+        let found = inside && self.solver.solution(then);
+        self.finish(found, then);
     }
 
     /// The same, good enough to look for events.
-    pub(crate) fn interpolate(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) {
-        let inside = t.to_bits() != self.t.to_bits();
-        let found = inside && self.solver.interpolate(t, y, yp);
-        self.finish(found, t, y, yp);
+    pub(crate) fn interpolate(&mut self, then: &mut Moment) {
+        let inside = then.t.to_bits() != self.now.t.to_bits();
+        let found = inside && self.solver.interpolate(then);
+        self.finish(found, then);
+    }
+
+    /// Consistent values where the run is. Where there are none it stays what it was.
+    pub(crate) fn be_consistent(
+        &mut self,
+        consistent: &mut Consistent,
+    ) -> Result<(), Box<Failure>> {
+        let mut now = self.now.clone();
+        consistent.solve(self.state_mut(), &mut now, false)?;
+        self.now = now;
+        Ok(())
     }
 
     /// Whether the interpolant is much less exact for rates, and for what is not a state, than for states: IDA's is as long as
@@ -153,14 +164,14 @@ impl<'a> Integrator<'a> {
     }
 
     /// Exact values where they are known; at the end of a step those that are there.
-    fn finish(&mut self, found: bool, t: f64, y: &mut [f64], yp: &mut [f64]) {
+    fn finish(&mut self, found: bool, then: &mut Moment) {
         if !found {
-            y.copy_from_slice(&self.y);
-            yp.copy_from_slice(&self.yp);
+            then.y.copy_from_slice(&self.now.y);
+            then.yp.copy_from_slice(&self.now.yp);
         }
         let state = self.state_mut();
-        state.apply_pins(y, yp);
-        state.put_on_surfaces(t, y, yp);
+        state.apply_pins(then);
+        state.put_on_surfaces(then);
     }
 
     /// Starts anew after an event.
@@ -170,7 +181,7 @@ impl<'a> Integrator<'a> {
             self.set_tolerances(1)?;
         }
         self.steps = 0;
-        let started = self.solver.restart(self.t, &self.y, &self.yp, first);
+        let started = self.solver.restart(self.now.at(), first);
         started.map_err(|error| self.failure(&error))
     }
 
@@ -227,40 +238,28 @@ impl<'a> Integrator<'a> {
 
     /// Whether relations are followed; those that are far from their zeros by now are no longer.
     pub(crate) fn follows(&mut self) -> bool {
-        let Self {
-            solver, t, y, yp, ..
-        } = self;
-        let state = solver.state_mut();
+        let state = self.solver.state_mut();
         let follows = !state.loose.is_empty();
-        state.follow_no_longer(*t, y, yp);
+        state.follow_no_longer(self.now.at());
         follows
     }
 
     /// Exact values where modes fix states, and on the surfaces that the run slides on.
     fn apply_pins(&mut self) {
-        let Self {
-            solver, t, y, yp, ..
-        } = self;
-        let state = solver.state_mut();
-        state.apply_pins(y, yp);
-        state.put_on_surfaces(*t, y, yp);
+        let state = self.solver.state_mut();
+        state.apply_pins(&mut self.now);
+        state.put_on_surfaces(&mut self.now);
     }
 
     /// A failure with what stands in the equation of a row at the present point.
     pub(crate) fn with_equation(&mut self, failure: Box<Failure>, row: usize) -> Box<Failure> {
-        let Self {
-            solver, t, y, yp, ..
-        } = self;
-        failure.with_equation(solver.state_mut(), (*t, y, yp), row, None)
+        failure.with_equation(self.solver.state_mut(), self.now.at(), row, None)
     }
 
     /// A failure with the values that conditions read at the present point.
     pub(crate) fn with_values(&mut self, failure: Box<Failure>, of: &[String]) -> Box<Failure> {
-        let Self {
-            solver, t, y, yp, ..
-        } = self;
         of.iter().fold(failure, |failure, condition| {
-            failure.with_values(solver.state_mut(), (*t, y, yp), condition)
+            failure.with_values(self.solver.state_mut(), self.now.at(), condition)
         })
     }
 
@@ -268,7 +267,7 @@ impl<'a> Integrator<'a> {
     fn failure(&mut self, error: &Error) -> Box<Failure> {
         let program = self.state().program;
         let Error::Failed(failed) = error else {
-            return Failure::new(FailureKind::Solver(error.to_string()), self.t);
+            return Failure::new(FailureKind::Solver(error.to_string()), self.now.t);
         };
         let kind = match failed.kind {
             hyde_ida::FailureKind::Residual | hyde_ida::FailureKind::Jacobian => {
@@ -297,13 +296,15 @@ impl<'a> Integrator<'a> {
         let mut failure = Failure::new(kind, failed.t);
         // Without an equation of its own the unknown leads to the one that it was matched to.
         if let Some(row) = failed.equation.or(failed.unknown) {
-            failure = failure.at_row(program, row, &self.y);
-            let Self { solver, y, yp, .. } = self;
-            let at = (failed.t, y.as_slice(), yp.as_slice());
-            failure = failure.with_equation(solver.state_mut(), at, row, failed.residual);
+            failure = failure.at_row(program, row, &self.now.y);
+            let at = At {
+                t: failed.t,
+                ..self.now.at()
+            };
+            failure = failure.with_equation(self.solver.state_mut(), at, row, failed.residual);
         }
         if let Some(unknown) = failed.unknown {
-            failure = failure.at_unknown(program, unknown, &self.y);
+            failure = failure.at_unknown(program, unknown, &self.now.y);
         }
         failure
     }

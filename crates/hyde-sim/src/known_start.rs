@@ -4,6 +4,7 @@
 use crate::consistent::Consistent;
 use crate::failure::Failure;
 use crate::initial::{self, Round};
+use crate::moment::Moment;
 use crate::setup::Setup;
 use crate::start_modes::{initial_pins, leave_impossible_modes, leave_modes};
 use crate::state::State;
@@ -37,19 +38,19 @@ pub fn known_start(
     let setup = Setup::new(parameters.to_vec(), records, 1.0);
     let mut state = State::new(program, &setup)?;
     let mut consistent = Consistent::new(&state);
-    let (mut y, mut yp) = initial::start(&mut state, t);
-    leave_impossible_modes(&mut state, t, &y, &yp)?;
-    state.pinned = initial_pins(&mut state, t, &y, &yp);
-    let (own, own_rates) = (&mut y, &mut yp);
-    initial::solve(&mut state, &mut consistent, t, own, own_rates, Round::First)?;
+    let mut now = initial::start(&mut state, t);
+    leave_impossible_modes(&mut state, now.at())?;
+    state.pinned = initial_pins(&mut state, now.at());
+    initial::solve(&mut state, &mut consistent, &mut now, Round::First)?;
     if !known.is_empty() {
-        known.iter().for_each(|&(state, value)| y[state] = value);
+        known
+            .iter()
+            .for_each(|&(state, value)| now.y[state] = value);
         let is_known = |position: usize| known.iter().any(|(state, _)| *state == position);
-        leave_modes(&mut state, (t, &y, &yp), &|_, position| is_known(position))?;
-        state.pinned = initial_pins(&mut state, t, &y, &yp);
-        let kept = Round::StatesKept;
-        initial::solve(&mut state, &mut consistent, t, &mut y, &mut yp, kept)?;
+        leave_modes(&mut state, now.at(), &|_, position| is_known(position))?;
+        state.pinned = initial_pins(&mut state, now.at());
+        initial::solve(&mut state, &mut consistent, &mut now, Round::StatesKept)?;
     }
-    let z = state.z;
+    let (Moment { y, yp, .. }, z) = (now, state.z);
     Ok(KnownStart { y, yp, z })
 }

@@ -36,6 +36,7 @@ mod known_start;
 mod lobatto;
 mod loose;
 mod meter;
+mod moment;
 mod operating_point;
 mod reached;
 mod reductions;

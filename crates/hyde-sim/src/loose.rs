@@ -9,6 +9,7 @@
 //! root function has left what the tolerance of the run knows far behind, such a relation is evaluated with the equations, as
 //! below `noEvent`.
 
+use crate::moment::At;
 use crate::root_rates::rounding;
 use crate::state::State;
 use hyde_program::{Function, Point, RelationUse, Workspace, Wrt};
@@ -19,17 +20,17 @@ const FAR_OF_TOLERANCE: f64 = 100.0;
 
 impl State<'_> {
     /// Follows relations from here on.
-    pub(crate) fn follow(&mut self, relations: &[usize], (t, y, yp): (f64, &[f64], &[f64])) {
-        let rounding = rounding(self, t, y, yp, &[]);
+    pub(crate) fn follow(&mut self, relations: &[usize], at: At<'_>) {
+        let rounding = rounding(self, at, &[]);
         let mut far: Vec<f64> = rounding
             .into_iter()
             .map(|rounding| FAR * rounding)
             .collect();
         let (rtol, atol) = self.tolerances;
-        let partials = self.partials(Function::Roots, t, y, yp);
+        let partials = self.partials(Function::Roots, at);
         for (entry, value) in self.program.partials(Function::Roots).iter().zip(partials) {
             if let Wrt::Unknown(column) = entry.wrt {
-                let tolerance = rtol * y[column].abs() + atol;
+                let tolerance = rtol * at.y[column].abs() + atol;
                 far[entry.row] += FAR_OF_TOLERANCE * (value * tolerance).abs();
             }
         }
@@ -46,35 +47,28 @@ impl State<'_> {
     }
 
     /// Relations that are far from their zeros are located again; their truths stay what they are here.
-    pub(crate) fn follow_no_longer(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+    pub(crate) fn follow_no_longer(&mut self, at: At<'_>) {
         if self.loose.is_empty() {
             return;
         }
-        self.read_loose(t, y, yp);
+        self.read_loose(at);
         let mut roots = vec![0.0; self.program.relations.len()];
-        self.evaluate(Function::Roots, t, y, yp, &mut roots);
+        self.evaluate(Function::Roots, at, &mut roots);
         self.loose
             .retain(|(relation, far)| roots[*relation].abs() <= *far);
     }
 
     /// The values of a function that has none with the memory as it is: those behind the end of a branch, if it has any there.
     #[cold]
-    pub(crate) fn evaluate_beyond(
-        &mut self,
-        function: Function,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        out: &mut [f64],
-    ) {
+    pub(crate) fn evaluate_beyond(&mut self, function: Function, at: At<'_>, out: &mut [f64]) {
         let program = self.program;
         match function {
-            Function::Residual => self.with_own_truths(t, y, yp, |state| {
-                let (at, workspace) = state.at(t, y, yp);
-                program.kernels.evaluate(function, at, workspace, out);
+            Function::Residual => self.with_own_truths(at, |state| {
+                let (point, workspace) = state.point(at);
+                program.kernels.evaluate(function, point, workspace, out);
             }),
-            Function::Outputs => self.replace_not_finite((t, y, yp), out, |at, workspace, own| {
-                program.kernels.evaluate(function, at, workspace, own);
+            Function::Outputs => self.replace_not_finite(at, out, |point, workspace, own| {
+                program.kernels.evaluate(function, point, workspace, own);
             }),
             Function::Roots | Function::Assignments | Function::Initial | Function::Delayed => {}
         }
@@ -83,14 +77,14 @@ impl State<'_> {
     /// Where there is no finite value, that with the truths which relations have at the point itself.
     pub(crate) fn replace_not_finite(
         &mut self,
-        (t, y, yp): (f64, &[f64], &[f64]),
+        at: At<'_>,
         out: &mut [f64],
         evaluate: impl FnOnce(Point<'_>, &mut Workspace, &mut [f64]),
     ) {
         let mut own = out.to_vec();
-        self.with_own_truths(t, y, yp, |state| {
-            let (at, workspace) = state.at(t, y, yp);
-            evaluate(at, workspace, &mut own);
+        self.with_own_truths(at, |state| {
+            let (point, workspace) = state.point(at);
+            evaluate(point, workspace, &mut own);
         });
         for (value, own) in out.iter_mut().zip(own) {
             if !value.is_finite() {
@@ -100,13 +94,7 @@ impl State<'_> {
     }
 
     /// Evaluates with the truths that relations of equations have at a point, as they are behind the end of a branch.
-    pub(crate) fn with_own_truths(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        evaluate: impl FnOnce(&mut Self),
-    ) {
+    pub(crate) fn with_own_truths(&mut self, at: At<'_>, evaluate: impl FnOnce(&mut Self)) {
         let before = self.z.clone();
         let of_equations = |&number: &usize| {
             let relation = &self.program.relations[number];
@@ -118,26 +106,26 @@ impl State<'_> {
         if relations.is_empty() {
             return;
         }
-        self.read_truths(t, y, yp, &relations);
+        self.read_truths(at, &relations);
         evaluate(self);
         self.z = before;
     }
 
     /// Takes the truths of followed relations from a point.
     #[inline]
-    pub(crate) fn read_loose(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+    pub(crate) fn read_loose(&mut self, at: At<'_>) {
         if !self.loose.is_empty() {
             let loose: Vec<usize> = self.loose.iter().map(|(relation, _)| *relation).collect();
-            self.read_truths(t, y, yp, &loose);
+            self.read_truths(at, &loose);
         }
     }
 
-    fn read_truths(&mut self, t: f64, y: &[f64], yp: &[f64], relations: &[usize]) {
+    fn read_truths(&mut self, at: At<'_>, relations: &[usize]) {
         let program = self.program;
         let mut roots = vec![0.0; program.relations.len()];
-        let (at, workspace) = self.at(t, y, yp);
+        let (point, workspace) = self.point(at);
         let kernels = &program.kernels;
-        kernels.evaluate(Function::Roots, at, workspace, &mut roots);
+        kernels.evaluate(Function::Roots, point, workspace, &mut roots);
         for &relation in relations {
             let truth = program.relations[relation].truth(roots[relation]);
             self.z[relation] = f64::from(u8::from(truth));

@@ -9,6 +9,7 @@
 
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
+use crate::moment::At;
 use crate::results::Yielded;
 use crate::state::State;
 use hyde_diag::Origin;
@@ -93,12 +94,13 @@ struct Candidate {
 pub(crate) fn choose(
     state: &mut State<'_>,
     consistent: &mut Consistent,
-    (t, y, yp): (f64, &[f64], &[f64]),
+    at: At<'_>,
     count: usize,
 ) -> Result<(), Box<Failure>> {
+    let At { t, y, .. } = at;
     let candidates = candidates(state);
     let may_yield = candidates.partition_point(|c| c.firmness < Firmness::Given);
-    let table = Table::new(state, consistent, (t, y, yp), &candidates, count);
+    let table = Table::new(state, consistent, at, &candidates, count);
     let chosen = match table {
         Some(mut table) => {
             let chosen = table.basis(may_yield);
@@ -218,7 +220,7 @@ impl Table {
     fn new(
         state: &mut State<'_>,
         consistent: &mut Consistent,
-        (t, y, yp): (f64, &[f64], &[f64]),
+        at: At<'_>,
         candidates: &[Candidate],
         count: usize,
     ) -> Option<Self> {
@@ -227,15 +229,13 @@ impl Table {
             return None;
         }
         let before = state.p.clone();
-        let (mut moved_y, mut moved_yp) = (y.to_vec(), yp.to_vec());
-        move_off(state, candidates, &mut moved_y);
-        let solved = consistent.solve(state, t, &mut moved_y, &mut moved_yp, true);
-        if solved.is_err() {
+        let mut moved = at.to_moment();
+        move_off(state, candidates, &mut moved.y);
+        if consistent.solve(state, &mut moved, true).is_err() {
             state.p.clone_from(&before);
-            (moved_y, moved_yp) = (y.to_vec(), yp.to_vec());
+            moved = at.to_moment();
         }
-        let at = (t, moved_y.as_slice(), moved_yp.as_slice());
-        let table = Self::at(state, consistent, at, candidates, count);
+        let table = Self::at(state, consistent, moved.at(), candidates, count);
         state.p = before;
         table
     }
@@ -243,18 +243,17 @@ impl Table {
     fn at(
         state: &mut State<'_>,
         consistent: &mut Consistent,
-        at: (f64, &[f64], &[f64]),
+        at: At<'_>,
         candidates: &[Candidate],
         count: usize,
     ) -> Option<Self> {
-        let (t, y, yp) = at;
         let program = state.program;
-        let residual = state.partials(Function::Residual, t, y, yp);
-        let initial = state.partials(Function::Initial, t, y, yp);
+        let residual = state.partials(Function::Residual, at);
+        let initial = state.partials(Function::Initial, at);
         let mut follow: Vec<Vec<f64>> = Vec::new();
         let mut direct: Vec<Vec<f64>> = Vec::new();
         for candidate in candidates {
-            let (mut of_residual, mut of_initial) = (vec![0.0; y.len()], vec![0.0; count]);
+            let (mut of_residual, mut of_initial) = (vec![0.0; at.y.len()], vec![0.0; count]);
             match candidate.column {
                 Column::State(position) => {
                     let wrt = Wrt::Unknown(position);
@@ -382,16 +381,16 @@ pub(crate) fn by_parameter(
     state: &mut State<'_>,
     place: usize,
     function: Function,
-    (t, y, yp): (f64, &[f64], &[f64]),
+    at: At<'_>,
 ) -> Vec<f64> {
     let rows = state.program.rows(function);
     let (mut here, mut there) = (vec![0.0; rows], vec![0.0; rows]);
-    state.evaluate(function, t, y, yp, &mut here);
+    state.evaluate(function, at, &mut here);
     let (p, value) = (state.p.clone(), state.p[place]);
     let step = DIFFERENCE * if value == 0.0 { 1.0 } else { value.abs() };
     state.set_parameters(&[(place, value + step)]);
     let step = state.p[place] - value;
-    state.evaluate(function, t, y, yp, &mut there);
+    state.evaluate(function, at, &mut there);
     state.p = p;
     let pairs = there.into_iter().zip(here);
     pairs.map(|(there, here)| (there - here) / step).collect()

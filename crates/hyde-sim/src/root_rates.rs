@@ -1,22 +1,18 @@
 //! Where a root function that is zero goes (M2), and what counts as zero.
 
 use crate::consistent::Consistent;
+use crate::moment::{At, Moment};
 use crate::state::State;
 use hyde_program::{Function, Wrt};
 
 /// How far from zero rounding of its arguments alone takes each root function: two modes that meet at a point, one with a
 /// guard `g > 0` and the other with `g < 0`, must not both see theirs true. A state that has come to zero from afar, as the
 /// height of a ball that lies down, is known to rounding of what it was.
-pub(crate) fn rounding(
-    state: &mut State<'_>,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-    largest: &[f64],
-) -> Vec<f64> {
+pub(crate) fn rounding(state: &mut State<'_>, at: At<'_>, largest: &[f64]) -> Vec<f64> {
+    let At { t, y, yp } = at;
     let program = state.program;
     let mut rounding = vec![0.0; program.relations.len()];
-    let partials = state.partials(Function::Roots, t, y, yp);
+    let partials = state.partials(Function::Roots, at);
     let delayed = state.delayed().to_vec();
     for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
         let argument = match entry.wrt {
@@ -101,20 +97,22 @@ impl RootRate {
 pub(crate) fn root_rates(
     state: &mut State<'_>,
     consistent: &mut Consistent,
-    (t, y, yp): (f64, &[f64], &[f64]),
+    at: At<'_>,
     relations: &[usize],
 ) -> Vec<RootRate> {
-    let Some((now, dy, dyp)) = rates_at(Function::Roots, state, consistent, t, y, yp) else {
+    let At { t, y, yp } = at;
+    let Some((now, dy, dyp)) = rates_at(Function::Roots, state, consistent, at) else {
         return vec![RootRate::default(); state.program.relations.len()];
     };
     let differential = state.differential.clone();
-    let mut at = |t: f64, mut y: Vec<f64>| -> Option<Vec<f64>> {
-        let mut yp = yp.to_vec();
-        consistent.solve(state, t, &mut y, &mut yp, false).ok()?;
-        let (rates, ..) = rates_at(Function::Roots, state, consistent, t, &y, &yp)?;
+    let mut rates_of = |t: f64, y: Vec<f64>| -> Option<Vec<f64>> {
+        let yp = yp.to_vec();
+        let mut beside = Moment { t, y, yp };
+        consistent.solve(state, &mut beside, false).ok()?;
+        let (rates, ..) = rates_at(Function::Roots, state, consistent, beside.at())?;
         Some(rates)
     };
-    let otherwise = at(t, rounded_otherwise(y, &differential));
+    let otherwise = rates_of(t, rounded_otherwise(y, &differential));
     let found = now.iter().enumerate().map(|(number, &now)| RootRate {
         now,
         mean: now,
@@ -131,7 +129,7 @@ pub(crate) fn root_rates(
             let bend = if differential[i] { dyp[i] } else { 0.0 };
             y[i] + ahead * (dy[i] + 0.5 * ahead * bend)
         });
-        let Some(later) = at(t + ahead, y_later.collect()) else {
+        let Some(later) = rates_of(t + ahead, y_later.collect()) else {
             break;
         };
         for (rate, later) in found.iter_mut().zip(later) {
@@ -171,14 +169,12 @@ pub(crate) fn rates_at(
     function: Function,
     state: &mut State<'_>,
     consistent: &mut Consistent,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
+    at: At<'_>,
 ) -> Option<(Vec<f64>, Vec<f64>, Vec<f64>)> {
     let program = state.program;
     let mut rates = vec![0.0; program.rows(function)];
-    let (dy, dyp) = consistent.flow(state, t, y, yp)?;
-    let partials = state.partials(function, t, y, yp);
+    let (dy, dyp) = consistent.flow(state, at)?;
+    let partials = state.partials(function, at);
     for (entry, value) in program.partials(function).iter().zip(partials) {
         rates[entry.row] += match entry.wrt {
             Wrt::Unknown(column) => value * dy[column],
@@ -186,7 +182,7 @@ pub(crate) fn rates_at(
             Wrt::Delayed(_) | Wrt::Time | Wrt::Parameter(_) | Wrt::Memory(_) => 0.0,
         };
     }
-    let by_time = state.by_time(function, t, y, yp);
+    let by_time = state.by_time(function, at);
     for (rate, by_time) in rates.iter_mut().zip(by_time) {
         *rate += by_time;
     }

@@ -13,6 +13,7 @@ mod stages;
 mod step_size;
 mod tableau;
 
+use crate::moment::At;
 use hyde_ida::{Error, Failure, FailureKind, LinearMethod, SparseSolver, Statistics, System};
 use lanes::Lanes;
 use passes::{correct, inside, keep_largest, weights};
@@ -83,7 +84,7 @@ impl<S: System> RungeKutta<S> {
         differential: Vec<bool>,
         watched: bool,
         max_step_s: f64,
-        (t, y, yp): (f64, &[f64], &[f64]),
+        At { t, y, yp }: At<'_>,
     ) -> Self {
         let (n, entries) = (linear.pattern().n(), linear.pattern().n_entries());
         let mut slopes = vec![Lanes::zeros(n); STAGES];
@@ -139,8 +140,9 @@ impl<S: System> RungeKutta<S> {
     }
 
     /// Time in s, unknowns and their derivatives at the end of the last step.
-    pub(crate) fn end(&self) -> (f64, &[f64], &[f64]) {
-        (self.t, &self.y, &self.slopes[LAST])
+    pub(crate) fn end(&self) -> At<'_> {
+        let (t, y, yp) = (self.t, &*self.y, &*self.slopes[LAST]);
+        At { t, y, yp }
     }
 
     pub(crate) fn statistics(&self) -> Statistics {
@@ -154,7 +156,7 @@ impl<S: System> RungeKutta<S> {
     }
 
     /// Goes on from other values, or with other equations, with the step it had or this one (in s) if that is shorter.
-    pub(crate) fn restart(&mut self, t: f64, y: &[f64], yp: &[f64], first_step_s: f64) {
+    pub(crate) fn restart(&mut self, At { t, y, yp }: At<'_>, first_step_s: f64) {
         self.t = t;
         self.y.copy_from_slice(y);
         self.slopes[LAST].copy_from_slice(yp);

@@ -4,6 +4,7 @@
 //! With k constraints between m variables the k that the constraints determine best are not states: the columns that a
 //! QR factorisation with column pivoting takes first (Golub and Van Loan, Matrix Computations, §5.4).
 
+use crate::moment::{At, Moment};
 use crate::state::State;
 use hyde_program::{Firmness, Function, InitialCondition, Selection, Wrt};
 use nalgebra::{DMatrix, DVector};
@@ -19,8 +20,8 @@ const MAX_STEPS_TO_CONSTRAINTS: usize = 30;
 
 /// Chooses at the start: variables with a fixed start value stay states where the constraints allow it. States keep their
 /// start values; what the constraints determine gets a first value.
-pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &mut [f64], yp: &[f64]) {
-    let mut fixed = vec![false; y.len()];
+pub(crate) fn choose_at_start(state: &mut State<'_>, now: &mut Moment) {
+    let mut fixed = vec![false; now.y.len()];
     for condition in &state.program.initial {
         if let InitialCondition::Fixed {
             state: first,
@@ -34,10 +35,10 @@ pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &mut [f64], yp: 
                 .for_each(|flag| *flag = true);
         }
     }
-    let start = y.to_vec();
-    meet_constraints(state, t, y, yp, &fixed);
+    let start = now.y.clone();
+    meet_constraints(state, now, &fixed);
     for selection in &state.program.selections {
-        let mut jacobian = weighted(jacobian(state, selection, t, y, yp), selection);
+        let mut jacobian = weighted(jacobian(state, selection, now.at()), selection);
         for (column, &candidate) in selection.candidates.iter().enumerate() {
             if fixed[candidate] {
                 jacobian.column_mut(column).scale_mut(GIVEN);
@@ -49,7 +50,7 @@ pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &mut [f64], yp: 
     for selection in &state.program.selections {
         for &candidate in &selection.candidates {
             if state.differential[candidate] {
-                y[candidate] = start[candidate];
+                now.y[candidate] = start[candidate];
             }
         }
     }
@@ -57,13 +58,13 @@ pub(crate) fn choose_at_start(state: &mut State<'_>, t: f64, y: &mut [f64], yp: 
 
 /// Moves what is not fixed to the constraints, as little as possible: Gauss-Newton steps of least norm (Golub and Van Loan,
 /// §5.5). The constraints' Jacobian at bare start values can be singular: a motion that is prescribed has none.
-fn meet_constraints(state: &mut State<'_>, t: f64, y: &mut [f64], yp: &[f64], fixed: &[bool]) {
-    let mut residual = vec![0.0; y.len()];
+fn meet_constraints(state: &mut State<'_>, now: &mut Moment, fixed: &[bool]) {
+    let mut residual = vec![0.0; now.y.len()];
     for _ in 0..MAX_STEPS_TO_CONSTRAINTS {
         let mut moved = false;
         for selection in &state.program.selections {
-            state.evaluate(Function::Residual, t, y, yp, &mut residual);
-            let mut jacobian = jacobian(state, selection, t, y, yp);
+            state.evaluate(Function::Residual, now.at(), &mut residual);
+            let mut jacobian = jacobian(state, selection, now.at());
             for (column, &candidate) in selection.candidates.iter().enumerate() {
                 if fixed[candidate] {
                     jacobian.column_mut(column).fill(0.0);
@@ -80,8 +81,8 @@ fn meet_constraints(state: &mut State<'_>, t: f64, y: &mut [f64], yp: &[f64], fi
                 return;
             };
             for (&candidate, step) in selection.candidates.iter().zip(step.iter()) {
-                y[candidate] -= step;
-                moved |= step.abs() > 1e-10 * (1e-3 + y[candidate].abs());
+                now.y[candidate] -= step;
+                moved |= step.abs() > 1e-10 * (1e-3 + now.y[candidate].abs());
             }
         }
         if !moved {
@@ -91,10 +92,10 @@ fn meet_constraints(state: &mut State<'_>, t: f64, y: &mut [f64], yp: &[f64], fi
 }
 
 /// Chooses anew where another choice has become much better; whether anything changed.
-pub(crate) fn choose_again(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64]) -> bool {
+pub(crate) fn choose_again(state: &mut State<'_>, at: At<'_>) -> bool {
     let mut changed = false;
     for selection in &state.program.selections {
-        let jacobian = weighted(jacobian(state, selection, t, y, yp), selection);
+        let jacobian = weighted(jacobian(state, selection, at), selection);
         let candidates = 0..selection.candidates.len();
         let now: Vec<usize> = candidates
             .filter(|&column| !state.differential[selection.candidates[column]])
@@ -109,13 +110,7 @@ pub(crate) fn choose_again(state: &mut State<'_>, t: f64, y: &[f64], yp: &[f64])
 }
 
 /// Makes states of the variables that an event `struck`, as far as the constraints allow: the others follow from them.
-pub(crate) fn choose_struck(
-    state: &mut State<'_>,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-    struck: &[usize],
-) {
+pub(crate) fn choose_struck(state: &mut State<'_>, at: At<'_>, struck: &[usize]) {
     for selection in &state.program.selections {
         let candidates = selection.candidates.iter().enumerate();
         let given = candidates.filter(|(_, candidate)| struck.contains(candidate));
@@ -124,7 +119,7 @@ pub(crate) fn choose_struck(
         if given.iter().all(is_state) {
             continue;
         }
-        let mut jacobian = weighted(jacobian(state, selection, t, y, yp), selection);
+        let mut jacobian = weighted(jacobian(state, selection, at), selection);
         for column in given {
             jacobian.column_mut(column).scale_mut(GIVEN);
         }
@@ -134,14 +129,8 @@ pub(crate) fn choose_struck(
 }
 
 /// The derivatives of the constraints by the variables.
-fn jacobian(
-    state: &mut State<'_>,
-    selection: &Selection,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-) -> DMatrix<f64> {
-    let values = state.partials(Function::Residual, t, y, yp);
+fn jacobian(state: &mut State<'_>, selection: &Selection, at: At<'_>) -> DMatrix<f64> {
+    let values = state.partials(Function::Residual, at);
     let mut found = DMatrix::zeros(selection.constraints.len(), selection.candidates.len());
     let entries = state.program.partials(Function::Residual);
     for (entry, value) in entries.iter().zip(values) {

@@ -20,6 +20,7 @@ pub(crate) use instant::Cause;
 
 use crate::consistent::Consistent;
 use crate::failure::{Failure, FailureKind};
+use crate::moment::At;
 use crate::results::{GradientEnd, GradientEndKind};
 use crate::state::State;
 use hyde_program::{Constant, Function, PartialEntry, Program, Wrt};
@@ -108,7 +109,7 @@ impl Sensitivities {
         &self,
         function: Function,
         state: &mut State<'_>,
-        (t, y, yp): (f64, &[f64], &[f64]),
+        at: At<'_>,
     ) -> Vec<Vec<f64>> {
         let program = state.program;
         let rows = program.rows(function);
@@ -120,7 +121,7 @@ impl Sensitivities {
                 }
             }
         };
-        let partials = state.partials(function, t, y, yp);
+        let partials = state.partials(function, at);
         for (entry, value) in program.partials(function).iter().zip(partials) {
             match entry.wrt {
                 Wrt::Unknown(column) => add(&self.now.y, (entry.row, column), value),
@@ -131,7 +132,7 @@ impl Sensitivities {
         }
         let entries = self.entries.of(function);
         let mut partials = vec![0.0; entries.len()];
-        state.still_partials(function, t, y, yp, &mut partials);
+        state.still_partials(function, at, &mut partials);
         for (entry, value) in entries.iter().zip(partials) {
             match entry.wrt {
                 Wrt::Parameter(column) => add(&self.directions, (entry.row, column), value),
@@ -140,7 +141,7 @@ impl Sensitivities {
             }
         }
         if self.moves.iter().any(|moves| *moves != 0.0) {
-            let rates = state.by_time(function, t, y, yp);
+            let rates = state.by_time(function, at);
             for (out, moves) in out.iter_mut().zip(&self.moves) {
                 out.iter_mut()
                     .zip(&rates)
@@ -155,8 +156,9 @@ impl Sensitivities {
         &mut self,
         state: &mut State<'_>,
         consistent: &mut Consistent,
-        (t, y, yp): (f64, &[f64], &[f64]),
+        at: At<'_>,
     ) {
+        let At { t, y, .. } = at;
         if self.end.is_some() || y.is_empty() {
             return;
         }
@@ -169,8 +171,8 @@ impl Sensitivities {
             }
         }
         // What is left with zeros in their places; the equations are linear in them.
-        let mut rights = self.of(Function::Residual, state, (t, y, yp));
-        if !consistent.correct(state, (t, y, yp), &mut rights) {
+        let mut rights = self.of(Function::Residual, state, at);
+        if !consistent.correct(state, at, &mut rights) {
             self.stop(t, GradientEndKind::Singular);
             return;
         }

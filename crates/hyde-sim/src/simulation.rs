@@ -78,17 +78,11 @@ impl<'a> Simulation<'a> {
         let t = setup.start_s;
         let mut state = State::new(program, setup)?;
         let mut consistent = Consistent::new(&state);
-        let (mut y, mut yp) = initial::start(&mut state, t);
-        leave_impossible_modes(&mut state, t, &y, &yp)?;
-        state.pinned = initial_pins(&mut state, t, &y, &yp);
-        initial::solve(
-            &mut state,
-            &mut consistent,
-            t,
-            &mut y,
-            &mut yp,
-            initial::Round::First,
-        )?;
+        let mut now = initial::start(&mut state, t);
+        leave_impossible_modes(&mut state, now.at())?;
+        state.pinned = initial_pins(&mut state, now.at());
+        let round = initial::Round::First;
+        initial::solve(&mut state, &mut consistent, &mut now, round)?;
         // Instants may depend on a parameter that an initial equation finds.
         let schedule = Schedule::new(&state, t).map_err(|clock| {
             let message = format!(
@@ -106,8 +100,7 @@ impl<'a> Simulation<'a> {
             None => None,
         };
         if let Some(sensitivities) = &mut sensitivities {
-            let at = (t, y.as_slice(), yp.as_slice());
-            sensitivities.start(&mut state, &mut consistent, at, initial::Round::First);
+            sensitivities.start(&mut state, &mut consistent, now.at(), round);
         }
         let keep = setup
             .keep
@@ -132,7 +125,7 @@ impl<'a> Simulation<'a> {
             ..Results::default()
         };
         let reduced = Reduced::new(program, setup, &state);
-        let integrator = Integrator::new(state, setup, t, y, yp, 1e-6)?;
+        let integrator = Integrator::new(state, setup, now, 1e-6)?;
         Ok(Self {
             setup,
             program,
@@ -180,7 +173,7 @@ impl<'a> Simulation<'a> {
     /// On to a time, events and ticks there included.
     pub(crate) fn advance_to(&mut self, stop: f64) -> Result<(), Box<Failure>> {
         self.restart()?;
-        while self.integrator.t < stop && !same_instant(self.integrator.t, stop) {
+        while self.integrator.now.t < stop && !same_instant(self.integrator.now.t, stop) {
             let target = self.next_target(stop);
             // The solver is past a located crossing: it starts anew from there whatever happens.
             let crossed = self.advance(target.t)?;
@@ -193,10 +186,10 @@ impl<'a> Simulation<'a> {
 
     /// The start itself: events before the first step, first ticks, first rows.
     pub(crate) fn settle_start(&mut self) -> Result<(), Box<Failure>> {
-        let t = self.integrator.t;
+        let t = self.integrator.now.t;
         self.settle()?;
         let state = self.integrator.state();
-        self.results.yielded = state.released.told(state, &self.integrator.y);
+        self.results.yielded = state.released.told(state, &self.integrator.now.y);
         self.results.parameters.clone_from(&state.p);
         let left = delays::limits(&mut self.integrator, None);
         self.row();
@@ -223,7 +216,7 @@ impl<'a> Simulation<'a> {
     /// Events at the start. Relations are known only behind the first solution, so initial equations that read them are
     /// solved again; a change of mode keeps the values of the states (I2).
     fn settle(&mut self) -> Result<(), Box<Failure>> {
-        let t = self.integrator.t;
+        let t = self.integrator.now.t;
         let scheduled = self.schedule.relations_at(t);
         let automata = &self.program.automata;
         let modes = |z: &[f64]| {
@@ -245,13 +238,13 @@ impl<'a> Simulation<'a> {
             } else {
                 initial::Round::Again
             };
-            let (mut y, mut yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
+            let mut now = self.integrator.now.clone();
             let state = self.integrator.state_mut();
-            initial::solve(state, &mut self.consistent, t, &mut y, &mut yp, round)?;
+            initial::solve(state, &mut self.consistent, &mut now, round)?;
             if let Some(sensitivities) = &mut self.sensitivities {
-                sensitivities.start(state, &mut self.consistent, (t, &y, &yp), round);
+                sensitivities.start(state, &mut self.consistent, now.at(), round);
             }
-            (self.integrator.y, self.integrator.yp) = (y, yp);
+            self.integrator.now = now;
         }
         let kind = FailureKind::Inconsistent {
             singular: Vec::new(),
@@ -291,7 +284,7 @@ impl<'a> Simulation<'a> {
             let Some(crossing) = &found else {
                 return Ok(None);
             };
-            let (before, behind) = (crossing.t - from, integrator.t - crossing.t);
+            let (before, behind) = (crossing.t - from, integrator.now.t - crossing.t);
             let just_behind = behind < 2.0 * JUST_BEHIND * (before + behind);
             // So near to where it began, the time itself is no more exact.
             let at_its_start = same_instant(crossing.t, from);
@@ -309,18 +302,11 @@ impl<'a> Simulation<'a> {
         if self.program.selections.is_empty() {
             return Ok(false);
         }
-        let (t, mut y, mut yp) = (
-            self.integrator.t,
-            self.integrator.y.clone(),
-            self.integrator.yp.clone(),
-        );
-        if !selection::choose_again(self.integrator.state_mut(), t, &y, &yp) {
+        let now = self.integrator.now.clone();
+        if !selection::choose_again(self.integrator.state_mut(), now.at()) {
             return Ok(false);
         }
-        self.consistent
-            .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
-        self.integrator.y = y;
-        self.integrator.yp = yp;
+        self.integrator.be_consistent(&mut self.consistent)?;
         self.finish_sensitivities();
         Ok(true)
     }
@@ -337,13 +323,13 @@ impl<'a> Simulation<'a> {
         if self.meter.is_none() || to <= from {
             return;
         }
-        let n = self.program.n_unknowns;
-        let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
+        let mut then = self.integrator.room(from);
         let outputs = lobatto::times(from, to).map(|t| {
-            self.integrator.solution(t, &mut y, &mut yp);
+            then.t = t;
+            self.integrator.solution(&mut then);
             let state = self.integrator.state_mut();
-            self.consistent.refine(state, t, &mut y, &mut yp);
-            self.values_at(t, &y, &yp);
+            self.consistent.refine(state, &mut then);
+            self.values_at(then.at());
             self.outputs.clone()
         });
         if let Some(meter) = &mut self.meter {
@@ -353,20 +339,20 @@ impl<'a> Simulation<'a> {
 
     /// Steps that lead nowhere end the run with the unknown whose rate jumps most from one step to the next.
     fn no_way(&mut self, kind: FailureKind, target: f64) -> Box<Failure> {
-        let before = self.integrator.yp.clone();
+        let before = self.integrator.now.yp.clone();
         if let Err(failure) = self.integrator.step(target) {
             return failure;
         }
-        let now = &self.integrator.yp;
+        let now = &self.integrator.now.yp;
         let jumps = now
             .iter()
             .zip(&before)
             .map(|(now, before)| (now - before).abs());
         let most = jumps.enumerate().max_by(|a, b| a.1.total_cmp(&b.1));
-        let failure = Failure::new(kind, self.integrator.t);
+        let failure = Failure::new(kind, self.integrator.now.t);
         match most {
             Some((row, _)) => {
-                let failure = failure.at_row(self.program, row, &self.integrator.y);
+                let failure = failure.at_row(self.program, row, &self.integrator.now.y);
                 self.integrator.with_equation(failure, row)
             }
             None => failure,
@@ -375,7 +361,7 @@ impl<'a> Simulation<'a> {
 
     /// Events that come ever faster end the run with what they are (Zeno). `first` is the first event of this instant.
     fn not_too_many(&mut self, first: usize) -> Result<(), Box<Failure>> {
-        let (t, events) = (self.integrator.t, &self.results.events);
+        let (t, events) = (self.integrator.now.t, &self.results.events);
         let Some(kind) = self.hurry.no_end(t, &events[first..], self.setup) else {
             return Ok(());
         };
@@ -417,7 +403,10 @@ impl<'a> Simulation<'a> {
             self.results.reductions = reduced.reductions.finish();
         }
         self.results.energies = self.meter.as_ref().map(Meter::sums);
-        self.results.last = (self.integrator.y.clone(), self.integrator.state().z.clone());
+        self.results.last = (
+            self.integrator.now.y.clone(),
+            self.integrator.state().z.clone(),
+        );
     }
 }
 

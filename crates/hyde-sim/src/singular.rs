@@ -3,6 +3,7 @@
 //! Computations, §5.4). It is for a message: dense, and up to a few hundred unknowns.
 
 use crate::failure::{Failure, FailureKind};
+use crate::moment::At;
 use crate::state::State;
 use nalgebra::DMatrix;
 
@@ -15,13 +16,12 @@ const ZERO: f64 = 1e-13;
 /// A component of a singular vector counts from this times the largest: what takes part does so in like measure.
 const TAKES_PART: f64 = 1e-6;
 
-/// The failure of a matrix that is singular at `y`; `stopped` is the unknown at which the elimination found nothing.
+/// The failure of a matrix that is singular at a moment; `stopped` is the unknown at which the elimination found nothing.
 pub(crate) fn failure(
     state: &State<'_>,
     matrix: &[f64],
     stopped: usize,
-    t: f64,
-    y: &[f64],
+    at: At<'_>,
     at_start: bool,
 ) -> Box<Failure> {
     let (rows, open) = dependent(state, matrix).unwrap_or((vec![stopped], vec![(stopped, 1.0)]));
@@ -43,7 +43,7 @@ pub(crate) fn failure(
         singular: singular.collect(),
         at_start,
     };
-    let mut failure = Failure::new(kind, t).in_modes(state);
+    let mut failure = Failure::new(kind, at.t).in_modes(state);
     let named = open
         .iter()
         .map(|&(column, change)| (solved_for(state, column), change));
@@ -54,7 +54,7 @@ pub(crate) fn failure(
         }
     }
     for column in columns {
-        failure = failure.at_unknown(state.program, column, y);
+        failure = failure.at_unknown(state.program, column, at.y);
     }
     failure
 }

@@ -61,10 +61,8 @@ impl Instant<'_, '_> {
                 located.push((relation, SAME_SURFACE * size));
             }
             self.log_slide(&slide, None, Some(side));
-            let rows = self.state.choose_rows(self.t, self.y, self.yp);
-            let solved = self
-                .consistent
-                .solve(self.state, self.t, self.y, self.yp, false);
+            let rows = self.state.choose_rows(self.now.at());
+            let solved = self.consistent.solve(self.state, self.now, false);
             if !rows || solved.is_err() {
                 return Err(self.cannot_slide(&slide, NO_ROW));
             }
@@ -79,12 +77,12 @@ impl Instant<'_, '_> {
             return None;
         }
         for (number, slide) in slides.iter().enumerate() {
-            let height = self.state.height(slide.surface, self.t, self.y, self.yp);
+            let height = self.state.height(slide.surface, self.now.at());
             if height.abs() > OFF * self.size_of(slide.surface) {
                 return Some((number, usize::from(height > 0.0)));
             }
         }
-        let weights = self.state.weights(self.t, self.y, self.yp);
+        let weights = self.state.weights(self.now.at());
         let beyond = |weight: f64| (-weight).max(weight - 1.0);
         let (number, weight) = weights
             .into_iter()
@@ -161,14 +159,14 @@ impl Instant<'_, '_> {
         let (leaving, returning) = (guards(from), guards(to));
         for there in leaving {
             let truth = std::mem::replace(&mut self.state.z[there], 0.0);
-            let decides = !self.state.conditions(self.t, self.y, self.yp)[reaction];
+            let decides = !self.state.conditions(self.now.at())[reaction];
             self.state.z[there] = truth;
             if truth == 0.0 || !decides {
                 continue;
             }
             for &here in &returning {
                 let before = std::mem::replace(&mut self.state.z[here], 1.0);
-                let leads_back = self.state.conditions(self.t, self.y, self.yp)[back];
+                let leads_back = self.state.conditions(self.now.at())[back];
                 self.state.z[here] = before;
                 if leads_back && self.same_surface(there, here) == Some(false) {
                     let modes = ModePair {
@@ -200,15 +198,14 @@ impl Instant<'_, '_> {
             surface,
             relations,
             modes,
-            direction: vec![0.0; self.y.len()],
+            direction: vec![0.0; self.now.y.len()],
             row: 0,
         }
     }
 
     /// Whether two relations switch at the same place, and if so, whether in the same direction.
     fn same_surface(&mut self, a: usize, b: usize) -> Option<bool> {
-        let gradient =
-            |state: &mut crate::state::State<'_>, k| state.gradient(k, self.t, self.y, self.yp);
+        let gradient = |state: &mut crate::state::State<'_>, k| state.gradient(k, self.now.at());
         let (of_a, of_b) = (gradient(self.state, a), gradient(self.state, b));
         let (column, first) = *of_a.iter().max_by(|x, y| x.1.abs().total_cmp(&y.1.abs()))?;
         let along = |list: &[(usize, f64)], column: usize| -> f64 {
@@ -228,8 +225,7 @@ impl Instant<'_, '_> {
                 return None;
             }
         }
-        let height =
-            |state: &mut crate::state::State<'_>, k| state.height(k, self.t, self.y, self.yp);
+        let height = |state: &mut crate::state::State<'_>, k| state.height(k, self.now.at());
         let apart = height(self.state, b) - ratio * height(self.state, a);
         let size = self.size_of(b).max(ratio.abs() * self.size_of(a));
         (apart.abs() <= SAME_SURFACE * size).then_some(ratio > 0.0)
@@ -237,17 +233,17 @@ impl Instant<'_, '_> {
 
     /// The size of what a root function is the difference of.
     fn size_of(&mut self, relation: usize) -> f64 {
-        let gradient = self.state.gradient(relation, self.t, self.y, self.yp);
+        let gradient = self.state.gradient(relation, self.now.at());
         gradient
             .iter()
-            .map(|&(column, value)| (value * self.y[column]).abs())
+            .map(|&(column, value)| (value * self.now.y[column]).abs())
             .sum()
     }
 
     /// Lets a switch slide if it must. Returns whether it does.
     fn enter(&mut self, slide: Slide) -> Result<bool, Box<Failure>> {
         let (memory, before) = (self.state.z.clone(), self.state.slides.clone());
-        let (y, yp) = (self.y.clone(), self.yp.clone());
+        let now = self.now.clone();
         let verdict = self.try_to_slide(slide.clone());
         self.state.z = memory;
         match verdict {
@@ -266,7 +262,7 @@ impl Instant<'_, '_> {
             }
             Verdict::Crosses => {
                 self.state.slides = before;
-                (*self.y, *self.yp) = (y, yp);
+                *self.now = now;
                 Ok(false)
             }
             Verdict::Cannot(why) => {
@@ -279,13 +275,10 @@ impl Instant<'_, '_> {
     fn try_to_slide(&mut self, mut slide: Slide) -> Verdict {
         let surface = slide.surface;
         // An instant is known to rounding of the time; further away no crossing was located.
-        let moved = self
-            .state
-            .height_rate(surface, self.t, self.y, self.yp)
-            .abs();
-        let moment = 1e-12 * (1.0 + self.t.abs());
+        let moved = self.state.height_rate(surface, self.now.at()).abs();
+        let moment = 1e-12 * (1.0 + self.now.t.abs());
         let near = moved * moment + SAME_SURFACE * self.size_of(surface);
-        let height = self.state.height(surface, self.t, self.y, self.yp);
+        let height = self.state.height(surface, self.now.at());
         if height.abs() > near {
             return Verdict::Crosses;
         }
@@ -317,13 +310,11 @@ impl Instant<'_, '_> {
         }
         slide.direction = self.direction(surface, &lower, &upper);
         self.state.slides.push(slide);
-        if !self.state.choose_rows(self.t, self.y, self.yp) {
+        if !self.state.choose_rows(self.now.at()) {
             return Verdict::Cannot(NO_ROW);
         }
-        self.state.put_on_surfaces(self.t, self.y, self.yp);
-        let solved = self
-            .consistent
-            .solve(self.state, self.t, self.y, self.yp, false);
+        self.state.put_on_surfaces(self.now);
+        let solved = self.consistent.solve(self.state, self.now, false);
         if solved.is_err() {
             return Verdict::Cannot(NO_ROW);
         }
@@ -337,18 +328,20 @@ impl Instant<'_, '_> {
     /// The flow with a switch on one side; `None` where there is none.
     fn flow_on(&mut self, slide: &Slide, side: usize) -> Option<Flow> {
         self.state.set_side(slide, side);
-        let (mut y, mut yp) = (self.y.clone(), self.yp.clone());
-        let solved = self
-            .consistent
-            .solve(self.state, self.t, &mut y, &mut yp, false);
+        let mut on_side = self.now.clone();
+        let solved = self.consistent.solve(self.state, &mut on_side, false);
         solved.ok()?;
-        let gradient = self.state.gradient(slide.surface, self.t, &y, &yp);
+        let gradient = self.state.gradient(slide.surface, on_side.at());
         let size = gradient
             .iter()
-            .map(|&(column, value)| (value * yp[column]).abs())
+            .map(|&(column, value)| (value * on_side.yp[column]).abs())
             .sum();
-        let rate = self.state.height_rate(slide.surface, self.t, &y, &yp);
-        Some(Flow { yp, rate, size })
+        let rate = self.state.height_rate(slide.surface, on_side.at());
+        Some(Flow {
+            yp: on_side.yp,
+            rate,
+            size,
+        })
     }
 
     /// The direction in which the rates of the states differ; of its components on the surface the leading one is 1.
@@ -361,8 +354,8 @@ impl Instant<'_, '_> {
                 0.0
             }
         };
-        let mut direction: Vec<f64> = (0..self.y.len()).map(difference).collect();
-        let gradient = self.state.gradient(surface, self.t, self.y, self.yp);
+        let mut direction: Vec<f64> = (0..self.now.y.len()).map(difference).collect();
+        let gradient = self.state.gradient(surface, self.now.at());
         let size = |entry: &&(usize, f64)| (entry.1 * direction[entry.0]).abs();
         let leading = gradient.iter().max_by(|a, b| size(a).total_cmp(&size(b)));
         let leading = leading.map_or(1.0, |&(column, _)| direction[column]);
@@ -373,11 +366,7 @@ impl Instant<'_, '_> {
     /// Whether the rates while sliding are the mean of those of the two sides of the last slide, as they are where what it
     /// switches acts linearly.
     fn acts_linearly(&mut self) -> bool {
-        let weight = self
-            .state
-            .weights(self.t, self.y, self.yp)
-            .pop()
-            .unwrap_or(f64::NAN);
+        let weight = self.state.weights(self.now.at()).pop().unwrap_or(f64::NAN);
         let Some(slide) = self.state.slides.pop() else {
             return true;
         };
@@ -386,7 +375,7 @@ impl Instant<'_, '_> {
         let [Some(lower), Some(upper)] = flows else {
             return false;
         };
-        let mut states = (0..self.y.len()).filter(|&i| self.state.differential[i]);
+        let mut states = (0..self.now.y.len()).filter(|&i| self.state.differential[i]);
         let largest = lower
             .yp
             .iter()
@@ -396,7 +385,7 @@ impl Instant<'_, '_> {
             let (lower, upper) = (lower.yp[i], upper.yp[i]);
             let mean = weight * upper + (1.0 - weight) * lower;
             let size = lower.abs().max(upper.abs()).max(NO_JUMP * largest);
-            (self.yp[i] - mean).abs() <= NOT_LINEAR * size
+            (self.now.yp[i] - mean).abs() <= NOT_LINEAR * size
         })
     }
 
@@ -413,7 +402,7 @@ impl Instant<'_, '_> {
     fn height_differs(&mut self, slide: &Slide) -> bool {
         let [lower, upper] = [0, 1].map(|side| {
             self.state.set_side(slide, side);
-            self.state.height(slide.surface, self.t, self.y, self.yp)
+            self.state.height(slide.surface, self.now.at())
         });
         (upper - lower).abs() > SAME_SURFACE * self.size_of(slide.surface)
     }
@@ -440,14 +429,14 @@ impl Instant<'_, '_> {
                 causes.push(text.clone());
             }
         }
-        let failure = Failure::new(FailureKind::CannotSlide(causes.clone(), why), self.t);
+        let failure = Failure::new(FailureKind::CannotSlide(causes.clone(), why), self.now.t);
         let failure = slide
             .relations
             .iter()
             .fold(failure, |failure, (relation, _)| {
                 failure.at_origin(&relations[*relation].origin)
             });
-        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let at = self.now.at();
         causes.iter().fold(failure, |failure, cause| {
             failure.with_values(self.state, at, cause)
         })

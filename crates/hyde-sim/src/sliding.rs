@@ -13,6 +13,7 @@
 //! A. F. Filippov: Differential Equations with Discontinuous Righthand Sides (1988), §4; several switches at once add
 //! their differences, which is his solution where they act on the equations independently of each other.
 
+use crate::moment::At;
 use crate::state::State;
 use hyde_program::{Function, Jacobian, Wrt};
 
@@ -139,8 +140,8 @@ impl State<'_> {
     }
 
     /// The weight of the upper side of every slide: what its row says of it.
-    pub(crate) fn weights(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
-        let (lower, differences) = self.residual_sides(t, y, yp);
+    pub(crate) fn weights(&mut self, at: At<'_>) -> Vec<f64> {
+        let (lower, differences) = self.residual_sides(at);
         self.weights_of(&lower, &differences)
     }
 
@@ -154,25 +155,18 @@ impl State<'_> {
         solve_small(matrix, right)
     }
 
-    fn residual_sides(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (Vec<f64>, Vec<Vec<f64>>) {
-        let n = y.len();
+    fn residual_sides(&mut self, at: At<'_>) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let n = at.y.len();
         self.sides(&mut |state| {
             let mut out = vec![0.0; n];
-            state.evaluate_side(Function::Residual, t, y, yp, &mut out);
+            state.evaluate_side(Function::Residual, at, &mut out);
             out
         })
     }
 
     /// The residual while sliding.
-    pub(crate) fn sliding_residual(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        surface: Surface,
-        out: &mut [f64],
-    ) {
-        let (lower, differences) = self.residual_sides(t, y, yp);
+    pub(crate) fn sliding_residual(&mut self, at: At<'_>, surface: Surface, out: &mut [f64]) {
+        let (lower, differences) = self.residual_sides(at);
         let weights = self.weights_of(&lower, &differences);
         out.copy_from_slice(&lower);
         for (weight, difference) in weights.iter().zip(&differences) {
@@ -183,10 +177,10 @@ impl State<'_> {
         let surfaces: Vec<usize> = self.slides.iter().map(|slide| slide.surface).collect();
         let values = match surface {
             Surface::Place => {
-                let heights = self.heights(t, y, yp);
+                let heights = self.heights(at);
                 surfaces.iter().map(|&relation| heights[relation]).collect()
             }
-            Surface::Rate => self.height_rates(&surfaces, t, y, yp),
+            Surface::Rate => self.height_rates(&surfaces, at),
         };
         for ((slide, value), weight) in self.slides.iter().zip(values).zip(weights) {
             // A weight that cannot be had makes the step fail.
@@ -195,18 +189,18 @@ impl State<'_> {
     }
 
     /// The derivatives of the residual while sliding, before rows are added to each other.
-    pub(crate) fn sliding_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
-        let weights = self.weights(t, y, yp);
+    pub(crate) fn sliding_partials(&mut self, at: At<'_>) -> Vec<f64> {
+        let weights = self.weights(at);
         self.mean(&weights, &mut |state| {
-            state.residual_partials(t, y, yp);
+            state.residual_partials(at);
             state.partials.clone()
         })
     }
 
     /// Adds the rows of an assembled matrix to each other, and puts the surfaces' gradients in their rows.
-    pub(crate) fn exchange_rows(&mut self, t: f64, y: &[f64], yp: &[f64], matrix: &mut [f64]) {
+    pub(crate) fn exchange_rows(&mut self, at: At<'_>, matrix: &mut [f64]) {
         let jacobian: &Jacobian = self.program.jacobian();
-        let (rows, shares) = self.shares(t, y, yp);
+        let (rows, shares) = self.shares(at);
         let entries: Vec<Vec<(usize, usize)>> = rows.iter().map(|&row| jacobian.row(row)).collect();
         for (row, share) in &shares {
             for (entries, share) in entries.iter().zip(share) {
@@ -221,7 +215,7 @@ impl State<'_> {
             for &(_, position) in entries {
                 matrix[position] = 0.0;
             }
-            for (column, value) in self.gradient(slide.surface, t, y, yp) {
+            for (column, value) in self.gradient(slide.surface, at) {
                 if let Some(position) = jacobian.position(slide.row, column) {
                     matrix[position] += value;
                 }
@@ -230,15 +224,9 @@ impl State<'_> {
     }
 
     /// The same for a directional derivative of the residual, whose rows of surfaces are those of dg/dt.
-    pub(crate) fn exchange_in(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        dy: &[f64],
-        out: &mut [f64],
-    ) {
-        let (rows, shares) = self.shares(t, y, yp);
+    pub(crate) fn exchange_in(&mut self, at: At<'_>, dy: &[f64], out: &mut [f64]) {
+        let At { t, y, yp } = at;
+        let (rows, shares) = self.shares(at);
         for (row, share) in &shares {
             for (&from, share) in rows.iter().zip(share) {
                 out[*row] -= share * out[from];
@@ -253,15 +241,15 @@ impl State<'_> {
                     .map(|(column, value)| value * yp[*column])
                     .sum()
             };
-            let now = rate(self.gradient(slide.surface, t, y, yp));
-            let then = rate(self.gradient(slide.surface, t, &later, yp));
+            let now = rate(self.gradient(slide.surface, at));
+            let then = rate(self.gradient(slide.surface, At { y: &later, ..at }));
             out[slide.row] = (then - now) / step;
         }
     }
 
     /// The replaced rows, and of every other row that switches how much of each it loses.
-    fn shares(&mut self, t: f64, y: &[f64], yp: &[f64]) -> (Vec<usize>, Vec<(usize, Vec<f64>)>) {
-        let (_, differences) = self.residual_sides(t, y, yp);
+    fn shares(&mut self, at: At<'_>) -> (Vec<usize>, Vec<(usize, Vec<f64>)>) {
+        let (_, differences) = self.residual_sides(at);
         let rows: Vec<usize> = self.slides.iter().map(|slide| slide.row).collect();
         let transposed: Vec<Vec<f64>> = differences
             .iter()
@@ -270,7 +258,7 @@ impl State<'_> {
         let switching = |row: &usize| {
             !rows.contains(row) && differences.iter().any(|difference| difference[*row] != 0.0)
         };
-        let shares = (0..y.len())
+        let shares = (0..at.y.len())
             .filter(switching)
             .map(|row| {
                 let right = differences.iter().map(|d| d[row]).collect();
@@ -282,10 +270,10 @@ impl State<'_> {
 
     /// Chooses the row that each slide replaces: where its sides differ most, over the size of the row. Returns whether
     /// there is one for each with room for the surface.
-    pub(crate) fn choose_rows(&mut self, t: f64, y: &[f64], yp: &[f64]) -> bool {
+    pub(crate) fn choose_rows(&mut self, at: At<'_>) -> bool {
         let program = self.program;
-        let (_, mut differences) = self.residual_sides(t, y, yp);
-        let sizes = self.row_sizes(t, y, yp);
+        let (_, mut differences) = self.residual_sides(at);
+        let sizes = self.row_sizes(at);
         for difference in &mut differences {
             for (difference, size) in difference.iter_mut().zip(&sizes) {
                 *difference /= size;
@@ -296,7 +284,7 @@ impl State<'_> {
             // Complete pivoting over the rows and the slides that are left.
             let mut best: Option<(f64, usize, usize)> = None;
             for &slide in &free {
-                let columns = self.gradient(self.slides[slide].surface, t, y, yp);
+                let columns = self.gradient(self.slides[slide].surface, at);
                 for (row, difference) in differences[slide].iter().enumerate() {
                     let size = difference.abs();
                     let room = || {
@@ -326,9 +314,9 @@ impl State<'_> {
     }
 
     /// The largest entry of each row of the matrix of consistent values, both sides taken as they are.
-    fn row_sizes(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
-        let mut sizes = vec![f64::MIN_POSITIVE; y.len()];
-        self.residual_partials(t, y, yp);
+    fn row_sizes(&mut self, at: At<'_>) -> Vec<f64> {
+        let mut sizes = vec![f64::MIN_POSITIVE; at.y.len()];
+        self.residual_partials(at);
         let entries = self.program.partials(Function::Residual);
         for (entry, value) in entries.iter().zip(&self.partials) {
             let counts = match entry.wrt {

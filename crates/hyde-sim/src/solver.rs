@@ -3,6 +3,7 @@
 use crate::creeping::Creeping;
 use crate::failure::{Failure, FailureKind};
 use crate::first_step::FirstStep;
+use crate::moment::{At, Moment};
 use crate::runge_kutta::RungeKutta;
 use crate::setup::Setup;
 use crate::state::State;
@@ -85,7 +86,7 @@ impl<'a> Solver<'a> {
     pub(crate) fn new(
         state: State<'a>,
         setup: &Setup<'_>,
-        (t, y, yp): (f64, &[f64], &[f64]),
+        at: At<'_>,
         first_step_s: f64,
     ) -> Result<Self, Box<Failure>> {
         let program = state.program;
@@ -102,7 +103,7 @@ impl<'a> Solver<'a> {
         let guarded = program.relations.iter().any(|relation| !relation.scheduled);
         let moves = state.differential.contains(&true);
         let states_alone = moves && (!guarded || !program.selections.is_empty());
-        let failed = |error: Error| Failure::new(FailureKind::Solver(error.to_string()), t);
+        let failed = |error: Error| Failure::new(FailureKind::Solver(error.to_string()), at.t);
         let jacobian = program.jacobian();
         let pattern = Pattern::new(
             program.n_unknowns,
@@ -115,9 +116,7 @@ impl<'a> Solver<'a> {
         if method(program, setup.method) == Method::Esdirk {
             let linear = SparseSolver::new(pattern, LinearMethod::Auto).map_err(failed)?;
             let states = state.differential.clone();
-            let start = (t, y, yp);
-            let mut solver =
-                RungeKutta::new(state, linear, states, !states_alone, max_step_s, start);
+            let mut solver = RungeKutta::new(state, linear, states, !states_alone, max_step_s, at);
             solver.set_tolerances(setup.rtol, &atol);
             return Ok(Self::RungeKutta(Box::new(solver)));
         }
@@ -132,7 +131,7 @@ impl<'a> Solver<'a> {
         options.suppress_algebraic = states_alone;
         options.first_step_s = Some(first_step_s);
         options.linear_method = LinearMethod::Auto;
-        let ida = Ida::new(state, pattern.clone(), options, t, y, yp).map_err(failed)?;
+        let ida = Ida::new(state, pattern.clone(), options, at.t, at.y, at.yp).map_err(failed)?;
         Ok(Self::Ida(Box::new(Multistep {
             ida,
             share,
@@ -166,9 +165,8 @@ impl<'a> Solver<'a> {
         matches!(self, Self::Ida(_))
     }
 
-    /// Goes over to the one-step method where IDA creeps; whether it did. `y` and `yp` are the values at `t`, where IDA
-    /// stands.
-    pub(crate) fn leaves_ida(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Result<bool, Error> {
+    /// Goes over to the one-step method where IDA creeps; whether it did. `at` is where IDA stands.
+    pub(crate) fn leaves_ida(&mut self, at: At<'_>) -> Result<bool, Error> {
         let Self::Ida(multistep) = self else {
             return Ok(false);
         };
@@ -180,95 +178,77 @@ impl<'a> Solver<'a> {
         }
         let linear = SparseSolver::new(multistep.pattern.clone(), LinearMethod::Auto)?;
         replace_with::replace_with_or_abort(self, |solver| match solver {
-            Self::Ida(multistep) => {
-                Self::RungeKutta(Box::new(multistep.one_step(linear, t, y, yp)))
-            }
+            Self::Ida(multistep) => Self::RungeKutta(Box::new(multistep.one_step(linear, at))),
             other @ (Self::Nothing { .. } | Self::RungeKutta(_)) => other,
         });
         Ok(true)
     }
 
-    /// One step from `t`, never past `stop`; writes its end to `y` and `yp`, and returns its time.
-    pub(crate) fn step(
-        &mut self,
-        t: f64,
-        stop: f64,
-        y: &mut [f64],
-        yp: &mut [f64],
-    ) -> Result<f64, Error> {
+    /// One step, never past `stop`; `now` moves to its end.
+    pub(crate) fn step(&mut self, now: &mut Moment, stop: f64) -> Result<(), Error> {
         match self {
-            Self::Nothing { stride_s, .. } => return Ok(stop.min(t + *stride_s)),
+            Self::Nothing { stride_s, .. } => now.t = stop.min(now.t + *stride_s),
             Self::Ida(multistep) => {
                 multistep.ida.step(stop)?;
             }
             Self::RungeKutta(solver) => solver.step(stop)?,
         }
-        Ok(self.end(t, y, yp))
+        self.end(now);
+        Ok(())
     }
 
-    /// Takes the last step once more, to end at `end`. `None` where the method cannot.
-    pub(crate) fn step_again(
-        &mut self,
-        end: f64,
-        y: &mut [f64],
-        yp: &mut [f64],
-    ) -> Result<Option<f64>, Error> {
+    /// Takes the last step once more, to end at `end`, where `now` moves. Whether the method can.
+    pub(crate) fn step_again(&mut self, now: &mut Moment, end: f64) -> Result<bool, Error> {
         let Self::RungeKutta(solver) = self else {
-            return Ok(None);
+            return Ok(false);
         };
         solver.step_again(end)?;
-        Ok(Some(self.end(end, y, yp)))
+        self.end(now);
+        Ok(true)
     }
 
-    fn end(&self, t: f64, y: &mut [f64], yp: &mut [f64]) -> f64 {
-        let (t, end, rates) = match self {
-            Self::Nothing { .. } => return t,
+    fn end(&self, now: &mut Moment) {
+        match self {
+            Self::Nothing { .. } => {}
             Self::Ida(multistep) => {
                 let ida = &multistep.ida;
-                (ida.t(), ida.y(), ida.yp())
+                let (t, y, yp) = (ida.t(), ida.y(), ida.yp());
+                now.copy_from(At { t, y, yp });
             }
-            Self::RungeKutta(solver) => solver.end(),
-        };
-        y.copy_from_slice(end);
-        yp.copy_from_slice(rates);
-        t
+            Self::RungeKutta(solver) => now.copy_from(solver.end()),
+        }
     }
 
-    /// Writes the solution at a time inside the last step; returns false if there is none.
-    pub(crate) fn solution(&mut self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
+    /// Writes the solution at the time of `then`, inside the last step; returns false if there is none.
+    pub(crate) fn solution(&mut self, then: &mut Moment) -> bool {
         match self {
-            Self::Nothing { .. } | Self::Ida(_) => self.interpolate(t, y, yp),
+            Self::Nothing { .. } | Self::Ida(_) => self.interpolate(then),
             Self::RungeKutta(solver) => {
-                solver.solution(t, y, yp);
+                solver.solution(then.t, &mut then.y, &mut then.yp);
                 true
             }
         }
     }
 
     /// The same, good enough to see what happens inside a step.
-    pub(crate) fn interpolate(&self, t: f64, y: &mut [f64], yp: &mut [f64]) -> bool {
+    pub(crate) fn interpolate(&self, then: &mut Moment) -> bool {
         match self {
             Self::Nothing { .. } => false,
             Self::Ida(multistep) => {
                 let ida = &multistep.ida;
-                let values = ida.interpolate(t, 0, y);
-                values.and_then(|()| ida.interpolate(t, 1, yp)).is_ok()
+                let values = ida.interpolate(then.t, 0, &mut then.y);
+                let rates = |()| ida.interpolate(then.t, 1, &mut then.yp);
+                values.and_then(rates).is_ok()
             }
             Self::RungeKutta(solver) => {
-                solver.interpolate(t, y, yp);
+                solver.interpolate(then.t, &mut then.y, &mut then.yp);
                 true
             }
         }
     }
 
     /// Starts anew after an event.
-    pub(crate) fn restart(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        first: &FirstStep,
-    ) -> Result<(), Error> {
+    pub(crate) fn restart(&mut self, at: At<'_>, first: &FirstStep) -> Result<(), Error> {
         match self {
             Self::Nothing { .. } => Ok(()),
             Self::Ida(multistep) => {
@@ -277,11 +257,11 @@ impl<'a> Solver<'a> {
                 let differential = ida.system().differential.clone();
                 ida.set_differential(&differential)?;
                 let step_s = first.by_curvature_s.min(first.longest_s);
-                ida.reinit(t, y, yp, Some(step_s))
+                ida.reinit(at.t, at.y, at.yp, Some(step_s))
             }
             Self::RungeKutta(solver) => {
                 let step_s = LONGER_FIRST_STEP * first.by_curvature_s;
-                solver.restart(t, y, yp, step_s.min(first.longest_s));
+                solver.restart(at, step_s.min(first.longest_s));
                 Ok(())
             }
         }
@@ -316,20 +296,14 @@ impl<'a> Solver<'a> {
 
 impl<'a> Multistep<'a> {
     /// The one-step method, at the point where IDA stands, with its counts.
-    fn one_step(
-        self,
-        linear: SparseSolver,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-    ) -> RungeKutta<State<'a>> {
+    fn one_step(self, linear: SparseSolver, at: At<'_>) -> RungeKutta<State<'a>> {
         let (counts, step_s) = (self.ida.statistics(), self.ida.last_step_s());
         let state = self.ida.into_system();
-        let (states, start) = (state.differential.clone(), (t, y, yp));
+        let states = state.differential.clone();
         let longest_s = self.max_step_s;
-        let mut solver = RungeKutta::new(state, linear, states, self.watched, longest_s, start);
+        let mut solver = RungeKutta::new(state, linear, states, self.watched, longest_s, at);
         solver.set_tolerances(self.rtol, &self.atol);
-        solver.restart(t, y, yp, LONGER_FIRST_STEP * step_s);
+        solver.restart(at, LONGER_FIRST_STEP * step_s);
         solver.count_on(counts);
         solver
     }

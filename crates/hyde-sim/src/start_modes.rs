@@ -2,22 +2,18 @@
 
 use crate::failure::{Failure, FailureKind};
 use crate::guards::is_active;
+use crate::moment::At;
 use crate::state::State;
 use hyde_program::{Firmness, Function, InitialCondition, Program, ReactionKind, Target};
 
 /// The states that the modes in the memory fix, with their values.
-pub(crate) fn initial_pins(
-    state: &mut State<'_>,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-) -> Vec<(usize, f64)> {
+pub(crate) fn initial_pins(state: &mut State<'_>, at: At<'_>) -> Vec<(usize, f64)> {
     let program: &Program = state.program;
     if program.pins.is_empty() {
         return Vec::new();
     }
     let mut values = vec![0.0; program.rows(Function::Assignments)];
-    state.evaluate(Function::Assignments, t, y, yp, &mut values);
+    state.evaluate(Function::Assignments, at, &mut values);
     let pins = program.pins_in(&state.z);
     pins.map(|(row, pin)| (pin.state, values[row])).collect()
 }
@@ -25,9 +21,7 @@ pub(crate) fn initial_pins(
 /// Leaves initial modes that fix a state whose fixed start value is another one. A guide that moves at the start slips.
 pub(crate) fn leave_impossible_modes(
     state: &mut State<'_>,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
+    at: At<'_>,
 ) -> Result<(), Box<Failure>> {
     let program: &Program = state.program;
     let declared = |_: usize, position: usize| {
@@ -44,20 +38,21 @@ pub(crate) fn leave_impossible_modes(
             | InitialCondition::Check { .. } => false,
         })
     };
-    leave_modes(state, (t, y, yp), &declared).map(drop)
+    leave_modes(state, at, &declared).map(drop)
 }
 
 /// Leaves modes that fix a state to another value than it has, where that value was `given` to the state (of an automaton,
 /// at a position): by the first exit to a mode in which the model can be. Gives the reactions that this takes.
 pub(crate) fn leave_modes(
     state: &mut State<'_>,
-    (t, y, yp): (f64, &[f64], &[f64]),
+    at: At<'_>,
     given: &dyn Fn(usize, usize) -> bool,
 ) -> Result<Vec<usize>, Box<Failure>> {
+    let At { t, y, .. } = at;
     let program: &Program = state.program;
     let mut taken = Vec::new();
     for automaton in 0..program.automata.len() {
-        let Some((pin, value)) = violated(state, automaton, t, y, yp, given) else {
+        let Some((pin, value)) = violated(state, automaton, at, given) else {
             continue;
         };
         let here = program.mode(&state.z, automaton);
@@ -77,15 +72,15 @@ pub(crate) fn leave_modes(
                 continue;
             }
             let mut values = vec![0.0; program.rows(Function::Assignments)];
-            state.evaluate(Function::Assignments, t, y, yp, &mut values);
+            state.evaluate(Function::Assignments, at, &mut values);
             for index in reaction.assignments.clone() {
                 if let Target::Memory(position) = program.assignments[index].target {
                     state.z[position] = values[index];
                 }
             }
             program.set_mode(&mut state.z, automaton, to);
-            if violated(state, automaton, t, y, yp, given).is_none()
-                && !leaves_at_once(state, automaton, to, t, y, yp)
+            if violated(state, automaton, at, given).is_none()
+                && !leaves_at_once(state, automaton, to, at)
             {
                 found = Some(number);
                 break;
@@ -106,42 +101,33 @@ pub(crate) fn leave_modes(
 fn violated(
     state: &mut State<'_>,
     automaton: usize,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
+    at: At<'_>,
     given: &dyn Fn(usize, usize) -> bool,
 ) -> Option<(usize, f64)> {
     let program = state.program;
     let mode = program.mode(&state.z, automaton);
     let mut values = vec![0.0; program.rows(Function::Assignments)];
-    state.evaluate(Function::Assignments, t, y, yp, &mut values);
+    state.evaluate(Function::Assignments, at, &mut values);
     program.pins.iter().enumerate().find_map(|(number, pin)| {
         let value = values[program.assignments.len() + number];
-        let tolerance = 1e-9 * value.abs().max(y[pin.state].abs());
-        let other = (y[pin.state] - value).abs() > tolerance;
+        let tolerance = 1e-9 * value.abs().max(at.y[pin.state].abs());
+        let other = (at.y[pin.state] - value).abs() > tolerance;
         (pin.automaton == automaton && pin.mode == mode && other && given(automaton, pin.state))
             .then_some((number, value))
     })
 }
 
 /// Whether an exit of a mode is true as soon as it is entered.
-fn leaves_at_once(
-    state: &mut State<'_>,
-    automaton: usize,
-    mode: usize,
-    t: f64,
-    y: &[f64],
-    yp: &[f64],
-) -> bool {
+fn leaves_at_once(state: &mut State<'_>, automaton: usize, mode: usize, at: At<'_>) -> bool {
     let program = state.program;
     let mut roots = vec![0.0; program.relations.len()];
-    state.evaluate(Function::Roots, t, y, yp, &mut roots);
+    state.evaluate(Function::Roots, at, &mut roots);
     for (number, root) in roots.into_iter().enumerate() {
         if is_active(state, number) {
             state.z[number] = f64::from(u8::from(root > 0.0));
         }
     }
-    let conditions = state.conditions(t, y, yp);
+    let conditions = state.conditions(at);
     program.reactions.iter().zip(conditions).any(|(reaction, now)| {
         matches!(reaction.kind, ReactionKind::Transition { automaton: of, from, .. } if of == automaton && from == mode)
             && now

@@ -4,6 +4,7 @@ use crate::delays::Delays;
 use crate::failure::Failure;
 use crate::foreign::ForeignInstances;
 use crate::inputs::Inputs;
+use crate::moment::{At, Moment};
 use crate::released::Released;
 use crate::setup::Setup;
 use crate::sliding::{Slide, Surface};
@@ -72,23 +73,16 @@ impl<'a> State<'a> {
     }
 
     /// The values of a function; while sliding the mean of the sides, with the rows of consistent values.
-    pub(crate) fn evaluate(
-        &mut self,
-        function: Function,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        out: &mut [f64],
-    ) {
+    pub(crate) fn evaluate(&mut self, function: Function, at: At<'_>, out: &mut [f64]) {
         if self.slides.is_empty() {
-            self.evaluate_side(function, t, y, yp, out);
+            self.evaluate_side(function, at, out);
         } else if function == Function::Residual {
-            self.sliding_residual(t, y, yp, Surface::Rate, out);
+            self.sliding_residual(at, Surface::Rate, out);
         } else {
-            let weights = self.weights(t, y, yp);
+            let weights = self.weights(at);
             let values = self.mean(&weights, &mut |state| {
                 let mut side = vec![0.0; out.len()];
-                state.evaluate_side(function, t, y, yp, &mut side);
+                state.evaluate_side(function, at, &mut side);
                 side
             });
             out.copy_from_slice(&values);
@@ -97,63 +91,46 @@ impl<'a> State<'a> {
 
     /// The derivative of a function by the time alone, by a difference: the time, and record columns and delayed values that
     /// move with it, have no other.
-    pub(crate) fn by_time(
-        &mut self,
-        function: Function,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-    ) -> Vec<f64> {
+    pub(crate) fn by_time(&mut self, function: Function, at: At<'_>) -> Vec<f64> {
         let rows = self.program.rows(function);
-        let step = self.inputs.difference_s(t);
+        let step = self.inputs.difference_s(at.t);
+
         let (mut later, mut now) = (vec![0.0; rows], vec![0.0; rows]);
-        self.evaluate(function, t + step, y, yp, &mut later);
-        self.evaluate(function, t, y, yp, &mut now);
+        self.evaluate(function, at.later(step), &mut later);
+        self.evaluate(function, at, &mut now);
         let pairs = later.into_iter().zip(now);
         pairs.map(|(later, now)| (later - now) / step).collect()
     }
 
     /// The values of a function with the memory as it is.
-    pub(crate) fn evaluate_side(
-        &mut self,
-        function: Function,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        out: &mut [f64],
-    ) {
-        self.read_continuous(t);
-        self.read_loose(t, y, yp);
+    pub(crate) fn evaluate_side(&mut self, function: Function, at: At<'_>, out: &mut [f64]) {
+        self.read_continuous(at.t);
+        self.read_loose(at);
         let program = self.program;
-        let (at, workspace) = self.at(t, y, yp);
-        program.kernels.evaluate(function, at, workspace, out);
+        let (point, workspace) = self.point(at);
+        program.kernels.evaluate(function, point, workspace, out);
         if !all_finite(out) {
-            self.evaluate_beyond(function, t, y, yp, out);
+            self.evaluate_beyond(function, at, out);
         }
     }
 
     /// The same of some rows.
-    pub(crate) fn evaluate_rows(
-        &mut self,
-        rows: &dyn SomeRows,
-        (t, y, yp): (f64, &[f64], &[f64]),
-        out: &mut [f64],
-    ) {
+    pub(crate) fn evaluate_rows(&mut self, rows: &dyn SomeRows, at: At<'_>, out: &mut [f64]) {
         let side = |state: &mut Self, out: &mut [f64]| {
-            state.read_continuous(t);
-            state.read_loose(t, y, yp);
-            let (at, workspace) = state.at(t, y, yp);
-            rows.evaluate(at, workspace, out);
+            state.read_continuous(at.t);
+            state.read_loose(at);
+            let (point, workspace) = state.point(at);
+            rows.evaluate(point, workspace, out);
             if !all_finite(out) {
-                state.replace_not_finite((t, y, yp), out, |at, workspace, own| {
-                    rows.evaluate(at, workspace, own);
+                state.replace_not_finite(at, out, |point, workspace, own| {
+                    rows.evaluate(point, workspace, own);
                 });
             }
         };
         if self.slides.is_empty() {
             return side(self, out);
         }
-        let weights = self.weights(t, y, yp);
+        let weights = self.weights(at);
         let values = self.mean(&weights, &mut |state| {
             let mut values = vec![0.0; out.len()];
             side(state, &mut values);
@@ -163,89 +140,68 @@ impl<'a> State<'a> {
     }
 
     /// The derivatives of a function, in the program's order; while sliding the mean of the sides.
-    pub(crate) fn partials(
-        &mut self,
-        function: Function,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-    ) -> Vec<f64> {
+    pub(crate) fn partials(&mut self, function: Function, at: At<'_>) -> Vec<f64> {
         if self.slides.is_empty() {
-            return self.partials_side(function, t, y, yp);
+            return self.partials_side(function, at);
         }
-        let weights = self.weights(t, y, yp);
-        self.mean(&weights, &mut |state| {
-            state.partials_side(function, t, y, yp)
-        })
+        let weights = self.weights(at);
+        self.mean(&weights, &mut |state| state.partials_side(function, at))
     }
 
     /// The derivatives of a function with the memory as it is.
-    pub(crate) fn partials_side(
-        &mut self,
-        function: Function,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-    ) -> Vec<f64> {
-        self.read_continuous(t);
-        self.read_loose(t, y, yp);
+    pub(crate) fn partials_side(&mut self, function: Function, at: At<'_>) -> Vec<f64> {
+        self.read_continuous(at.t);
+        self.read_loose(at);
         let mut out = vec![0.0; self.program.partials(function).len()];
         let program = self.program;
-        let (at, workspace) = self.at(t, y, yp);
-        program.kernels.partials(function, at, workspace, &mut out);
+        let (point, workspace) = self.point(at);
+        program
+            .kernels
+            .partials(function, point, workspace, &mut out);
         out
     }
 
     /// The derivatives of a function by parameters and memory, in the order of the kernel.
-    pub(crate) fn still_partials(
-        &mut self,
-        function: Function,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        out: &mut [f64],
-    ) {
-        self.read_continuous(t);
+    pub(crate) fn still_partials(&mut self, function: Function, at: At<'_>, out: &mut [f64]) {
+        self.read_continuous(at.t);
         let program = self.program;
-        let (at, workspace) = self.at(t, y, yp);
-        program.kernels.still_partials(function, at, workspace, out);
+        let (point, workspace) = self.point(at);
+        program
+            .kernels
+            .still_partials(function, point, workspace, out);
     }
 
     /// The derivatives of a tick, with every column read at `t` and delayed values as they were just before.
     pub(crate) fn tick_partials(
         &mut self,
         clock: usize,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
+        at: At<'_>,
         delayed: &[f64],
     ) -> Vec<(usize, TickWrt, f64)> {
-        self.inputs.read(t, &mut self.u);
+        self.inputs.read(at.t, &mut self.u);
         self.delayed_mut().copy_from_slice(delayed);
         let program = self.program;
-        let (at, workspace) = self.at(t, y, yp);
-        program.kernels.tick_partials(clock, at, workspace)
+        let (point, workspace) = self.point(at);
+        program.kernels.tick_partials(clock, point, workspace)
     }
 
     /// Truth of every reaction's condition with the memory as it is.
-    pub(crate) fn conditions(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<bool> {
+    pub(crate) fn conditions(&mut self, at: At<'_>) -> Vec<bool> {
         let mut out = vec![0.0; self.program.reactions.len()];
         let program = self.program;
-        let (at, workspace) = self.at(t, y, yp);
-        program.kernels.conditions(at, workspace, &mut out);
+        let (point, workspace) = self.point(at);
+        program.kernels.conditions(point, workspace, &mut out);
         out.into_iter().map(|truth| truth != 0.0).collect()
     }
 
     /// The memory after a tick, with every column read at `t`, and delayed values as they were just before.
-    pub(crate) fn tick(&mut self, clock: usize, t: f64, y: &[f64], yp: &[f64], delayed: &[f64]) {
+    pub(crate) fn tick(&mut self, clock: usize, at: At<'_>, delayed: &[f64]) {
         if self.slides.is_empty() {
-            self.z = self.tick_side(clock, t, y, yp, delayed);
+            self.z = self.tick_side(clock, at, delayed);
             return;
         }
-        let weights = self.weights(t, y, yp);
-        let mut after = self.mean(&weights, &mut |state| {
-            state.tick_side(clock, t, y, yp, delayed)
-        });
+        let weights = self.weights(at);
+        let mut after = self.mean(&weights, &mut |state| state.tick_side(clock, at, delayed));
         for slide in &self.slides {
             for (place, _) in slide.settings(self, 0) {
                 after[place] = self.z[place];
@@ -255,45 +211,30 @@ impl<'a> State<'a> {
     }
 
     /// The memory after a tick, with the memory as it is.
-    fn tick_side(
-        &mut self,
-        clock: usize,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        delayed: &[f64],
-    ) -> Vec<f64> {
-        self.inputs.read(t, &mut self.u);
+    fn tick_side(&mut self, clock: usize, at: At<'_>, delayed: &[f64]) -> Vec<f64> {
+        self.inputs.read(at.t, &mut self.u);
         self.delayed_mut().copy_from_slice(delayed);
         let mut after = self.z.clone();
         let program = self.program;
-        let (at, workspace) = self.at(t, y, yp);
-        program.kernels.tick(clock, at, workspace, &mut after);
+        let (point, workspace) = self.point(at);
+        program.kernels.tick(clock, point, workspace, &mut after);
         after
     }
 
     /// The matrix that consistent values are solved with.
-    pub(crate) fn consistent_matrix(&mut self, t: f64, y: &[f64], yp: &[f64], matrix: &mut [f64]) {
-        self.mean_residual_partials(t, y, yp);
+    pub(crate) fn consistent_matrix(&mut self, at: At<'_>, matrix: &mut [f64]) {
+        self.mean_residual_partials(at);
         self.program
             .jacobian()
             .assemble_consistent(&self.partials, &self.differential, matrix);
         if !self.slides.is_empty() {
-            self.exchange_rows(t, y, yp, matrix);
+            self.exchange_rows(at, matrix);
         }
     }
 
     /// `dF/dy` times a vector and `dF/dy'` times another, summed into `out`.
-    pub(crate) fn directional(
-        &mut self,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-        dy: &[f64],
-        dyp: &[f64],
-        out: &mut [f64],
-    ) {
-        self.mean_residual_partials(t, y, yp);
+    pub(crate) fn directional(&mut self, at: At<'_>, dy: &[f64], dyp: &[f64], out: &mut [f64]) {
+        self.mean_residual_partials(at);
         out.iter_mut().for_each(|value| *value = 0.0);
         for (entry, &value) in self
             .program
@@ -311,15 +252,15 @@ impl<'a> State<'a> {
             }
         }
         if !self.slides.is_empty() {
-            self.exchange_in(t, y, yp, dy, out);
+            self.exchange_in(at, dy, out);
         }
     }
 
     /// Puts exact values where modes fix states.
-    pub(crate) fn apply_pins(&self, y: &mut [f64], yp: &mut [f64]) {
+    pub(crate) fn apply_pins(&self, now: &mut Moment) {
         for &(state, value) in &self.pinned {
-            y[state] = value;
-            yp[state] = 0.0;
+            now.y[state] = value;
+            now.yp[state] = 0.0;
         }
     }
 
@@ -346,11 +287,11 @@ impl<'a> State<'a> {
     }
 
     /// What is delayed had the values at this point for ever before; where they are finite.
-    pub(crate) fn guess_past(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+    pub(crate) fn guess_past(&mut self, at: At<'_>) {
         let mut past = vec![0.0; self.program.delays.len()];
-        self.evaluate(Function::Delayed, t, y, yp, &mut past);
+        self.evaluate(Function::Delayed, at, &mut past);
         if past.iter().all(|value| value.is_finite()) {
-            self.delays.set_past(t, &past);
+            self.delays.set_past(at.t, &past);
         }
     }
 
@@ -369,41 +310,37 @@ impl<'a> State<'a> {
     }
 
     /// The derivatives of the residual; while sliding the mean of the sides, before rows are exchanged.
-    fn mean_residual_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) {
+    fn mean_residual_partials(&mut self, at: At<'_>) {
         if self.slides.is_empty() {
-            self.residual_partials(t, y, yp);
+            self.residual_partials(at);
         } else {
-            self.partials = self.sliding_partials(t, y, yp);
+            self.partials = self.sliding_partials(at);
         }
     }
 
-    pub(crate) fn residual_partials(&mut self, t: f64, y: &[f64], yp: &[f64]) {
-        self.read_continuous(t);
-        self.read_loose(t, y, yp);
+    pub(crate) fn residual_partials(&mut self, at: At<'_>) {
+        self.read_continuous(at.t);
+        self.read_loose(at);
         let program = self.program;
         let mut values = std::mem::take(&mut self.partials);
-        let (at, workspace) = self.at(t, y, yp);
+        let (point, workspace) = self.point(at);
         program
             .kernels
-            .partials(Function::Residual, at, workspace, &mut values);
+            .partials(Function::Residual, point, workspace, &mut values);
         if !all_finite(&values) {
-            self.with_own_truths(t, y, yp, |state| {
-                let (at, workspace) = state.at(t, y, yp);
+            self.with_own_truths(at, |state| {
+                let (point, workspace) = state.point(at);
                 let kernels = &program.kernels;
-                kernels.partials(Function::Residual, at, workspace, &mut values);
+                kernels.partials(Function::Residual, point, workspace, &mut values);
             });
         }
         self.partials = values;
     }
 
     /// The model at a point, with the room that kernels work in.
-    pub(crate) fn at<'s>(
-        &'s mut self,
-        t: f64,
-        y: &'s [f64],
-        yp: &'s [f64],
-    ) -> (Point<'s>, &'s mut Workspace) {
-        let at = Point {
+    pub(crate) fn point<'s>(&'s mut self, at: At<'s>) -> (Point<'s>, &'s mut Workspace) {
+        let At { t, y, yp } = at;
+        let point = Point {
             t,
             y,
             yp,
@@ -411,7 +348,7 @@ impl<'a> State<'a> {
             u: &self.u,
             p: &self.p,
         };
-        (at, &mut self.workspace)
+        (point, &mut self.workspace)
     }
 }
 
@@ -434,9 +371,9 @@ impl System for State<'_> {
         out: &mut [f64],
     ) -> Result<(), Recoverable> {
         if self.slides.is_empty() {
-            self.evaluate_side(Function::Residual, t, y, yp, out);
+            self.evaluate_side(Function::Residual, At { t, y, yp }, out);
         } else {
-            self.sliding_residual(t, y, yp, Surface::Place, out);
+            self.sliding_residual(At { t, y, yp }, Surface::Place, out);
         }
         Ok(())
     }
@@ -449,12 +386,13 @@ impl System for State<'_> {
         yp: &[f64],
         values: &mut [f64],
     ) -> Result<(), Recoverable> {
-        self.mean_residual_partials(t, y, yp);
+        let at = At { t, y, yp };
+        self.mean_residual_partials(at);
         self.program
             .jacobian()
             .assemble(&self.partials, 1.0, cj, values);
         if !self.slides.is_empty() {
-            self.exchange_rows(t, y, yp, values);
+            self.exchange_rows(at, values);
         }
         Ok(())
     }

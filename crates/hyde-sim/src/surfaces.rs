@@ -1,30 +1,25 @@
 //! Switching surfaces g(t, y) = 0: how far the run is from them, where they lead, and how it is put on them.
 
+use crate::moment::{At, Moment};
 use crate::state::State;
 use hyde_program::{Function, Wrt};
 
 impl State<'_> {
     /// The root functions.
-    pub(crate) fn heights(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
+    pub(crate) fn heights(&mut self, at: At<'_>) -> Vec<f64> {
         let mut roots = vec![0.0; self.program.relations.len()];
-        self.evaluate_side(Function::Roots, t, y, yp, &mut roots);
+        self.evaluate_side(Function::Roots, at, &mut roots);
         roots
     }
 
     /// One root function.
-    pub(crate) fn height(&mut self, relation: usize, t: f64, y: &[f64], yp: &[f64]) -> f64 {
-        self.heights(t, y, yp)[relation]
+    pub(crate) fn height(&mut self, relation: usize, at: At<'_>) -> f64 {
+        self.heights(at)[relation]
     }
 
     /// The derivatives of a root function by the unknowns.
-    pub(crate) fn gradient(
-        &mut self,
-        relation: usize,
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-    ) -> Vec<(usize, f64)> {
-        let values = self.partials_side(Function::Roots, t, y, yp);
+    pub(crate) fn gradient(&mut self, relation: usize, at: At<'_>) -> Vec<(usize, f64)> {
+        let values = self.partials_side(Function::Roots, at);
         let entries = self.program.partials(Function::Roots).iter().zip(values);
         entries
             .filter_map(|(entry, value)| match entry.wrt {
@@ -40,20 +35,14 @@ impl State<'_> {
     }
 
     /// The rates of root functions of states along the flow.
-    pub(crate) fn height_rates(
-        &mut self,
-        relations: &[usize],
-        t: f64,
-        y: &[f64],
-        yp: &[f64],
-    ) -> Vec<f64> {
+    pub(crate) fn height_rates(&mut self, relations: &[usize], at: At<'_>) -> Vec<f64> {
         let program = self.program;
         let mut rates = vec![0.0; program.relations.len()];
         let given = !program.columns.is_empty() || !program.delays.is_empty();
-        let values = self.partials_side(Function::Roots, t, y, yp);
+        let values = self.partials_side(Function::Roots, at);
         for (entry, value) in program.partials(Function::Roots).iter().zip(values) {
             rates[entry.row] += match entry.wrt {
-                Wrt::Unknown(column) => value * yp[column],
+                Wrt::Unknown(column) => value * at.yp[column],
                 Wrt::Time if !given => value,
                 Wrt::Time
                 | Wrt::Derivative(_)
@@ -64,8 +53,8 @@ impl State<'_> {
         }
         if given {
             // Record columns and delayed values move with the time, and have no other derivative.
-            let step = self.inputs.difference_s(t);
-            let (now, later) = (self.heights(t, y, yp), self.heights(t + step, y, yp));
+            let step = self.inputs.difference_s(at.t);
+            let (now, later) = (self.heights(at), self.heights(at.later(step)));
             for (rate, (now, later)) in rates.iter_mut().zip(now.iter().zip(&later)) {
                 *rate += (later - now) / step;
             }
@@ -74,8 +63,8 @@ impl State<'_> {
     }
 
     /// The rate of one root function of states along the flow.
-    pub(crate) fn height_rate(&mut self, relation: usize, t: f64, y: &[f64], yp: &[f64]) -> f64 {
-        self.height_rates(&[relation], t, y, yp)[0]
+    pub(crate) fn height_rate(&mut self, relation: usize, at: At<'_>) -> f64 {
+        self.height_rates(&[relation], at)[0]
     }
 
     /// Whether a root function depends on states alone, and on one at least: then its rate is known with the states'.
@@ -98,16 +87,16 @@ impl State<'_> {
 
     /// Puts y exactly on the surfaces: the solver meets them to its tolerance.
     #[inline]
-    pub(crate) fn put_on_surfaces(&mut self, t: f64, y: &mut [f64], yp: &[f64]) {
+    pub(crate) fn put_on_surfaces(&mut self, now: &mut Moment) {
         if !self.slides.is_empty() {
-            self.put_on(t, y, yp);
+            self.put_on(now);
         }
     }
 
-    fn put_on(&mut self, t: f64, y: &mut [f64], yp: &[f64]) {
+    fn put_on(&mut self, now: &mut Moment) {
         // Once for each slide, and again where they depend on each other or bend.
         for _ in 0..3 {
-            let heights = self.heights(t, y, yp);
+            let heights = self.heights(now.at());
             if self
                 .slides
                 .iter()
@@ -116,20 +105,19 @@ impl State<'_> {
                 return;
             }
             for slide in self.slides.clone() {
-                let height = self.height(slide.surface, t, y, yp);
+                let height = self.height(slide.surface, now.at());
                 if height == 0.0 {
                     continue;
                 }
                 let along: f64 = self
-                    .gradient(slide.surface, t, y, yp)
+                    .gradient(slide.surface, now.at())
                     .into_iter()
                     .map(|(column, value)| value * slide.direction[column])
                     .sum();
                 let length = height / along;
                 if length.is_finite() {
-                    y.iter_mut()
-                        .zip(&slide.direction)
-                        .for_each(|(y, direction)| *y -= length * direction);
+                    let parts = now.y.iter_mut().zip(&slide.direction);
+                    parts.for_each(|(y, direction)| *y -= length * direction);
                 }
             }
         }

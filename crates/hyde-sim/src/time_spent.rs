@@ -15,9 +15,9 @@ pub(crate) fn count_modes(integrator: &mut Integrator<'_>, results: &mut Results
     if state.slides.is_empty() {
         return;
     }
-    let (t, y, yp) = (integrator.t, integrator.y.clone(), integrator.yp.clone());
+    let now = integrator.now.clone();
     let state = integrator.state_mut();
-    let weights = state.weights(t, &y, &yp);
+    let weights = state.weights(now.at());
     for (slide, weight) in state.slides.iter().zip(weights) {
         let text = &program.relations[slide.surface].text;
         match results.sliding.iter_mut().find(|(known, _)| known == text) {

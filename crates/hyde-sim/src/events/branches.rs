@@ -11,6 +11,7 @@
 use super::Instant;
 use crate::failure::Failure;
 use crate::guards::is_active;
+use crate::moment::Moment;
 use hyde_program::{Function, RelationUse, Wrt};
 
 /// Solutions tried at most.
@@ -22,16 +23,14 @@ const SAME: f64 = 1e-12;
 /// Where the relations of equations began to settle, and what they were since.
 pub(super) struct Branches {
     z: Vec<f64>,
-    y: Vec<f64>,
-    yp: Vec<f64>,
+    values: Moment,
     seen: Vec<Seen>,
 }
 
 /// A round: the memory, and the consistent values.
 struct Seen {
     z: Vec<u64>,
-    y: Vec<f64>,
-    yp: Vec<f64>,
+    values: Moment,
 }
 
 /// What became of a round.
@@ -49,8 +48,7 @@ impl Branches {
     pub(super) fn from(instant: &Instant<'_, '_>) -> Self {
         Self {
             z: instant.state.z.clone(),
-            y: instant.y.clone(),
-            yp: instant.yp.clone(),
+            values: instant.now.clone(),
             seen: Vec::new(),
         }
     }
@@ -81,33 +79,30 @@ impl Instant<'_, '_> {
             }
             if circle.iter().all(|seen| self.is_same(seen)) {
                 let turned = turned_in(circle, self.state.program.relations.len());
-                let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+                let at = self.now.at();
                 self.state.follow(&turned, at);
                 return Ok(Found::Indifferent);
             }
         }
-        let before = (self.y.clone(), self.yp.clone());
-        let solved = self
-            .consistent
-            .solve(self.state, self.t, self.y, self.yp, at_start);
+        let before = self.now.clone();
+        let solved = self.consistent.solve(self.state, self.now, at_start);
         if let Err(failure) = solved
             && (in_circle || !self.tip(branches, scheduled, located, at_start))
         {
-            (*self.y, *self.yp) = before;
+            *self.now = before;
             return Err(failure);
         }
         branches.seen.push(Seen {
             z: self.state.z.iter().map(|value| value.to_bits()).collect(),
-            y: self.y.clone(),
-            yp: self.yp.clone(),
+            values: self.now.clone(),
         });
         Ok(Found::Values)
     }
 
     /// Whether the values are those of a round before, but for rounding.
     fn is_same(&self, seen: &Seen) -> bool {
-        let now = self.y.iter().chain(self.yp.iter());
-        let before = seen.y.iter().chain(&seen.yp);
+        let now = self.now.y.iter().chain(self.now.yp.iter());
+        let before = seen.values.y.iter().chain(&seen.values.yp);
         now.zip(before)
             .all(|(a, b)| (a - b).abs() <= SAME * (1e-3 + a.abs().max(b.abs())))
     }
@@ -120,20 +115,19 @@ impl Instant<'_, '_> {
         located: &[(usize, f64)],
         at_start: bool,
     ) -> bool {
-        let before = (self.state.z.clone(), self.y.clone(), self.yp.clone());
+        let before = (self.state.z.clone(), self.now.clone());
         let free = self.relations_in_loops(&branches.z);
         let mut tried = 0;
         for count in 0..=free.len() {
             let mut chosen: Vec<usize> = (0..count).collect();
             loop {
                 if tried == MAX_TRIED {
-                    (self.state.z, *self.y, *self.yp) = before;
+                    (self.state.z, *self.now) = before;
                     return false;
                 }
                 tried += 1;
                 self.state.z.clone_from(&branches.z);
-                self.y.clone_from(&branches.y);
-                self.yp.clone_from(&branches.yp);
+                self.now.clone_from(&branches.values);
                 for &number in &chosen {
                     let relation = free[number];
                     self.state.z[relation] = 1.0 - self.state.z[relation];
@@ -146,15 +140,13 @@ impl Instant<'_, '_> {
                 }
             }
         }
-        (self.state.z, *self.y, *self.yp) = before;
+        (self.state.z, *self.now) = before;
         false
     }
 
     /// Whether the solution with the relations as they are has these very truths.
     fn agrees(&mut self, scheduled: &[usize], located: &[(usize, f64)], at_start: bool) -> bool {
-        let solved = self
-            .consistent
-            .solve(self.state, self.t, self.y, self.yp, at_start);
+        let solved = self.consistent.solve(self.state, self.now, at_start);
         if solved.is_err() {
             return false;
         }

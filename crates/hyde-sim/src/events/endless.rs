@@ -37,7 +37,7 @@ impl Instant<'_, '_> {
         if located.is_empty() {
             return None;
         }
-        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let at = self.now.at();
         let rates = root_rates(self.state, self.consistent, at, &located);
         let mut located = located.into_iter();
         located.find(|&relation| rates[relation].returns_before(roots[relation]))
@@ -47,15 +47,15 @@ impl Instant<'_, '_> {
     pub(super) fn struck_without_end(&mut self, condition: &str) -> Box<Failure> {
         let kind = FailureKind::Zeno {
             cause: condition.to_owned(),
-            sum_s: self.t,
+            sum_s: self.now.t,
         };
-        let failure = Failure::new(kind, self.t);
+        let failure = Failure::new(kind, self.now.t);
         let mut relations = self.state.program.relations.iter();
         let failure = match relations.find(|relation| relation.text == condition) {
             Some(relation) => failure.at_origin(&relation.origin),
             None => failure,
         };
-        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let at = self.now.at();
         failure.with_values(self.state, at, condition)
     }
 
@@ -87,7 +87,7 @@ impl Instant<'_, '_> {
             }
         }
         distinct.truncate(4);
-        let mut failure = Failure::new(FailureKind::Chattering(distinct.clone()), self.t);
+        let mut failure = Failure::new(FailureKind::Chattering(distinct.clone()), self.now.t);
         for reaction in program
             .reactions
             .iter()
@@ -97,7 +97,7 @@ impl Instant<'_, '_> {
                 failure = failure.at_origin(&reaction.origin);
             }
         }
-        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let at = self.now.at();
         for condition in &distinct {
             failure = failure.with_values(self.state, at, condition);
         }

@@ -10,8 +10,8 @@ impl Instant<'_, '_> {
         for &(guard, root) in guards {
             self.state.located.retain(|(other, _)| *other != guard);
             if self.state.is_of_states(guard) {
-                let rate = self.state.height_rate(guard, self.t, self.y, self.yp);
-                if root.abs() <= rate.abs() * 1e-12 * (1.0 + self.t.abs()) {
+                let rate = self.state.height_rate(guard, self.now.at());
+                if root.abs() <= rate.abs() * 1e-12 * (1.0 + self.now.t.abs()) {
                     self.state.located.push((guard, root));
                 }
             }
@@ -25,9 +25,9 @@ impl Instant<'_, '_> {
         if stay.is_empty() {
             return Vec::new();
         }
-        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let at = self.now.at();
         let rates = root_rates(self.state, self.consistent, at, &stay);
-        let known = 0.5e-12 * (1.0 + self.t.abs());
+        let known = 0.5e-12 * (1.0 + self.now.t.abs());
         let within = |relation: usize| (relation, known * rates[relation].mean.abs());
         stay.into_iter().map(within).collect()
     }
@@ -47,9 +47,9 @@ impl Instant<'_, '_> {
     /// Guards that lead in a circle may do so by rounding alone: a diode's current is zero where its voltage is. Those that
     /// cross zero within a moment of now count by the direction in which they do.
     pub(super) fn all_but_zero(&mut self, guards: &[usize]) -> Vec<(usize, f64)> {
-        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let at = self.now.at();
         let rates = root_rates(self.state, self.consistent, at, guards);
-        let moment = moment(self.t);
+        let moment = moment(self.now.t);
         guards
             .iter()
             .map(|&guard| (guard, 0.5 * moment * rates[guard].mean.abs()))

@@ -28,7 +28,7 @@ impl Instant<'_, '_> {
         if struck.is_empty() {
             return Ok(());
         }
-        choose_struck(self.state, self.t, self.y, self.yp, &struck);
+        choose_struck(self.state, self.now.at(), &struck);
         if program.pins.is_empty() {
             return Ok(());
         }
@@ -41,7 +41,7 @@ impl Instant<'_, '_> {
         let relations = program.relations.len();
         let truths = self.state.z[..relations].to_vec();
         let slopes = self.slopes_of_assignments();
-        let at = (self.t, self.y.as_slice(), self.yp.as_slice());
+        let at = self.now.at();
         let taken = leave_modes(self.state, at, &given)?;
         self.state.z[..relations].copy_from_slice(&truths);
         for number in taken {

@@ -145,15 +145,15 @@ fn solver<S: System + States>(
 ) -> RungeKutta<S> {
     let (n, pattern) = (y.len(), Pattern::dense(y.len()).expect("of some unknowns"));
     let linear = SparseSolver::new(pattern, LinearMethod::Auto).expect("a small system");
-    let (states, start) = (S::STATES.to_vec(), (0.0, y, yp));
+    let (states, start) = (S::STATES.to_vec(), At { t: 0.0, y, yp });
     let mut solver = RungeKutta::new(system, linear, states, true, max_step_s, start);
     solver.set_tolerances(rtol, &vec![1e-2 * rtol; n]);
-    solver.restart(0.0, y, yp, 1e-3f64.min(max_step_s));
+    solver.restart(start, 1e-3f64.min(max_step_s));
     solver
 }
 
 fn run<S: System>(solver: &mut RungeKutta<S>, stop: f64) {
-    while solver.end().0 < stop {
+    while solver.end().t < stop {
         solver.step(stop).expect("a step");
     }
 }
@@ -162,14 +162,24 @@ fn run<S: System>(solver: &mut RungeKutta<S>, stop: f64) {
 fn oscillation(step_s: f64) -> (f64, f64) {
     // A tolerance so loose that the steps are as long as they may be, from the start.
     let mut solver = solver(Oscillator, &[0.0, 1.0], &[1.0, 0.0], 1e3, step_s);
-    solver.restart(0.0, &[0.0, 1.0], &[1.0, 0.0], step_s);
+    let start = At {
+        t: 0.0,
+        y: &[0.0, 1.0],
+        yp: &[1.0, 0.0],
+    };
+    solver.restart(start, step_s);
     solver.next_step_s = step_s;
     run(&mut solver, 4.0);
-    let y = solver.end().1;
+    let y = solver.end().y;
     let end = (y[0] - 4.0_f64.sin()).hypot(y[1] - 4.0_f64.cos());
     // From exact values, so that the error is that of one step.
     let (x, v) = (1.0_f64.sin(), 1.0_f64.cos());
-    solver.restart(1.0, &[x, v], &[v, -x], step_s);
+    let exact = At {
+        t: 1.0,
+        y: &[x, v],
+        yp: &[v, -x],
+    };
+    solver.restart(exact, step_s);
     solver.next_step_s = step_s;
     solver.step(1.0 + step_s).expect("a step");
     let (mut y, mut yp) = ([0.0; 2], [0.0; 2]);
@@ -205,9 +215,9 @@ fn the_interpolant_meets_both_ends_with_their_slopes() {
 #[test]
 fn algebraic_variables_satisfy_their_equation_at_the_end_of_every_step() {
     let mut solver = solver(Cubic, &[1.0, 1.0], &[-1.0, -3.0], 1e-8, f64::INFINITY);
-    while solver.end().0 < 10.0 {
+    while solver.end().t < 10.0 {
         solver.step(10.0).expect("a step");
-        let (t, y, _) = solver.end();
+        let At { t, y, .. } = solver.end();
         // Newton's method leaves a fiftieth of the tolerance.
         assert!((y[1] - y[0].powi(3)).abs() < 1e-9, "at {t}");
         // The tolerance, for the errors decay.
@@ -222,7 +232,7 @@ fn what_is_stiff_costs_no_steps() {
     run(&mut solver, 10.0);
     // An explicit method would take a step each microsecond.
     assert!(solver.statistics().steps < 300, "{:?}", solver.statistics());
-    assert!((solver.end().1[0] - 10.0_f64.cos()).abs() < 1e-6);
+    assert!((solver.end().y[0] - 10.0_f64.cos()).abs() < 1e-6);
 }
 
 #[test]
@@ -233,11 +243,11 @@ fn a_step_can_be_taken_again_to_end_before() {
     let (steps, from, next) = (solver.statistics().steps, solver.from, solver.next_step_s);
     let end = from + 0.3 * (solver.t - from);
     solver.step_again(end).expect("a shorter step");
-    assert_eq!(solver.end().0.to_bits(), end.to_bits());
+    assert_eq!(solver.end().t.to_bits(), end.to_bits());
     assert_eq!(solver.statistics().steps, steps);
     assert_eq!(solver.next_step_s.to_bits(), next.to_bits());
     // The tolerance, over ten steps and more.
-    assert!((solver.end().1[0] - end.sin()).abs() < 1e-7);
+    assert!((solver.end().y[0] - end.sin()).abs() < 1e-7);
 }
 
 #[test]

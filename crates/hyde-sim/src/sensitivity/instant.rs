@@ -7,6 +7,7 @@
 use super::Sensitivities;
 use crate::consistent::Consistent;
 use crate::integrator::Integrator;
+use crate::moment::At;
 use crate::results::GradientEndKind;
 use crate::root_rates::rates_at;
 use hyde_program::{Constant, Function, Target};
@@ -36,9 +37,9 @@ impl Sensitivities {
         if matches!(cause, Cause::Time) {
             return;
         }
-        let (t, y, yp) = (integrator.t, integrator.y.clone(), integrator.yp.clone());
-        self.be_consistent(integrator.state_mut(), consistent, (t, &y, &yp));
-        let at = (t, y.as_slice(), yp.as_slice());
+        let now = integrator.now.clone();
+        let at = now.at();
+        self.be_consistent(integrator.state_mut(), consistent, at);
         match cause {
             Cause::Time => {}
             Cause::Scheduled(relations) => {
@@ -62,12 +63,12 @@ impl Sensitivities {
         if self.moves.iter().all(|moves| *moves == 0.0) {
             return;
         }
-        let Some((dy, dyp)) = consistent.flow(integrator.state_mut(), t, &y, &yp) else {
-            self.stop(t, GradientEndKind::Singular);
+        let Some((dy, dyp)) = consistent.flow(integrator.state_mut(), at) else {
+            self.stop(at.t, GradientEndKind::Singular);
             return;
         };
         for (number, moves) in self.moves.iter().enumerate() {
-            for index in 0..y.len() {
+            for index in 0..at.y.len() {
                 self.now.y[number][index] += dy[index] * moves;
                 self.now.yp[number][index] += dyp[index] * moves;
             }
@@ -80,27 +81,19 @@ impl Sensitivities {
         &mut self,
         integrator: &mut Integrator<'_>,
         consistent: &mut Consistent,
-        at: (f64, &[f64], &[f64]),
+        at: At<'_>,
         relation: usize,
         from: f64,
     ) {
-        let (t, y, yp) = at;
         let program = integrator.state().program;
         if relation >= program.relations.len() {
-            self.stop(t, GradientEndKind::Sliding);
+            self.stop(at.t, GradientEndKind::Sliding);
             return;
         }
         let slopes = self.of(Function::Roots, integrator.state_mut(), at);
-        let rates = rates_at(
-            Function::Roots,
-            integrator.state_mut(),
-            consistent,
-            t,
-            y,
-            yp,
-        );
+        let rates = rates_at(Function::Roots, integrator.state_mut(), consistent, at);
         let Some((rates, ..)) = rates else {
-            self.stop(t, GradientEndKind::Singular);
+            self.stop(at.t, GradientEndKind::Singular);
             return;
         };
         let rate = rates[relation];
@@ -108,12 +101,12 @@ impl Sensitivities {
         let before = root_at(integrator, from, relation);
         let height = self.heights[relation].max(before.abs());
         let (rtol, _) = integrator.tolerances();
-        let step_s = t - from;
+        let step_s = at.t - from;
         let bent = (before + rate * step_s).abs() - rtol * height;
         let bend = 2.0 * bent.max(0.0) / (step_s * step_s);
         let beyond = 0.5 * rate * rate / bend;
         if rate == 0.0 || beyond < rtol * height {
-            self.stop_at(program, t, GradientEndKind::Grazing, relation);
+            self.stop_at(program, at.t, GradientEndKind::Grazing, relation);
             return;
         }
         for (moves, slopes) in self.moves.iter_mut().zip(slopes) {
@@ -139,30 +132,30 @@ impl Sensitivities {
             return;
         }
         if let Some(slide) = integrator.state().slides.first() {
-            let (program, t) = (integrator.state().program, integrator.t);
+            let (program, t) = (integrator.state().program, integrator.now.t);
             let surface = slide.surface;
             self.stop_at(program, t, GradientEndKind::Sliding, surface);
             return;
         }
-        let (t, y, yp) = (integrator.t, integrator.y.clone(), integrator.yp.clone());
+        let now = integrator.now.clone();
         let differential = &integrator.state().differential;
         for (slopes, moves) in self.now.y.iter_mut().zip(&mut self.moves) {
-            let states = slopes.iter_mut().zip(&yp).zip(differential);
+            let states = slopes.iter_mut().zip(&now.yp).zip(differential);
             for ((slope, rate), _) in states.filter(|(_, differential)| **differential) {
                 *slope -= rate * *moves;
             }
             *moves = 0.0;
         }
-        self.be_consistent(integrator.state_mut(), consistent, (t, &y, &yp));
+        self.be_consistent(integrator.state_mut(), consistent, now.at());
         self.start_anew();
     }
 
     /// Keeps the largest values of root functions, at the end of a step.
     pub(crate) fn remember_heights(&mut self, integrator: &mut Integrator<'_>) {
         let mut roots = vec![0.0; self.heights.len()];
-        let (t, y, yp) = (integrator.t, integrator.y.clone(), integrator.yp.clone());
+        let now = integrator.now.clone();
         let state = integrator.state_mut();
-        state.evaluate(Function::Roots, t, &y, &yp, &mut roots);
+        state.evaluate(Function::Roots, now.at(), &mut roots);
         for (height, root) in self.heights.iter_mut().zip(roots) {
             if root.is_finite() {
                 *height = height.max(root.abs());
@@ -172,11 +165,10 @@ impl Sensitivities {
 }
 
 fn root_at(integrator: &mut Integrator<'_>, t: f64, relation: usize) -> f64 {
-    let n = integrator.y.len();
-    let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-    integrator.interpolate(t, &mut y, &mut yp);
+    let mut then = integrator.room(t);
+    integrator.interpolate(&mut then);
     let state = integrator.state_mut();
     let mut roots = vec![0.0; state.program.relations.len()];
-    state.evaluate(Function::Roots, t, &y, &yp, &mut roots);
+    state.evaluate(Function::Roots, then.at(), &mut roots);
     roots[relation]
 }

@@ -4,6 +4,7 @@
 //! steps are kept, with the rates there, and cubic Hermite polynomials lie between them.
 
 use crate::integrator::Integrator;
+use crate::moment::Moment;
 use std::collections::VecDeque;
 
 /// So many points at most; then the sensitivities go on.
@@ -11,18 +12,12 @@ const MOST: usize = 256;
 
 /// The solution at some instants, ascending.
 #[derive(Default)]
-pub(super) struct Path(VecDeque<Place>);
-
-struct Place {
-    t: f64,
-    y: Vec<f64>,
-    yp: Vec<f64>,
-}
+pub(super) struct Path(VecDeque<Moment>);
 
 impl Path {
     /// Adds the solver's last step, which began at `from`.
     pub(super) fn add_step(&mut self, integrator: &mut Integrator<'_>, from: f64) {
-        let to = integrator.t;
+        let to = integrator.now.t;
         if self.0.is_empty() {
             self.add(integrator, from);
         }
@@ -31,10 +26,9 @@ impl Path {
     }
 
     fn add(&mut self, integrator: &mut Integrator<'_>, t: f64) {
-        let n = integrator.y.len();
-        let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-        integrator.interpolate(t, &mut y, &mut yp);
-        self.0.push_back(Place { t, y, yp });
+        let mut then = integrator.room(t);
+        integrator.interpolate(&mut then);
+        self.0.push_back(then);
     }
 
     /// Whether there is no room for more.
@@ -54,8 +48,10 @@ impl Path {
         }
     }
 
-    /// The solution at a time on the path.
-    pub(super) fn read(&self, t: f64, y: &mut [f64], yp: &mut [f64]) {
+    /// Writes the solution at the time of `then`, on the path.
+    pub(super) fn read(&self, then: &mut Moment) {
+        let Moment { t, y, yp } = then;
+        let t = *t;
         let after = self.0.partition_point(|place| place.t < t);
         let after = after.clamp(1, self.0.len().saturating_sub(1).max(1));
         let (Some(a), Some(b)) = (self.0.get(after - 1), self.0.get(after)) else {
@@ -81,15 +77,16 @@ mod tests {
     fn a_cubic_is_kept_as_it_is() {
         let f = |t: f64| 1.0 - 2.0 * t + 0.5 * t.powi(3);
         let rate = |t: f64| -2.0 + 1.5 * t * t;
-        let place = |t: f64| Place {
+        let place = |t: f64| Moment {
             t,
             y: vec![f(t)],
             yp: vec![rate(t)],
         };
         let path = Path(VecDeque::from([place(0.5), place(1.5), place(2.0)]));
         for t in [0.5, 0.7, 1.5, 1.9, 2.0] {
-            let (mut y, mut yp) = ([0.0], [0.0]);
-            path.read(t, &mut y, &mut yp);
+            let mut then = Moment::zero(t, 1);
+            path.read(&mut then);
+            let Moment { y, yp, .. } = then;
             // Rounding of a few terms.
             assert!((y[0] - f(t)).abs() < 1e-14, "{t}: {y:?}");
             assert!((yp[0] - rate(t)).abs() < 1e-13, "{t}: {yp:?}");

@@ -194,7 +194,7 @@ impl Sensitivities {
         let n = self.propagator.starts.len() - 1;
         let m = self.directions.len();
         let jacobian: &Jacobian = integrator.state().program.jacobian();
-        let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
+        let mut then = integrator.room(self.t);
         let mut rights = vec![vec![0.0; STAGES * n]; m];
         // The right sides are what is left with the states as they were and zeros for all that is unknown.
         let before = self.now.clone();
@@ -207,14 +207,14 @@ impl Sensitivities {
                 .for_each(|(slope, _)| *slope = 0.0);
         }
         for stage in 0..STAGES {
-            let t = self.t + self.propagator.method.nodes[stage] * step_s;
-            self.path.read(t, &mut y, &mut yp);
+            then.t = self.t + self.propagator.method.nodes[stage] * step_s;
+            self.path.read(&mut then);
             let state = integrator.state_mut();
-            let values = self.of(Function::Residual, state, (t, &y, &yp));
+            let values = self.of(Function::Residual, state, then.at());
             for (right, values) in rights.iter_mut().zip(values) {
                 right[stage * n..][..n].copy_from_slice(&values);
             }
-            state.residual_partials(t, &y, &yp);
+            state.residual_partials(then.at());
             let propagator = &mut self.propagator;
             jacobian.assemble(&state.partials, 1.0, 0.0, &mut propagator.by_value);
             jacobian.assemble(&state.partials, 0.0, 1.0, &mut propagator.by_rate);

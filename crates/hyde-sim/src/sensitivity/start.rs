@@ -3,6 +3,7 @@
 use super::Sensitivities;
 use crate::consistent::Consistent;
 use crate::initial::{Round, Shape};
+use crate::moment::At;
 use crate::results::GradientEndKind;
 use crate::state::State;
 use hyde_program::Function;
@@ -14,7 +15,7 @@ impl Sensitivities {
         &mut self,
         state: &mut State<'_>,
         consistent: &mut Consistent,
-        at: (f64, &[f64], &[f64]),
+        at: At<'_>,
         round: Round,
     ) {
         let count = match round {
@@ -59,7 +60,7 @@ impl Sensitivities {
     }
 
     /// The states that modes fix have the derivatives of what they are fixed to.
-    fn take_pins(&mut self, state: &mut State<'_>, at: (f64, &[f64], &[f64])) {
+    fn take_pins(&mut self, state: &mut State<'_>, at: At<'_>) {
         if state.pinned.is_empty() {
             return;
         }
@@ -75,9 +76,9 @@ impl Sensitivities {
     }
 
     /// The linearised initial system. Fixed states keep their derivatives.
-    fn solve(&mut self, state: &mut State<'_>, at: (f64, &[f64], &[f64]), count: usize) {
-        let Ok(shape) = Shape::new(state, count, at.0) else {
-            self.stop(at.0, GradientEndKind::Singular);
+    fn solve(&mut self, state: &mut State<'_>, at: At<'_>, count: usize) {
+        let Ok(shape) = Shape::new(state, count, at.t) else {
+            self.stop(at.t, GradientEndKind::Singular);
             return;
         };
         let fixed = self.now.y.clone();
@@ -94,7 +95,7 @@ impl Sensitivities {
             rights.push(right);
         }
         if !shape.solve(state, at, &mut rights) {
-            self.stop(at.0, GradientEndKind::Singular);
+            self.stop(at.t, GradientEndKind::Singular);
             return;
         }
         for (number, right) in rights.iter().enumerate() {

@@ -1,6 +1,7 @@
 //! Sensitivities of the memory at the tick of a clock: what it writes, and what is held of it later.
 
 use super::{Sensitivities, Slopes};
+use crate::moment::At;
 use crate::state::State;
 use hyde_program::TickWrt;
 
@@ -16,11 +17,11 @@ impl Sensitivities {
         &self,
         state: &mut State<'_>,
         clock: usize,
-        (t, y, yp): (f64, &[f64], &[f64]),
+        at: At<'_>,
         delayed: &[f64],
         left: &mut Slopes,
     ) {
-        let partials = state.tick_partials(clock, t, y, yp, delayed);
+        let partials = state.tick_partials(clock, at, delayed);
         let targets = state.program.kernels.tick_targets(clock);
         for (number, direction) in self.directions.iter().enumerate() {
             let mut after = left.z[number].clone();

@@ -2,6 +2,7 @@
 //! theorem on the equations as they are there.
 
 use super::Simulation;
+use crate::moment::At;
 use crate::session::Variation;
 use hyde_program::{Function, Wrt};
 
@@ -16,9 +17,8 @@ impl Simulation<'_> {
         let mut place = self.place().clone();
         // The solver's rates are as good as its tolerance; the linearised equations are to be those of a consistent point.
         let state = self.integrator.state_mut();
-        self.consistent
-            .make_exact(state, place.t, &mut place.y, &mut place.yp);
-        let (t, y, yp) = (place.t, place.y.as_slice(), place.yp.as_slice());
+        self.consistent.make_exact(state, &mut place);
+        let at = place.at();
         let state = self.integrator.state_mut();
         if !state.slides.is_empty() {
             return None;
@@ -31,13 +31,13 @@ impl Simulation<'_> {
             dy[position] = 0.0;
         }
         let mut right = vec![0.0; n];
-        state.directional(t, y, yp, &dy, &dyp, &mut right);
-        for (row, value) in along(state, Function::Residual, parameters, (t, y, yp)) {
+        state.directional(at, &dy, &dyp, &mut right);
+        for (row, value) in along(state, Function::Residual, parameters, at) {
             right[row] += value;
         }
         right.iter_mut().for_each(|value| *value = -*value);
         let mut rights = [right];
-        if n > 0 && !self.consistent.correct(state, (t, y, yp), &mut rights) {
+        if n > 0 && !self.consistent.correct(state, at, &mut rights) {
             return None;
         }
         let [solved] = rights;
@@ -52,7 +52,7 @@ impl Simulation<'_> {
             dyp[position] = 0.0;
         }
         let mut outputs = vec![0.0; self.program.outputs.len()];
-        let partials = state.partials(Function::Outputs, t, y, yp);
+        let partials = state.partials(Function::Outputs, at);
         let entries = self.program.partials(Function::Outputs);
         for (entry, value) in entries.iter().zip(partials) {
             outputs[entry.row] += match entry.wrt {
@@ -61,7 +61,7 @@ impl Simulation<'_> {
                 Wrt::Parameter(_) | Wrt::Memory(_) | Wrt::Delayed(_) | Wrt::Time => 0.0,
             };
         }
-        for (row, value) in along(state, Function::Outputs, parameters, (t, y, yp)) {
+        for (row, value) in along(state, Function::Outputs, parameters, at) {
             outputs[row] += value;
         }
         Some(Variation {
@@ -77,16 +77,16 @@ fn along(
     state: &mut crate::state::State<'_>,
     function: Function,
     parameters: &[(usize, f64)],
-    (t, y, yp): (f64, &[f64], &[f64]),
+    at: At<'_>,
 ) -> Vec<(usize, f64)> {
     if parameters.is_empty() {
         return Vec::new();
     }
     let kernels = &state.program.kernels;
     let places: Vec<usize> = parameters.iter().map(|(place, _)| *place).collect();
-    state.read_all(t);
-    let (at, workspace) = state.at(t, y, yp);
-    let found = kernels.parameter_partials(function, &places, at, workspace);
+    state.read_all(at.t);
+    let (point, workspace) = state.point(at);
+    let found = kernels.parameter_partials(function, &places, point, workspace);
     let by = |entry: hyde_program::PartialEntry, value: f64| {
         let Wrt::Parameter(place) = entry.wrt else {
             return None;

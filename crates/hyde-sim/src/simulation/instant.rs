@@ -5,6 +5,7 @@ use crate::clocks::Ticked;
 use crate::delays;
 use crate::events::Instant;
 use crate::failure::Failure;
+use crate::moment::Moment;
 use crate::sensitivity::{Cause, Sensitivities, Slopes};
 use hyde_program::RelationUse;
 
@@ -13,8 +14,7 @@ const IN_VAIN: u32 = 4;
 
 /// Values at an instant, from one side of it.
 pub(super) struct Limit {
-    y: Vec<f64>,
-    yp: Vec<f64>,
+    values: Moment,
     z: Vec<f64>,
     delayed: Vec<f64>,
     slopes: Option<Slopes>,
@@ -40,7 +40,7 @@ impl Simulation<'_> {
         let before = self.meter.as_ref().map(|_| self.outputs.clone());
         let events = self.results.events.len();
         let arrived = delays::arrive(&mut self.integrator, &mut self.consistent)?;
-        let t = self.integrator.t;
+        let t = self.integrator.now.t;
         let entered = self.integrator.state_mut().inputs.enter(t);
         if entered {
             self.be_consistent()?;
@@ -51,7 +51,7 @@ impl Simulation<'_> {
             self.finish_sensitivities();
         }
         let mut ticked = false;
-        if self.schedule.due(self.integrator.t) {
+        if self.schedule.due(self.integrator.now.t) {
             ticked = true;
             changed |= self.tick(&limit)?;
             if self.iterate(&[], false)? {
@@ -112,13 +112,9 @@ impl Simulation<'_> {
         if self.in_vain.1 < IN_VAIN || !crossed.iter().all(of_equation) {
             return;
         }
-        let (t, y, yp) = (
-            self.integrator.t,
-            self.integrator.y.clone(),
-            self.integrator.yp.clone(),
-        );
+        let now = self.integrator.now.clone();
         let state = self.integrator.state_mut();
-        state.follow(crossed, (t, &y, &yp));
+        state.follow(crossed, now.at());
     }
 
     pub(super) fn iterate(
@@ -126,19 +122,13 @@ impl Simulation<'_> {
         scheduled: &[usize],
         at_start: bool,
     ) -> Result<bool, Box<Failure>> {
-        let (t, mut y, mut yp) = (
-            self.integrator.t,
-            std::mem::take(&mut self.integrator.y),
-            std::mem::take(&mut self.integrator.yp),
-        );
+        let mut now = std::mem::take(&mut self.integrator.now);
         let largest = self.integrator.largest().to_vec();
         let outcome = Instant {
             state: self.integrator.state_mut(),
             largest: &largest,
             consistent: &mut self.consistent,
-            t,
-            y: &mut y,
-            yp: &mut yp,
+            now: &mut now,
             conditions: &mut self.conditions,
             log: &mut self.results.events,
             sensitivities: self.sensitivities.as_mut(),
@@ -146,29 +136,21 @@ impl Simulation<'_> {
             modes_are_given: self.modes_are_given,
         }
         .iterate(scheduled, at_start);
-        self.integrator.y = y;
-        self.integrator.yp = yp;
+        self.integrator.now = now;
         outcome
     }
 
     /// Consistent values with what the equations read now: guards are to see what a step of an input does to them.
     pub(super) fn be_consistent(&mut self) -> Result<(), Box<Failure>> {
-        let (mut y, mut yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
-        let t = self.integrator.t;
-        self.consistent
-            .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
-        self.integrator.y = y;
-        self.integrator.yp = yp;
-        Ok(())
+        self.integrator.be_consistent(&mut self.consistent)
     }
 
     /// The values now.
     pub(super) fn limit(&mut self) -> Limit {
-        let t = self.integrator.t;
+        let t = self.integrator.now.t;
         let delayed = self.integrator.state_mut().delayed_at(t).to_vec();
         Limit {
-            y: self.integrator.y.clone(),
-            yp: self.integrator.yp.clone(),
+            values: self.integrator.now.clone(),
             z: self.integrator.state().z.clone(),
             delayed,
             slopes: self.sensitivities.as_ref().map(Sensitivities::snapshot),
@@ -178,13 +160,9 @@ impl Simulation<'_> {
     /// Runs the clocks that tick on the left limit, whatever events happened at the instant since (C1); consistent
     /// values follow if something that the equations read has changed.
     pub(super) fn tick(&mut self, left: &Limit) -> Result<bool, Box<Failure>> {
-        let (t, mut y, mut yp) = (
-            self.integrator.t,
-            self.integrator.y.clone(),
-            self.integrator.yp.clone(),
-        );
+        let mut now = self.integrator.now.clone();
         let state = self.integrator.state_mut();
-        let mut now = std::mem::replace(&mut state.z, left.z.clone());
+        let mut memory = std::mem::replace(&mut state.z, left.z.clone());
         let mut slopes = left.slopes.clone();
         let along = self.sensitivities.as_ref().zip(slopes.as_mut());
         let Ticked {
@@ -193,32 +171,31 @@ impl Simulation<'_> {
             written,
         } = self
             .schedule
-            .run(state, t, &left.y, &left.yp, &left.delayed, along)?;
-        for ((now, after), before) in now.iter_mut().zip(&state.z).zip(&left.z) {
+            .run(state, left.values.at(), &left.delayed, along)?;
+        for ((now, after), before) in memory.iter_mut().zip(&state.z).zip(&left.z) {
             if after.to_bits() != before.to_bits() {
                 *now = *after;
             }
         }
-        state.z = now;
+        state.z = memory;
         self.results.statistics.ticks += ticks;
         if changed {
             self.consistent
-                .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
+                .solve(self.integrator.state_mut(), &mut now, false)?;
         }
         if let (Some(sensitivities), Some(slopes)) = (&mut self.sensitivities, &slopes) {
             sensitivities.take_written(slopes, &written);
             let state = self.integrator.state_mut();
-            sensitivities.be_consistent(state, &mut self.consistent, (t, &y, &yp));
+            sensitivities.be_consistent(state, &mut self.consistent, now.at());
         }
-        self.integrator.y = y;
-        self.integrator.yp = yp;
+        self.integrator.now = now;
         Ok(changed)
     }
 
     /// Brings derivatives by parameters to the time that the run has come to.
     pub(super) fn advance_sensitivities(&mut self) {
         if let Some(sensitivities) = &mut self.sensitivities {
-            let t = self.integrator.t;
+            let t = self.integrator.now.t;
             sensitivities.advance(&mut self.integrator, t);
         }
     }

@@ -3,6 +3,7 @@
 use super::Simulation;
 use crate::failure::Failure;
 use crate::initial;
+use crate::moment::Moment;
 use crate::operating_point::{OperatingPoint, PointModes, TakenMode};
 use crate::setup::same_instant;
 use crate::start_modes::initial_pins;
@@ -16,8 +17,7 @@ impl Simulation<'_> {
             PointModes::OfRun => Vec::new(),
             PointModes::Sliding(asked) => self.take(asked)?,
         };
-        let t = self.integrator.t;
-        let (y, yp) = (self.integrator.y.clone(), self.integrator.yp.clone());
+        let Moment { t, y, yp } = self.integrator.now.clone();
         let state = self.integrator.state_mut();
         let u = state.read_all(t).to_vec();
         Ok(OperatingPoint {
@@ -60,8 +60,7 @@ impl Simulation<'_> {
                 continue;
             };
             let before = (
-                self.integrator.y.clone(),
-                self.integrator.yp.clone(),
+                self.integrator.now.clone(),
                 self.integrator.state().z.clone(),
                 self.integrator.state().pinned.clone(),
             );
@@ -75,15 +74,15 @@ impl Simulation<'_> {
                 Err(failure) if asked => return Err(failure),
                 // Where nothing follows if it slips, it stays as the run has it.
                 Err(_) => {
-                    (self.integrator.y, self.integrator.yp) = (before.0, before.1);
+                    self.integrator.now = before.0;
                     let state = self.integrator.state_mut();
-                    (state.z, state.pinned) = (before.2, before.3);
+                    (state.z, state.pinned) = (before.1, before.2);
                 }
             }
         }
         if !taken.is_empty() {
             self.modes_are_given = true;
-            let scheduled = self.schedule.relations_at(self.integrator.t);
+            let scheduled = self.schedule.relations_at(self.integrator.now.t);
             self.iterate(&scheduled, false)?;
         }
         Ok(taken)
@@ -98,15 +97,11 @@ impl Simulation<'_> {
                     if of == automaton && to == mode && here.is_none_or(|here| here == from))
             })
         };
-        let (t, y, yp) = (
-            self.integrator.t,
-            self.integrator.y.clone(),
-            self.integrator.yp.clone(),
-        );
+        let now = self.integrator.now.clone();
         let state = self.integrator.state_mut();
         if let Some(exit) = leads_there(Some(from)).or_else(|| leads_there(None)) {
             let mut values = vec![0.0; program.rows(Function::Assignments)];
-            state.evaluate(Function::Assignments, t, &y, &yp, &mut values);
+            state.evaluate(Function::Assignments, now.at(), &mut values);
             for index in exit.assignments.clone() {
                 if let Target::Memory(position) = program.assignments[index].target {
                     state.z[position] = values[index];
@@ -114,26 +109,22 @@ impl Simulation<'_> {
             }
         }
         program.set_mode(&mut state.z, automaton, mode);
-        state.pinned = initial_pins(state, t, &y, &yp);
+        state.pinned = initial_pins(state, now.at());
         self.make_consistent()
     }
 
     /// Consistent values in the modes as they are; at the start what is delayed was ever as it is.
     fn make_consistent(&mut self) -> Result<(), Box<Failure>> {
-        let (t, mut y, mut yp) = (
-            self.integrator.t,
-            self.integrator.y.clone(),
-            self.integrator.yp.clone(),
-        );
+        let mut now = self.integrator.now.clone();
         let state = self.integrator.state_mut();
         let consistent = &mut self.consistent;
-        if same_instant(t, self.setup.start_s) {
+        if same_instant(now.t, self.setup.start_s) {
             let round = initial::Round::StatesKept;
-            initial::solve(state, consistent, t, &mut y, &mut yp, round)?;
+            initial::solve(state, consistent, &mut now, round)?;
         } else {
-            consistent.solve(state, t, &mut y, &mut yp, false)?;
+            consistent.solve(state, &mut now, false)?;
         }
-        (self.integrator.y, self.integrator.yp) = (y, yp);
+        self.integrator.now = now;
         Ok(())
     }
 }

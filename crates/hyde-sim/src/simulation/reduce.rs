@@ -42,19 +42,19 @@ impl Simulation<'_> {
         let Some(mut reduced) = self.reduced.take() else {
             return;
         };
-        let n = self.program.n_unknowns;
-        let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
+        let mut then = self.integrator.room(from);
         reduced.reductions.stretch(from, to, &mut |t, out| {
-            self.integrator.interpolate(t, &mut y, &mut yp);
-            let inside = t.to_bits() != self.integrator.t.to_bits();
+            then.t = t;
+            self.integrator.interpolate(&mut then);
+            let inside = t.to_bits() != self.integrator.now.t.to_bits();
             let rough = inside && self.integrator.shows_states_alone();
             let state = self.integrator.state_mut();
             if rough && reduced.reads_more_than_states {
-                self.consistent.make_exact(state, t, &mut y, &mut yp);
+                self.consistent.make_exact(state, &mut then);
             } else {
-                self.consistent.refine(state, t, &mut y, &mut yp);
+                self.consistent.refine(state, &mut then);
             }
-            state.evaluate_rows(&*reduced.kernel, (t, &y, &yp), out);
+            state.evaluate_rows(&*reduced.kernel, then.at(), out);
         });
         self.reduced = Some(reduced);
         self.name_what_is_not_a_number();
@@ -67,10 +67,10 @@ impl Simulation<'_> {
         };
         let mut values = vec![0.0; reduced.reductions.outputs().len()];
         let integrator = &mut self.integrator;
-        let (t, y, yp) = (integrator.t, integrator.y.clone(), integrator.yp.clone());
+        let now = integrator.now.clone();
         let state = integrator.state_mut();
-        state.evaluate_rows(&*reduced.kernel, (t, &y, &yp), &mut values);
-        reduced.reductions.point(t, &values);
+        state.evaluate_rows(&*reduced.kernel, now.at(), &mut values);
+        reduced.reductions.point(now.t, &values);
         self.name_what_is_not_a_number();
     }
 
@@ -80,12 +80,11 @@ impl Simulation<'_> {
             return;
         };
         for (number, t) in reduced.reductions.nameless() {
-            let n = self.program.n_unknowns;
-            let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-            self.integrator.interpolate(t, &mut y, &mut yp);
+            let mut then = self.integrator.room(t);
+            self.integrator.interpolate(&mut then);
             let mut values = vec![0.0; self.program.outputs.len()];
             let state = self.integrator.state_mut();
-            state.evaluate(Function::Outputs, t, &y, &yp, &mut values);
+            state.evaluate(Function::Outputs, then.at(), &mut values);
             let text = &self.setup.reductions[number].text;
             let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']');
             let outputs = self.program.outputs.iter().zip(&values);

@@ -1,6 +1,7 @@
 //! Rows of the results: on the grid asked for, and on both sides of an event.
 
 use super::Simulation;
+use crate::moment::At;
 use crate::setup::same_instant;
 use hyde_program::Function;
 
@@ -21,16 +22,15 @@ impl Simulation<'_> {
                 return;
             }
             let t = t.min(end);
-            let n = self.program.n_unknowns;
-            let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-            self.integrator.solution(t, &mut y, &mut yp);
+            let mut then = self.integrator.room(t);
+            self.integrator.solution(&mut then);
             let state = self.integrator.state_mut();
-            self.consistent.refine(state, t, &mut y, &mut yp);
-            let values = self.values_at(t, &y, &yp);
+            self.consistent.refine(state, &mut then);
+            let values = self.values_at(then.at());
             if let Some(sensitivities) = &mut self.sensitivities {
                 sensitivities.advance(&mut self.integrator, t);
             }
-            let slopes = self.slopes_at(t, &y, &yp);
+            let slopes = self.slopes_at(then.at());
             self.push_row(Row { t, values, slopes });
             self.next_row += 1;
         }
@@ -48,14 +48,14 @@ impl Simulation<'_> {
                     .next_jump(t - 1e-9 * (1.0 + t.abs())),
                 t,
             )
-            || t < self.integrator.t
+            || t < self.integrator.now.t
     }
 
     pub(super) fn row_is_due(&self) -> bool {
         self.setup
             .rows_s
             .get(self.next_row)
-            .is_some_and(|&row| same_instant(row, self.integrator.t))
+            .is_some_and(|&row| same_instant(row, self.integrator.now.t))
     }
 
     pub(super) fn row(&mut self) {
@@ -64,18 +64,18 @@ impl Simulation<'_> {
     }
 
     pub(super) fn row_values(&mut self) -> Row {
-        let (t, y, yp) = (
-            self.integrator.t,
-            self.integrator.y.clone(),
-            self.integrator.yp.clone(),
-        );
-        let values = self.values_at(t, &y, &yp);
-        let slopes = self.slopes_at(t, &y, &yp);
-        Row { t, values, slopes }
+        let now = self.integrator.now.clone();
+        let values = self.values_at(now.at());
+        let slopes = self.slopes_at(now.at());
+        Row {
+            t: now.t,
+            values,
+            slopes,
+        }
     }
 
     /// The derivatives of the kept outputs by each parameter.
-    fn slopes_at(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<Vec<f64>> {
+    fn slopes_at(&mut self, at: At<'_>) -> Vec<Vec<f64>> {
         let Some(sensitivities) = &self.sensitivities else {
             return Vec::new();
         };
@@ -85,16 +85,16 @@ impl Simulation<'_> {
             return vec![vec![f64::NAN; kept.len()]; parameters.len()];
         }
         let state = self.integrator.state_mut();
-        let all = sensitivities.of(Function::Outputs, state, (t, y, yp));
+        let all = sensitivities.of(Function::Outputs, state, at);
         let of_kept = |all: Vec<f64>| kept.iter().map(|&output| all[output]).collect();
         all.into_iter().map(of_kept).collect()
     }
 
-    pub(super) fn values_at(&mut self, t: f64, y: &[f64], yp: &[f64]) -> Vec<f64> {
+    pub(super) fn values_at(&mut self, at: At<'_>) -> Vec<f64> {
         let mut outputs = std::mem::take(&mut self.outputs);
         self.integrator
             .state_mut()
-            .evaluate(Function::Outputs, t, y, yp, &mut outputs);
+            .evaluate(Function::Outputs, at, &mut outputs);
         let values = self.distinct.iter().map(|&output| outputs[output]);
         let values = values.collect();
         self.outputs = outputs;

@@ -6,6 +6,7 @@ use super::step::{Finished, Step, Target, Work};
 use crate::delays;
 use crate::failure::Failure;
 use crate::guards::{self, is_active};
+use crate::moment::Moment;
 use crate::results::Event;
 use crate::sensitivity::Cause;
 use crate::session::Advance;
@@ -13,18 +14,11 @@ use crate::setup::same_instant;
 use hyde_program::Function;
 use hyde_signal::Series;
 
-/// Values at the caller's time.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Place {
-    pub(crate) t: f64,
-    pub(crate) y: Vec<f64>,
-    pub(crate) yp: Vec<f64>,
-}
-
 /// Where a run in pieces is.
 #[derive(Default)]
 pub(super) struct Pieces {
-    place: Place,
+    /// Values at the caller's time.
+    place: Moment,
     /// The step that the caller's time is in.
     ahead: Option<(Step, Target)>,
     /// What waits at the caller's time.
@@ -79,7 +73,7 @@ impl Simulation<'_> {
             {
                 return Ok(Advanced::Waits);
             }
-            let t = self.integrator.t;
+            let t = self.integrator.now.t;
             let there = t >= to || same_instant(t, to);
             if stepped && how.stop_at_steps && !there {
                 return Ok(Advanced::OnTheWay);
@@ -114,14 +108,14 @@ impl Simulation<'_> {
     }
 
     /// Values at the caller's time.
-    pub(crate) fn place(&self) -> &Place {
+    pub(crate) fn place(&self) -> &Moment {
         &self.pieces.place
     }
 
     /// The outputs there.
     pub(crate) fn outputs_of_caller(&mut self) -> &[f64] {
         let place = std::mem::take(&mut self.pieces.place);
-        self.values_at(place.t, &place.y, &place.yp);
+        self.values_at(place.at());
         self.pieces.place = place;
         &self.outputs
     }
@@ -207,13 +201,14 @@ impl Simulation<'_> {
         positions: &[usize],
         states: &[f64],
     ) -> Result<(), Box<Failure>> {
-        let Place { mut y, mut yp, .. } = self.pieces.place.clone();
+        let mut place = self.pieces.place.clone();
+        place.t = t;
         for (&position, &value) in positions.iter().zip(states) {
-            y[position] = value;
+            place.y[position] = value;
         }
         let state = self.integrator.state_mut();
-        self.consistent.solve(state, t, &mut y, &mut yp, false)?;
-        self.pieces.place = Place { t, y, yp };
+        self.consistent.solve(state, &mut place, false)?;
+        self.pieces.place = place;
         Ok(())
     }
 
@@ -223,7 +218,7 @@ impl Simulation<'_> {
         let mut roots = vec![0.0; program.relations.len()];
         let place = &self.pieces.place;
         let state = self.integrator.state_mut();
-        state.evaluate(Function::Roots, place.t, &place.y, &place.yp, &mut roots);
+        state.evaluate(Function::Roots, place.at(), &mut roots);
         let state = self.integrator.state();
         let known = roots.into_iter().enumerate();
         known
@@ -236,8 +231,7 @@ impl Simulation<'_> {
 
     /// Takes the caller's place as that of the run. Whether a relation has changed its truth on the way.
     pub(crate) fn accept(&mut self) -> bool {
-        let Place { t, y, yp } = self.pieces.place.clone();
-        (self.integrator.t, self.integrator.y, self.integrator.yp) = (t, y, yp);
+        self.integrator.now = self.pieces.place.clone();
         self.integrator.note_largest();
         !self.passed().is_empty()
     }
@@ -247,14 +241,14 @@ impl Simulation<'_> {
         let target = self.next_target(f64::INFINITY);
         self.accept();
         self.crossed = self.passed();
-        let t = self.integrator.t;
+        let t = self.integrator.now.t;
         let cause = self
             .crossed
             .first()
             .map(|&relation| Cause::Crossing { relation, from: t });
         if t >= target.t || same_instant(t, target.t) {
             // The caller may be somewhat behind: what happens does so at its own time.
-            self.integrator.t = target.t;
+            self.integrator.now.t = target.t;
         }
         if let Some(work) = self.work_at(&target, cause) {
             self.instant(&work.scheduled, true, &work.cause)?;
@@ -279,19 +273,15 @@ impl Simulation<'_> {
 
     /// The caller is where the run is.
     pub(super) fn stand(&mut self) {
-        self.pieces.place = Place {
-            t: self.integrator.t,
-            y: self.integrator.y.clone(),
-            yp: self.integrator.yp.clone(),
-        };
+        self.pieces.place = self.integrator.now.clone();
     }
 
     /// The caller is at a time within the last step.
     fn look_back(&mut self, t: f64) {
-        let Place { mut y, mut yp, .. } = std::mem::take(&mut self.pieces.place);
-        self.integrator.solution(t, &mut y, &mut yp);
+        let place = &mut self.pieces.place;
+        place.t = t;
+        self.integrator.solution(place);
         let state = self.integrator.state_mut();
-        self.consistent.refine(state, t, &mut y, &mut yp);
-        self.pieces.place = Place { t, y, yp };
+        self.consistent.refine(state, place);
     }
 }

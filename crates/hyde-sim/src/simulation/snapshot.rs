@@ -5,6 +5,7 @@ use super::step::Work;
 use crate::clocks::Schedule;
 use crate::delays::Delays;
 use crate::failure::{Failure, FailureKind};
+use crate::moment::Moment;
 use crate::sensitivity::Cause;
 use crate::sliding::Slide;
 use serde::{Deserialize, Serialize};
@@ -12,9 +13,7 @@ use serde::{Deserialize, Serialize};
 /// Where a run is.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Snapshot {
-    t: f64,
-    y: Vec<f64>,
-    yp: Vec<f64>,
+    now: Moment,
     p: Vec<f64>,
     z: Vec<f64>,
     since_s: f64,
@@ -37,24 +36,23 @@ impl Simulation<'_> {
     pub(crate) fn snapshot(&mut self) -> Result<Snapshot, Box<Failure>> {
         if let Some(part) = self.program.foreign.first() {
             let reason = format!("the state of the FMU `{}` cannot be kept", part.file);
-            return Err(Failure::new(FailureKind::Solver(reason), self.integrator.t)
-                .at_origin(&part.origin));
+            return Err(
+                Failure::new(FailureKind::Solver(reason), self.integrator.now.t)
+                    .at_origin(&part.origin),
+            );
         }
         if !self.program.delays.is_empty() {
             self.cut()?;
         }
-        let place = self.place().clone();
-        let (t, mut y, mut yp) = (place.t, place.y, place.yp);
+        let mut now = self.place().clone();
         if self.is_ahead() {
             self.consistent
-                .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
+                .solve(self.integrator.state_mut(), &mut now, false)?;
         }
         let waits = self.waits_for_caller().then(|| self.crossed.clone());
         let state = self.integrator.state();
         Ok(Snapshot {
-            t,
-            y,
-            yp,
+            now,
             p: state.p.clone(),
             z: state.z.clone(),
             since_s: state.inputs.since_s(),
@@ -75,8 +73,8 @@ impl Simulation<'_> {
     /// Returns to where a run of this program was. Whether the snapshot is one of it; if not, nothing changes.
     pub(crate) fn restore(&mut self, snapshot: Snapshot) -> Result<bool, Box<Failure>> {
         let (n, state) = (self.program.n_unknowns, self.integrator.state());
-        let same = snapshot.y.len() == n
-            && snapshot.yp.len() == n
+        let same = snapshot.now.y.len() == n
+            && snapshot.now.yp.len() == n
             && snapshot.largest.len() == n
             && snapshot.p.len() == state.p.len()
             && snapshot.z.len() == state.z.len()
@@ -87,7 +85,7 @@ impl Simulation<'_> {
         }
         self.forget_pieces();
         let integrator = &mut self.integrator;
-        (integrator.t, integrator.y, integrator.yp) = (snapshot.t, snapshot.y, snapshot.yp);
+        integrator.now = snapshot.now;
         integrator.set_largest(snapshot.largest);
         let state = integrator.state_mut();
         (state.p, state.z) = (snapshot.p, snapshot.z);
@@ -100,7 +98,7 @@ impl Simulation<'_> {
         (self.hurry, self.in_vain) = Default::default();
         self.crossed.clear();
         self.trail.clear();
-        let t = self.integrator.t;
+        let t = self.integrator.now.t;
         if let Some(crossed) = snapshot.waits {
             let scheduled = self.schedule.relations_at(t);
             let cause = match (crossed.first(), scheduled.is_empty()) {

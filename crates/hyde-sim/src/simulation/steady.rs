@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use crate::failure::{Failure, FailureKind};
+use crate::moment::Moment;
 use hyde_program::Constant;
 
 /// So often the time to look back on is doubled.
@@ -59,10 +60,11 @@ impl Simulation<'_> {
     }
 
     fn look(&self) -> Look {
+        let Moment { t, y, yp } = self.integrator.now.clone();
         Look {
-            t: self.integrator.t,
-            y: self.integrator.y.clone(),
-            yp: self.integrator.yp.clone(),
+            t,
+            y,
+            yp,
             z: self.integrator.state().z.clone(),
         }
     }
@@ -106,7 +108,8 @@ impl Simulation<'_> {
                 .collect()
         };
         let t = now.t + ONWARD * (now.t - before.t);
-        let (mut y, mut yp) = (along(&before.y, &now.y), now.yp.clone());
+        let (y, yp) = (along(&before.y, &now.y), now.yp.clone());
+        let mut there = Moment { t, y, yp };
         let state = self.integrator.state_mut();
         state.z = along(&before.z, &now.z);
         for (z, now) in state
@@ -120,10 +123,11 @@ impl Simulation<'_> {
         for automaton in &self.program.automata {
             state.z[automaton.place] = now.z[automaton.place];
         }
-        let solved = self.consistent.solve(state, t, &mut y, &mut yp, false);
+        let solved = self.consistent.solve(state, &mut there, false);
         self.integrator.state_mut().z.clone_from(&now.z);
         solved.ok()?;
         let least = |i: usize| SETTLED * now.y[i].abs().max(1e-3) / (now.t - before.t);
+        let yp = there.yp;
         let changed = |&&i: &&usize| (yp[i] - now.yp[i]).abs() > EVEN * now.yp[i].abs() + least(i);
         Some(states.iter().find(changed).copied())
     }

@@ -54,7 +54,7 @@ pub(super) struct Work {
 impl Simulation<'_> {
     /// The next target, the stop at the latest.
     pub(super) fn next_target(&self, stop: f64) -> Target {
-        let t = self.integrator.t;
+        let t = self.integrator.now.t;
         let jump = self.integrator.state().inputs.next_jump(t);
         let arrival = self.integrator.state().delays.next();
         Target {
@@ -66,7 +66,7 @@ impl Simulation<'_> {
     /// What there is to work on where the run has come to.
     pub(super) fn work_at(&self, target: &Target, crossed: Option<Cause>) -> Option<Work> {
         let behind = crossed.is_some();
-        let t = self.integrator.t;
+        let t = self.integrator.now.t;
         let at_target = t >= target.t || same_instant(t, target.t);
         let scheduled = if at_target {
             self.schedule.relations_at(t)
@@ -97,18 +97,21 @@ impl Simulation<'_> {
         target: f64,
     ) -> Result<Step, Box<Failure>> {
         if self.setup.interrupted.load(Ordering::Relaxed) {
-            return Err(Failure::new(FailureKind::Interrupted, self.integrator.t));
+            return Err(Failure::new(
+                FailureKind::Interrupted,
+                self.integrator.now.t,
+            ));
         }
         let reached = &self.setup.reached;
-        reached.set(self.integrator.t, self.setup.stop_s);
+        reached.set(self.integrator.now.t, self.setup.stop_s);
         let from = self.integrator.step(target)?;
-        if let Some(kind) = self.hurry.no_way(self.integrator.t, self.setup) {
+        if let Some(kind) = self.hurry.no_way(self.integrator.now.t, self.setup) {
             return Err(self.no_way(kind, target));
         }
         let crossing = self.first_crossing(watched, from)?;
         let end = crossing
             .as_ref()
-            .map_or(self.integrator.t, |crossing| crossing.t);
+            .map_or(self.integrator.now.t, |crossing| crossing.t);
         Ok(Step {
             from,
             end,
@@ -149,7 +152,7 @@ impl Simulation<'_> {
         if let Some(sensitivities) = &mut self.sensitivities {
             sensitivities.remember_heights(&mut self.integrator);
         }
-        let there = self.integrator.t >= target || same_instant(self.integrator.t, target);
+        let there = self.integrator.now.t >= target || same_instant(self.integrator.now.t, target);
         if there || !self.program.selections.is_empty() {
             self.advance_sensitivities();
         }
@@ -166,14 +169,11 @@ impl Simulation<'_> {
     /// Puts the run to a time within the last step. The interpolant of forces and derivatives is not exact; what follows
     /// decides on exact ones.
     pub(super) fn stand_at(&mut self, t: f64) -> Result<(), Box<Failure>> {
-        let n = self.program.n_unknowns;
-        let (mut y, mut yp) = (vec![0.0; n], vec![0.0; n]);
-        self.integrator.interpolate(t, &mut y, &mut yp);
+        let mut then = self.integrator.room(t);
+        self.integrator.interpolate(&mut then);
         self.consistent
-            .solve(self.integrator.state_mut(), t, &mut y, &mut yp, false)?;
-        self.integrator.t = t;
-        self.integrator.y = y;
-        self.integrator.yp = yp;
+            .solve(self.integrator.state_mut(), &mut then, false)?;
+        self.integrator.now = then;
         Ok(())
     }
 }

@@ -1,0 +1,55 @@
+//! [`Moment`]: the continuous values of the model at a time, and [`At`], the same borrowed by what reads it.
+
+/// Values at a time.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Moment {
+    /// The time in s.
+    pub(crate) t: f64,
+    /// The solver's vector.
+    pub(crate) y: Vec<f64>,
+    /// Its derivative.
+    pub(crate) yp: Vec<f64>,
+}
+
+/// A moment that is read: that of the run, one that a solver tries, or one beside it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct At<'m> {
+    pub(crate) t: f64,
+    pub(crate) y: &'m [f64],
+    pub(crate) yp: &'m [f64],
+}
+
+impl Moment {
+    /// Room for the values of `n` unknowns at a time.
+    pub(crate) fn zero(t: f64, n: usize) -> Self {
+        let (y, yp) = (vec![0.0; n], vec![0.0; n]);
+        Self { t, y, yp }
+    }
+
+    /// Takes the values of another one.
+    pub(crate) fn copy_from(&mut self, at: At<'_>) {
+        self.t = at.t;
+        self.y.copy_from_slice(at.y);
+        self.yp.copy_from_slice(at.yp);
+    }
+
+    /// To read it.
+    pub(crate) fn at(&self) -> At<'_> {
+        let Self { t, y, yp } = self;
+        At { t: *t, y, yp }
+    }
+}
+
+impl At<'_> {
+    /// The same values at a time somewhat later.
+    pub(crate) fn later(self, by_s: f64) -> Self {
+        let t = self.t + by_s;
+        Self { t, ..self }
+    }
+
+    /// To change it.
+    pub(crate) fn to_moment(self) -> Moment {
+        let (y, yp) = (self.y.to_vec(), self.yp.to_vec());
+        Moment { t: self.t, y, yp }
+    }
+}
