@@ -145,8 +145,7 @@ pub(crate) fn limits(
     }
     let now = integrator.now.clone();
     let state = integrator.state_mut();
-    let mut values = vec![0.0; count];
-    state.evaluate(Function::Delayed, now.at(), &mut values);
+    let values = state.values(Function::Delayed, now.at());
     let slopes = consistent
         .and_then(|consistent| rates_at(Function::Delayed, state, consistent, now.at()))
         .map_or_else(|| vec![0.0; count], |(rates, ..)| rates);
@@ -224,7 +223,5 @@ fn now(integrator: &mut Integrator<'_>, t: f64) -> Vec<f64> {
     let mut then = integrator.room(t);
     integrator.solution(&mut then);
     let state = integrator.state_mut();
-    let mut out = vec![0.0; state.program.rows(Function::Delayed)];
-    state.evaluate(Function::Delayed, then.at(), &mut out);
-    out
+    state.values(Function::Delayed, then.at())
 }

@@ -193,9 +193,7 @@ impl Instant<'_, '_> {
                     self.state.z[number] = f64::from(u8::from(found.truths[number]));
                 }
             }
-            let mut roots = vec![0.0; program.relations.len()];
-            self.state
-                .evaluate(Function::Roots, self.now.at(), &mut roots);
+            let roots = self.state.values(Function::Roots, self.now.at());
             let same = roots.iter().zip(&found.roots);
             if same.into_iter().all(|(a, b)| a.to_bits() == b.to_bits()) {
                 break;
@@ -213,9 +211,7 @@ impl Instant<'_, '_> {
         located: &[(usize, f64)],
     ) -> Result<Known, Box<Failure>> {
         let program = self.state.program;
-        let mut roots = vec![0.0; program.relations.len()];
-        self.state
-            .evaluate(Function::Roots, self.now.at(), &mut roots);
+        let roots = self.state.values(Function::Roots, self.now.at());
         let rounding = rounding(self.state, self.now.at(), self.largest);
         let mut zeros = Vec::new();
         let mut not_finite = None;
@@ -332,10 +328,8 @@ impl Instant<'_, '_> {
         causes: &mut Vec<String>,
     ) -> Result<(), Box<Failure>> {
         let program = self.state.program;
-        let mut values = vec![0.0; program.rows(Function::Assignments)];
         Program::turn(&mut self.state.z, flipped);
-        self.state
-            .evaluate(Function::Assignments, self.now.at(), &mut values);
+        let values = self.state.values(Function::Assignments, self.now.at());
         let slopes = self.slopes_of_assignments();
         Program::turn(&mut self.state.z, flipped);
         let mut entered: Vec<(usize, usize, bool)> = Vec::new();
@@ -394,9 +388,7 @@ impl Instant<'_, '_> {
         if program.pins.is_empty() {
             return Ok(());
         }
-        let mut values = vec![0.0; program.rows(Function::Assignments)];
-        self.state
-            .evaluate(Function::Assignments, self.now.at(), &mut values);
+        let values = self.state.values(Function::Assignments, self.now.at());
         let slopes = self.slopes_of_assignments();
         let mut pinned = Vec::new();
         for (row, pin) in program.pins_in(&self.state.z) {

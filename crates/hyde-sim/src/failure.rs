@@ -160,8 +160,7 @@ impl Failure {
         condition: &str,
     ) -> Box<Self> {
         let program = state.program;
-        let mut values = vec![0.0; program.rows(Function::Outputs)];
-        state.evaluate(Function::Outputs, at, &mut values);
+        let values = state.values(Function::Outputs, at);
         let is_name = |c: char| c.is_alphanumeric() || matches!(c, '_' | '.' | '[' | ']');
         for word in condition.split(|c| !is_name(c)) {
             let known = self.unknowns.iter().any(|(name, _)| name == word);

@@ -67,8 +67,7 @@ fn shortest_return(state: &mut State<'_>, at: At<'_>, (dy, dyp): (&[f64], &[f64]
     if n == 0 {
         return f64::INFINITY;
     }
-    let mut roots = vec![0.0; n];
-    state.evaluate(Function::Roots, at, &mut roots);
+    let roots = state.values(Function::Roots, at);
     let (mut rates, mut bends, mut sizes) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
     let partials = state.partials(Function::Roots, at);
     for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {

@@ -107,14 +107,12 @@ pub(crate) fn solve(
         let mut out = vec![0.0; size];
         state.delays.set_past(at.t, past);
         state.evaluate(Function::Residual, at, &mut out[..n]);
-        let mut equations = vec![0.0; program.rows(Function::Initial)];
-        state.evaluate(Function::Initial, at, &mut equations);
+        let equations = state.values(Function::Initial, at);
         out[n..n + count].copy_from_slice(&equations[..count]);
         for (number, (&i, target)) in fixed.iter().zip(&targets).enumerate() {
             out[n + count + number] = at.y[i] - target;
         }
-        let mut now = vec![0.0; delays];
-        state.evaluate(Function::Delayed, at, &mut now);
+        let now = state.values(Function::Delayed, at);
         for ((out, past), now) in out[size - delays..].iter_mut().zip(past).zip(now) {
             *out = past - now;
         }
@@ -272,11 +270,12 @@ impl Shape {
 /// Start values that the other conditions have to meet; events at the start may have changed them since.
 fn check(state: &mut State<'_>, at: At<'_>, round: Round) -> Result<(), Box<Failure>> {
     let program = state.program;
-    let mut values = vec![0.0; program.rows(Function::Initial)];
-    if values.len() == program.n_initial_equations() || round == Round::StatesKept {
+    if program.rows(Function::Initial) == program.n_initial_equations()
+        || round == Round::StatesKept
+    {
         return Ok(());
     }
-    state.evaluate(Function::Initial, at, &mut values);
+    let values = state.values(Function::Initial, at);
     let pairs = values[program.n_initial_equations()..].chunks_exact(2);
     let checks = program
         .initial
@@ -316,8 +315,7 @@ enum Known {
 fn guess_relations(state: &mut State<'_>, at: At<'_>, known: Known) {
     let program = state.program;
     let relations = &program.relations;
-    let mut roots = vec![0.0; relations.len()];
-    state.evaluate(Function::Roots, at, &mut roots);
+    let roots = state.values(Function::Roots, at);
     let mut open = vec![false; relations.len()];
     if known == Known::Guesses {
         for entry in program.partials(Function::Roots) {

@@ -9,6 +9,7 @@
 //!              events: reactions, ticks, held values, until nothing fires           events.rs, clocks.rs
 //!              what both sides lead back to is slid on                              slides.rs, sliding.rs, surfaces.rs
 //!              consistent values again, then on                                     consistent.rs
+//!              rows, energies, reductions and derivatives follow at the same hooks simulation/followers.rs
 //!              derivatives by parameters carried along, if they are asked for      sensitivity.rs
 //!              what is delayed kept as polynomials, jumps with their arrivals       delays.rs, history.rs
 //! or           the same piece by piece, for a caller with a clock of its own        session.rs

@@ -52,8 +52,7 @@ impl State<'_> {
             return;
         }
         self.read_loose(at);
-        let mut roots = vec![0.0; self.program.relations.len()];
-        self.evaluate(Function::Roots, at, &mut roots);
+        let roots = self.values(Function::Roots, at);
         self.loose
             .retain(|(relation, far)| roots[*relation].abs() <= *far);
     }

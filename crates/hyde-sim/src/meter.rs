@@ -5,9 +5,11 @@
 //! of the polynomial through its five values. A stretch ends where the solution has a corner: at steps and events. At an
 //! event an energy may jump; jumps are summed apart.
 
-use crate::lobatto::{NODES, POINTS, WEIGHTS};
+use crate::consistent::Consistent;
+use crate::integrator::Integrator;
+use crate::lobatto::{self, NODES, POINTS, WEIGHTS};
 use crate::results::Energies;
-use hyde_program::{AccountKind, Ledger, PortKind};
+use hyde_program::{AccountKind, Function, Ledger, PortKind};
 
 /// Sums up to now.
 pub(crate) struct Meter<'a> {
@@ -35,8 +37,29 @@ impl<'a> Meter<'a> {
         })
     }
 
+    /// Adds a stretch of the solver's last step.
+    pub(crate) fn step(
+        &mut self,
+        integrator: &mut Integrator<'_>,
+        consistent: &mut Consistent,
+        (from, to): (f64, f64),
+    ) {
+        if to <= from {
+            return;
+        }
+        let mut then = integrator.room(from);
+        let outputs = lobatto::times(from, to).map(|t| {
+            then.t = t;
+            integrator.solution(&mut then);
+            let state = integrator.state_mut();
+            consistent.refine(state, &mut then);
+            state.values(Function::Outputs, then.at())
+        });
+        self.stretch(to - from, &outputs);
+    }
+
     /// Adds a stretch of `span` s with the outputs at its points.
-    pub(crate) fn stretch(&mut self, span: f64, outputs: &[Vec<f64>; POINTS]) {
+    fn stretch(&mut self, span: f64, outputs: &[Vec<f64>; POINTS]) {
         let half = 0.5 * span;
         for (number, port) in self.ledger.ports.iter().enumerate() {
             let mut energy = 0.0;

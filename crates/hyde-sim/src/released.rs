@@ -383,14 +383,12 @@ pub(crate) fn by_parameter(
     function: Function,
     at: At<'_>,
 ) -> Vec<f64> {
-    let rows = state.program.rows(function);
-    let (mut here, mut there) = (vec![0.0; rows], vec![0.0; rows]);
-    state.evaluate(function, at, &mut here);
+    let here = state.values(function, at);
     let (p, value) = (state.p.clone(), state.p[place]);
     let step = DIFFERENCE * if value == 0.0 { 1.0 } else { value.abs() };
     state.set_parameters(&[(place, value + step)]);
     let step = state.p[place] - value;
-    state.evaluate(function, at, &mut there);
+    let there = state.values(function, at);
     state.p = p;
     let pairs = there.into_iter().zip(here);
     pairs.map(|(there, here)| (there - here) / step).collect()

@@ -1,6 +1,7 @@
 //! The run itself: start, steps, events, rows.
 
 mod derivatives;
+mod followers;
 mod instant;
 mod point;
 mod reduce;
@@ -13,7 +14,7 @@ mod step;
 pub use self::session::Advanced;
 pub use self::snapshot::Snapshot;
 
-use self::reduce::Reduced;
+use self::followers::{Followers, Run};
 use self::session::Pieces;
 use self::step::Finished;
 use crate::clocks::Schedule;
@@ -25,9 +26,7 @@ use crate::guards::{self, Crossing, Trail};
 use crate::hurry::Hurry;
 use crate::initial;
 use crate::integrator::Integrator;
-use crate::lobatto;
-use crate::meter::Meter;
-use crate::results::{Gradient, Results};
+use crate::results::Results;
 use crate::selection;
 use crate::sensitivity::{Cause, Sensitivities};
 use crate::setup::{Setup, same_instant};
@@ -35,8 +34,6 @@ use crate::solver::method;
 use crate::start_modes::{initial_pins, leave_impossible_modes};
 use crate::state::State;
 use hyde_program::Program;
-use hyde_signal::Series;
-use std::collections::HashMap;
 
 /// Relations that are not settled after so many solutions of the initial equations contradict them.
 const MAX_ROUNDS_AT_START: usize = 20;
@@ -54,18 +51,12 @@ pub(crate) struct Simulation<'a> {
     schedule: Schedule,
     conditions: Vec<bool>,
     results: Results,
-    next_row: usize,
-    /// The output of each column of the results.
-    distinct: Vec<usize>,
-    outputs: Vec<f64>,
+    followers: Followers<'a>,
     /// The relations that brought the run where it is.
     crossed: Vec<usize>,
     /// Relations that were crossed and stayed as they are, and how often in a row.
     in_vain: (Vec<usize>, u32),
     hurry: Hurry,
-    meter: Option<Meter<'a>>,
-    reduced: Option<Reduced<'a>>,
-    sensitivities: Option<Sensitivities>,
     /// Events change relations alone, no modes: they are those of an operating point.
     modes_are_given: bool,
     /// Where it is, if its caller takes it in pieces.
@@ -102,29 +93,8 @@ impl<'a> Simulation<'a> {
         if let Some(sensitivities) = &mut sensitivities {
             sensitivities.start(&mut state, &mut consistent, now.at(), round);
         }
-        let keep = setup
-            .keep
-            .clone()
-            .unwrap_or_else(|| (0..program.outputs.len()).collect());
-        let gradient = |parameters: &[usize]| Gradient {
-            parameters: parameters.to_vec(),
-            columns: vec![vec![Vec::new(); keep.len()]; parameters.len()],
-            end: None,
-        };
-        let (places, distinct) = shared_columns(program, &keep);
-        let results = Results {
-            gradient: setup.sensitivities.map(gradient),
-            columns: vec![Series::default(); distinct.len()],
-            places,
-            outputs: keep,
-            mode_times: program
-                .automata
-                .iter()
-                .map(|automaton| vec![0.0; automaton.modes.len()])
-                .collect(),
-            ..Results::default()
-        };
-        let reduced = Reduced::new(program, setup, &state);
+        let followers = Followers::new(program, setup, &state, sensitivities);
+        let results = followers.rows.results(program);
         let integrator = Integrator::new(state, setup, now, 1e-6)?;
         Ok(Self {
             setup,
@@ -135,15 +105,10 @@ impl<'a> Simulation<'a> {
             schedule,
             conditions: vec![false; program.reactions.len()],
             results,
-            next_row: 0,
-            distinct,
-            outputs: vec![0.0; program.outputs.len()],
+            followers,
             crossed: Vec::new(),
             in_vain: (Vec::new(), 0),
             hurry: Hurry::default(),
-            meter: Meter::new(&program.experiment.ledger),
-            reduced,
-            sensitivities,
             modes_are_given: false,
             pieces: Pieces::default(),
         })
@@ -153,7 +118,8 @@ impl<'a> Simulation<'a> {
     pub(crate) fn run(mut self) -> Result<Results, Box<Failure>> {
         match self.advance_to_stop() {
             Ok(()) => {
-                self.reduce_instant();
+                let (followers, mut run) = self.followers();
+                followers.point(&mut run);
                 self.close();
                 Ok(self.results)
             }
@@ -192,23 +158,16 @@ impl<'a> Simulation<'a> {
         self.results.yielded = state.released.told(state, &self.integrator.now.y);
         self.results.parameters.clone_from(&state.p);
         let left = delays::limits(&mut self.integrator, None);
-        self.row();
-        self.reduce_instant();
+        let (followers, mut run) = self.followers();
+        followers.started(&mut run);
         if self.schedule.due(t) {
             let start = self.limit();
             self.tick(&start)?;
             self.iterate(&[], false)?;
-            self.row();
-            self.reduce_instant();
+            let (followers, mut run) = self.followers();
+            followers.started(&mut run);
         }
-        while self
-            .setup
-            .rows_s
-            .get(self.next_row)
-            .is_some_and(|&row| row <= t || same_instant(row, t))
-        {
-            self.next_row += 1;
-        }
+        self.followers.rows.begin_behind(t);
         delays::mark(&mut self.integrator, &mut self.consistent, left);
         Ok(())
     }
@@ -241,7 +200,7 @@ impl<'a> Simulation<'a> {
             let mut now = self.integrator.now.clone();
             let state = self.integrator.state_mut();
             initial::solve(state, &mut self.consistent, &mut now, round)?;
-            if let Some(sensitivities) = &mut self.sensitivities {
+            if let Some(sensitivities) = &mut self.followers.sensitivities {
                 sensitivities.start(state, &mut self.consistent, now.at(), round);
             }
             self.integrator.now = now;
@@ -307,7 +266,7 @@ impl<'a> Simulation<'a> {
             return Ok(false);
         }
         self.integrator.be_consistent(&mut self.consistent)?;
-        self.finish_sensitivities();
+        self.settled();
         Ok(true)
     }
 
@@ -316,25 +275,6 @@ impl<'a> Simulation<'a> {
         self.trail.clear();
         let step = first_step(&mut self.integrator, &mut self.consistent, self.setup);
         self.integrator.restart(&step)
-    }
-
-    /// Adds a stretch of the last step to the energy ledger.
-    fn measure_energy(&mut self, from: f64, to: f64) {
-        if self.meter.is_none() || to <= from {
-            return;
-        }
-        let mut then = self.integrator.room(from);
-        let outputs = lobatto::times(from, to).map(|t| {
-            then.t = t;
-            self.integrator.solution(&mut then);
-            let state = self.integrator.state_mut();
-            self.consistent.refine(state, &mut then);
-            self.values_at(then.at());
-            self.outputs.clone()
-        });
-        if let Some(meter) = &mut self.meter {
-            meter.stretch(to - from, &outputs);
-        }
     }
 
     /// Steps that lead nowhere end the run with the unknown whose rate jumps most from one step to the next.
@@ -382,6 +322,17 @@ impl<'a> Simulation<'a> {
         Err(self.integrator.with_values(failure, &causes))
     }
 
+    /// The followers, and the run as they see it.
+    fn followers(&mut self) -> (&mut Followers<'a>, Run<'_, 'a>) {
+        let run = Run {
+            integrator: &mut self.integrator,
+            consistent: &mut self.consistent,
+            schedule: &self.schedule,
+            results: &mut self.results,
+        };
+        (&mut self.followers, run)
+    }
+
     fn close(&mut self) {
         let solver = self.integrator.statistics();
         let statistics = &mut self.results.statistics;
@@ -394,33 +345,10 @@ impl<'a> Simulation<'a> {
         statistics.error_test_failures = solver.error_test_failures;
         statistics.nonlinear_failures = solver.nonlinear_failures;
         statistics.restarts = solver.restarts;
-        if let (Some(gradient), Some(sensitivities)) =
-            (&mut self.results.gradient, &mut self.sensitivities)
-        {
-            gradient.end = sensitivities.end.take();
-        }
-        if let Some(reduced) = &self.reduced {
-            self.results.reductions = reduced.reductions.finish();
-        }
-        self.results.energies = self.meter.as_ref().map(Meter::sums);
+        self.followers.ended(&mut self.results);
         self.results.last = (
             self.integrator.now.y.clone(),
             self.integrator.state().z.clone(),
         );
     }
-}
-
-/// The column of each output kept, and the output that each column is of: those that have the same value have one.
-fn shared_columns(program: &Program, keep: &[usize]) -> (Vec<usize>, Vec<usize>) {
-    let mut distinct = Vec::new();
-    let mut column_of: HashMap<usize, usize> = HashMap::new();
-    let column = |&output: &usize| {
-        let first = program.outputs[output].same_as.unwrap_or(output);
-        *column_of.entry(first).or_insert_with(|| {
-            distinct.push(output);
-            distinct.len() - 1
-        })
-    };
-    let places = keep.iter().map(column).collect();
-    (places, distinct)
 }

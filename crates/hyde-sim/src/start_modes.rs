@@ -12,8 +12,7 @@ pub(crate) fn initial_pins(state: &mut State<'_>, at: At<'_>) -> Vec<(usize, f64
     if program.pins.is_empty() {
         return Vec::new();
     }
-    let mut values = vec![0.0; program.rows(Function::Assignments)];
-    state.evaluate(Function::Assignments, at, &mut values);
+    let values = state.values(Function::Assignments, at);
     let pins = program.pins_in(&state.z);
     pins.map(|(row, pin)| (pin.state, values[row])).collect()
 }
@@ -71,8 +70,7 @@ pub(crate) fn leave_modes(
             if of != automaton || from != here {
                 continue;
             }
-            let mut values = vec![0.0; program.rows(Function::Assignments)];
-            state.evaluate(Function::Assignments, at, &mut values);
+            let values = state.values(Function::Assignments, at);
             for index in reaction.assignments.clone() {
                 if let Target::Memory(position) = program.assignments[index].target {
                     state.z[position] = values[index];
@@ -106,8 +104,7 @@ fn violated(
 ) -> Option<(usize, f64)> {
     let program = state.program;
     let mode = program.mode(&state.z, automaton);
-    let mut values = vec![0.0; program.rows(Function::Assignments)];
-    state.evaluate(Function::Assignments, at, &mut values);
+    let values = state.values(Function::Assignments, at);
     program.pins.iter().enumerate().find_map(|(number, pin)| {
         let value = values[program.assignments.len() + number];
         let tolerance = 1e-9 * value.abs().max(at.y[pin.state].abs());
@@ -120,8 +117,7 @@ fn violated(
 /// Whether an exit of a mode is true as soon as it is entered.
 fn leaves_at_once(state: &mut State<'_>, automaton: usize, mode: usize, at: At<'_>) -> bool {
     let program = state.program;
-    let mut roots = vec![0.0; program.relations.len()];
-    state.evaluate(Function::Roots, at, &mut roots);
+    let roots = state.values(Function::Roots, at);
     for (number, root) in roots.into_iter().enumerate() {
         if is_active(state, number) {
             state.z[number] = f64::from(u8::from(root > 0.0));

@@ -89,15 +89,19 @@ impl<'a> State<'a> {
         }
     }
 
+    /// The same as a list.
+    pub(crate) fn values(&mut self, function: Function, at: At<'_>) -> Vec<f64> {
+        let mut out = vec![0.0; self.program.rows(function)];
+        self.evaluate(function, at, &mut out);
+        out
+    }
+
     /// The derivative of a function by the time alone, by a difference: the time, and record columns and delayed values that
     /// move with it, have no other.
     pub(crate) fn by_time(&mut self, function: Function, at: At<'_>) -> Vec<f64> {
-        let rows = self.program.rows(function);
         let step = self.inputs.difference_s(at.t);
-
-        let (mut later, mut now) = (vec![0.0; rows], vec![0.0; rows]);
-        self.evaluate(function, at.later(step), &mut later);
-        self.evaluate(function, at, &mut now);
+        let later = self.values(function, at.later(step));
+        let now = self.values(function, at);
         let pairs = later.into_iter().zip(now);
         pairs.map(|(later, now)| (later - now) / step).collect()
     }
@@ -288,8 +292,7 @@ impl<'a> State<'a> {
 
     /// What is delayed had the values at this point for ever before; where they are finite.
     pub(crate) fn guess_past(&mut self, at: At<'_>) {
-        let mut past = vec![0.0; self.program.delays.len()];
-        self.evaluate(Function::Delayed, at, &mut past);
+        let past = self.values(Function::Delayed, at);
         if past.iter().all(|value| value.is_finite()) {
             self.delays.set_past(at.t, &past);
         }

@@ -152,10 +152,9 @@ impl Sensitivities {
 
     /// Keeps the largest values of root functions, at the end of a step.
     pub(crate) fn remember_heights(&mut self, integrator: &mut Integrator<'_>) {
-        let mut roots = vec![0.0; self.heights.len()];
         let now = integrator.now.clone();
         let state = integrator.state_mut();
-        state.evaluate(Function::Roots, now.at(), &mut roots);
+        let roots = state.values(Function::Roots, now.at());
         for (height, root) in self.heights.iter_mut().zip(roots) {
             if root.is_finite() {
                 *height = height.max(root.abs());
@@ -168,7 +167,6 @@ fn root_at(integrator: &mut Integrator<'_>, t: f64, relation: usize) -> f64 {
     let mut then = integrator.room(t);
     integrator.interpolate(&mut then);
     let state = integrator.state_mut();
-    let mut roots = vec![0.0; state.program.relations.len()];
-    state.evaluate(Function::Roots, then.at(), &mut roots);
+    let roots = state.values(Function::Roots, then.at());
     roots[relation]
 }

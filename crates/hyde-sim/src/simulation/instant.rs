@@ -31,13 +31,8 @@ impl Simulation<'_> {
         self.trail.clear();
         let crossed = self.crossed.clone();
         let limit = self.limit();
-        let delayed = delays::limits(&mut self.integrator, Some(&mut self.consistent));
-        let left = self.row_values();
-        if let Some(sensitivities) = &mut self.sensitivities {
-            sensitivities.begin(&mut self.integrator, &mut self.consistent, cause);
-        }
-        self.reduce_instant();
-        let before = self.meter.as_ref().map(|_| self.outputs.clone());
+        let (followers, mut run) = self.followers();
+        let left = followers.left(&mut run, cause);
         let events = self.results.events.len();
         let arrived = delays::arrive(&mut self.integrator, &mut self.consistent)?;
         let t = self.integrator.now.t;
@@ -48,7 +43,7 @@ impl Simulation<'_> {
         let mut changed = arrived.read | entered;
         changed |= self.iterate(scheduled, false)?;
         if changed || restart || *cause != Cause::Time {
-            self.finish_sensitivities();
+            self.settled();
         }
         let mut ticked = false;
         if self.schedule.due(self.integrator.now.t) {
@@ -56,7 +51,7 @@ impl Simulation<'_> {
             changed |= self.tick(&limit)?;
             if self.iterate(&[], false)? {
                 changed = true;
-                self.finish_sensitivities();
+                self.settled();
             }
         }
         let happened = self.results.events.len() > events;
@@ -65,32 +60,14 @@ impl Simulation<'_> {
             self.results.statistics.events += 1;
             self.not_too_many(events)?;
         }
-        if let Some(before) = before {
-            self.row_values();
-            if let Some(meter) = &mut self.meter {
-                meter.instant(&before, &self.outputs);
-            }
-        }
-        self.reduce_instant();
-        let on_grid = self.row_is_due();
         let moved = limit
             .z
             .iter()
             .zip(&self.integrator.state().z)
             .any(|(a, b)| a.to_bits() != b.to_bits());
         let stepped = arrived.jump || entered || ticked && moved;
-        // Where rows are finer than ticks, what a clock holds is a staircase; coarser rows would be multiplied.
-        let step_shows = on_grid || self.setup.row_spacing() < self.schedule.shortest_period();
-        if happened || (step_shows && stepped) {
-            self.push_row(left);
-            self.row();
-        } else if on_grid {
-            self.row();
-        }
-        if on_grid {
-            self.next_row += 1;
-        }
-        delays::mark(&mut self.integrator, &mut self.consistent, delayed);
+        let (followers, mut run) = self.followers();
+        followers.right(&mut run, left, (happened, stepped));
         if changed || restart {
             self.restart()?;
         }
@@ -131,7 +108,7 @@ impl Simulation<'_> {
             now: &mut now,
             conditions: &mut self.conditions,
             log: &mut self.results.events,
-            sensitivities: self.sensitivities.as_mut(),
+            sensitivities: self.followers.sensitivities.as_mut(),
             crossed: std::mem::take(&mut self.crossed),
             modes_are_given: self.modes_are_given,
         }
@@ -149,11 +126,12 @@ impl Simulation<'_> {
     pub(super) fn limit(&mut self) -> Limit {
         let t = self.integrator.now.t;
         let delayed = self.integrator.state_mut().delayed_at(t).to_vec();
+        let sensitivities = self.followers.sensitivities.as_ref();
         Limit {
             values: self.integrator.now.clone(),
             z: self.integrator.state().z.clone(),
             delayed,
-            slopes: self.sensitivities.as_ref().map(Sensitivities::snapshot),
+            slopes: sensitivities.map(Sensitivities::snapshot),
         }
     }
 
@@ -164,7 +142,8 @@ impl Simulation<'_> {
         let state = self.integrator.state_mut();
         let mut memory = std::mem::replace(&mut state.z, left.z.clone());
         let mut slopes = left.slopes.clone();
-        let along = self.sensitivities.as_ref().zip(slopes.as_mut());
+        let sensitivities = &mut self.followers.sensitivities;
+        let along = sensitivities.as_ref().zip(slopes.as_mut());
         let Ticked {
             ticks,
             changed,
@@ -183,7 +162,7 @@ impl Simulation<'_> {
             self.consistent
                 .solve(self.integrator.state_mut(), &mut now, false)?;
         }
-        if let (Some(sensitivities), Some(slopes)) = (&mut self.sensitivities, &slopes) {
+        if let (Some(sensitivities), Some(slopes)) = (sensitivities, &slopes) {
             sensitivities.take_written(slopes, &written);
             let state = self.integrator.state_mut();
             sensitivities.be_consistent(state, &mut self.consistent, now.at());
@@ -192,18 +171,9 @@ impl Simulation<'_> {
         Ok(changed)
     }
 
-    /// Brings derivatives by parameters to the time that the run has come to.
-    pub(super) fn advance_sensitivities(&mut self) {
-        if let Some(sensitivities) = &mut self.sensitivities {
-            let t = self.integrator.now.t;
-            sensitivities.advance(&mut self.integrator, t);
-        }
-    }
-
-    /// Derivatives by parameters at a fixed time again, behind an instant.
-    pub(super) fn finish_sensitivities(&mut self) {
-        if let Some(sensitivities) = &mut self.sensitivities {
-            sensitivities.finish(&mut self.integrator, &mut self.consistent);
-        }
+    /// Values behind events are those of the right side so far.
+    pub(super) fn settled(&mut self) {
+        let (followers, mut run) = self.followers();
+        followers.settled(&mut run);
     }
 }

@@ -100,8 +100,7 @@ impl Simulation<'_> {
         let now = self.integrator.now.clone();
         let state = self.integrator.state_mut();
         if let Some(exit) = leads_there(Some(from)).or_else(|| leads_there(None)) {
-            let mut values = vec![0.0; program.rows(Function::Assignments)];
-            state.evaluate(Function::Assignments, now.at(), &mut values);
+            let values = state.values(Function::Assignments, now.at());
             for index in exit.assignments.clone() {
                 if let Target::Memory(position) = program.assignments[index].target {
                     state.z[position] = values[index];

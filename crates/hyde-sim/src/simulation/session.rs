@@ -114,10 +114,8 @@ impl Simulation<'_> {
 
     /// The outputs there.
     pub(crate) fn outputs_of_caller(&mut self) -> &[f64] {
-        let place = std::mem::take(&mut self.pieces.place);
-        self.values_at(place.at());
-        self.pieces.place = place;
-        &self.outputs
+        let rows = &mut self.followers.rows;
+        rows.evaluate(self.integrator.state_mut(), self.pieces.place.at())
     }
 
     /// The parameter vector.
@@ -215,10 +213,9 @@ impl Simulation<'_> {
     /// The root functions there; none of a relation that does not matter, or has no finite value.
     pub(crate) fn roots_of_caller(&mut self) -> Vec<Option<f64>> {
         let program = self.program;
-        let mut roots = vec![0.0; program.relations.len()];
         let place = &self.pieces.place;
         let state = self.integrator.state_mut();
-        state.evaluate(Function::Roots, place.at(), &mut roots);
+        let roots = state.values(Function::Roots, place.at());
         let state = self.integrator.state();
         let known = roots.into_iter().enumerate();
         known

@@ -1,12 +1,10 @@
 //! One step of a run: the target it must not pass, the step to the first crossing, and what is to be worked on at its end.
 
 use super::Simulation;
-use crate::delays;
 use crate::failure::{Failure, FailureKind};
 use crate::guards::Crossing;
 use crate::sensitivity::Cause;
 use crate::setup::same_instant;
-use crate::time_spent::count_modes;
 use std::sync::atomic::Ordering;
 
 /// The next instant that is known beforehand, which no step passes.
@@ -130,32 +128,21 @@ impl Simulation<'_> {
             end,
             crossing,
         } = step;
-        self.measure_energy(from, end);
-        self.reduce_stretch(from, end);
-        if let Some(sensitivities) = &mut self.sensitivities {
-            sensitivities.note_step(&mut self.integrator, from);
-        }
-        self.rows_until(end);
-        if let Some(sensitivities) = &mut self.sensitivities {
-            sensitivities.follow(&mut self.integrator, end);
-        }
-        count_modes(&mut self.integrator, &mut self.results, end - from);
-        delays::record(&mut self.integrator, from, end);
+        let (followers, mut run) = self.followers();
+        followers.stepped(&mut run, (from, end));
         if let Some(crossing) = crossing {
             self.stand_at(crossing.t)?;
-            self.advance_sensitivities();
+            let (followers, mut run) = self.followers();
+            followers.at_crossing(&mut run);
             let relation = crossing.relations[0];
             self.crossed = crossing.relations;
             return Ok(Finished::Event(Cause::Crossing { relation, from }));
         }
         let follows = self.integrator.follows();
-        if let Some(sensitivities) = &mut self.sensitivities {
-            sensitivities.remember_heights(&mut self.integrator);
-        }
         let there = self.integrator.now.t >= target || same_instant(self.integrator.now.t, target);
-        if there || !self.program.selections.is_empty() {
-            self.advance_sensitivities();
-        }
+        let works = there || !self.program.selections.is_empty();
+        let (followers, mut run) = self.followers();
+        followers.at_end(&mut run, works);
         if self.chooses_states_anew()? {
             return Ok(Finished::Event(Cause::Time));
         }
