@@ -22,9 +22,10 @@ use crate::failure::{Failure, FailureKind};
 use crate::guards::is_active;
 use crate::moment::Moment;
 use crate::results::{Event, EventKind};
-use crate::root_rates::{root_rates, rounding};
+use crate::root_rates::root_rates;
 use crate::sensitivity::Sensitivities;
 use crate::state::State;
+use crate::zero;
 use branches::{Branches, Found};
 use hyde_program::{Function, Program, ReactionKind, RelationUse, Target};
 
@@ -212,7 +213,7 @@ impl Instant<'_, '_> {
     ) -> Result<Known, Box<Failure>> {
         let program = self.state.program;
         let roots = self.state.values(Function::Roots, self.now.at());
-        let rounding = rounding(self.state, self.now.at(), self.largest);
+        let rounding = zero::rounding(self.state, self.now.at(), self.largest);
         let mut zeros = Vec::new();
         let mut not_finite = None;
         for (number, &root) in roots.iter().enumerate() {
@@ -223,13 +224,10 @@ impl Instant<'_, '_> {
                 not_finite = Some(number);
                 continue;
             }
-            let still_there = |(relation, value): &(usize, f64)| {
-                *relation == number && root.abs() <= 2.0 * value.abs()
-            };
-            let zero = root.abs() <= rounding[number]
+            let is_zero = root.abs() <= rounding[number]
                 || scheduled.contains(&number)
-                || located.iter().any(still_there);
-            if zero {
+                || zero::is_still_at(located, number, root);
+            if is_zero {
                 zeros.push(number);
             }
         }
@@ -259,9 +257,7 @@ impl Instant<'_, '_> {
                 } else {
                     rate.mean > 0.0
                 };
-                let against = root != 0.0 && (root > 0.0) != truth;
-                let band = if against { 2.0 * root.abs() } else { 0.0 };
-                let band = band + rate.detour();
+                let band = zero::doubt(root, truth, rate);
                 if band > 0.0 {
                     doubtful.push((number, band));
                 }
@@ -399,7 +395,7 @@ impl Instant<'_, '_> {
             if let Some((_, _, impact)) = entry {
                 let now = self.now.y[pin.state];
                 // The instant was located to rounding of the time: the state may be off by what it moves meanwhile.
-                let rounding = self.now.yp[pin.state].abs() * 1e-12 * (1.0 + self.now.t.abs());
+                let rounding = zero::moved(self.now.yp[pin.state], self.now.t);
                 let tolerance = 1e-6 * now.abs().max(value.abs()) + 1e-7 + rounding;
                 if !impact && (now - value).abs() > tolerance {
                     let name = program.unknown_name(pin.state);

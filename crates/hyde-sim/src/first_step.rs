@@ -9,6 +9,7 @@ use crate::integrator::Integrator;
 use crate::moment::At;
 use crate::setup::Setup;
 use crate::state::State;
+use crate::zero::{ROUNDING, located_s};
 use hyde_program::{Function, Wrt};
 
 /// The part of the way back to zero that the first step may be.
@@ -85,9 +86,9 @@ fn shortest_return(state: &mut State<'_>, at: At<'_>, (dy, dyp): (&[f64], &[f64]
         }
     }
     // The instant was located to rounding of the time.
-    let moment = 1e-12 * (1.0 + at.t.abs());
+    let moment = located_s(at.t);
     let at_zero = |k: &usize| {
-        let near = rates[*k].abs() * moment + 16.0 * f64::EPSILON * sizes[*k];
+        let near = rates[*k].abs() * moment + ROUNDING * sizes[*k];
         is_active(state, *k) && roots[*k].abs() <= near
     };
     (0..n)

@@ -58,6 +58,7 @@ mod start_modes;
 mod state;
 mod surfaces;
 mod time_spent;
+mod zero;
 
 pub use failed_equation::Reading;
 pub use failure::{Failure, FailureKind};

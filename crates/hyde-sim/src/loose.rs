@@ -10,30 +10,14 @@
 //! below `noEvent`.
 
 use crate::moment::At;
-use crate::root_rates::rounding;
 use crate::state::State;
-use hyde_program::{Function, Point, RelationUse, Workspace, Wrt};
-
-/// How many times rounding, and how many times the tolerance, a root function goes until its relation is located again.
-const FAR: f64 = 1e3;
-const FAR_OF_TOLERANCE: f64 = 100.0;
+use crate::zero;
+use hyde_program::{Function, Point, RelationUse, Workspace};
 
 impl State<'_> {
     /// Follows relations from here on.
     pub(crate) fn follow(&mut self, relations: &[usize], at: At<'_>) {
-        let rounding = rounding(self, at, &[]);
-        let mut far: Vec<f64> = rounding
-            .into_iter()
-            .map(|rounding| FAR * rounding)
-            .collect();
-        let (rtol, atol) = self.tolerances;
-        let partials = self.partials(Function::Roots, at);
-        for (entry, value) in self.program.partials(Function::Roots).iter().zip(partials) {
-            if let Wrt::Unknown(column) = entry.wrt {
-                let tolerance = rtol * at.y[column].abs() + atol;
-                far[entry.row] += FAR_OF_TOLERANCE * (value * tolerance).abs();
-            }
-        }
+        let far = zero::followed(self, at);
         for &relation in relations {
             if !self.is_loose(relation) {
                 self.loose.push((relation, far[relation]));

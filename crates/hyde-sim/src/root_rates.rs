@@ -1,40 +1,10 @@
-//! Where a root function that is zero goes (M2), and what counts as zero.
+//! Where a root function that is zero goes (M2).
 
 use crate::consistent::Consistent;
 use crate::moment::{At, Moment};
 use crate::state::State;
+use crate::zero::reach_s;
 use hyde_program::{Function, Wrt};
-
-/// How far from zero rounding of its arguments alone takes each root function: two modes that meet at a point, one with a
-/// guard `g > 0` and the other with `g < 0`, must not both see theirs true. A state that has come to zero from afar, as the
-/// height of a ball that lies down, is known to rounding of what it was.
-pub(crate) fn rounding(state: &mut State<'_>, at: At<'_>, largest: &[f64]) -> Vec<f64> {
-    let At { t, y, yp } = at;
-    let program = state.program;
-    let mut rounding = vec![0.0; program.relations.len()];
-    let partials = state.partials(Function::Roots, at);
-    let delayed = state.delayed().to_vec();
-    for (entry, value) in program.partials(Function::Roots).iter().zip(partials) {
-        let argument = match entry.wrt {
-            Wrt::Unknown(column) if state.differential[column] => {
-                let most = largest.get(column).copied().unwrap_or(0.0);
-                most.max(y[column].abs())
-            }
-            Wrt::Unknown(column) => y[column],
-            Wrt::Derivative(column) => yp[column],
-            Wrt::Delayed(number) => delayed[number],
-            Wrt::Time => t,
-            Wrt::Parameter(_) | Wrt::Memory(_) => 0.0,
-        };
-        rounding[entry.row] += 16.0 * f64::EPSILON * (value * argument).abs();
-    }
-    rounding
-}
-
-/// How far the rounding of an instant may reach, in s.
-pub(crate) fn moment(t: f64) -> f64 {
-    1e-9 * (1.0 + t.abs())
-}
 
 /// How many times longer the moment becomes until rounding no longer hides where a root function goes, and how often.
 const LONGER: f64 = 10.0;
@@ -52,7 +22,7 @@ pub(crate) struct RootRate {
     /// What rounding of the states makes of the derivative.
     rounding: f64,
     /// How much later, in s.
-    moment: f64,
+    ahead_s: f64,
 }
 
 impl RootRate {
@@ -73,7 +43,7 @@ impl RootRate {
 
     /// Whether a root function that falls turns before it has fallen by so much, or within the moment.
     pub(crate) fn returns_before(self, height: f64) -> bool {
-        let bend = 2.0 * (self.mean - self.now) / self.moment;
+        let bend = 2.0 * (self.mean - self.now) / self.ahead_s;
         self.now < 0.0 && (self.turns() || 0.5 * self.now.powi(2) < bend * height)
     }
 
@@ -84,7 +54,7 @@ impl RootRate {
             true => self.now.abs(),
             false => 0.0,
         };
-        (back + self.rounding) * self.moment
+        (back + self.rounding) * self.ahead_s
     }
 }
 
@@ -119,10 +89,10 @@ pub(crate) fn root_rates(
         rounding: otherwise
             .as_ref()
             .map_or(0.0, |rates| (rates[number] - now).abs()),
-        moment: moment(t),
+        ahead_s: reach_s(t),
     });
     let mut found: Vec<RootRate> = found.collect();
-    let mut ahead = moment(t);
+    let mut ahead = reach_s(t);
     for _ in 0..MOST_TIMES {
         // To second order: what breaks away may do so where its acceleration is not quite zero yet.
         let y_later = (0..y.len()).map(|i| {
@@ -133,9 +103,9 @@ pub(crate) fn root_rates(
             break;
         };
         for (rate, later) in found.iter_mut().zip(later) {
-            if rate.moment >= ahead || rate.is_hidden() {
+            if rate.ahead_s >= ahead || rate.is_hidden() {
                 rate.mean = 0.5 * (rate.now + later);
-                rate.moment = ahead;
+                rate.ahead_s = ahead;
             }
         }
         let mut asked = relations.iter().map(|&relation| &found[relation]);

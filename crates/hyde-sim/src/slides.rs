@@ -9,6 +9,7 @@ use crate::failure::{Failure, FailureKind};
 use crate::guards::is_active;
 use crate::results::EventKind;
 use crate::sliding::{ModePair, Slide};
+use crate::zero::{is_off_surface, located_s, of_surface};
 use hyde_program::{ReactionKind, RelationUse};
 
 /// Weights are rounding beyond 0 and 1 by this: a force exactly at its limit holds.
@@ -17,10 +18,6 @@ const ROUNDING: f64 = 1e-12;
 const NO_JUMP: f64 = 1e-9;
 /// A mean of the two sides' rates that is off by more shows that a switch acts on the equations in no linear way.
 const NOT_LINEAR: f64 = 1e-6;
-/// Roots of one surface, over the size of their arguments, are equal to this.
-const SAME_SURFACE: f64 = 64.0 * f64::EPSILON;
-/// A surface is left by an event that takes the root function this far from zero, over the size of its arguments.
-const OFF: f64 = 1e-9;
 
 /// How far a weight is from either end, positive inside.
 pub(crate) fn margins(weight: f64) -> [f64; 2] {
@@ -58,7 +55,7 @@ impl Instant<'_, '_> {
             self.state.set_side(&slide, side);
             let size = self.size_of(slide.surface);
             for &(relation, _) in &slide.relations {
-                located.push((relation, SAME_SURFACE * size));
+                located.push((relation, of_surface(size)));
             }
             self.log_slide(&slide, None, Some(side));
             let rows = self.state.choose_rows(self.now.at());
@@ -78,7 +75,7 @@ impl Instant<'_, '_> {
         }
         for (number, slide) in slides.iter().enumerate() {
             let height = self.state.height(slide.surface, self.now.at());
-            if height.abs() > OFF * self.size_of(slide.surface) {
+            if is_off_surface(height, self.size_of(slide.surface)) {
                 return Some((number, usize::from(height > 0.0)));
             }
         }
@@ -221,14 +218,14 @@ impl Instant<'_, '_> {
         let columns = of_a.iter().chain(&of_b).map(|(column, _)| *column);
         for column in columns {
             let difference = along(&of_b, column) - ratio * along(&of_a, column);
-            if difference.abs() > SAME_SURFACE * (ratio * first).abs() {
+            if difference.abs() > of_surface((ratio * first).abs()) {
                 return None;
             }
         }
         let height = |state: &mut crate::state::State<'_>, k| state.height(k, self.now.at());
         let apart = height(self.state, b) - ratio * height(self.state, a);
         let size = self.size_of(b).max(ratio.abs() * self.size_of(a));
-        (apart.abs() <= SAME_SURFACE * size).then_some(ratio > 0.0)
+        (apart.abs() <= of_surface(size)).then_some(ratio > 0.0)
     }
 
     /// The size of what a root function is the difference of.
@@ -275,9 +272,8 @@ impl Instant<'_, '_> {
     fn try_to_slide(&mut self, mut slide: Slide) -> Verdict {
         let surface = slide.surface;
         // An instant is known to rounding of the time; further away no crossing was located.
-        let moved = self.state.height_rate(surface, self.now.at()).abs();
-        let moment = 1e-12 * (1.0 + self.now.t.abs());
-        let near = moved * moment + SAME_SURFACE * self.size_of(surface);
+        let rate = self.state.height_rate(surface, self.now.at());
+        let near = rate.abs() * located_s(self.now.t) + of_surface(self.size_of(surface));
         let height = self.state.height(surface, self.now.at());
         if height.abs() > near {
             return Verdict::Crosses;
@@ -404,7 +400,7 @@ impl Instant<'_, '_> {
             self.state.set_side(slide, side);
             self.state.height(slide.surface, self.now.at())
         });
-        (upper - lower).abs() > SAME_SURFACE * self.size_of(slide.surface)
+        (upper - lower).abs() > of_surface(self.size_of(slide.surface))
     }
 
     /// Takes down that sliding begins, from a side, or ends, to one.

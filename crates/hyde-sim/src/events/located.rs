@@ -1,7 +1,8 @@
 //! Instants that were located: how near to zero root functions count as at it.
 
 use super::{Instant, Known};
-use crate::root_rates::{moment, root_rates};
+use crate::root_rates::root_rates;
+use crate::zero::{located_s, moved, reach_s};
 use hyde_program::RelationUse;
 
 impl Instant<'_, '_> {
@@ -11,7 +12,7 @@ impl Instant<'_, '_> {
             self.state.located.retain(|(other, _)| *other != guard);
             if self.state.is_of_states(guard) {
                 let rate = self.state.height_rate(guard, self.now.at());
-                if root.abs() <= rate.abs() * 1e-12 * (1.0 + self.now.t.abs()) {
+                if root.abs() <= moved(rate, self.now.t) {
                     self.state.located.push((guard, root));
                 }
             }
@@ -27,7 +28,7 @@ impl Instant<'_, '_> {
         }
         let at = self.now.at();
         let rates = root_rates(self.state, self.consistent, at, &stay);
-        let known = 0.5e-12 * (1.0 + self.now.t.abs());
+        let known = 0.5 * located_s(self.now.t);
         let within = |relation: usize| (relation, known * rates[relation].mean.abs());
         stay.into_iter().map(within).collect()
     }
@@ -49,10 +50,10 @@ impl Instant<'_, '_> {
     pub(super) fn all_but_zero(&mut self, guards: &[usize]) -> Vec<(usize, f64)> {
         let at = self.now.at();
         let rates = root_rates(self.state, self.consistent, at, guards);
-        let moment = moment(self.now.t);
+        let reach_s = reach_s(self.now.t);
         guards
             .iter()
-            .map(|&guard| (guard, 0.5 * moment * rates[guard].mean.abs()))
+            .map(|&guard| (guard, 0.5 * reach_s * rates[guard].mean.abs()))
             .collect()
     }
 }

@@ -11,6 +11,7 @@ use crate::results::Event;
 use crate::sensitivity::Cause;
 use crate::session::Advance;
 use crate::setup::same_instant;
+use crate::zero::contradicts;
 use hyde_program::Function;
 use hyde_signal::Series;
 
@@ -263,7 +264,7 @@ impl Simulation<'_> {
         let z = &self.integrator.state().z;
         let passed = |(number, root): (usize, &Option<f64>)| {
             let root = (*root)?;
-            (root != 0.0 && (root > 0.0) != (z[number] != 0.0)).then_some(number)
+            contradicts(root, z[number] != 0.0).then_some(number)
         };
         roots.iter().enumerate().filter_map(passed).collect()
     }
