@@ -292,7 +292,7 @@ fn holds(dae: &mut Dae) {
             continue;
         };
         dae.holds.push(Hold {
-            clock,
+            clock: clock.index(),
             source: from.base,
             target: target.base,
             len: variable.size(),

@@ -6,7 +6,7 @@ use hyde_diag::{Code, Diagnostic, Diagnostics, Origin};
 use hyde_ir::dae::{Alias, Assignment, Dae, Reaction, ReactionKind, Space, Target};
 use hyde_ir::flat::Action;
 use hyde_ir::print::Names;
-use hyde_ir::{AutomatonId, Expr, ExprId, Index, Memo, UnaryOp, VarId, VariableKind};
+use hyde_ir::{AutomatonId, Expr, ExprId, Id as _, Index, Memo, UnaryOp, VarId, VariableKind};
 
 /// Fills in the reactions of the DAE.
 pub(crate) fn react(dae: &mut Dae, system: &mut System, diagnostics: &mut Diagnostics) {
@@ -14,7 +14,7 @@ pub(crate) fn react(dae: &mut Dae, system: &mut System, diagnostics: &mut Diagno
         for (from, mode) in block.modes.iter().enumerate() {
             for exit in &mode.exits {
                 let kind = ReactionKind::Transition {
-                    automaton,
+                    automaton: automaton.index(),
                     from,
                     to: exit.target,
                     impact: exit.impact,

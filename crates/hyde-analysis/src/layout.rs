@@ -11,7 +11,7 @@ use crate::segments::Segment;
 use crate::solve::solve_for;
 use crate::system::{Cell, System};
 use hyde_ir::dae::{
-    Alias, AutomatonInfo, Dae, Definition, Place, Residual, Selection, Space, Start, Unknown,
+    Alias, Automaton, Dae, Definition, Place, Residual, Selection, Space, Start, Unknown,
 };
 use hyde_ir::{Expr, ExprId, Id as _, IdVec, Index, Range, StateChoice, VarId, VariableKind};
 use std::collections::BTreeSet;
@@ -230,7 +230,7 @@ fn variable_places(
 fn memory(system: &System, dae: &mut Dae) {
     dae.n_memory = dae.relations.len();
     for automaton in system.flat.automata.iter() {
-        dae.automata.push(AutomatonInfo {
+        dae.automata.push(Automaton {
             name: automaton.name.clone(),
             modes: automaton
                 .modes

@@ -59,7 +59,7 @@ pub(crate) fn extract(system: &mut System) {
                     let exit = &system.flat.automata[id].modes[mode].exits[exit];
                     (exit.guard, exit.origin.clone())
                 };
-                let used = RelationUse::Exit(id, u32::try_from(mode).unwrap_or(u32::MAX));
+                let used = RelationUse::Exit(automaton, mode);
                 let guard = known.replace(system, guard, used, &origin, &mut Memo::default());
                 system.flat.automata[id].modes[mode].exits[exit].guard = guard;
             }

@@ -5,7 +5,7 @@
 //! them and of g, in every mode: the pattern does not change when the run begins to slide.
 
 use hyde_ir::dae::{Dae, Function, ReactionKind, RelationUse, Wrt};
-use hyde_ir::{AutomatonId, Expr, ExprId, Id as _, RelationId, VarId};
+use hyde_ir::{Expr, ExprId, Id as _, RelationId, VarId};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// More rows than this are not added to each other: such a switch does not slide.
@@ -17,7 +17,7 @@ enum Switch {
     /// The truth of a relation in the equations.
     Relation(RelationId),
     /// The mode of an automaton.
-    Mode(AutomatonId),
+    Mode(usize),
 }
 
 /// Rows that are added to each other, and the columns of their surfaces.
@@ -90,10 +90,10 @@ fn surfaces(dae: &Dae) -> BTreeMap<Switch, BTreeSet<usize>> {
 }
 
 /// Whether an automaton has two modes with exits to each other that fix no state and set nothing.
-fn leads_back(dae: &Dae, automaton: AutomatonId) -> bool {
+fn leads_back(dae: &Dae, automaton: usize) -> bool {
     let plain = |mode: usize| {
         let mut pins = dae.pins.iter();
-        !pins.any(|pin| pin.automaton == automaton && pin.mode == mode)
+        !pins.any(|pin| pin.automaton.index() == automaton && pin.mode == mode)
     };
     let exits: Vec<(usize, usize)> = dae
         .reactions
@@ -154,7 +154,7 @@ fn rows_that_read(
             if let Expr::Relation(relation) = expr {
                 found.insert(Switch::Relation(relation));
             } else if let Expr::InMode(automaton, _) = expr {
-                found.insert(Switch::Mode(automaton));
+                found.insert(Switch::Mode(automaton.index()));
             } else if let Expr::Var(var, _) = expr {
                 found.extend(defined.get(&var).into_iter().flatten());
             }

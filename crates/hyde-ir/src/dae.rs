@@ -13,7 +13,7 @@ mod selection;
 
 pub use clock::{ClockedAssignment, Hold, Tick};
 pub use equation::{Definition, Residual};
-pub use event::{Assignment, AutomatonInfo, Pin, Reaction, ReactionKind, Target};
+pub use event::{Assignment, Automaton, Pin, Reaction, ReactionKind, Target};
 pub use initial::{Firmness, InitialCondition, Start};
 pub use partial::{Function, Partial, Wrt};
 pub use place::{Alias, Place, Space, Unknown};
@@ -72,7 +72,7 @@ pub struct Dae {
     /// Relations; relation k's truth is at position k of the memory.
     pub relations: IdVec<RelationId, Relation>,
     /// Automata.
-    pub automata: IdVec<AutomatonId, AutomatonInfo>,
+    pub automata: IdVec<AutomatonId, Automaton>,
     /// Reactions: exits in order of priority, branches in order of priority, asserts.
     pub reactions: Vec<Reaction>,
     /// What reactions set.

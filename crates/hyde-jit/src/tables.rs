@@ -9,9 +9,8 @@ use crate::{figures, ledger};
 use hyde_ir::dae::{self, Dae};
 use hyde_ir::{ExprId, Id as _, Interpolation, VariableKind};
 use hyde_program::{
-    Assignment, Automaton, Clock, Column, Derivatives, ForeignPart, Hold, InitialCondition, Output,
-    Parameter, Pin, Program, Reaction, ReactionKind, RecordValue, RecordValueKind, Relation,
-    RelationUse, UnknownBlock,
+    Assignment, Clock, Column, Derivatives, ForeignPart, InitialCondition, Output, Parameter, Pin,
+    Program, Reaction, RecordValue, RecordValueKind, Relation, UnknownBlock,
 };
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -37,7 +36,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
             .zip(dae.arithmetic_relations())
             .map(|(known, arithmetic)| relation(known, arithmetic))
             .collect(),
-        automata: automata(dae),
+        automata: dae.automata.iter().cloned().collect(),
         reactions: dae.reactions.iter().map(reaction).collect(),
         assignments: dae
             .assignments
@@ -67,17 +66,7 @@ pub(crate) fn program(kernels: Compiled) -> Program {
             })
             .collect(),
         clock_order: dae.tick_order.iter().map(|clock| clock.index()).collect(),
-        holds: dae
-            .holds
-            .iter()
-            .map(|hold| Hold {
-                clock: hold.clock.index(),
-                source: hold.source,
-                target: hold.target,
-                len: hold.len,
-                read: hold.read,
-            })
-            .collect(),
+        holds: dae.holds.clone(),
         delays: delays(dae),
         foreign: dae.foreign.iter().map(|part| foreign(dae, part)).collect(),
         initial: dae
@@ -259,49 +248,15 @@ fn relation(relation: &dae::Relation, arithmetic: bool) -> Relation {
         inclusive: relation.inclusive,
         scheduled: relation.time_event.is_some(),
         arithmetic,
-        used: match relation.used {
-            dae::RelationUse::Equation => RelationUse::Equation,
-            dae::RelationUse::Exit(automaton, mode) => {
-                RelationUse::Exit(automaton.index(), mode as usize)
-            }
-            dae::RelationUse::When => RelationUse::When,
-            dae::RelationUse::Assert => RelationUse::Assert,
-        },
+        used: relation.used,
         text: relation.text.clone(),
         origin: relation.origin.clone(),
     }
 }
 
-fn automata(dae: &Dae) -> Vec<Automaton> {
-    let list = dae.automata.iter();
-    list.map(|automaton| Automaton {
-        name: automaton.name.clone(),
-        modes: automaton.modes.clone(),
-        holds_speed: automaton.holds_speed.clone(),
-        place: automaton.place,
-        origin: automaton.origin.clone(),
-    })
-    .collect()
-}
-
 fn reaction(reaction: &dae::Reaction) -> Reaction {
     Reaction {
-        kind: match &reaction.kind {
-            dae::ReactionKind::Transition {
-                automaton,
-                from,
-                to,
-                impact,
-            } => ReactionKind::Transition {
-                automaton: automaton.index(),
-                from: *from,
-                to: *to,
-                impact: *impact,
-            },
-            dae::ReactionKind::When { clause } => ReactionKind::When { clause: *clause },
-            dae::ReactionKind::Edge(place) => ReactionKind::Edge(*place),
-            dae::ReactionKind::Assert(message) => ReactionKind::Assert(message.clone()),
-        },
+        kind: reaction.kind.clone(),
         assignments: reaction.assignments.clone(),
         text: reaction.text.clone(),
         origin: reaction.origin.clone(),

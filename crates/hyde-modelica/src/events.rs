@@ -6,8 +6,8 @@
 
 use crate::mode_number;
 use crate::names::{Names, mode_name};
-use hyde_ir::Id as _;
 use hyde_ir::dae::{Dae, Reaction, ReactionKind, Target};
+use hyde_ir::{AutomatonId, ClockId, Id as _};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
@@ -33,7 +33,7 @@ fn chains(dae: &Dae) -> BTreeMap<(usize, usize), Vec<&Reaction>> {
     let mut found: BTreeMap<(usize, usize), Vec<&Reaction>> = BTreeMap::new();
     for reaction in &dae.reactions {
         let key = match &reaction.kind {
-            ReactionKind::Transition { automaton, .. } => (0, automaton.index()),
+            ReactionKind::Transition { automaton, .. } => (0, *automaton),
             ReactionKind::When { clause } => (1, *clause),
             ReactionKind::Edge(_) | ReactionKind::Assert(_) => continue,
         };
@@ -49,7 +49,7 @@ fn condition(dae: &Dae, names: &Names<'_>, reaction: &Reaction) -> String {
         ReactionKind::Transition {
             automaton, from, ..
         } => {
-            let mode = mode_name(&dae.automata[*automaton].name);
+            let mode = mode_name(&dae.automata[AutomatonId::from_index(*automaton)].name);
             format!("pre({mode}) == {} and {condition}", mode_number(*from))
         }
         ReactionKind::When { .. } | ReactionKind::Edge(_) | ReactionKind::Assert(_) => condition,
@@ -108,7 +108,7 @@ fn chain(text: &mut String, dae: &Dae, names: &Names<'_>, reactions: &[&Reaction
             }
         }
         if let ReactionKind::Transition { automaton, to, .. } = &reaction.kind {
-            let mode = mode_name(&dae.automata[*automaton].name);
+            let mode = mode_name(&dae.automata[AutomatonId::from_index(*automaton)].name);
             let _ = writeln!(lines, "    {mode} := {};", mode_number(*to));
         }
         if lines.is_empty() {
@@ -131,7 +131,7 @@ fn chain(text: &mut String, dae: &Dae, names: &Names<'_>, reactions: &[&Reaction
 /// the next value.
 fn ticks(text: &mut String, dae: &Dae, names: &Names<'_>) {
     for hold in dae.holds.iter() {
-        let tick = &dae.ticks[hold.clock];
+        let tick = &dae.ticks[ClockId::from_index(hold.clock)];
         if dae.exprs.is_constant(tick.delay, 0.0) {
             continue;
         }
@@ -159,7 +159,7 @@ fn ticks(text: &mut String, dae: &Dae, names: &Names<'_>) {
         for hold in dae
             .holds
             .iter()
-            .filter(|hold| prompt && hold.clock == clock)
+            .filter(|hold| prompt && hold.clock == clock.index())
         {
             held(text, names, (hold.source, hold.target, hold.len), false);
         }

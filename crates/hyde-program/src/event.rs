@@ -1,20 +1,7 @@
-//! What happens at events: relations, automata, reactions, pins, clocks and held values.
+//! What happens at events: relations, reactions, pins, clocks and delayed quantities.
 
 use hyde_diag::Origin;
-use hyde_ir::dae::{Firmness, Target};
-
-/// What a relation is for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum RelationUse {
-    /// Its truth stands in equations: an event whenever it changes.
-    Equation,
-    /// It stands in an exit of a mode (automaton, mode): watched while the mode is on.
-    Exit(usize, usize),
-    /// It stands in a `when` condition.
-    When,
-    /// It stands in an `assert`.
-    Assert,
-}
+use hyde_ir::dae::{Firmness, ReactionKind, RelationUse, Target};
 
 /// A relation: true where its root function is positive.
 #[derive(Clone, Debug)]
@@ -34,21 +21,6 @@ pub struct Relation {
     pub origin: Origin,
 }
 
-/// The modes of a `modes` block.
-#[derive(Clone, Debug)]
-pub struct Automaton {
-    /// Its full name.
-    pub name: String,
-    /// The names of its modes.
-    pub modes: Vec<String>,
-    /// Whether each mode relates speeds alone, as `w = 0` does: what it is between cannot slide.
-    pub holds_speed: Vec<bool>,
-    /// Position of the number of its mode in the memory.
-    pub place: usize,
-    /// Where it is written.
-    pub origin: Origin,
-}
-
 /// One thing an event sets; its value is of the same number in [`crate::Function::Assignments`].
 #[derive(Clone, Debug)]
 pub struct Assignment {
@@ -56,31 +28,6 @@ pub struct Assignment {
     pub target: Target,
     /// Where it is written.
     pub origin: Origin,
-}
-
-/// What happens when a condition becomes true.
-#[derive(Clone, Debug)]
-pub enum ReactionKind {
-    /// An exit of a mode.
-    Transition {
-        /// The automaton.
-        automaton: usize,
-        /// The mode left.
-        from: usize,
-        /// The mode entered.
-        to: usize,
-        /// A jump of the state that the new mode fixes is meant.
-        impact: bool,
-    },
-    /// A branch of a `when` clause; of the branches of one clause the first that becomes true reacts.
-    When {
-        /// Number of the clause.
-        clause: usize,
-    },
-    /// The position in the memory that is 1 in the round of the iteration in which the condition became true.
-    Edge(usize),
-    /// A condition that must never hold: the message of an `assert`.
-    Assert(String),
 }
 
 /// A condition and what it sets in motion.
@@ -116,21 +63,6 @@ pub struct Clock {
     pub name: String,
     /// Where it is written.
     pub origin: Origin,
-}
-
-/// `hold(source)`: copied after the tick and the clock's delay.
-#[derive(Clone, Debug)]
-pub struct Hold {
-    /// The clock of the source.
-    pub clock: usize,
-    /// Position of the source in the memory.
-    pub source: usize,
-    /// Position of the held value in the memory.
-    pub target: usize,
-    /// Number of values.
-    pub len: usize,
-    /// Whether the continuous equations read it: a change of it is an event (C3).
-    pub read: bool,
 }
 
 /// A quantity as it was earlier: its value now is of the same number in [`crate::Function::Delayed`].

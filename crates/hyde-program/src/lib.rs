@@ -30,10 +30,7 @@ mod ledger;
 mod program;
 mod reacting;
 
-pub use event::{
-    Assignment, Automaton, Clock, Delay, Hold, InitialCondition, Pin, Reaction, ReactionKind,
-    Relation, RelationUse,
-};
+pub use event::{Assignment, Clock, Delay, InitialCondition, Pin, Reaction, Relation};
 pub use experiment::{
     Bode, Curve, Cut, Experiment, Figure, FigureKind, Flow, Measure, Measured, MeasuredResponse,
     Moment, RecordedResponse, Reduction, ScaledColumn, Stepped,
@@ -41,7 +38,9 @@ pub use experiment::{
 pub use foreign::{Foreign, ForeignInstance, ForeignPart, ForeignTick, Stopped};
 pub use given::{Given, Misfit};
 pub use hyde_ir::Prior;
-pub use hyde_ir::dae::{Firmness, Function, Selection, Target};
+pub use hyde_ir::dae::{
+    Automaton, Firmness, Function, Hold, ReactionKind, RelationUse, Selection, Target,
+};
 pub use hyde_ir::flat::{AccountKind, Method, PortKind, Preparation, ReductionKind};
 pub use jacobian::{Jacobian, JacobianEntry};
 pub use kernels::{Coefficients, Constant, Kernels, Point, SomeRows, TickWrt, Workspace};

@@ -1,15 +1,13 @@
 //! [`Program`]: the kernels and everything that is to be known of their numbers.
 
-use crate::event::{
-    Assignment, Automaton, Clock, Delay, Hold, InitialCondition, Pin, Reaction, Relation,
-};
+use crate::event::{Assignment, Clock, Delay, InitialCondition, Pin, Reaction, Relation};
 use crate::experiment::Experiment;
 use crate::foreign::ForeignPart;
 use crate::jacobian::{Jacobian, JacobianEntry};
 use crate::kernels::Kernels;
 use hyde_diag::{Origin, Span};
 use hyde_ir::Prior;
-use hyde_ir::dae::{Function, Selection};
+use hyde_ir::dae::{Automaton, Function, Hold, Selection};
 use hyde_units::{Allowed, Dimension, Kind, NamedUnit};
 use std::sync::{Arc, OnceLock};
 

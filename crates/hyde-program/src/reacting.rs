@@ -11,8 +11,9 @@
 //! ```
 //! Where root functions come from, when rounds end, and what is exactly at zero along the flow each of the two knows itself.
 
-use crate::event::{Pin, ReactionKind, Relation, RelationUse};
+use crate::event::{Pin, Relation};
 use crate::program::Program;
+use hyde_ir::dae::{ReactionKind, RelationUse};
 
 impl Relation {
     /// Its truth where the root function has a value: true above zero, and at a zero that stays zero as it is declared.
@@ -20,17 +21,6 @@ impl Relation {
     #[allow(clippy::float_cmp, reason = "a zero that stays zero is exact")]
     pub fn truth(&self, root: f64) -> bool {
         root > 0.0 || (root == 0.0 && self.inclusive)
-    }
-}
-
-impl RelationUse {
-    /// Whether the relation is looked at: an exit only while its mode is on. `in_mode` says whether an automaton is in a mode.
-    #[must_use]
-    pub fn matters(self, in_mode: impl Fn(usize, usize) -> bool) -> bool {
-        match self {
-            Self::Exit(automaton, mode) => in_mode(automaton, mode),
-            Self::Equation | Self::When | Self::Assert => true,
-        }
     }
 }
 

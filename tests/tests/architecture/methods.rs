@@ -25,7 +25,6 @@ const SPREAD: &[(&str, &str)] = &[
     ("program", "Parameter"),
     ("program", "Program"),
     ("program", "Relation"),
-    ("program", "RelationUse"),
     ("sim", "Failure"),
     ("sim", "Instant"),
     ("sim", "State"),

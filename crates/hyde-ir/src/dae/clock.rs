@@ -1,6 +1,6 @@
 //! Clocked parts: what a tick assigns, and what is held of it.
 
-use crate::id::{ClockId, ExprId, VarId};
+use crate::id::{ExprId, VarId};
 use crate::{Index, Range};
 use hyde_diag::Origin;
 
@@ -36,17 +36,17 @@ pub struct Tick {
     pub origin: Origin,
 }
 
-/// `hold(source)`.
+/// `hold(source)`: copied after the tick and the clock's delay.
 #[derive(Clone, Debug)]
 pub struct Hold {
-    /// The clock of the source.
-    pub clock: ClockId,
+    /// Number of the clock of the source.
+    pub clock: usize,
     /// Position of the source in the memory.
     pub source: usize,
     /// Position of the held value in the memory.
     pub target: usize,
-    /// Number of elements.
+    /// Number of values.
     pub len: usize,
-    /// Whether the continuous equations read it: a change of it is an event.
+    /// Whether the continuous equations read it: a change of it is an event (C3).
     pub read: bool,
 }

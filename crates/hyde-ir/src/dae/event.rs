@@ -5,7 +5,7 @@ use hyde_diag::Origin;
 
 /// The modes of an automaton.
 #[derive(Clone, Debug)]
-pub struct AutomatonInfo {
+pub struct Automaton {
     /// Its full name.
     pub name: String,
     /// The names of its modes.
@@ -55,13 +55,13 @@ pub struct Assignment {
 pub enum ReactionKind {
     /// An exit of a mode.
     Transition {
-        /// The automaton.
-        automaton: AutomatonId,
+        /// Number of the automaton.
+        automaton: usize,
         /// Number of the mode left.
         from: usize,
         /// Number of the mode entered.
         to: usize,
-        /// The jump of a pinned state on entry is meant.
+        /// A jump of the state that the new mode fixes is meant.
         impact: bool,
     },
     /// A branch of a `when` clause; of the branches of one clause the first that becomes true reacts.
@@ -69,9 +69,10 @@ pub enum ReactionKind {
         /// Number of the clause.
         clause: usize,
     },
-    /// `edge(condition)`: the position in the memory of its truth.
+    /// `edge(condition)`: the position in the memory that is 1 in the round of the iteration in which the condition became
+    /// true.
     Edge(usize),
-    /// A condition that must never be false; its message.
+    /// A condition that must never hold: the message of an `assert`.
     Assert(String),
 }
 

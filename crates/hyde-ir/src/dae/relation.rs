@@ -1,6 +1,6 @@
 //! Relations whose truth is frozen between events.
 
-use crate::id::{AutomatonId, ExprId};
+use crate::id::ExprId;
 use hyde_diag::Origin;
 
 /// What a relation is for.
@@ -8,12 +8,23 @@ use hyde_diag::Origin;
 pub enum RelationUse {
     /// Its frozen truth stands in equations: an event whenever it changes.
     Equation,
-    /// It stands in an exit of that mode: watched while the mode is on.
-    Exit(AutomatonId, u32),
+    /// It stands in an exit of a mode, by the numbers of the automaton and of the mode: watched while the mode is on.
+    Exit(usize, usize),
     /// It stands in a `when` condition.
     When,
     /// It stands in an `assert`.
     Assert,
+}
+
+impl RelationUse {
+    /// Whether the relation is looked at: an exit only while its mode is on. `in_mode` says whether an automaton is in a mode.
+    #[must_use]
+    pub fn matters(self, in_mode: impl Fn(usize, usize) -> bool) -> bool {
+        match self {
+            Self::Exit(automaton, mode) => in_mode(automaton, mode),
+            Self::Equation | Self::When | Self::Assert => true,
+        }
+    }
 }
 
 /// A relation: true where its root function is positive (or not negative, if inclusive).

@@ -3,7 +3,7 @@
 use super::{Names, comment, counted, subscript};
 use crate::dae::{Dae, Function, ReactionKind, Target, Wrt};
 use crate::expr::Index;
-use crate::id::{AutomatonId, RelationId};
+use crate::id::{AutomatonId, Id as _, RelationId};
 use hyde_diag::Sources;
 use std::fmt::Write as _;
 
@@ -217,7 +217,7 @@ fn events(out: &mut String, dae: &Dae, names: &Names<'_>, sources: &Sources) {
                 to,
                 impact,
             } => {
-                let automaton = &dae.automata[*automaton];
+                let automaton = &dae.automata[AutomatonId::from_index(*automaton)];
                 let impact = if *impact { " impact" } else { "" };
                 format!(
                     "{}: {} -> {}{impact}",

@@ -105,6 +105,7 @@ fn stick_slip() -> Program {
             name: "guide".to_owned(),
             modes: vec!["stick".to_owned(), "slip".to_owned()],
             holds_speed: vec![true, false],
+            initial: STICK,
             place: MODE,
             origin: origin("guide"),
         }],
